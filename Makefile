@@ -1,0 +1,48 @@
+# Every command runs in the environment that scripts/env finds or makes; `make` lists the targets.
+ENV = scripts/env
+CACHE = $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/thermowear
+RUFF = $(CACHE)/ruff-0.14/bin/ruff
+PYTEST = OMP_NUM_THREADS=1 $(ENV) python3 -m pytest
+
+.PHONY: help demo test verify test-next lint types image meshes clean
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 12
+
+demo: ## compute the demo cases into results/
+	$(ENV) python3 -m thermowear run demos/annular_punch.toml \
+	    -o results/annular_punch --overwrite
+	$(ENV) python3 -m thermowear run demos/annular_punch_running_in.toml \
+	    -o results/annular_punch_running_in --overwrite
+
+test: ## the tests but the slow ones
+	$(PYTEST) -n 2 -m "not slow"
+
+verify: ## all tests, with the slow ones and random examples
+	HYPOTHESIS_PROFILE=explore $(PYTEST) -n 2
+
+test-next: ## the tests with the dolfinx of Debian unstable
+	THERMOWEAR_SUITE=unstable $(PYTEST) -n 2 -m "not slow"
+
+lint: $(RUFF) ## ruff, and shellcheck where it is installed
+	$(RUFF) check .
+	$(RUFF) format --check .
+	if command -v shellcheck >/dev/null; then shellcheck scripts/env scripts/image; fi
+
+types: ## mypy
+	$(ENV) mypy
+
+image: ## the container image thermowear
+	scripts/image
+
+meshes: ## make the meshes in meshes/ anew
+	$(ENV) python3 meshes/regenerate.py
+
+clean: ## remove results and tool caches; the environment stays
+	rm -rf results build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# ruff is not in Debian; pinned, as a new one may ask for new things
+$(RUFF):
+	python3 -m venv $(CACHE)/ruff-0.14
+	$(CACHE)/ruff-0.14/bin/pip install --quiet 'ruff==0.14.*'

@@ -1,0 +1,164 @@
+"""Axisymmetric elasticity and thermal strain."""
+
+from mpi4py import MPI
+from petsc4py import PETSc
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from dolfinx.fem.petsc import assemble_vector
+
+from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.field import as_function, lagrange_space, owned
+from thermowear.bulk.kinematics import Axisymmetric
+from thermowear.reference import cylinder
+
+from ..conftest import two_blocks
+
+STEEL = ElasticMaterial(2e11, 0.3, 1.2e-5)
+SOFT = ElasticMaterial(1e9, 0.45, 5e-5)
+
+
+ENDS = ("upper_end", "lower_end")
+EVERYWHERE = tuple(
+    f"{b}_{s}" for b in ("upper", "lower") for s in ("end", "face", "inside", "outside")
+)
+
+
+def build(degree, columns=3, rows=2, materials=(STEEL, SOFT), clamped=ENDS, growth=(1.3, 0.8)):
+    tagged = None
+    if MPI.COMM_WORLD.rank == 0:
+        tagged = two_blocks(columns=(columns, columns), rows=(rows, rows), growth=growth)
+    bodies = distribute(tagged, MPI.COMM_WORLD)
+    by_name = dict(zip(("upper", "lower"), materials, strict=True))
+    return elasticity(bodies, Axisymmetric(), degree, by_name, list(clamped))
+
+
+def nodal(elastic, function):
+    """Owned nodal values of a vector field given at x of shape (3, n)."""
+    u = fem.Function(elastic.space)
+    u.interpolate(function)
+    return u.x.array[: owned(elastic.space)].copy()
+
+
+def residual(elastic, displacement):
+    x, y = elastic.stiffness.createVecs()
+    x.setArray(displacement)
+    elastic.stiffness.mult(x, y)
+    return y.getArray().copy()
+
+
+def assembled(form):
+    vector = assemble_vector(fem.form(form))
+    vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
+    return vector.getArray().copy()
+
+
+@pytest.mark.parametrize("degree", [1, 2, 5])
+def test_linear_patch(degree):
+    """requirement: V3, a linear field (u_z = c z) is in equilibrium with its tractions to rounding.
+
+    With u_r = 0 the stress is uniform, so interior nodal forces vanish.
+    """
+    elastic = build(degree)
+    forces = residual(elastic, nodal(elastic, lambda x: np.stack([0 * x[0], 1e-3 * x[1]])))
+    x = elastic.space.tabulate_dof_coordinates()
+    inner = (x[:, 0] > 0.0501) & (x[:, 0] < 0.0899) & (np.abs(x[:, 1]) > 1e-6)
+    inner &= (x[:, 1] < 0.0199) & (x[:, 1] > -0.0299)
+    inside = np.repeat(inner[: len(forces) // 2], 2)
+    assert inside.any()
+    assert np.abs(forces[inside]).max() <= 1e-12 * np.abs(forces).max()
+
+
+def test_thick_walled_cylinder():
+    """requirement: Lamé's solution is in equilibrium with its pressure (hoop strain right)."""
+    elastic = build(8, materials=(STEEL, STEEL))
+    p, inner, outer = 1e8, 0.05, 0.09
+
+    def exact(x):
+        return np.stack([cylinder.radial_displacement(x[0], inner, outer, p, 2e11, 0.3), 0 * x[0]])
+
+    mesh = elastic.bodies.mesh
+    forces = residual(elastic, nodal(elastic, exact))[::2]
+    r = elastic.space.tabulate_dof_coordinates()[: len(forces), 0]
+    total = mesh.comm.allreduce(forces[np.abs(r - inner) < 1e-9].sum())
+    assert total == pytest.approx(p * 2 * np.pi * inner * 0.05, rel=1e-8)
+    assert np.abs(forces[np.abs(r - inner) > 1e-9]).max() <= 1e-7 * np.abs(forces).max()
+
+
+def test_free_expansion_has_no_stress():
+    """requirement: V4, u = α ΔT x under uniform ΔT: |σ| <= 1e-10 E α ΔT and no nodal forces."""
+    elastic = build(3, materials=(STEEL, STEEL))
+    space = lagrange_space(elastic.bodies.mesh, 3)
+    u = nodal(elastic, lambda x: 1.2e-5 * 100 * x[:2])
+    rise = np.full(owned(space), 100.0)
+    load = elastic.thermal_load(space)
+    right, thermal = load.createVecs()
+    right.setArray(rise)
+    load.mult(right, thermal)
+    forces = residual(elastic, u)
+    assert np.abs(forces - thermal.getArray()).max() <= 1e-10 * np.abs(forces).max()
+    σ = elastic.stress(as_function(elastic.space, u, "u"), as_function(space, rise, "T"))
+    energy = fem.assemble_scalar(fem.form(ufl.inner(σ, σ) * ufl.dx))
+    assert np.sqrt(energy / (0.04 * 0.05)) <= 1e-10 * 2e11 * 1.2e-5 * 100
+
+
+def test_clamped_heating():
+    """requirement: V4, wholly clamped heating gives σ = -E α ΔT/(1 - 2ν) in all directions."""
+    elastic = build(2, materials=(STEEL, STEEL))
+    space = lagrange_space(elastic.bodies.mesh, 2)
+    rise = as_function(space, np.full(owned(space), 50.0), "T")
+    u = as_function(elastic.space, np.zeros(owned(elastic.space)), "u")
+    σ = elastic.stress(u, rise)
+    area = 0.04 * 0.05
+    for i in range(3):
+        mean = fem.assemble_scalar(fem.form(σ[i, i] * ufl.dx)) / area
+        mean = elastic.bodies.mesh.comm.allreduce(mean)
+        assert mean == pytest.approx(-2e11 * 1.2e-5 * 50 / (1 - 0.6), rel=1e-12)
+
+
+def galerkin_error(degree, n):
+    """L2 and H1 error of the solution for a smooth exact field that vanishes on all boundaries.
+
+    (Clamped all round: where a clamped edge meets a free one, duality costs the L2 error an order.)
+    """
+    elastic = build(degree, n, n, (STEEL, STEEL), EVERYWHERE, (1.0, 1.0))
+    mesh = elastic.bodies.mesh
+    x = ufl.SpatialCoordinate(mesh)
+    wave = ufl.conditional(
+        ufl.gt(x[1], 0), ufl.sin(ufl.pi * x[1] / 0.02), ufl.sin(ufl.pi * x[1] / 0.03)
+    )
+    wave *= ufl.sin(ufl.pi * (x[0] - 0.05) / 0.04)
+    exact = 1e-5 * ufl.as_vector([wave * ufl.exp(x[0] / 0.05), wave * ufl.cos(x[0] / 0.02)])
+    v = ufl.TestFunction(elastic.space)
+    dx = ufl.dx(metadata={"quadrature_degree": 2 * degree + 6})
+    loads = assembled(
+        2 * np.pi * x[0] * ufl.inner(elastic.stress(exact), Axisymmetric().strain(mesh, v)) * dx
+    )
+    u = as_function(elastic.space, elastic.solve(loads), "u")
+    error = u - exact
+    return [
+        np.sqrt(mesh.comm.allreduce(fem.assemble_scalar(fem.form(ufl.inner(e, e) * dx))))
+        for e in (error, ufl.grad(error))
+    ]
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_convergence(degree):
+    """requirement: V1, L2 and H1 errors fall with slopes k + 1 and k (± 0.15)."""
+    meshes = [4, 8, 16]
+    errors = np.log([galerkin_error(degree, n) for n in meshes])
+    slopes = -np.polyfit(np.log(meshes), errors, 1)[0]
+    assert slopes == pytest.approx([degree + 1, degree], abs=0.15)
+
+
+def test_supports_carry_the_load():
+    """requirement: V12, reactions balance the applied forces."""
+    elastic = build(4)
+    loads = nodal(elastic, lambda x: np.stack([0 * x[0], np.exp(20 * x[0])]))
+    u = elastic.solve(loads)
+    comm = elastic.bodies.mesh.comm
+    reactions = comm.allreduce(elastic.reactions(u, loads)[1::2].sum())
+    assert reactions == pytest.approx(-comm.allreduce(loads[1::2].sum()), rel=1e-10)

@@ -1,0 +1,52 @@
+"""Tables of the starter cases, to be changed by tests."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from functools import lru_cache
+from typing import Any
+
+from thermowear.case.starters import starter_text
+
+STEADY, RUNNING_IN = "annular-punch", "annular-punch-running-in"
+
+
+class _Gone:
+    """Stands for a key that is taken out."""
+
+    def __repr__(self) -> str:
+        return "GONE"
+
+
+GONE = _Gone()
+
+
+@lru_cache
+def _parsed(name: str) -> dict[str, Any]:
+    return tomllib.loads(starter_text(name))
+
+
+def tables(name: str = STEADY, changes: dict[str, Any] | None = None) -> dict[str, Any]:
+    """A starter case with keys, named by their paths, set or taken out."""
+    result = copy.deepcopy(_parsed(name))
+    for path, value in (changes or {}).items():
+        *tables_above, key = path.split(".")
+        table = result
+        for part in tables_above:
+            table = table.setdefault(part, {})
+        if value is GONE:
+            del table[key]
+        else:
+            table[key] = value
+    return result
+
+
+def paths(table: dict[str, Any], above: str = "") -> list[str]:
+    """The paths of all tables and keys."""
+    found = []
+    for key, value in table.items():
+        found.append(f"{above}{key}")
+        if isinstance(value, dict):
+            found += paths(value, f"{above}{key}.")
+    return found

@@ -1,0 +1,81 @@
+"""What is written out as a case is read back as the same case."""
+
+from __future__ import annotations
+
+import tomllib
+
+import pytest
+import tomli_w
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import thermowear as tw
+from thermowear.case import as_plain
+from thermowear.case.starters import starters
+
+from .starter import GONE, RUNNING_IN, STEADY, tables
+
+VARIANTS = {
+    **{name: (name, {}) for name in starters()},
+    "cold": (STEADY, {"heat": GONE}),
+    "initial": (STEADY, {"analysis": {"type": "initial"}, "wear": GONE}),
+    "force": (STEADY, {"load": {"force": "2.2 MN"}}),
+    "perfect contact": (STEADY, {"heat.conductance": GONE}),
+    "until steady": (RUNNING_IN, {"analysis": {"type": "transient", "until": "steady"}}),
+    "faces differ": (STEADY, {"mesh.bodies": {"plate": {"elements": 17}}}),
+    "two laws": (STEADY, {"wear.plate": {"coefficient": "3e-9 mm^2/N", "per": "pressure"}}),
+    "given temperature": (STEADY, {"heat.temperature": {"plate_side": "31.7 degC"}}),
+}
+
+
+@pytest.mark.parametrize(("name", "changes"), VARIANTS.values(), ids=VARIANTS)
+def test_a_case_written_out_is_the_same_case(name, changes):
+    """
+    requirement: case.resolved.toml can be run again and is the case that was run.
+    """
+    case = tw.load(tables(name, changes))
+    plain = as_plain(case)
+    assert tw.load(plain) == case
+    assert tw.load(tomllib.loads(tomli_w.dumps(plain))) == case
+
+
+def test_every_default_is_written_out():
+    """
+    requirement: the resolved case shows what was left to its default.
+    """
+    gone = {"mesh": GONE, "wear.punch.per": GONE, "heat.partition": GONE, "heat.ambient": GONE}
+    plain = as_plain(tw.load(tables(STEADY, gone)))
+    assert plain["mesh"]["degree"] == 8
+    assert plain["contact"]["method"] == "condensed"
+    assert plain["wear"]["punch"]["per"] == "friction-stress"
+    assert (plain["heat"]["partition"], plain["heat"]["ambient"]) == (0.5, "293.15 K")
+
+
+positive = st.floats(1e-12, 1e12)
+exponents = st.floats(0.1, 10.0)
+
+
+@given(modulus=positive, friction=positive, nu=st.floats(-0.999, 0.499), a=exponents, b=exponents)
+@settings(max_examples=40, deadline=None, database=None)
+def test_numbers_are_written_out_exactly(modulus, friction, nu, a, b):
+    """
+    requirement: no digit is lost in case.resolved.toml, exponents in units included.
+    """
+    changes = {
+        "bodies.punch.young_modulus": f"{modulus!r} MPa",
+        "bodies.punch.poisson_ratio": nu,
+        "contact.friction": friction,
+        "wear.punch.velocity_exponent": a,
+        "wear.punch.pressure_exponent": b,
+        "wear.punch.coefficient": f"2e-7 (mm/s)^({1 - a!r}) MPa^(-{b!r})",
+    }
+    case = tw.load(tables(STEADY, changes))
+    assert tw.load(tomllib.loads(tomli_w.dumps(as_plain(case)))) == case
+
+
+@pytest.mark.parametrize("name", starters())
+def test_every_starter_is_a_case(name):
+    """
+    requirement: starter cases run as they are.
+    """
+    assert tw.load(tables(name)).title == starters()[name]

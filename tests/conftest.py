@@ -1,0 +1,94 @@
+"""Fixtures shared by all rooms: cases, two plain blocks, runs that several tests look at."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import thermowear as tw
+from thermowear.geometry.blocks import Interval, add_grid
+from thermowear.geometry.gmsh_session import gmsh_model, tagged_mesh
+
+# the same examples every time, so that a red test is the change's own; `make verify` looks for more
+settings.register_profile("fixed", derandomize=True, deadline=None)
+settings.register_profile("explore", max_examples=500, deadline=None)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
+
+DEMOS = Path(__file__).parent.parent / "demos"
+HOT = DEMOS / "annular_punch.toml"
+COLD_RUNNING_IN = DEMOS / "annular_punch_running_in.toml"
+
+
+def cold_tables(path: Path = HOT) -> dict:
+    """The tables of a case file without heat."""
+    import tomllib
+
+    tables = tomllib.loads(path.read_text(encoding="utf-8"))
+    tables.pop("heat", None)
+    return tables
+
+
+def wear_law(b: float) -> tuple[str, str]:
+    """Overrides for another pressure exponent."""
+    return (
+        f"wear.punch.pressure_exponent={b}",
+        f'wear.punch.coefficient="2e-7 1/MPa^{b}"',
+    )
+
+
+def two_blocks(
+    inner=0.05, outer=0.09, heights=(0.02, 0.03), columns=(3, 3), rows=(2, 2), growth=(1.0, 1.0)
+):
+    """Two blocks of one width, one above the other; faces match if their columns do.
+
+    Body 1 is ``upper`` with surfaces ``upper_face`` and ``upper_end``, body 2 ``lower``.
+    """
+    with gmsh_model("blocks") as gmsh:
+        spans = ((0.0, heights[0]), (-heights[1], 0.0))
+        grids = [
+            add_grid(gmsh.model, [Interval(inner, outer, n, g)], [Interval(*span, m)])
+            for span, n, m, g in zip(spans, columns, rows, growth, strict=True)
+        ]
+        gmsh.model.geo.synchronize()
+        upper, lower = grids
+        gmsh.model.addPhysicalGroup(2, upper.surfaces, name="upper")
+        gmsh.model.addPhysicalGroup(2, lower.surfaces, name="lower")
+        parts = {
+            "upper_face": upper.bottom,
+            "upper_end": upper.top,
+            "upper_inside": upper.left,
+            "lower_face": lower.top,
+            "lower_end": lower.bottom,
+            "lower_inside": lower.left,
+            "upper_outside": upper.right,
+            "lower_outside": lower.right,
+        }
+        for name, curves in parts.items():
+            gmsh.model.addPhysicalGroup(1, curves, name=name)
+        gmsh.model.mesh.generate(2)
+        return tagged_mesh(gmsh.model, ("upper", "lower"), tuple(parts))
+
+
+def at(interface, radii, values):
+    """Values of an interface quantity at radii, by a spline through the contact points."""
+    from scipy.interpolate import CubicSpline
+
+    return CubicSpline(interface.x, values)(np.asarray(radii))
+
+
+@pytest.fixture(scope="session")
+def hot_steady():
+    """The demo: hot, steady, degree 8."""
+    return tw.run(tw.load(HOT))
+
+
+@pytest.fixture(scope="session")
+def running_in():
+    """The demo of running-in: cold, degree 8."""
+    return tw.run(tw.load(COLD_RUNNING_IN))

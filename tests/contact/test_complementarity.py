@@ -1,0 +1,131 @@
+"""Signorini's conditions under given loads."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from thermowear import ComputationError
+from thermowear.contact.complementarity import (
+    ContactSolution,
+    _checked,
+    _pressing_by_lemke,
+    solve_contact,
+)
+from thermowear.contact.lemke import lemke
+
+
+def random_problem(seed, n, skew=0.0):
+    """A compliance like an elastic one, a rough gap, one or two rigid directions."""
+    rng = np.random.default_rng(seed)
+    x = np.sort(rng.uniform(-1, 1, n))
+    compliance = -np.log(np.abs(np.subtract.outer(x, x)) + 0.02) + np.log(3.0)
+    noise = rng.normal(size=(n, n))
+    compliance = compliance + 0.05 * np.eye(n) + skew * (noise - noise.T)
+    gap = rng.normal(size=n) * rng.choice([0.0, 1e-3, 1.0]) + rng.choice([0.0, 5.0]) * x**2
+    k = rng.integers(1, 3)
+    modes = np.column_stack([np.ones(n), x])[:, :k]
+    pressure = rng.uniform(0.1, 1, n)
+    return compliance, gap, modes, modes.T @ pressure
+
+
+def violations(problem, solution):
+    compliance, gap, modes, load = problem
+    λ = solution.coefficients
+    r = compliance @ λ + gap - modes @ solution.motion
+    scale = np.abs(compliance @ λ).max() + np.abs(gap).max()
+    return max(
+        -λ.min() / λ.max(),
+        -r.min() / scale,
+        np.abs(λ * r).max() / (λ.max() * scale),
+        np.abs(modes.T @ λ - load).max() / np.abs(load).max(),
+    )
+
+
+@settings(max_examples=200, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), skew=st.sampled_from([0.0, 0.01]))
+def test_every_solution_satisfies_the_conditions(seed, n, skew):
+    """requirement: V10, no penetration, no tension, equilibrium, from any start."""
+    problem = random_problem(seed, n, skew)
+    start = np.random.default_rng(seed).random(n) < 0.5
+    solution = solve_contact(*problem, start=start)
+    assert violations(problem, solution) < 1e-8
+
+
+@settings(max_examples=50, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 30))
+def test_lemke_agrees_with_the_active_set(seed, n):
+    """requirement: the fallback finds the same contact."""
+    problem = random_problem(seed, n)
+    solution = solve_contact(*problem)
+    active = _pressing_by_lemke(*problem)
+    pressing = solution.coefficients > 1e-9 * solution.coefficients.max()
+    assert np.array_equal(active, pressing)
+
+
+@pytest.mark.parametrize("wrong", ["tension", "penetration", "open but pressing", "imbalance"])
+def test_every_wrong_pressure_is_caught(wrong):
+    """requirement: V10, the check after convergence sees each kind of violation."""
+    compliance, gap = np.eye(3), np.zeros(3)
+    modes, load = np.ones((3, 1)), np.array([3.0])
+    λ, d = np.ones(3), 1.0
+    if wrong == "tension":
+        λ, gap = np.array([-1e-6, 1.5, 1.5 + 1e-6]), np.array([1 + 1e-6, -0.5, -0.5 - 1e-6])
+    elif wrong == "penetration":
+        λ, gap = np.array([0.0, 1.5, 1.5]), np.array([1 - 1e-6, -0.5, -0.5])
+    elif wrong == "open but pressing":
+        gap = np.array([1e-6, 0.0, 0.0])
+    else:
+        load = load * (1 + 1e-6)
+    solution = ContactSolution(λ, np.array([d]), λ != 0)
+    with pytest.raises(ComputationError):
+        _checked(compliance, gap, modes, load, solution)
+    right = ContactSolution(np.ones(3), np.array([1.0]), np.ones(3, dtype=bool))
+    assert _checked(compliance, np.zeros(3), modes, np.array([3.0]), right) is not None
+
+
+def test_nearly_parallel_modes_from_a_start_that_cannot_carry():
+    """requirement: a start with fewer points than rigid directions, a pivot far away."""
+    x = np.array([0.94112293, 0.95127171, 0.96622326])
+    compliance = np.array(
+        [[5.06063529, 4.57670915, 4.1971277], [4.62373695, 5.06063529, 4.46767739]]
+        + [[4.19782828, 4.43713219, 5.06063529]]
+    )
+    gap = np.array([4.42751831, 4.52462457, 4.66845079])
+    modes = np.column_stack([np.ones(3), x])
+    problem = (compliance, gap, modes, np.array([1.60942561, 1.53844958]))
+    for active in (0, 0, 1), (0, 0, 0), (1, 0, 0):
+        solution = solve_contact(*problem, start=np.array(active, dtype=bool))
+        assert violations(problem, solution) < 1e-8
+        assert solution.coefficients == pytest.approx([0.53504581, 0.21302487, 0.86135493])
+    assert _pressing_by_lemke(*problem).all()
+
+
+@settings(max_examples=100, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(1, 25))
+def test_lemke_on_positive_definite_problems(seed, n):
+    """requirement: always ends, with w, z >= 0 and z·w = 0, degenerate ones included."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(n, n))
+    matrix = root @ root.T + 0.1 * np.eye(n)
+    right = rng.integers(-2, 3, n).astype(float)
+    z = lemke(matrix, right)
+    w = matrix @ z + right
+    assert z.min() >= -1e-9
+    assert w.min() >= -1e-8
+    assert abs(z @ w) <= 1e-7
+
+
+def test_load_that_no_pressure_carries():
+    """requirement: a moment beyond the edge is reported, never a wrong pressure."""
+    x = np.linspace(-1, 1, 11)
+    compliance = np.eye(11) + 0.1
+    modes = np.column_stack([np.ones(11), x])
+    with pytest.raises(ComputationError):
+        solve_contact(compliance, np.zeros(11), modes, np.array([1.0, 1.5]))
+
+
+def test_indefinite_compliance_is_reported():
+    """requirement: V10, beyond the instability the solver says so instead of returning."""
+    with pytest.raises(ComputationError, match="instability"):
+        solve_contact(-np.eye(6) - 0.2, np.linspace(0, 1, 6), np.ones((6, 1)), np.ones(1))

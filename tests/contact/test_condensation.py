@@ -1,0 +1,71 @@
+"""Elasticity condensed to the contact, against the bodies solved directly."""
+
+from mpi4py import MPI
+
+import numpy as np
+import pytest
+
+from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.kinematics import Axisymmetric
+from thermowear.contact.complementarity import solve_contact
+from thermowear.contact.condensation import condense
+from thermowear.contact.face import gather_face
+from thermowear.contact.pairing import pair
+from thermowear.contact.pressure import pressure_basis
+from thermowear.contact.traces import gap_trace
+from thermowear.parallel import sum_over_ranks
+
+from ..conftest import two_blocks
+
+COMM = MPI.COMM_WORLD
+
+
+def condensed(degree, columns, poisson_ratio=0.3):
+    tagged = two_blocks(columns=columns) if COMM.rank == 0 else None
+    bodies = distribute(tagged, COMM)
+    materials = {
+        "upper": ElasticMaterial(2e11, poisson_ratio),
+        "lower": ElasticMaterial(7e10, poisson_ratio),
+    }
+    elastic = elasticity(bodies, Axisymmetric(), degree, materials, ["upper_end", "lower_end"])
+    pairing = pair(
+        gather_face(bodies, "upper_face"),
+        gather_face(bodies, "lower_face"),
+        Axisymmetric(),
+        degree + 2,
+    )
+    trace = gap_trace(elastic.space, pairing)
+    basis = pressure_basis(pairing, max(degree - 1, 1))
+    rigid = (pairing.normals @ [0.0, -1.0])[:, None]
+    return elastic, pairing, trace, condense(elastic, pairing, trace, basis, rigid)
+
+
+@pytest.mark.parametrize("columns", [(3, 3), (2, 5)])
+@pytest.mark.parametrize("degree", [1, 2, 6])
+def test_compliance_is_the_bodies_own(degree, columns):
+    """requirement: A λ is the weak gap that the bodies show under the pressure Ψ λ; A is SPD."""
+    elastic, pairing, trace, contact = condensed(degree, columns)
+    λ = np.random.default_rng(1).uniform(0, 1e8, contact.basis.shape[1])
+    u = elastic.solve(trace @ (pairing.weights * (contact.basis @ λ)))
+    gap = sum_over_ranks(COMM, trace.T @ u)
+    weak = contact.weak(gap)
+    np.testing.assert_allclose(contact.compliance @ λ, weak, rtol=1e-9)
+    assert np.linalg.eigvalsh(contact.compliance).min() > 0
+    assert np.all(gap > 0)  # pressure opens the gap of bodies that are held
+
+
+@pytest.mark.parametrize("columns", [(3, 3), (3, 4), (5, 2)])
+@pytest.mark.parametrize("degree", [1, 2, 4])
+def test_uniform_pressure(degree, columns):
+    """requirement: V5, contact patch test. With ν = 0 two pressed blocks carry a uniform pressure,
+    whether their faces match or not.
+    """
+    _, pairing, _, contact = condensed(degree, columns, poisson_ratio=0.0)
+    area = pairing.weights.sum()
+    solution = solve_contact(
+        contact.compliance, contact.weak(pairing.gap), contact.modes, np.array([1e8 * area])
+    )
+    pressure = contact.basis @ solution.coefficients
+    np.testing.assert_allclose(pressure, 1e8, rtol=1e-9)
+    assert solution.motion[0] == pytest.approx(1e8 * (0.02 / 2e11 + 0.03 / 7e10), rel=1e-9)

@@ -1,0 +1,40 @@
+"""What the terminal shows."""
+
+import io
+
+from rich.console import Console
+
+from thermowear.output.console import Progress
+from thermowear.simulation import HistoryRow
+
+
+def row(time):
+    return HistoryRow(time, 1.0, 2e6, 0.1, 0.0, 0.0, 300.0, 0.0, 0.1, 1e-5)
+
+
+def shown(terminal):
+    text = io.StringIO()
+    console = Console(file=text, force_terminal=terminal, width=120, color_system=None)
+    with Progress(console) as progress:
+        progress.phase("mesh")
+        for number in range(3):
+            progress.step(number, row(0.5 * number), 0.25)
+    return text.getvalue()
+
+
+def test_plain_lines_where_nobody_watches():
+    """requirement: time, step, largest pressure and distance, first and last, no control codes."""
+    lines = shown(terminal=False).splitlines()
+    assert len(lines) == 2
+    assert "\x1b" not in "".join(lines)
+    assert lines[0].startswith("t = 0 s   step 0")
+    assert lines[1].startswith("t = 1 s   step 2")
+    assert "2 MPa" in lines[1]
+    assert "2.50e-01" in lines[1]
+
+
+def test_one_live_line_on_a_terminal():
+    """requirement: the line is rewritten; the last state stays."""
+    text = shown(terminal=True)
+    assert "\x1b[2K" in text or "\r" in text
+    assert text.rstrip().splitlines()[-1].count("t = 1 s") == 1

@@ -1,0 +1,69 @@
+"""Pictures: drawn from the results folder alone, and not empty."""
+
+import shutil
+
+import matplotlib.image as mpimg
+import numpy as np
+import pytest
+
+from thermowear import CaseError
+from thermowear.cli import main
+from thermowear.output.pictures import make
+from thermowear.output.pictures.make import make_pictures
+
+from ..conftest import COLD_RUNNING_IN, HOT
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    """Results of a hot steady run and of a cold running-in, coarse, without pictures."""
+    base = tmp_path_factory.mktemp("results")
+    small = ["--no-pictures", "--set=mesh.degree=3", "--set=mesh.elements=6"]
+    short = ["--set=analysis.end_time=5 s", '--set=analysis.output_times=["1 s"]']
+    assert main(["run", str(HOT), "-o", str(base / "hot"), *small]) == 0
+    assert main(["run", str(COLD_RUNNING_IN), "-o", str(base / "cold"), *small, *short]) == 0
+    return base
+
+
+def test_every_picture_shows_something(folders):
+    """requirement: R1, the PNG exists, is large enough, and more than 1 % of it is drawn."""
+    assert make_pictures(folders / "hot") == []
+    assert make_pictures(folders / "cold") == []
+    expected = {
+        "hot": {"interface", "bodies", "deformed"},
+        "cold": {"interface", "bodies", "deformed", "wear", "history"},
+    }
+    for name, pictures in expected.items():
+        assert {p.stem for p in (folders / name).glob("*.png")} == pictures
+        for path in (folders / name).glob("*.png"):
+            image = mpimg.imread(path)[..., :3]
+            assert min(image.shape[:2]) > 400, path
+            assert (np.abs(image - image[0, 0]).max(axis=2) > 0.05).mean() > 0.01, path
+            assert len(np.unique(np.round(image.reshape(-1, 3), 1), axis=0)) > 5, path
+
+
+def test_bodies_are_drawn_in_colour(folders):
+    """requirement: the bodies are filled with the colours of their field, not an empty frame."""
+    make_pictures(folders / "hot")
+    image = mpimg.imread(folders / "hot" / "bodies.png")[..., :3]
+    coloured = (image.max(axis=2) - image.min(axis=2)) > 0.1
+    assert coloured.mean() > 0.2
+
+
+def test_a_renderer_that_dies_is_no_disaster(folders, tmp_path, monkeypatch):
+    """requirement: without a display the curves are drawn and the reason is said."""
+    folder = tmp_path / "copy"
+    shutil.copytree(folders / "hot", folder)
+    for picture in folder.glob("*.png"):
+        picture.unlink()
+    monkeypatch.setattr(make, "_displays", lambda: [["false"]])
+    problems = make_pictures(folder)
+    assert len(problems) == 1
+    assert "could not be drawn" in problems[0]
+    assert (folder / "interface.png").exists()
+    assert not (folder / "bodies.png").exists()
+
+
+def test_no_results_no_pictures(tmp_path):
+    with pytest.raises(CaseError, match=r"interface\.csv"):
+        make_pictures(tmp_path)

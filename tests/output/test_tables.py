@@ -1,0 +1,125 @@
+"""The files of the results folder."""
+
+import json
+
+import meshio
+import numpy as np
+import pytest
+
+from thermowear.cli import main
+from thermowear.output import tables
+from thermowear.output.quantities import HISTORY, INTERFACE
+
+from ..conftest import COLD_RUNNING_IN
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("run") / "out"
+    arguments = [
+        "run",
+        str(COLD_RUNNING_IN),
+        "-o",
+        str(path),
+        "--no-pictures",
+        "--set=mesh.degree=2",
+        "--set=mesh.elements=4",
+        "--set=analysis.end_time=2 s",
+        '--set=analysis.output_times=["0.5 s", "1 s"]',
+    ]
+    assert main(arguments) == 0
+    return path
+
+
+def test_columns_are_those_of_the_contract(folder):
+    """requirement: other programs rely on these headers."""
+    head = (folder / "interface.csv").read_text().splitlines()[0]
+    assert head == (
+        "x_m,y_m,z_m,s_m,weight_m2,pressure_Pa,gap_m,shape_m,wear_1_m,wear_2_m,wear_rate_1_m_per_s,"
+        "wear_rate_2_m_per_s,temperature_1_K,temperature_2_K,heat_flux_1_W_per_m2,"
+        "heat_flux_2_W_per_m2"
+    )
+    head = (folder / "history.csv").read_text().splitlines()[0]
+    assert head == (
+        "time_s,sliding_distance_m,max_pressure_Pa,contact_area_m2,wear_volume_1_m3,"
+        "wear_volume_2_m3,max_temperature_K,approach_m,step_s,error"
+    )
+
+
+def test_files_agree_with_each_other(folder):
+    """requirement: summary, tables and fields tell one story."""
+    names = {path.name for path in folder.iterdir()}
+    assert names == {
+        "summary.json",
+        "run.json",
+        "case.resolved.toml",
+        "interface.csv",
+        "interface_0.5.csv",
+        "interface_1.csv",
+        "history.csv",
+        "fields.vtu",
+    }
+    summary = json.loads((folder / "summary.json").read_text())
+    interface = tables.read(folder / "interface.csv", INTERFACE)
+    history = tables.read(folder / "history.csv", HISTORY)
+    assert interface["weight"] @ interface["pressure"] == pytest.approx(summary["normal_force_N"])
+    assert summary["normal_force_N"] == pytest.approx(50e6 * np.pi * (0.12**2 - 0.02**2), rel=1e-12)
+    assert len(interface["x"]) == summary["contact_points"]
+    assert len(history["time"]) == summary["steps"] + 1
+    assert history["wear_volume_1"][-1] == pytest.approx(summary["wear_volume_1_m3"], rel=1e-12)
+    assert np.ptp(interface["shape"]) == pytest.approx(summary["shape_range_m"], rel=1e-12)
+    assert json.loads((folder / "run.json").read_text())["status"] == "done"
+    assert sum(summary["seconds"].values()) > 0
+    middle = tables.read(folder / "interface_0.5.csv", INTERFACE)
+    assert 0 < middle["wear_1"].max() < interface["wear_1"].max()
+
+
+def test_contracted_summary_keys(folder):
+    """requirement: the summary has at least these keys, whatever the analysis."""
+    summary = json.loads((folder / "summary.json").read_text())
+    for key in [
+        "analysis",
+        "model",
+        "method",
+        "dofs_displacement",
+        "dofs_temperature",
+        "contact_points",
+        "normal_force_N",
+        "friction_force_N",
+        "friction_torque_Nm",
+        "max_pressure_Pa",
+        "mean_pressure_Pa",
+        "min_pressure_Pa",
+        "contact_area_m2",
+        "shape_range_m",
+        "max_temperature_K",
+        "friction_power_W",
+        "heat_balance_relative_error",
+        "equilibrium_relative_error",
+        "rigid_wear_velocity_m_per_s",
+        "wear_dissipation_W",
+        "wear_volume_1_m3",
+        "wear_volume_2_m3",
+        "steps",
+        "seconds",
+    ]:
+        assert key in summary, key
+
+
+def test_fields_cover_both_bodies(folder):
+    """requirement: fields.vtu is read by others; punch above, plate below, moved by the load."""
+    mesh = meshio.read(folder / "fields.vtu")
+    body = mesh.cell_data["body"][0]
+    height = mesh.points[mesh.cells[0].data].mean(axis=1)[:, 1]
+    assert set(body) == {1, 2}
+    assert np.all((body == 1) == (height > 0))
+    assert np.all(mesh.point_data["von_mises_Pa"] >= 0)
+    down = mesh.point_data["displacement_m"][:, 1]
+    assert down[mesh.points[:, 1] > 0.0499].max() < 0
+    assert np.abs(down[mesh.points[:, 1] < -0.0999]).max() < 1e-9
+
+
+def test_a_table_of_another_kind_is_refused(tmp_path):
+    (tmp_path / "x.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(ValueError, match="does not begin"):
+        tables.read(tmp_path / "x.csv", HISTORY)

@@ -1,0 +1,185 @@
+"""Running-in of the annular punch."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import thermowear as tw
+from thermowear.reference import annular_punch as reference
+
+from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
+
+FORCE = 50e6 * np.pi * (0.12**2 - 0.02**2)
+
+
+def states(result):
+    """Interfaces by time, the end included."""
+    return result.outputs | {result.history[-1].time: result.interface}
+
+
+def test_few_steps(running_in):
+    """requirement: 8T in at most 200 steps (its table is a verification case)."""
+    assert len(running_in.history) - 1 <= 200
+
+
+def test_output_times_are_hit_exactly(running_in):
+    """requirement: results at output times exactly."""
+    times = [row.time for row in running_in.history]
+    assert set(running_in.outputs) == {1.0, 5.0, 20.0, 50.0, 100.0}
+    assert set(running_in.outputs) < set(times)
+    assert times[-1] == 200.0
+    steps = np.array([row.step for row in running_in.history[1:]])
+    np.testing.assert_allclose(np.diff(times), steps, rtol=1e-9)
+
+
+def test_wear_never_goes_back_and_contact_stays_admissible(running_in):
+    """requirement: V10 and V18, p >= 0 at every point, wear grows, no penetration to 1e-3 of it."""
+    ordered = [state for _, state in sorted(states(running_in).items())]
+    for before, after in itertools.pairwise(ordered):
+        assert np.all(after.wear_1 >= before.wear_1)
+    for state in ordered:
+        assert state.pressure.min() >= 0.0
+        assert state.gap.min() > -1e-3 * np.ptp(state.shape)
+        assert state.weight @ state.pressure == pytest.approx(FORCE, rel=1e-10)
+
+
+def test_volume_follows_archard(running_in):
+    """requirement: V16, V = k ∫∫ p v dA dt; the rate at the end is that of the steady state."""
+    i = running_in.interface
+    volume = np.array([row.wear_volume_1 for row in running_in.history])
+    time = np.array([row.time for row in running_in.history])
+    assert i.weight @ i.wear_1 == pytest.approx(volume[-1], rel=1e-12)
+    area = np.pi * (0.12**2 - 0.02**2)
+    rate = (volume[-1] - volume[-2]) / (time[-1] - time[-2])
+    assert rate == pytest.approx(1.75e-6 * area, rel=1e-4)
+
+
+def test_tolerance_rules_the_error():
+    """requirement: V19, a tighter tolerance moves the result by no more than promised."""
+
+    def pressures(tolerance):
+        case = tw.load(
+            COLD_RUNNING_IN,
+            (
+                "mesh.degree=4",
+                "analysis.end_time=5 s",
+                'analysis.output_times=["1 s"]',
+                f"analysis.tolerance={tolerance}",
+            ),
+        )
+        result = tw.run(case)
+        return result.outputs[1.0].pressure, len(result.history)
+
+    (loose, few), (good, some), (exact, many) = map(pressures, (1e-3, 1e-4, 1e-7))
+    errors = [np.abs(p - exact).max() / exact.max() for p in (loose, good)]
+    assert errors[1] < 1e-3
+    assert errors[1] < errors[0] / 2
+    assert few < some < many
+
+
+def test_second_order_in_time():
+    """requirement: V19, the error of the wear step falls with the square of its size."""
+    from mpi4py import MPI
+
+    from thermowear.simulation.interface_problem import InterfaceProblem, WornContact
+    from thermowear.simulation.phases import Phases
+    from thermowear.simulation.system import build
+    from thermowear.simulation.wear_step import advance
+
+    case = tw.load(COLD_RUNNING_IN, ("mesh.degree=3", "mesh.elements=8"))
+    problem = InterfaceProblem(build(case, MPI.COMM_WORLD, Phases()))
+    solution = problem.unworn()
+    pressure = problem.pressure(solution)
+    state = WornContact(np.zeros_like(problem.rates(pressure)), solution, pressure)
+    for _ in range(40):  # let the singular start pass
+        state = advance(problem, state, 0.05)
+
+    def after(steps):
+        run = state
+        for _ in range(steps):
+            run = advance(problem, run, 4.0 / steps)
+        return run.worn
+
+    exact = after(256)
+    errors = [np.abs(after(n) - exact).max() for n in (4, 8, 16)]
+    slopes = np.diff(np.log(errors)) / np.log(0.5)
+    assert slopes == pytest.approx([2.0, 2.0], abs=0.25)
+
+
+@pytest.mark.parametrize("b", [0.5, 2.0])
+def test_other_exponents_end_at_their_steady_pressure(b):
+    """requirement: the loop over time and the principle end at the same pressure, any b."""
+    tables = cold_tables(COLD_RUNNING_IN)
+    tables["analysis"] = {"type": "transient", "until": "steady", "steady_tolerance": 2e-4}
+    result = tw.run(tw.load(tables, (*wear_law(b), "mesh.degree=6")))
+    i = result.interface
+    exact = reference.steady_pressure(i.x, FORCE, 0.02, 0.12, b)
+    assert np.abs(i.pressure - exact).max() <= 1e-3 * exact.max()
+    assert result.summary["distance_from_steady"] <= 2e-4
+
+
+def test_both_bodies_wear_in_time():
+    """requirement: two wearing bodies: depths in the ratio of their coefficients."""
+    tables = cold_tables(COLD_RUNNING_IN)
+    tables["wear"]["plate"] = dict(tables["wear"]["punch"]) | {"coefficient": "1e-7 1/MPa"}
+    tables["analysis"] = {"type": "transient", "end_time": "10 s"}
+    result = tw.run(tw.load(tables, ("mesh.degree=3",)))
+    i, last = result.interface, result.history[-1]
+    np.testing.assert_allclose(i.wear_1, 2 * i.wear_2, rtol=1e-9)
+    volumes = (i.weight @ i.wear_1, i.weight @ i.wear_2)
+    assert (last.wear_volume_1, last.wear_volume_2) == pytest.approx(volumes, rel=1e-12)
+    summary = result.summary
+    assert (summary["wear_volume_1_m3"], summary["wear_volume_2_m3"]) == pytest.approx(volumes)
+    assert min(volumes) > 0
+
+
+@pytest.fixture(scope="module")
+def hot_running_in():
+    import tomllib
+
+    tables = tomllib.loads(HOT.read_text(encoding="utf-8"))
+    tables["analysis"] = {"type": "transient", "until": "steady", "steady_tolerance": 2e-4}
+    return tw.run(tw.load(tables))
+
+
+def test_hot_running_in_ends_where_the_principle_says(hot_running_in, hot_steady):
+    """requirement: same pressure as cold (1e-3), shape of the direct hot steady state (1e-3)."""
+    end = hot_running_in.interface
+    cold = reference.steady_pressure(end.x, FORCE, 0.02, 0.12, 1.0)
+    assert np.abs(end.pressure / cold - 1).max() <= 1e-3
+    shape = hot_steady.interface.shape
+    difference = end.shape - shape
+    difference -= np.average(difference, weights=end.weight)
+    assert np.abs(difference).max() <= 1e-3 * np.ptp(shape)
+
+
+def test_hot_running_in_separates_and_closes(hot_running_in):
+    """requirement: the active set changes on the way; heat and forces balance at the end."""
+    areas = np.array([row.contact_area for row in hot_running_in.history])
+    full = np.pi * (0.12**2 - 0.02**2)
+    assert areas[0] < 0.9 * full
+    assert areas[-1] == pytest.approx(full, rel=1e-9)
+    temperatures = [row.max_temperature for row in hot_running_in.history]
+    assert temperatures[0] > temperatures[-1] > 293.15
+    assert hot_running_in.summary["heat_balance_relative_error"] < 1e-9
+    assert hot_running_in.summary["equilibrium_relative_error"] < 1e-9
+
+
+def test_beyond_the_critical_speed_the_run_says_so():
+    """requirement: thermoelastic instability is an error message, never a wrong pressure."""
+    with pytest.raises(tw.ComputationError, match="instability"):
+        tw.run(
+            tw.load(
+                HOT, ("mesh.degree=3", 'motion.angular_velocity="5 rad/s"', "analysis.type=initial")
+            )
+        )
+
+
+def test_too_few_steps_keep_what_was_computed():
+    """requirement: failures keep what was computed."""
+    result = tw.run(tw.load(COLD_RUNNING_IN, ("mesh.degree=2", "analysis.max_steps=5")))
+    assert isinstance(result.stopped, tw.ComputationError)
+    assert "max_steps" in str(result.stopped)
+    assert len(result.history) == 6
+    assert 0 < result.summary["time_s"] < 200

@@ -1,0 +1,35 @@
+"""The reference meshes in meshes/ are those that the generator makes today."""
+
+import runpy
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import thermowear as tw
+
+MESHES = Path(__file__).parent.parent / "meshes"
+KNOWN = runpy.run_path(str(MESHES / "regenerate.py"))["MESHES"]
+
+
+def in_order(points):
+    """Points sorted by place, whatever their numbers."""
+    return points[np.lexsort(np.round(points.T, 9))]
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_reference_mesh(name):
+    """requirement: same points, elements and names."""
+    case = tw.load(MESHES.parent / "demos" / "annular_punch.toml", KNOWN[name])
+    made = case.geometry.build(case.mesh)
+    kept = meshio.read(MESHES / name)
+    np.testing.assert_allclose(in_order(kept.points[:, :2]), in_order(made.points), atol=1e-9)
+    assert set(kept.field_data) == {*made.bodies, *made.surfaces}
+    tags = kept.cell_data_dict["gmsh:physical"]
+    for cells, own, shift in (("quad", made.cell_tags, 0), ("line", made.facet_tags, 2)):
+        assert np.array_equal(np.bincount(tags[cells]), np.bincount(own + shift)), cells
+
+
+def test_every_mesh_is_known():
+    assert {path.name for path in MESHES.glob("*.msh")} == set(KNOWN)

@@ -1,0 +1,103 @@
+"""The same numbers on any number of ranks, and one voice when something is wrong."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from .conftest import COLD_RUNNING_IN, HOT
+
+pytestmark = pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
+
+ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+def thermowear(ranks, *arguments):
+    """Run the program on some ranks."""
+    command = [sys.executable, "-m", "thermowear", *map(str, arguments)]
+    if ranks > 1:
+        command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command]
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("PMIX", "PRTE_"))}
+    return subprocess.run(
+        command, capture_output=True, text=True, check=False, env=environment | ROOT, timeout=300
+    )
+
+
+def summaries(tmp_path, case, *overrides):
+    found = []
+    for ranks in (1, 2):
+        folder = tmp_path / f"on{ranks}"
+        done = thermowear(
+            ranks,
+            "run",
+            case,
+            "-o",
+            folder,
+            "--no-pictures",
+            *(f"--set={text}" for text in overrides),
+        )
+        assert done.returncode == 0, done.stderr
+        found.append((json.loads((folder / "summary.json").read_text()), folder))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("case", "overrides"),
+    [
+        (HOT, ["mesh.degree=6"]),
+        (COLD_RUNNING_IN, ["mesh.degree=6"]),
+        (COLD_RUNNING_IN, ["mesh.degree=3", "mesh.bodies.plate.elements=7"]),
+    ],
+)
+def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):
+    """requirement: P1, every number of the summary to 1e-8 of the serial run."""
+    (serial, folder), (parallel, other) = summaries(tmp_path, case, *overrides)
+    noise = {"seconds", "heat_balance_relative_error", "equilibrium_relative_error"}
+    for key in serial.keys() - noise:
+        expected = serial[key]
+        if isinstance(expected, float):
+            expected = pytest.approx(expected, rel=1e-8, abs=1e-12 * abs(expected))
+            if key == "distance_from_steady":
+                expected = pytest.approx(serial[key], abs=1e-8)
+        assert parallel[key] == expected, key
+    assert parallel["equilibrium_relative_error"] < 1e-9
+    assert json.loads((other / "run.json").read_text())["ranks"] == 2
+    assert {f.name for f in folder.iterdir()} == {f.name for f in other.iterdir()}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", HOT, "--set", "bodies.punch.poisson_ratio=0.5"], "bodies.punch.poisson_ratio"),
+        (["run", "missing.toml"], "missing.toml"),
+        (["run", HOT, "--sett", "mesh.degree=2"], "--sett"),
+        (["run", HOT, "-o", "/proc/nowhere", "--set=mesh.degree=2"], "-o /proc/nowhere"),
+    ],
+)
+def test_an_error_ends_all_ranks_with_one_message(tmp_path, arguments, message):
+    """requirement: bad case or unwritable folder: exit code 1, said once, nobody waits."""
+    done = thermowear(2, *arguments)
+    assert done.returncode == 1
+    assert done.stderr.count(message) == 1
+    assert "Traceback" not in done.stderr
+
+
+def test_a_failed_computation_ends_all_ranks(tmp_path):
+    """requirement: C3, exit code 2 and a readable run.json."""
+    done = thermowear(
+        2,
+        "run",
+        HOT,
+        "-o",
+        tmp_path / "out",
+        "--no-pictures",
+        "--set=mesh.degree=2",
+        '--set=motion.angular_velocity="50 rad/s"',
+        "--set=analysis.type=initial",
+    )
+    assert done.returncode == 2
+    assert done.stderr.count("instability") == 1
+    assert json.loads((tmp_path / "out" / "run.json").read_text())["status"] == "failed"

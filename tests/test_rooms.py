@@ -1,0 +1,100 @@
+"""The layout of the house: which room may import which."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import thermowear
+
+ROOT = Path(thermowear.__file__).parent
+ORDER = [
+    "case",
+    "laws",
+    "reference",
+    "geometry",
+    "bulk",
+    "contact",
+    "simulation",
+    "verification",
+    "output",
+]
+"""Data flows one way: a room imports only from rooms above it in this list."""
+NOT_ALLOWED = {
+    "case": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix"},
+    "laws": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "pydantic", "pint"},
+    "reference": {"dolfinx", "gmsh", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
+    "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl", "basix"},
+    "output": {"dolfinx", "petsc4py", "ufl", "basix", "gmsh"},
+}
+BARE = {
+    "output": {"simulation", "verification", "contact", "bulk", "laws"},
+    "reference": {"case"},
+    "bulk": {"case", "geometry"},
+    "contact": {"case", "geometry"},
+}
+"""Rooms that a room could import by the order, but has no business with."""
+
+
+def imports(path):
+    """Absolute dotted names that a module imports."""
+    package = ["thermowear", *path.relative_to(ROOT).parts[:-1]]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            module = [*base, *(node.module.split(".") if node.module else [])]
+            for alias in node.names:
+                yield ".".join([*module, alias.name])
+
+
+@pytest.mark.parametrize("room", ORDER)
+def test_rooms_import_only_from_above(room):
+    """requirement: I1, one-way flow; only bulk, contact and simulation know dolfinx."""
+    below = set(ORDER[ORDER.index(room) + 1 :]) | BARE.get(room, set())
+    for path in (ROOT / room).rglob("*.py"):
+        for name in imports(path):
+            parts = name.split(".")
+            if parts[0] == "thermowear" and len(parts) > 1:
+                assert parts[1] not in below, f"{path} imports {name}"
+            assert parts[0] not in NOT_ALLOWED.get(room, set()), f"{path} imports {name}"
+
+
+def test_only_compat_knows_versions():
+    """requirement: one module spans the dolfinx releases."""
+    for path in ROOT.rglob("*.py"):
+        if path.name != "compat.py":
+            assert "dolfinx.cpp" not in set(imports(path)), path
+            assert "__version__" not in path.read_text() or path.name in {
+                "__init__.py",
+                "cli.py",
+                "folder.py",
+            }, path
+
+
+def run_python(code):
+    return subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
+    )
+
+
+def test_import_is_light_and_clean():
+    """requirement: I1, ``import thermowear`` warns of nothing and loads no heavy library."""
+    heavy = {"dolfinx", "gmsh", "matplotlib", "pyvista", "mpi4py", "pint", "meshio"}
+    done = run_python(f"import sys, thermowear; print({heavy} & set(sys.modules))")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == "set()"
+
+
+def test_public_names_are_there():
+    """requirement: the Python interface that is promised."""
+    for name in thermowear.__all__:
+        assert getattr(thermowear, name) is not None
+    assert callable(thermowear.contact.pair)
+    assert callable(thermowear.contact.condense)
+    assert callable(thermowear.laws.steady_pressure)
+    with pytest.raises(AttributeError):
+        _ = thermowear.nothing_of_the_kind

@@ -1,0 +1,58 @@
+"""The verification cases, the same that ``thermowear verify`` runs."""
+
+import json
+import math
+
+import pytest
+
+from thermowear import verification
+from thermowear.cli import main
+from thermowear.verification import CASES, Check, compare
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_case(name):
+    """requirement: every quantity within what is allowed of its reference."""
+    checks = list(CASES[name]())
+    assert len(checks) > 5
+    assert all(check.source and check.id == name for check in checks)
+    assert not [check for check in checks if not check.passed]
+
+
+def fake(error):
+    return lambda: iter([Check("fake", "one [1]", 1.0 + error, 1.0, error, 1e-3, "nobody")])
+
+
+def test_rows_and_exit_code(monkeypatch, capsys):
+    """requirement: id, quantity, computed, reference, error, allowed, verdict; 2 if one fails."""
+    monkeypatch.setitem(verification.CASES, "fake", fake(1e-4))
+    assert main(["verify", "fake"]) == 0
+    out = capsys.readouterr().out
+    assert "one [1]" in out
+    assert "1 passed, 0 failed" in out
+    monkeypatch.setitem(verification.CASES, "fake", fake(1e-2))
+    assert main(["verify", "fake"]) == 2
+    assert "FAILED" in capsys.readouterr().out
+
+
+def test_json(monkeypatch, capsys):
+    """requirement: ``--json`` prints a list with the agreed keys and nothing else."""
+    monkeypatch.setitem(verification.CASES, "fake", fake(1e-4))
+    assert main(["verify", "fake", "--json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)
+    assert list(row) == [
+        "id", "quantity", "computed", "reference", "error", "allowed", "source", "passed",
+    ]  # fmt: skip
+    assert row["passed"] is True
+
+
+def test_unknown_id(capsys):
+    assert main(["verify", "nothing"]) == 1
+    assert "annular-punch, running-in" in capsys.readouterr().err
+
+
+def test_nan_is_a_failure():
+    """requirement: what was not computed has not passed."""
+    assert not compare("x", "y", math.nan, 1.0, 1.0, "z").passed
+    assert compare("x", "y", 1.01, 1.0, 0.02, "z").passed
+    assert compare("x", "y", 0.001, 0.0, 0.02, "z", scale=1.0).error == pytest.approx(0.001)

@@ -1,0 +1,47 @@
+"""Thermo-mechanical sliding wear: pressure, temperature and worn shape of two bodies.
+
+>>> import thermowear as tw
+>>> case = tw.load("annular_punch.toml")            # doctest: +SKIP
+>>> result = tw.run(case)                           # doctest: +SKIP
+>>> result.interface.pressure.max()                 # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+__version__ = "0.1.0"
+
+_LAZY = {"run": "simulation", "Result": "simulation", "Case": "case"}
+_ROOMS = (
+    "bulk",
+    "case",
+    "contact",
+    "geometry",
+    "laws",
+    "output",
+    "reference",
+    "simulation",
+    "verification",
+)
+
+__all__ = ["CaseError", "ComputationError", "load", *_LAZY, *_ROOMS]  # noqa: PLE0604
+
+from .errors import CaseError, ComputationError  # noqa: E402
+
+
+def load(source, overrides: tuple[str, ...] = ()):
+    """Read and check a case file (or its tables); see `thermowear.case.load`."""
+    from . import case, geometry  # noqa: F401  (the room of geometries makes them known)
+
+    return case.load(source, overrides)
+
+
+def __getattr__(name: str) -> Any:
+    """Rooms and entry points are imported when first used: dolfinx takes its time."""
+    if name in _LAZY:
+        return getattr(importlib.import_module(f".{_LAZY[name]}", __name__), name)
+    if name in _ROOMS:
+        return importlib.import_module(f".{name}", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,17 @@
+"""What happens inside the bodies: elasticity with thermal strain, heat conduction."""
+
+from .bodies import Bodies, distribute
+from .conduction import Conduction, conduction
+from .elasticity import Elasticity, ElasticMaterial, elasticity
+from .kinematics import Axisymmetric
+
+__all__ = [
+    "Axisymmetric",
+    "Bodies",
+    "Conduction",
+    "ElasticMaterial",
+    "Elasticity",
+    "conduction",
+    "distribute",
+    "elasticity",
+]

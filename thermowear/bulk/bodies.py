@@ -1,0 +1,107 @@
+"""The meshed bodies as dolfinx sees them, spread over the ranks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import basix.ufl
+import dolfinx
+import numpy as np
+from dolfinx import fem, io
+
+from ..compat import cell_perm_array
+
+_CELLS = {"quadrilateral": dolfinx.mesh.CellType.quadrilateral}
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """A distributed mesh whose cells and facets have names.
+
+    Attributes
+    ----------
+    mesh : dolfinx.mesh.Mesh
+    cell_tags, facet_tags : dolfinx.mesh.MeshTags
+    names : tuple of str
+        Bodies; the tag of a body is its position here, plus one.
+    surfaces : tuple of str
+        Named surfaces; tags likewise.
+    """
+
+    mesh: dolfinx.mesh.Mesh
+    cell_tags: dolfinx.mesh.MeshTags
+    facet_tags: dolfinx.mesh.MeshTags
+    names: tuple[str, ...]
+    surfaces: tuple[str, ...]
+
+    def body_tag(self, name: str) -> int:
+        return self.names.index(name) + 1
+
+    def surface_tag(self, name: str) -> int:
+        return self.surfaces.index(name) + 1
+
+    def facets(self, surface: str) -> np.ndarray:
+        """Local indices of the facets of a surface, ghosts included."""
+        return self.facet_tags.find(self.surface_tag(surface))
+
+    def per_body(self, values: dict[str, float]) -> fem.Function:
+        """A function that is constant on each body."""
+        space = fem.functionspace(self.mesh, ("Discontinuous Lagrange", 0))
+        function = fem.Function(space)
+        for name, value in values.items():
+            cells = self.cell_tags.find(self.body_tag(name))
+            function.x.array[space.dofmap.list[cells].ravel()] = value
+        return function
+
+
+def distribute(tagged, comm) -> Bodies:
+    """Make the distributed mesh from a tagged one.
+
+    Parameters
+    ----------
+    tagged : thermowear.geometry.TaggedMesh or None
+        Needed on rank 0, ignored elsewhere.
+    comm : mpi4py.MPI.Comm
+        Every rank calls.
+    """
+    head = comm.bcast(
+        None
+        if comm.rank
+        else (
+            tagged.cell_type,
+            tagged.points.shape[1],
+            tagged.cells.shape[1],
+            tagged.facets.shape[1],
+            tagged.bodies,
+            tagged.surfaces,
+        )
+    )
+    kind, gdim, cell_nodes, facet_nodes, names, surfaces = head
+    cell_type = _CELLS[kind]
+    if comm.rank == 0:
+        order = cell_perm_array(cell_type, cell_nodes)
+        cells, points, cell_tags = tagged.cells[:, order], tagged.points, tagged.cell_tags
+        facets, facet_tags = tagged.facets, tagged.facet_tags
+    else:
+        cells, points = np.empty((0, cell_nodes), dtype=np.int64), np.empty((0, gdim))
+        facets = np.empty((0, facet_nodes), dtype=np.int64)
+        cell_tags, facet_tags = np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32)
+    element = basix.ufl.element("Lagrange", kind, 1, shape=(gdim,))
+    mesh = dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element)
+    tdim = mesh.topology.dim
+    return Bodies(
+        mesh=mesh,
+        cell_tags=_tags(mesh, tdim, cells, cell_tags),
+        facet_tags=_tags(mesh, tdim - 1, facets, facet_tags),
+        names=names,
+        surfaces=surfaces,
+    )
+
+
+def _tags(mesh, dim: int, entities: np.ndarray, values: np.ndarray):
+    mesh.topology.create_connectivity(mesh.topology.dim, dim)
+    mesh.topology.create_connectivity(dim, 0)
+    mesh.topology.create_connectivity(dim, mesh.topology.dim)
+    local, marks = io.utils.distribute_entity_data(mesh, dim, entities, values)
+    adjacency = dolfinx.graph.adjacencylist(local)
+    return dolfinx.mesh.meshtags_from_entities(mesh, dim, adjacency, marks.astype(np.int32))

@@ -1,0 +1,169 @@
+"""Linear elasticity of both bodies, with thermal strain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from petsc4py import PETSc
+
+import numpy as np
+import ufl
+from dolfinx import default_scalar_type, fem
+from dolfinx import mesh as dmesh
+from dolfinx.fem.petsc import assemble_matrix
+
+from .bodies import Bodies
+from .compiled import compiled
+from .factor import Factor
+from .field import lagrange_space, owned
+from .kinematics import Model, section_measure
+
+
+@dataclass(frozen=True)
+class ElasticMaterial:
+    """Isotropic: Young's modulus [Pa], Poisson ratio, thermal expansion [1/K]."""
+
+    young_modulus: float
+    poisson_ratio: float
+    expansion: float = 0.0
+
+
+@dataclass(frozen=True)
+class Elasticity:
+    """The elastic bodies, factorised.
+
+    Attributes
+    ----------
+    bodies : Bodies
+    model : Model
+    space : dolfinx.fem.FunctionSpace
+        Displacement [m].
+    stiffness : petsc4py.PETSc.Mat
+        Without supports: its residual holds the support reactions.
+    fixed : ndarray of bool, shape (n_owned,)
+        Values held at zero.
+    factor : Factor
+        Of the supported stiffness.
+    lame : tuple of dolfinx.fem.Function
+        λ, μ and the thermal stress per kelvin (3 λ + 2 μ) α, constant on each body [Pa, Pa/K].
+    """
+
+    bodies: Bodies
+    model: Model
+    space: fem.FunctionSpace
+    stiffness: PETSc.Mat
+    fixed: np.ndarray
+    factor: Factor
+    lame: tuple[fem.Function, fem.Function, fem.Function]
+
+    def stress(self, u, rise=None):
+        """Stress of a displacement and a temperature rise, 3 x 3 [Pa]."""
+        λ, μ, m = self.lame
+        ε = self.model.strain(self.bodies.mesh, u)
+        σ = λ * ufl.tr(ε) * ufl.Identity(3) + 2 * μ * ε
+        return σ if rise is None else σ - m * rise * ufl.Identity(3)
+
+    def solve(self, loads: np.ndarray) -> np.ndarray:
+        """Displacements [m] under nodal loads [N], owned rows, one or several columns."""
+        supported = np.array(loads, dtype=float)
+        supported[self.fixed] = 0.0
+        return self.factor.solve(supported)
+
+    def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Forces of the supports on the bodies [N], owned rows; zero where nothing is fixed."""
+        x, y = self.stiffness.createVecs()
+        x.setArray(displacement)
+        self.stiffness.mult(x, y)
+        return np.where(self.fixed, y.getArray() - loads, 0.0)
+
+    def owned_by(self, body: str) -> np.ndarray:
+        """Which owned nodes belong to a body, shape (n_owned / gdim,)."""
+        cells = self.bodies.cell_tags.find(self.bodies.body_tag(body))
+        nodes = np.unique(self.space.dofmap.list[cells])
+        belongs = np.zeros(self.space.dofmap.index_map.size_local, dtype=bool)
+        belongs[nodes[nodes < len(belongs)]] = True
+        return belongs
+
+    def thermal_load(self, temperature_space: fem.FunctionSpace) -> PETSc.Mat:
+        """G: nodal loads of a temperature rise, ``∫ (3 λ + 2 μ) α T tr ε(δu) dV`` [N/K]."""
+        mesh = self.bodies.mesh
+        rise, δu = ufl.TrialFunction(temperature_space), ufl.TestFunction(self.space)
+        ε = self.model.strain(mesh, δu)
+        measure = section_measure(temperature_space.ufl_element().degree)
+        form = self.model.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
+        matrix = assemble_matrix(compiled(form))
+        matrix.assemble()
+        return matrix
+
+
+def elasticity(
+    bodies: Bodies,
+    model: Model,
+    degree: int,
+    materials: dict[str, ElasticMaterial],
+    clamped: list[str],
+) -> Elasticity:
+    """Assemble and factorise.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    degree : int
+        Polynomial degree of the displacement.
+    materials : dict of str to ElasticMaterial
+        By body.
+    clamped : list of str
+        Surfaces held in all directions. Every body needs one.
+    """
+    mesh = bodies.mesh
+    space = lagrange_space(mesh, degree, mesh.geometry.dim)
+    lame = _lame(bodies, materials)
+    u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
+    λ, μ, _ = lame
+    ε, δε = model.strain(mesh, u), model.strain(mesh, δu)
+    energy = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
+    stiffness = assemble_matrix(compiled(model.integral(mesh, energy, section_measure(degree))))
+    stiffness.assemble()
+    fixed = _fixed(bodies, model, space, clamped)
+    supported = stiffness.copy()
+    first = stiffness.getOwnershipRange()[0]
+    rows = (np.flatnonzero(fixed) + first).astype(PETSc.IntType)
+    scale = float(np.abs(stiffness.getDiagonal().getArray()).max(initial=0.0))
+    supported.zeroRowsColumns(rows, diag=mesh.comm.allreduce(scale, op=_max()))
+    return Elasticity(bodies, model, space, stiffness, fixed, Factor(supported), lame)
+
+
+def _max():
+    from mpi4py import MPI
+
+    return MPI.MAX
+
+
+def _lame(bodies: Bodies, materials: dict[str, ElasticMaterial]):
+    λ, μ, m = {}, {}, {}
+    for name, material in materials.items():
+        E, ν = material.young_modulus, material.poisson_ratio
+        λ[name] = E * ν / ((1 + ν) * (1 - 2 * ν))
+        μ[name] = E / (2 * (1 + ν))
+        m[name] = (3 * λ[name] + 2 * μ[name]) * material.expansion
+    return bodies.per_body(λ), bodies.per_body(μ), bodies.per_body(m)
+
+
+def _fixed(bodies: Bodies, model: Model, space, clamped: list[str]) -> np.ndarray:
+    """Which owned values the supports and the axis of symmetry hold at zero."""
+    mesh = bodies.mesh
+    tdim = mesh.topology.dim
+    zero = default_scalar_type(0)
+    held = np.zeros(owned(space), dtype=bool)
+    for component in range(mesh.geometry.dim):
+        facets = [bodies.facets(surface) for surface in clamped]
+        if component == 0:
+            facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, model.on_axis))
+        dofs = fem.locate_dofs_topological(
+            space.sub(component), tdim - 1, np.unique(np.concatenate(facets)).astype(np.int32)
+        )
+        condition = fem.dirichletbc(zero, dofs, space.sub(component))
+        indices, count = condition.dof_indices()
+        held[indices[:count]] = True
+    return held

@@ -1,0 +1,42 @@
+"""Function spaces, and fields as plain arrays of the values that a rank owns."""
+
+from __future__ import annotations
+
+import basix
+import basix.ufl
+import numpy as np
+from dolfinx import fem
+
+
+def lagrange_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
+    """Continuous Lagrange space (Lobatto-warped nodes), scalar or of vectors."""
+    shape = (components,) if components else None
+    element = basix.ufl.element("Lagrange", mesh.basix_cell(), degree, shape=shape)
+    return fem.functionspace(mesh, element)
+
+
+def reference_element(mesh, degree: int):
+    """The scalar element behind `lagrange_space`, to tabulate."""
+    cell = mesh.basix_cell()
+    cell = basix.CellType[cell] if isinstance(cell, str) else cell
+    return basix.create_element(
+        basix.ElementFamily.P, cell, degree, basix.LagrangeVariant.gll_warped
+    )
+
+
+def owned(space: fem.FunctionSpace) -> int:
+    """Number of values this rank owns."""
+    return space.dofmap.index_map.size_local * space.dofmap.index_map_bs
+
+
+def total(space: fem.FunctionSpace) -> int:
+    """Number of values on all ranks."""
+    return space.dofmap.index_map.size_global * space.dofmap.index_map_bs
+
+
+def as_function(space: fem.FunctionSpace, values: np.ndarray, name: str) -> fem.Function:
+    """A dolfinx function from owned values; every rank calls."""
+    function = fem.Function(space, name=name)
+    function.x.array[: len(values)] = values
+    function.x.scatter_forward()
+    return function

@@ -1,0 +1,119 @@
+"""What must hold between the tables of a case.
+
+Every check yields the path of the key at fault and what is wrong there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from ..errors import CaseError
+from .materials import resolve_like
+
+if TYPE_CHECKING:
+    from .schema import Case
+
+Fault = tuple[str, str]
+
+
+def check(case: Case) -> None:
+    """Raise a `CaseError` that lists every fault between the tables of `case`."""
+    faults = [f"{path}: {text}" for look in _CHECKS for path, text in look(case)]
+    if faults:
+        raise CaseError(*faults)
+
+
+def _names(case: Case) -> Iterator[Fault]:
+    """Bodies and surfaces must be those of the geometry."""
+    bodies, surfaces = case.geometry.bodies, case.geometry.surfaces
+    yield from _unknown("bodies", case.bodies, bodies)
+    yield from _unknown("wear", case.wear, bodies)
+    yield from _unknown("mesh.bodies", case.mesh.bodies, bodies)
+    for name in bodies:
+        if name not in case.bodies:
+            yield f"bodies.{name}", "missing; every body of the geometry needs its material"
+    if case.heat is not None:
+        yield from _unknown("heat.cooling", case.heat.cooling, surfaces)
+        yield from _unknown("heat.temperature", case.heat.temperature, surfaces)
+
+
+def _unknown(table: str, found: Iterable[str], known: tuple[str, ...]) -> Iterator[Fault]:
+    for name in found:
+        if name not in known:
+            yield f"{table}.{name}", f"not a name of this geometry; one of: {', '.join(known)}"
+
+
+def _model(case: Case) -> Iterator[Fault]:
+    if case.model not in case.geometry.models:
+        yield "model", f"{case.model!r} does not fit; allowed: {', '.join(case.geometry.models)}"
+
+
+def _materials(case: Case) -> Iterator[Fault]:
+    needed = {"young_modulus": "", "poisson_ratio": ""}
+    if case.heat is not None:
+        why = " because the case has a [heat] table"
+        needed |= {"conductivity": why, "expansion": why}
+    for name, body in case.bodies.items():
+        if name not in case.geometry.bodies:
+            continue
+        if body.like is not None:
+            for key in sorted(body.model_fields_set - {"like"}):
+                yield f"bodies.{name}.{key}", "a body that is like another has no keys of its own"
+            try:
+                resolve_like(case.bodies, name)
+            except ValueError as error:
+                yield f"bodies.{name}.like", str(error)
+            continue
+        for key, why in needed.items():
+            if getattr(body, key) is None:
+                yield f"bodies.{name}.{key}", f"missing; needed{why}"
+
+
+def _load(case: Case) -> Iterator[Fault]:
+    if (case.load.force is None) == (case.load.mean_pressure is None):
+        yield "load", "needs exactly one of force and mean_pressure"
+
+
+def _sliding(case: Case) -> Iterator[Fault]:
+    wears = case.analysis.type != "initial"
+    if wears and not case.wear:
+        yield "wear", f"missing; a {case.analysis.type} analysis needs the wear law of a body"
+    if (wears or case.heat is not None) and case.motion is None:
+        yield "motion", "missing; wear and friction heat need sliding"
+    if case.contact.friction == 0.0:
+        if case.heat is not None:
+            yield "contact.friction", "is 0; friction heat needs friction"
+        for name, law in case.wear.items():
+            if law.per == "friction-stress":
+                yield (
+                    "contact.friction",
+                    f'is 0; wear.{name} is per friction stress (write per = "pressure" instead)',
+                )
+
+
+def _heat(case: Case) -> Iterator[Fault]:
+    heat = case.heat
+    if heat is None:
+        return
+    if not heat.cooling and not heat.temperature:
+        yield "heat", "needs cooling or a given temperature: the friction heat has nowhere to go"
+    for name in heat.cooling:
+        if name in heat.temperature:
+            yield f"heat.cooling.{name}", "this surface has a given temperature already"
+    for table, found in (("cooling", heat.cooling), ("temperature", heat.temperature)):
+        for name in found:
+            if name in case.geometry.contact:
+                yield (
+                    f"heat.{table}.{name}",
+                    "a contact face exchanges heat with the other body only",
+                )
+
+
+def _degrees(case: Case) -> Iterator[Fault]:
+    own = case.contact.pressure_degree
+    if own is not None and own > case.mesh.degree:
+        yield "contact.pressure_degree", f"found {own}; at most mesh.degree = {case.mesh.degree}"
+
+
+_CHECKS = (_names, _model, _materials, _load, _sliding, _heat, _degrees)

@@ -1,0 +1,140 @@
+"""From a file and overrides to a case, and from faults to one clear line each."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, get_args
+
+from pydantic import ValidationError
+
+from ..errors import CaseError
+from .schema import Case
+from .section import KeyFault, Section
+
+_MESSAGES = {
+    "missing": "missing",
+    "greater_than": "must be greater than {gt}",
+    "greater_than_equal": "must be at least {ge}",
+    "less_than": "must be less than {lt}",
+    "less_than_equal": "must be at most {le}",
+    "literal_error": "must be {expected}",
+    "float_type": "must be a number",
+    "finite_number": "must be a finite number",
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "string_type": "must be text in quotation marks",
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+    "dict_type": "must be a table",
+    "tuple_type": "must be a list",
+}
+
+_ANALYSES = "'initial', 'steady', 'transient'"
+
+
+def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -> Case:
+    """Read and check a case.
+
+    Parameters
+    ----------
+    source : str, Path or dict
+        A case file, or its tables.
+    overrides : tuple of str
+        ``KEY=VALUE`` each, with the key's path (``mesh.degree=6``); the value as in TOML, or plain
+        text.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        One line per fault.
+    """
+    tables = source if isinstance(source, dict) else _read(Path(source))
+    for text in overrides:
+        tables = _override(tables, text)
+    try:
+        return Case.model_validate(tables)
+    except ValidationError as error:
+        raise CaseError(*(_line(fault) for fault in error.errors())) from None
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: is not text in UTF-8") from None
+    except (ValueError, RecursionError) as error:  # numbers or nesting beyond Python's limits too
+        raise CaseError(f"{path}: is not valid TOML: {error}") from None
+
+
+def _override(tables: dict[str, Any], text: str) -> dict[str, Any]:
+    """A copy of the tables with one key set."""
+    key, equals, value = text.partition("=")
+    path = [part.strip() for part in key.split(".")]
+    if not equals or not all(path):
+        raise CaseError(f"--set {text}: must be KEY=VALUE, such as mesh.degree=6")
+    try:
+        parsed = tomllib.loads(f"value = {value}")["value"]
+    except (ValueError, RecursionError):
+        parsed = value.strip()
+    result = table = dict(tables)
+    for part in path[:-1]:
+        below = table.get(part, {})
+        if not isinstance(below, dict):
+            raise CaseError(f"--set {text}: {part} is not a table")
+        table[part] = dict(below)
+        table = table[part]
+    table[path[-1]] = parsed
+    return result
+
+
+def _line(fault: Any) -> str:
+    """One line for one fault: the key's path, what was found, what is allowed."""
+    location = fault["loc"]
+    if location[0] == "analysis":
+        location = (*location[:1], *location[2:])  # pydantic puts the type of analysis second
+    path = ".".join(map(str, location))
+    if fault["type"] == "union_tag_not_found":
+        return f"{path}.type: missing; must be one of {_ANALYSES}"
+    if fault["type"] == "union_tag_invalid":
+        return f"{path}.type: found {fault['input']['type']!r}; must be one of {_ANALYSES}"
+    if fault["type"] == "value_error":
+        error = fault["ctx"]["error"]
+        return f"{path}.{error.key}: {error}" if isinstance(error, KeyFault) else f"{path}: {error}"
+    if fault["type"] == "extra_forbidden":
+        return f"{path}: unknown key{_suggestion(location)}"
+    message = _MESSAGES.get(fault["type"], fault["msg"]).format(**fault.get("ctx", {}))
+    if fault["type"] == "missing" or isinstance(fault["input"], dict):
+        return f"{path}: {message}"
+    return f"{path}: found {fault['input']!r}; {message}"
+
+
+def _suggestion(location: tuple[Any, ...]) -> str:
+    """A key that is known near there and reads alike."""
+    table = Case.model_fields.get(location[0])
+    sections = _sections(table.annotation) if table else (Case,)
+    words = {name for section in sections for name in section.model_fields}
+    if location[-1] in words:
+        return " here"
+    close = difflib.get_close_matches(str(location[-1]), sorted(words), n=1)
+    return f"; did you mean {close[0]}?" if close else f"; known: {', '.join(sorted(words))}"
+
+
+def _sections(annotation: Any) -> Iterator[type[Section]]:
+    """The tables that an annotation names, and the tables in them."""
+    for part in get_args(annotation):
+        yield from _sections(part)
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        yield annotation
+        for kind in annotation.__subclasses__():
+            yield from _sections(kind)
+        for field in annotation.model_fields.values():
+            yield from _sections(field.annotation)

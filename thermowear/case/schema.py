@@ -1,0 +1,194 @@
+"""The tables and keys of a case file.
+
+Everything here is in SI once it is read; the unit of each key stands in `units`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from . import units
+from .checks import check
+from .geometry import AnyGeometry
+from .materials import Body, resolve_like
+from .section import KeyFault, Number, Section
+from .wear import Wear
+
+Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
+Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
+Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
+
+
+class FaceMesh(Section):
+    """How the contact face of one body is divided where it differs from the other's."""
+
+    elements: Elements | None = None
+    grading: Grading | None = None
+
+
+class Mesh(Section):
+    """Discretisation.
+
+    Attributes
+    ----------
+    degree : int
+        Polynomial degree of displacement and temperature.
+    elements : int
+        Elements along the contact.
+    grading : float
+        Size ratio of neighbouring elements towards the contact edges.
+    bodies : dict of str to FaceMesh
+        Differences of single bodies: faces need not match.
+    """
+
+    degree: Annotated[int, Field(ge=1, le=10, strict=True)] = 8
+    elements: Elements = 12
+    grading: Grading = 0.3
+    bodies: dict[str, FaceMesh] = {}
+
+    def face(self, body: str) -> tuple[int, float]:
+        """Elements along the contact and grading of one body."""
+        own = self.bodies.get(body, FaceMesh())
+        return own.elements or self.elements, own.grading or self.grading
+
+
+class Load(Section):
+    """What presses body 1 on body 2: a force, or a mean pressure on the nominal contact area."""
+
+    mean_pressure: units.Pressure | None = None
+    force: units.Force | None = None
+
+
+class Motion(Section):
+    """Sliding of body 1 over body 2."""
+
+    angular_velocity: units.AngularVelocity
+
+
+class Contact(Section):
+    """The interface.
+
+    Attributes
+    ----------
+    friction : float
+        Coefficient of friction in the direction of sliding.
+    """
+
+    friction: Annotated[Number, Field(ge=0.0)] = 0.0
+    method: Literal["condensed"] = "condensed"
+    pressure_degree: Annotated[int, Field(ge=1, le=10, strict=True)] | None = None
+
+
+class Heat(Section):
+    """Friction heat.
+
+    Attributes
+    ----------
+    conductance : float or None
+        Contact conductance [W/(m² K)]; None: perfect contact.
+    partition : float
+        Part of the friction heat that is set free on body 1.
+    ambient : float
+        Temperature of the surroundings, and of the stress-free state [K].
+    cooling : dict of str to float
+        Heat transfer coefficients of named surfaces [W/(m² K)].
+    temperature : dict of str to float
+        Given temperatures of named surfaces [K].
+    """
+
+    conductance: units.HeatTransfer | None = None
+    partition: Fraction = 0.5
+    ambient: units.Temperature = 293.15
+    cooling: dict[str, units.HeatTransfer] = {}
+    temperature: dict[str, units.Temperature] = {}
+
+
+class Initial(Section):
+    """Contact of the unworn faces."""
+
+    type: Literal["initial"]
+
+
+class Steady(Section):
+    """Steady state of wear, directly."""
+
+    type: Literal["steady"]
+
+
+class Transient(Section):
+    """Running-in.
+
+    Attributes
+    ----------
+    end_time : float or None
+        [s]
+    until : str or None
+        ``"steady"``: stop when the pressure is within `steady_tolerance` of the steady one.
+    output_times : tuple of float
+        Times that get an interface file of their own [s].
+    tolerance : float
+        Allowed error of one step, relative to the mean pressure and to the wear of the step.
+    """
+
+    type: Literal["transient"]
+    end_time: units.Time | None = None
+    until: Literal["steady"] | None = None
+    steady_tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 1e-3
+    output_times: tuple[units.Time, ...] = ()
+    tolerance: Annotated[Number, Field(ge=1e-9, le=0.1)] = 1e-4
+    max_steps: Annotated[int, Field(ge=1, strict=True)] = 10_000
+
+    @model_validator(mode="after")
+    def _ends(self):
+        if self.end_time is None and self.until is None:
+            raise KeyFault("end_time", 'missing; needs end_time = "…" or until = "steady"')
+        names = [f"{t:g}" for t in self.output_times]
+        twice = [name for name in names if names.count(name) > 1]
+        if twice:
+            raise KeyFault("output_times", f"{twice[0]} s is there twice (to six digits)")
+        if self.end_time is not None:
+            late = [t for t in self.output_times if t > self.end_time]
+            if late:
+                raise KeyFault(
+                    "output_times", f"{late[0]:g} s lies after end_time {self.end_time:g} s"
+                )
+        return self
+
+
+class Case(Section):
+    """A complete case: what to compute, of which bodies, under which load."""
+
+    title: str = ""
+    model: Literal["axisymmetric"]
+    geometry: AnyGeometry
+    mesh: Mesh = Mesh()
+    bodies: dict[str, Body]
+    load: Load
+    motion: Motion | None = None
+    contact: Contact = Contact()
+    wear: dict[str, Wear] = {}
+    heat: Heat | None = None
+    analysis: Annotated[Initial | Steady | Transient, Field(discriminator="type")]
+
+    @model_validator(mode="after")
+    def _consistent(self):
+        check(self)
+        return self
+
+    def force(self) -> float:
+        """Normal force on body 1 [N]."""
+        if self.load.mean_pressure is not None:
+            return self.load.mean_pressure * self.geometry.contact_area()
+        assert self.load.force is not None  # one of them is given, see `checks`
+        return self.load.force
+
+    def material(self, body: str) -> Body:
+        """The material of a body, ``like`` followed to its end."""
+        return self.bodies[resolve_like(self.bodies, body)]
+
+
+def as_plain(case: Case) -> dict[str, Any]:
+    """The case as nested tables of text and numbers, every default written out."""
+    return case.model_dump(exclude_none=True)

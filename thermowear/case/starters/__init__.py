@@ -1,0 +1,28 @@
+"""Starter cases: complete case files with comments that teach."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib import resources
+
+from ...errors import CaseError
+
+
+def starters() -> dict[str, str]:
+    """Names and titles of all starter cases."""
+    files = (f for f in resources.files(__name__).iterdir() if f.name.endswith(".toml"))
+    found = {f.name.removesuffix(".toml"): f.read_text("utf-8") for f in files}
+    return {name: tomllib.loads(text)["title"] for name, text in sorted(found.items())}
+
+
+def starter_text(name: str) -> str:
+    """The case file of a starter case.
+
+    Raises
+    ------
+    CaseError
+        If there is none of that name.
+    """
+    if name not in starters():
+        raise CaseError(f"init {name}: no such starter case; one of: {', '.join(starters())}")
+    return (resources.files(__name__) / f"{name}.toml").read_text("utf-8")

@@ -1,0 +1,217 @@
+"""The command line: words to calls, errors to exit codes, nothing else.
+
+Exit codes: 0 done, 1 the case or the command line is wrong, 2 the computation failed,
+130 interrupted (what was computed is kept).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import sys
+import time
+import traceback
+from pathlib import Path
+
+from . import __version__, load
+from .errors import CaseError, ComputationError
+
+_INTERRUPTED = 130
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command and return its exit code."""
+    try:
+        chosen = _parser().parse_args(arguments)
+        return chosen.command(chosen)
+    except CaseError as error:
+        return _complain(error.exit_code, *error.faults)
+    except ComputationError as error:
+        return _complain(error.exit_code, str(error))
+    except KeyboardInterrupt:
+        return _complain(_INTERRUPTED, "interrupted")
+    except BrokenPipeError:
+        return 0
+
+
+def _complain(code: int, *lines: str) -> int:
+    for line in lines if _speaks() else ():
+        shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
+        print(f"error: {shown}", file=sys.stderr)
+    return code
+
+
+def _speaks() -> bool:
+    """Whether this process is the one of a parallel run that reports errors.
+
+    MPI is started if a launcher began several processes: its end then waits for all of them.
+    Without it, a silent rank that ends first makes the launcher stop the one about to speak.
+    """
+    if "mpi4py.MPI" not in sys.modules and _launched_processes() == 1:
+        return True
+    from mpi4py import MPI
+
+    return MPI.COMM_WORLD.rank == 0
+
+
+def _launched_processes() -> int:
+    return int(os.environ.get("OMPI_COMM_WORLD_SIZE", os.environ.get("PMI_SIZE", "1")))
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str):
+        raise CaseError(f"{message} (see {self.prog} --help)")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="thermowear", description="Thermo-mechanical sliding wear of two bodies.")
+    parser.add_argument("--version", action="version", version=f"thermowear {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
+
+    run = _command(commands, "run", _run, "compute a case")
+    _add_case(run)
+    run.add_argument("-o", "--output", metavar="DIR", type=Path, help="default: results/<case>")
+    run.add_argument("--overwrite", action="store_true", help="replace results that are there")
+    run.add_argument("--no-pictures", dest="pictures", action="store_false")
+
+    _command(commands, "cases", _cases, "list the starter cases")
+
+    init = _command(commands, "init", _init, "write a starter case to edit")
+    init.add_argument("name", metavar="NAME")
+    init.add_argument("-o", "--output", metavar="FILE", type=Path, help="default: NAME.toml")
+    init.add_argument("--overwrite", action="store_true")
+
+    validate = _command(commands, "validate", _validate, "check a case without computing it")
+    _add_case(validate)
+
+    mesh = _command(commands, "mesh", _mesh, "write the mesh of a case (.msh .vtu .xdmf .inp)")
+    _add_case(mesh)
+    mesh.add_argument("-o", "--output", metavar="FILE", type=Path, required=True)
+    mesh.add_argument("--overwrite", action="store_true")
+
+    verify = _command(commands, "verify", _verify, "hold the program against known solutions")
+    verify.add_argument("ids", metavar="ID", nargs="*", help="default: all")
+    verify.add_argument("--json", action="store_true", help="print a list of the checks")
+
+    plot = _command(commands, "plot", _plot, "draw the pictures of a results folder again")
+    plot.add_argument("folder", metavar="DIR", type=Path)
+    return parser
+
+
+def _command(commands, name: str, function, text: str) -> argparse.ArgumentParser:
+    command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+    command.set_defaults(command=function)
+    return command
+
+
+def _add_case(command: argparse.ArgumentParser) -> None:
+    command.add_argument("case", metavar="CASE", type=Path)
+    command.add_argument(
+        "--set",
+        metavar="KEY=VALUE",
+        action="append",
+        default=[],
+        dest="overrides",
+        help="change a key, such as mesh.degree=6",
+    )
+
+
+def _cases(_) -> int:
+    from .case.starters import starters
+
+    for name, title in starters().items():
+        print(f"{name:32} {title}")
+    return 0
+
+
+def _init(chosen) -> int:
+    from .case.starters import starter_text
+
+    text = starter_text(chosen.name)
+    path = chosen.output or Path(f"{chosen.name}.toml")
+    _guard(path, chosen.overwrite)
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be written: {error.strerror}") from None
+    print(f"wrote {path}; next: python3 -m thermowear run {path}")
+    return 0
+
+
+def _validate(chosen) -> int:
+    case = load(chosen.case, tuple(chosen.overrides))
+    print(f"{chosen.case}: ok ({case.analysis.type} analysis, {case.geometry.type}, {case.model})")
+    return 0
+
+
+def _mesh(chosen) -> int:
+    from .geometry.export import check_ending, write_mesh
+
+    check_ending(chosen.output)
+    case = load(chosen.case, tuple(chosen.overrides))
+    _guard(chosen.output, chosen.overwrite)
+    mesh = case.geometry.build(case.mesh)
+    write_mesh(mesh, chosen.output)
+    print(f"wrote {chosen.output}: {len(mesh.cells)} cells, {len(mesh.points)} points")
+    return 0
+
+
+def _guard(path: Path, overwrite: bool) -> None:
+    if os.path.exists(path) and not overwrite:  # unlike Path.exists, no error at odd names
+        raise CaseError(f"{path}: exists; use --overwrite or another name")
+
+
+def _plot(chosen) -> int:
+    from .output.pictures import make_pictures
+
+    try:
+        problems = make_pictures(chosen.folder)
+    except (OSError, ValueError) as error:
+        raise CaseError(str(error)) from None
+    for problem in problems:
+        print(f"note: {problem}", file=sys.stderr)
+    return 0
+
+
+def _verify(chosen) -> int:
+    from .output.console import Terminal, print_checks
+    from .verification import CASES
+
+    unknown = [name for name in chosen.ids if name not in CASES]
+    if unknown:
+        raise CaseError(f"verify {unknown[0]}: no such case; one of: {', '.join(CASES)}")
+    checks = [check for name in chosen.ids or CASES for check in CASES[name]()]
+    if chosen.json:
+        print(json.dumps([check.as_row() for check in checks], indent=2, ensure_ascii=False))
+    else:
+        print_checks(Terminal(highlight=False), checks)
+    return 0 if all(check.passed for check in checks) else ComputationError.exit_code
+
+
+def _run(chosen) -> int:
+    """The one command that runs on many ranks: an error anywhere ends all of them.
+
+    Errors of the case and of the computation are raised on all ranks alike.
+    """
+    began = time.perf_counter()
+    import petsc4py
+
+    petsc4py.init(["thermowear", "-no_signal_handler"])  # signals are Python's: Ctrl-C, | head
+
+    from mpi4py import MPI
+
+    from .session import run_session
+
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    comm = MPI.COMM_WORLD
+    try:
+        return run_session(chosen, comm, time.perf_counter() - began)
+    except (CaseError, ComputationError):
+        raise
+    except Exception:
+        traceback.print_exc()
+        if comm.size > 1:
+            comm.Abort(ComputationError.exit_code)
+        return ComputationError.exit_code

@@ -1,0 +1,62 @@
+"""The only module that knows how dolfinx differs between 0.9 and 0.11.
+
+Each function asks for a feature, not for a version.
+"""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+from dolfinx import cpp, fem
+
+try:
+    from dolfinx.io.gmsh import cell_perm_array
+except ImportError:  # dolfinx 0.9
+    from dolfinx.io.gmshio import cell_perm_array
+
+__all__ = [
+    "cell_perm_array",
+    "coordinate_element",
+    "entities_to_geometry_layout",
+    "evaluate",
+    "exterior_facet_domain",
+    "geometry_dofmap",
+]
+
+
+def geometry_dofmap(mesh) -> np.ndarray:
+    """Geometry nodes of each cell, shape (n_cells, nodes_per_cell)."""
+    geometry = mesh.geometry
+    return geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
+
+
+def coordinate_element(mesh):
+    """The coordinate map of the (single) cell type of a mesh."""
+    geometry = mesh.geometry
+    return geometry.cmaps[0] if hasattr(geometry, "cmaps") else geometry.cmap
+
+
+def entities_to_geometry_layout(mesh, facet_dim: int) -> list[np.ndarray]:
+    """Geometry nodes of each local facet, as positions in the cell's list of nodes."""
+    layout = coordinate_element(mesh).create_dof_layout()
+    count = cpp.mesh.cell_num_entities(mesh.topology.cell_type, facet_dim)
+    return [
+        np.asarray(layout.entity_closure_dofs(facet_dim, facet), dtype=np.int32)
+        for facet in range(count)
+    ]
+
+
+def evaluate(expression: fem.Expression, mesh, cells: np.ndarray) -> np.ndarray:
+    """Values of an expression at its points in cells, shape (n_cells, n_points, value_size)."""
+    values = expression.eval(mesh, np.asarray(cells, dtype=np.int32))
+    return values.reshape(len(cells), len(expression.X()), -1)
+
+
+def exterior_facet_domain(mesh, facets: np.ndarray) -> np.ndarray:
+    """Integration entities (cell, local facet) of those facets that lie on the boundary."""
+    needs_dim = "dim" in inspect.signature(fem.compute_integration_domains).parameters
+    dim = (mesh.topology.dim - 1,) if needs_dim else ()
+    return fem.compute_integration_domains(
+        fem.IntegralType.exterior_facet, mesh.topology, np.sort(facets), *dim
+    )

@@ -1,0 +1,144 @@
+"""A contact face of one body, gathered from all ranks as a chain of curved facets.
+
+Every rank holds the same chain, so that pairing needs no further communication.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..bulk.bodies import Bodies
+from ..compat import entities_to_geometry_layout, geometry_dofmap
+from ..errors import CaseError
+
+
+@dataclass(frozen=True)
+class Face:
+    """Facets in order along the face; a facet's parameter t runs 0…1 along the chain.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n_facets, order + 1, 2) [m]
+        Geometry nodes of each facet, at equal steps of t.
+    outward : ndarray, shape (n_facets,)
+        +1 where the outward normal is the tangent turned clockwise, -1 otherwise.
+    rank, cell, local_facet : ndarray of int, shape (n_facets,)
+        Who owns the facet's cell, its local index there, and which of its facets it is.
+    reversed : ndarray of bool, shape (n_facets,)
+        Whether t runs against the cell's own direction of the facet.
+    """
+
+    nodes: np.ndarray
+    outward: np.ndarray
+    rank: np.ndarray
+    cell: np.ndarray
+    local_facet: np.ndarray
+    reversed: np.ndarray
+
+    def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Coordinates at parameters t of facets, shape (n, 2) [m]."""
+        return np.einsum("nk,nki->ni", _lagrange(self.nodes.shape[1] - 1, t), self.nodes[facet])
+
+    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Derivatives of the coordinates along t, shape (n, 2) [m]."""
+        slopes = _lagrange_slopes(self.nodes.shape[1] - 1, t)
+        return np.einsum("nk,nki->ni", slopes, self.nodes[facet])
+
+    def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Outward unit normals, shape (n, 2)."""
+        tangent = self.tangents(facet, t)
+        normal = np.column_stack([tangent[:, 1], -tangent[:, 0]]) * self.outward[facet, None]
+        return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+
+def gather_face(bodies: Bodies, surface: str) -> Face:
+    """Collect a surface's facets from all ranks and put them in order; every rank calls."""
+    mesh = bodies.mesh
+    local = _local_facets(bodies, surface)
+    parts = mesh.comm.allgather(local)
+    nodes, ends, inside, rank, cell, local_facet = (
+        np.concatenate([part[k] for part in parts]) for k in range(6)
+    )
+    if len(nodes) == 0:
+        raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
+    order, flip = _chain(ends, nodes, surface)
+    nodes, flip = nodes[order], flip[order]
+    nodes[flip] = nodes[flip, ::-1]
+    tangent = nodes[:, -1] - nodes[:, 0]
+    inward = inside[order] - nodes.mean(axis=1)
+    turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
+    return Face(nodes, -np.sign(turned), rank[order], cell[order], local_facet[order], flip)
+
+
+def _local_facets(bodies: Bodies, surface: str):
+    """Facets of the surface whose cell this rank owns."""
+    mesh = bodies.mesh
+    tdim, fdim = mesh.topology.dim, mesh.topology.dim - 1
+    to_cells = mesh.topology.connectivity(fdim, tdim)
+    to_facets = mesh.topology.connectivity(tdim, fdim)
+    facets = bodies.facets(surface)
+    cells = np.array([to_cells.links(f)[0] for f in facets], dtype=np.int32)
+    mine = cells < mesh.topology.index_map(tdim).size_local
+    facets, cells = facets[mine], cells[mine]
+    local = np.array(
+        [np.flatnonzero(to_facets.links(c) == f)[0] for c, f in zip(cells, facets, strict=True)],
+        dtype=np.int32,
+    )
+    layout = np.array(entities_to_geometry_layout(mesh, fdim))
+    of_cells = geometry_dofmap(mesh)[cells]
+    x = mesh.geometry.x[:, :2]
+    # closure dofs list the two ends first, then the nodes between them
+    along = np.concatenate([layout[:, :1], layout[:, 2:], layout[:, 1:2]], axis=1)
+    of_facets = np.take_along_axis(of_cells, along[local], axis=1)
+    to_global = mesh.geometry.index_map().local_to_global
+    ends = to_global(of_facets[:, [0, -1]].ravel().astype(np.int32)).reshape(-1, 2)
+    rank = np.full(len(cells), mesh.comm.rank)
+    return x[of_facets], ends, x[of_cells].mean(axis=1), rank, cells, local
+
+
+def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:
+    """Order of the facets from the first end to the last, and which must be turned round."""
+    vertices, compact = np.unique(ends, return_inverse=True)
+    ends = compact.reshape(ends.shape)
+    at: list[list[int]] = [[] for _ in vertices]
+    for facet, pair in enumerate(ends):
+        for vertex in pair:
+            at[vertex].append(facet)
+    loose = [v for v, facets in enumerate(at) if len(facets) == 1]
+    if len(loose) != 2:
+        raise CaseError(f"geometry: the contact face {surface} is not one connected open curve")
+    where = {v: tuple(nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1]) for v in loose}
+    vertex = min(loose, key=where.__getitem__)
+    order, flip, facet = [], np.zeros(len(ends), dtype=bool), at[vertex][0]
+    while True:
+        order.append(facet)
+        flip[facet] = ends[facet, 0] != vertex
+        vertex = ends[facet, 0] if flip[facet] else ends[facet, 1]
+        following = [f for f in at[vertex] if f != facet]
+        if not following:
+            return np.array(order), flip
+        facet = following[0]
+
+
+def _lagrange(order: int, t: np.ndarray) -> np.ndarray:
+    """Lagrange polynomials with equally spaced nodes on [0, 1], shape (n, order + 1)."""
+    knots = np.linspace(0.0, 1.0, order + 1)
+    values = np.ones((len(t), order + 1))
+    for i in range(order + 1):
+        for j in np.delete(np.arange(order + 1), i):
+            values[:, i] *= (t - knots[j]) / (knots[i] - knots[j])
+    return values
+
+
+def _lagrange_slopes(order: int, t: np.ndarray) -> np.ndarray:
+    """Their derivatives, shape (n, order + 1)."""
+    knots = np.linspace(0.0, 1.0, order + 1)
+    slopes = np.zeros((len(t), order + 1))
+    for i in range(order + 1):
+        others = np.delete(np.arange(order + 1), i)
+        for k in others:
+            factors = [(t - knots[j]) / (knots[i] - knots[j]) for j in others if j != k]
+            slopes[:, i] += np.prod(factors, axis=0) / (knots[i] - knots[k])
+    return slopes

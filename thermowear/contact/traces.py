@@ -1,0 +1,84 @@
+"""Trace operators: from nodal values of a body to values at the contact points.
+
+They are kept transposed and by rows that a rank owns, as nodal loads need them: column j holds the
+shape functions of one side's cell at contact point j.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from dolfinx import fem
+
+from ..bulk.field import owned, reference_element
+from .pairing import Pairing, Side
+
+
+def value_trace(space: fem.FunctionSpace, side: Side) -> sp.csr_matrix:
+    """Eᵀ of a scalar space: shape (n_owned, n_points). Every rank calls.
+
+    ``E v`` are the values of a field at the points of one side.
+    """
+    nodes, point, values = _local_values(space, side)
+    return _gather_rows(space, nodes, point, values, len(side.t))
+
+
+def gap_trace(space: fem.FunctionSpace, pairing: Pairing) -> sp.csr_matrix:
+    """Bᵀ of a vector space: shape (n_owned, n_points). Every rank calls.
+
+    ``B u = (u2 - u1)·n``, see `pairing` for the sign.
+    """
+    result = sp.csr_matrix((owned(space), len(pairing.weights)))
+    for sign, side in zip((-1.0, 1.0), pairing.sides, strict=True):
+        nodes, point, values = _local_values(space, side)
+        for component in range(space.dofmap.index_map_bs):
+            scaled = sign * pairing.normals[point, component] * values
+            dofs = nodes * space.dofmap.index_map_bs + component
+            result = result + _gather_rows(space, dofs, point, scaled, len(pairing.weights))
+    return result.tocsr()
+
+
+def _local_values(space: fem.FunctionSpace, side: Side):
+    """Local nodes, points and basis values at the points whose cell this rank owns."""
+    mesh = space.mesh
+    mine = np.flatnonzero(side.face.rank[side.facet] == mesh.comm.rank)
+    element = reference_element(mesh, space.ufl_element().degree)
+    reference = _reference_points(side, mine, element.cell_type)
+    if len(mine) == 0:  # basix takes no empty lists
+        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64), np.empty(0)
+    values = element.tabulate(0, reference)[0].reshape(len(mine), -1)
+    nodes = space.dofmap.list[side.face.cell[side.facet[mine]]].astype(np.int64)
+    point = np.repeat(mine, nodes.shape[1])
+    return nodes.ravel(), point, values.ravel()
+
+
+def _reference_points(side: Side, chosen: np.ndarray, cell_type) -> np.ndarray:
+    """Reference coordinates of points on facets of their cells."""
+    import basix
+
+    corners = np.asarray(basix.geometry(cell_type))
+    ends = np.array(basix.topology(cell_type)[-2])
+    facet = side.facet[chosen]
+    t = np.where(side.face.reversed[facet], 1 - side.t[chosen], side.t[chosen])[:, None]
+    first, last = ends[side.face.local_facet[facet]].T
+    a, b = corners[first], corners[last]
+    return (1 - t) * a + t * b
+
+
+def _gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:
+    """Sum entries of all ranks into the rows that each rank owns; rows are local dof numbers."""
+    comm, bs, index_map = space.mesh.comm, space.dofmap.index_map_bs, space.dofmap.index_map
+    nodes = index_map.local_to_global((rows // bs).astype(np.int32))
+    rows = nodes * bs + rows % bs
+    first = index_map.local_range[0] * bs
+    if comm.size > 1:
+        starts = np.array(comm.allgather(first))
+        owner = np.searchsorted(starts, rows, side="right") - 1
+        parcels = [
+            tuple(part[owner == rank] for part in (rows, columns, values))
+            for rank in range(comm.size)
+        ]
+        received = comm.alltoall(parcels)
+        rows, columns, values = (np.concatenate([part[k] for part in received]) for k in range(3))
+    shape = (index_map.size_local * bs, n_points)
+    return sp.coo_matrix((values, (rows - first, columns)), shape=shape).tocsr()

@@ -1,0 +1,40 @@
+"""The one mesh format that every geometry returns and every room below reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class TaggedMesh:
+    """Two meshed bodies with named parts.
+
+    Cells and facets are listed with the node order of gmsh. Tags are positions
+    in the tuples of names, plus one (as gmsh's physical groups).
+
+    Attributes
+    ----------
+    points : ndarray, shape (n_points, gdim) [m]
+    cell_type : str
+        ``"quadrilateral"``; the type of all cells.
+    cells : ndarray of int64, shape (n_cells, nodes_per_cell)
+    cell_tags : ndarray of int32, shape (n_cells,)
+    facets : ndarray of int64, shape (n_facets, nodes_per_facet)
+        Named boundary facets only.
+    facet_tags : ndarray of int32, shape (n_facets,)
+    bodies : tuple of str
+        Names of the bodies; body 1 (held) first.
+    surfaces : tuple of str
+        Names of the surfaces.
+    """
+
+    points: np.ndarray
+    cell_type: str
+    cells: np.ndarray
+    cell_tags: np.ndarray
+    facets: np.ndarray
+    facet_tags: np.ndarray
+    bodies: tuple[str, ...]
+    surfaces: tuple[str, ...]

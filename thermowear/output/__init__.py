@@ -1,0 +1,1 @@
+"""Results folder, tables, pictures and what the terminal shows. No physics."""

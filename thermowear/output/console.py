@@ -1,0 +1,119 @@
+"""What the person at the terminal sees while a run goes on."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+
+from rich.console import Console
+from rich.table import Table
+
+_PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
+
+
+class Terminal(Console):
+    """Standard output; a reader that goes away (``| head``) does not end a run."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+class Progress:
+    """One live line on a terminal, plain lines otherwise.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+    """
+
+    def __init__(self, console: Console):
+        self._console = console
+        self._status = console.status("") if console.is_terminal else None
+        self._last = 0.0
+        self._unsaid = ""
+
+    def __enter__(self) -> Progress:
+        if self._status is not None:
+            self._status.start()
+        return self
+
+    def __exit__(self, *_) -> None:
+        if self._status is not None:
+            self._status.stop()
+        if self._unsaid:
+            self._console.print(self._unsaid, highlight=False)
+
+    def phase(self, name: str) -> None:
+        """A phase begins."""
+        if self._status is not None:
+            self._status.update(name)
+
+    def step(self, number: int, row, distance: float) -> None:
+        """A step of a transient run was accepted."""
+        text = (
+            f"t = {row.time:.4g} s   step {number}   largest pressure "
+            f"{row.max_pressure / 1e6:.4g} MPa   distance from steady {distance:.2e}"
+        )
+        self._unsaid = text
+        if self._status is not None:
+            self._status.update(text)
+        elif time.monotonic() - self._last > _PLAIN_INTERVAL:
+            self._last = time.monotonic()
+            self._console.print(text, highlight=False)
+            self._unsaid = ""
+
+
+def print_summary(console: Console, summary: dict, seconds: dict[str, float]) -> None:
+    """The numbers that matter and where the time went."""
+    numbers = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    for label, value in _highlights(summary):
+        numbers.add_row(label, value)
+    console.print(numbers)
+    times = Table(box=None, padding=(0, 2, 0, 0))
+    times.add_column("phase")
+    times.add_column("seconds", justify="right")
+    for name, value in seconds.items():
+        times.add_row(name, f"{value:.3f}")
+    times.add_row("total", f"{sum(seconds.values()):.3f}")
+    console.print(times)
+
+
+def print_checks(console: Console, checks: list) -> None:
+    """A line for each `thermowear.verification.Check`, the sources, and the count."""
+    head = ("id", "quantity", "computed", "reference", "error", "allowed", "verdict")
+    rows = [head] + [
+        (c.id, c.quantity, f"{c.computed:.7g}", f"{c.reference:.7g}", f"{c.error:.1e}")
+        + (f"{c.allowed:.0e}", "ok" if c.passed else "FAILED")
+        for c in checks
+    ]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(
+            cell.rjust(width) if 2 <= k <= 5 else cell.ljust(width)
+            for k, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+    lines += dict.fromkeys(f"{c.id}: {c.source}" for c in checks)
+    failed = sum(not c.passed for c in checks)
+    lines.append(f"{len(checks) - failed} passed, {failed} failed")
+    console.print("\n".join(lines), markup=False, soft_wrap=True)
+
+
+def _highlights(summary: dict):
+    yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
+    low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
+    yield "pressure", f"{low:.5g} … {high:.5g} MPa"
+    yield "shape, highest to lowest", f"{summary['shape_range_m'] * 1e6:.5g} µm"
+    if summary["max_temperature_K"] is not None:
+        yield "highest temperature", f"{summary['max_temperature_K'] - 273.15:.5g} °C"
+        yield "friction power", f"{summary['friction_power_W']:.6g} W"
+    if summary.get("rigid_wear_velocity_m_per_s") is not None:
+        yield "steady wear rate", f"{summary['rigid_wear_velocity_m_per_s'] * 1e9:.5g} nm/s"
+    if summary["analysis"] == "transient":
+        yield "time, steps", f"{summary['time_s']:.6g} s, {summary['steps']}"
+        volumes = (summary["wear_volume_1_m3"], summary["wear_volume_2_m3"])
+        yield "worn volume, body 1 and 2", " and ".join(f"{v * 1e9:.5g} mm³" for v in volumes)
+        yield "distance from steady", f"{summary['distance_from_steady']:.2e}"

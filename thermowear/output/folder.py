@@ -1,0 +1,118 @@
+"""The results folder: made once, never someone else's, readable at every moment."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import re
+from datetime import UTC, datetime
+from importlib import metadata
+from pathlib import Path
+
+import tomli_w
+
+from .. import __version__
+from ..errors import CaseError
+from .tables import HistoryWriter, interface_name, write_interface
+from .vtu import write_fields
+
+_OURS = re.compile(
+    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|history\.csv"
+    r"|interface(_[-+.0-9e]+)?\.csv|(interface|wear|history|bodies|deformed)\.png"
+)
+
+
+class ResultsFolder:
+    """Writes one run.
+
+    Parameters
+    ----------
+    path : Path
+        Made if it does not exist.
+    tables : dict
+        The case with every default written out.
+    ranks : int
+    overwrite : bool
+        Allow a folder with earlier results, which are removed. Files that are not results of this
+        program are left alone.
+
+    Raises
+    ------
+    CaseError
+        If the folder cannot be used.
+    """
+
+    def __init__(self, path: Path, tables: dict, ranks: int, overwrite: bool):
+        self.path = path
+        self._run = {
+            "status": "running",
+            "started": datetime.now(UTC).isoformat(timespec="seconds"),
+            "ranks": ranks,
+            "versions": _versions(),
+        }
+        self._history: HistoryWriter | None = None
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            present = [entry for entry in path.iterdir() if _OURS.fullmatch(entry.name)]
+            if any(path.iterdir()) and not overwrite:
+                raise CaseError(
+                    f"-o {path}: exists and is not empty; use --overwrite or another folder"
+                )
+            if present and not (path / "run.json").is_file():
+                raise CaseError(
+                    f"-o {path}: holds {present[0].name} but no run.json, so it is no results "
+                    "folder; use another"
+                )
+            for entry in present:
+                if entry.name != "run.json":  # replaced at the end: until then the folder is ours
+                    entry.unlink()
+            (path / "case.resolved.toml").write_bytes(tomli_w.dumps(tables).encode())
+            self._write_run()
+        except OSError as error:
+            raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
+
+    def step(self, row) -> None:
+        """Append a step of a transient run."""
+        if self._history is None:
+            self._history = HistoryWriter(self.path / "history.csv")
+        self._history.add(row)
+
+    def output(self, time: float, interface) -> None:
+        """Write the interface at an output time."""
+        write_interface(self.path / interface_name(time), interface)
+
+    def finish(self, result, seconds: dict[str, float]) -> None:
+        """Write interface, fields and summary of a `thermowear.simulation.Result`."""
+        write_interface(self.path / interface_name(None), result.interface)
+        write_fields(self.path / "fields.vtu", result.fields)
+        rounded = {name: round(value, 4) for name, value in seconds.items()}
+        self._write_json("summary.json", result.summary | {"seconds": rounded})
+
+    def close(self, status: str, message: str = "") -> None:
+        """Record how the run ended: ``done``, ``failed`` or ``interrupted``."""
+        self._run |= {
+            "status": status,
+            "finished": datetime.now(UTC).isoformat(timespec="seconds"),
+            **({"message": message} if message else {}),
+        }
+        self._write_run()
+
+    def _write_run(self) -> None:
+        self._write_json("run.json", self._run)
+
+    def _write_json(self, name: str, content: dict) -> None:
+        """Write beside and rename, so that a reader never sees half a file."""
+        draft = self.path / f".{name}.part"
+        draft.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", "utf-8")
+        os.replace(draft, self.path / name)
+
+
+def _versions() -> dict[str, str]:
+    found = {"thermowear": __version__, "python": platform.python_version()}
+    for package in ("fenics-dolfinx", "petsc4py", "numpy", "scipy", "gmsh", "meshio", "pydantic"):
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            continue
+    return found

@@ -1,0 +1,5 @@
+"""Pictures of a results folder, made from its files alone."""
+
+from .make import make_pictures
+
+__all__ = ["make_pictures"]

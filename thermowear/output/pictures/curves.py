@@ -1,0 +1,112 @@
+"""Curves along the contact and over time, by matplotlib."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from .. import tables
+from ..quantities import HISTORY, INTERFACE, Quantity
+
+_STYLE = {
+    "font.size": 10,
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "lines.linewidth": 1.6,
+    "legend.frameon": False,
+}
+_BODIES = ("tab:blue", "tab:orange")
+
+
+def draw_interface(folder: Path) -> None:
+    """``interface.png``: pressure, temperatures and shape along the contact."""
+    data = tables.read(folder / "interface.csv", INTERFACE)
+    hot = np.isfinite(data["temperature_1"]).all()
+    panels = [["pressure"], *([["temperature_1", "temperature_2"]] if hot else []), ["shape"]]
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(6.4, 2.3 * len(panels)), layout="constrained", dpi=150)
+        axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
+        place = _abscissa(data)
+        for axis, names in zip(axes, panels, strict=True):
+            for name, color, line in zip(names, _BODIES, ("-", "--"), strict=False):
+                drawn = INTERFACE[name].drawn(data[name])
+                axis.plot(place[1], drawn, line, color=color, label=f"body {name[-1]}")
+            if len(names) > 1:
+                axis.set_ylabel("temperature\n[°C]")
+                axis.legend()
+            else:
+                axis.set_ylabel(_wrapped(INTERFACE[names[0]]))
+        axes[0].set_ylim(bottom=0)
+        axes[-1].set_xlabel(place[0])
+        figure.savefig(folder / "interface.png")
+
+
+def draw_wear(folder: Path) -> None:
+    """``wear.png``: worn depth along the contact at the output times and at the end."""
+    if not (folder / "history.csv").is_file():
+        return
+    end = float(tables.read(folder / "history.csv", HISTORY)["time"][-1])
+    files = {end: folder / "interface.csv"}
+    for path in folder.glob("interface_*.csv"):
+        files[float(path.stem.removeprefix("interface_"))] = path
+    states = {time: tables.read(path, INTERFACE) for time, path in sorted(files.items())}
+    final = states[max(states)]
+    bodies = [name for name in ("wear_1", "wear_2") if final[name].max() > 0]
+    if not bodies:
+        return
+    colors = mpl.colormaps["viridis"](np.linspace(0.9, 0.0, len(states)))
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(6.4, 3.6 * len(bodies)), layout="constrained", dpi=150)
+        axes = figure.subplots(len(bodies), sharex=True, squeeze=False)[:, 0]
+        for axis, name in zip(axes, bodies, strict=True):
+            for (time, data), color in zip(states.items(), colors, strict=True):
+                label, place = _abscissa(data)
+                axis.plot(
+                    place, INTERFACE[name].drawn(data[name]), color=color, label=f"{time:.4g} s"
+                )
+            axis.set_ylabel(INTERFACE[name].axis)
+            axis.invert_yaxis()
+        axes[0].legend(title="time", loc="center left", bbox_to_anchor=(1.0, 0.5))
+        axes[-1].set_xlabel(label)
+        figure.savefig(folder / "wear.png")
+
+
+def draw_history(folder: Path) -> None:
+    """``history.png``: largest pressure and worn volume over time."""
+    if not (folder / "history.csv").is_file():
+        return
+    data = tables.read(folder / "history.csv", HISTORY)
+    if len(data["time"]) < 2:
+        return
+    time = HISTORY["time"].drawn(data["time"])
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(6.4, 5.4), layout="constrained", dpi=150)
+        upper, lower = figure.subplots(2)
+        pressure = HISTORY["max_pressure"].drawn(data["max_pressure"])
+        upper.semilogx(time[1:], pressure[1:], color="tab:red")
+        upper.set_ylabel(HISTORY["max_pressure"].axis)
+        upper.set_xlabel(f"{HISTORY['time'].axis}, logarithmic")
+        for name, color in zip(("wear_volume_1", "wear_volume_2"), _BODIES, strict=True):
+            if data[name][-1] > 0:
+                drawn = HISTORY[name].drawn(data[name])
+                lower.plot(time, drawn, color=color, label=f"body {name[-1]}")
+        lower.legend()
+        lower.set_ylabel(f"worn volume [{HISTORY['wear_volume_1'].unit}]")
+        lower.set_xlabel(HISTORY["time"].axis)
+        figure.savefig(folder / "history.png")
+
+
+def _abscissa(data: dict[str, np.ndarray]) -> tuple[str, np.ndarray]:
+    """Label and values of the horizontal axis: x where the face is flat, else the arc length."""
+    flat = np.ptp(data["y"]) <= 1e-9 * np.ptp(data["x"])
+    quantity = INTERFACE["x" if flat else "s"]
+    return quantity.axis, quantity.drawn(data["x" if flat else "s"])
+
+
+def _wrapped(quantity: Quantity) -> str:
+    return f"{quantity.label}\n[{quantity.unit}]"

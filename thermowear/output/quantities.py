@@ -1,0 +1,73 @@
+"""Names, units and labels of everything that is written or drawn: one table for all of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A column of a results file and how it is drawn.
+
+    Attributes
+    ----------
+    header : str
+        Column name with its SI unit.
+    label : str
+        For axes, without the unit.
+    unit : str
+        In which it is drawn.
+    scale, offset : float
+        Drawn value = scale · SI value + offset.
+    """
+
+    header: str
+    label: str
+    unit: str
+    scale: float = 1.0
+    offset: float = 0.0
+
+    @property
+    def axis(self) -> str:
+        return f"{self.label} [{self.unit}]"
+
+    def drawn(self, values):
+        """Values in the unit of drawings."""
+        return self.scale * values + self.offset
+
+
+def _celsius(header: str, label: str) -> Quantity:
+    return Quantity(header, label, "°C", 1.0, -273.15)
+
+
+INTERFACE = {
+    "x": Quantity("x_m", "x", "mm", 1e3),
+    "y": Quantity("y_m", "y", "mm", 1e3),
+    "z": Quantity("z_m", "z", "mm", 1e3),
+    "s": Quantity("s_m", "position along the contact", "mm", 1e3),
+    "weight": Quantity("weight_m2", "area of the point", "mm²", 1e6),
+    "pressure": Quantity("pressure_Pa", "contact pressure", "MPa", 1e-6),
+    "gap": Quantity("gap_m", "gap", "µm", 1e6),
+    "shape": Quantity("shape_m", "shape of the unloaded face", "µm", 1e6),
+    "wear_1": Quantity("wear_1_m", "wear depth, body 1", "µm", 1e6),
+    "wear_2": Quantity("wear_2_m", "wear depth, body 2", "µm", 1e6),
+    "wear_rate_1": Quantity("wear_rate_1_m_per_s", "wear rate, body 1", "nm/s", 1e9),
+    "wear_rate_2": Quantity("wear_rate_2_m_per_s", "wear rate, body 2", "nm/s", 1e9),
+    "temperature_1": _celsius("temperature_1_K", "temperature, body 1"),
+    "temperature_2": _celsius("temperature_2_K", "temperature, body 2"),
+    "heat_flux_1": Quantity("heat_flux_1_W_per_m2", "heat flux, body 1", "kW/m²", 1e-3),
+    "heat_flux_2": Quantity("heat_flux_2_W_per_m2", "heat flux, body 2", "kW/m²", 1e-3),
+}
+
+HISTORY = {
+    "time": Quantity("time_s", "time", "s"),
+    "sliding_distance": Quantity("sliding_distance_m", "sliding distance", "m"),
+    "max_pressure": Quantity("max_pressure_Pa", "largest pressure", "MPa", 1e-6),
+    "contact_area": Quantity("contact_area_m2", "contact area", "mm²", 1e6),
+    "wear_volume_1": Quantity("wear_volume_1_m3", "worn volume, body 1", "mm³", 1e9),
+    "wear_volume_2": Quantity("wear_volume_2_m3", "worn volume, body 2", "mm³", 1e9),
+    "max_temperature": _celsius("max_temperature_K", "largest temperature"),
+    "approach": Quantity("approach_m", "approach", "µm", 1e6),
+    "step": Quantity("step_s", "time step", "s"),
+    "error": Quantity("error", "error of the step", "1"),
+}

@@ -1,0 +1,37 @@
+"""``fields.vtu``: the bodies for ParaView and for pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+
+def write_fields(path: Path, fields) -> None:
+    """Write the fields as small bilinear quadrilaterals, discontinuous between cells.
+
+    Parameters
+    ----------
+    path : Path
+    fields : thermowear.simulation.BodyFields
+    """
+    import meshio
+
+    n_cells, n_points, gdim = fields.points.shape
+    first = np.arange(n_cells)[:, None, None] * n_points
+    quads = (first + fields.quads).reshape(-1, 4)
+    data = {
+        "displacement_m": _three(fields.displacement.reshape(-1, gdim)),
+        "von_mises_Pa": fields.von_mises.ravel(),
+    }
+    if fields.temperature is not None:
+        data["temperature_K"] = fields.temperature.ravel()
+    body = np.repeat(fields.body, len(fields.quads))
+    mesh = meshio.Mesh(
+        _three(fields.points.reshape(-1, gdim)), [("quad", quads)], data, {"body": [body]}
+    )
+    mesh.write(path)
+
+
+def _three(vectors: np.ndarray) -> np.ndarray:
+    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))

@@ -1,0 +1,32 @@
+"""Ranks that agree: sums that are the same everywhere, and errors that reach every rank."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+
+def sum_over_ranks(comm, values):
+    """Sum arrays or numbers over all ranks; every rank gets bitwise the same result."""
+    if comm.size == 1:
+        return values
+    total = comm.reduce(np.asarray(values), root=0)
+    return comm.bcast(total, root=0)
+
+
+def on_root(comm, action: Callable[[], Any]) -> Any:
+    """Do something on rank 0 only; its result, or its error, on every rank."""
+    if comm.size == 1:
+        return action()
+    result, error = None, None
+    if comm.rank == 0:
+        try:
+            result = action()
+        except (Exception, KeyboardInterrupt) as caught:
+            error = caught
+    result, error = comm.bcast((result, error), root=0)
+    if error is not None:
+        raise error
+    return result

@@ -1,0 +1,89 @@
+"""An annular punch turning on a plate (special case 8 of Páczelt and Mróz).
+
+Closed forms of the flat face: Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, with the
+constants from equilibrium. The tables are converged numerical solutions for one set of data, found
+with other meshes and other pressure spaces; the data stands in `DATA`.
+"""
+
+from __future__ import annotations
+
+from math import log, pi
+
+import numpy as np
+
+DATA = {
+    "inner_radius": 0.02,
+    "outer_radius": 0.12,
+    "punch_height": 0.05,
+    "plate_radius": 0.14,
+    "plate_height": 0.1,
+    "young_modulus": 2e11,
+    "poisson_ratio": 0.3,
+    "conductivity": 50.0,
+    "expansion": 1.2e-5,
+    "mean_pressure": 50e6,
+    "friction": 0.25,
+    "conductance": 1e6,
+    "cooling": 2000.0,
+    "coefficient": 2e-13,
+}
+"""SI; both bodies of one material, cooled to ambient at the punch's top and the plate's bottom."""
+
+
+def steady_pressure(r, force: float, inner: float, outer: float, b: float, a: float = 1.0):
+    """Steady pressure ``p = (F/I) r^(-a/b)``, ``I = 2 π ∫ r^(1 - a/b) dr``, on a flat face.
+
+    Parameters
+    ----------
+    r : array_like [m]
+    force : float [N]
+    inner, outer : float
+        Radii of the ring [m].
+    b, a : float
+        Pressure and velocity exponents of the wear law.
+
+    Returns
+    -------
+    ndarray [Pa]
+    """
+    power = 2.0 - a / b
+    integral = log(outer / inner) if power == 0 else (outer**power - inner**power) / power
+    return force / (2 * pi * integral) * np.asarray(r, dtype=float) ** (-a / b)
+
+
+def friction_power(
+    force: float, inner: float, outer: float, friction: float, speed: float
+) -> float:
+    """Friction power ``mu F ω (ri + ro)/2`` in the steady state for a = b [W]."""
+    return friction * force * speed * (inner + outer) / 2
+
+
+RADII = np.array([20, 25, 40, 70, 100, 115, 120]) * 1e-3
+"""Where the steady tables are given [m]; the first and last are singular corners."""
+
+STEADY_SHAPE = {
+    (1.0, 0.0): [0.02526, 0.025557, 0.015713, 0, -0.008500, -0.011858, -0.013585],
+    (1.0, 0.1): [0.018040, 0.017527, 0.007688, 0, 0.016949, 0.037571, 0.04547],
+    (2.0, 0.0): [0.00748, 0.008916, 0.006447, 0, -0.004676, -0.007374, -0.00921],
+    (2.0, 0.1): [0.00713, 0.007560, 0.003386, 0, 0.018313, 0.040769, 0.04939],
+    (0.5, 0.0): [0.08266, 0.076017, 0.038414, 0, -0.013803, -0.017520, -0.01890],
+    (0.5, 0.1): [0.05894, 0.052151, 0.019573, 0, 0.014437, 0.031229, 0.03756],
+}
+"""Steady worn shape against r = 70 mm [mm], by (b, ω); ω = 0 means cold."""
+
+TEMPERATURE_RISE = [72.38, 74.040, 75.149, 74.675, 72.181, 69.233, 66.70]
+"""Of the punch's face for b = 1 and ω = 0.1 rad/s [K]."""
+
+RUNNING_IN_RADII = np.array([21, 25, 40, 70, 100, 115, 119]) * 1e-3
+"""Where the pressures of the running-in are given [m]."""
+
+RUNNING_IN = {
+    1: ([77.97, 58.79, 51.21, 48.86, 47.44, 52.69, 58.62], [0.7104, 1.6967, 3.0438], 90.12),
+    5: ([88.20, 72.56, 59.12, 51.03, 45.79, 43.93, 42.79], [4.007, 8.705, 14.09], 441.74),
+    20: ([123.80, 105.92, 76.25, 52.34, 39.00, 34.08, 32.88], [21.07, 36.11, 46.49], 1686.9),
+    50: ([156.52, 132.23, 85.58, 50.64, 35.67, 31.01, 29.96], [66.83, 90.07, 101.76], 4048.9),
+    100: ([165.90, 139.42, 87.37, 50.05, 35.05, 30.47, 29.45], [152.59, 177.98, 189.83], 7909.4),
+    200: ([166.66, 140.00, 87.50, 50.00, 35.00, 30.43, 29.41], [327.45, 353.01, 364.87], 15607.0),
+}
+"""Cold running-in of a flat face, ω = 10 rad/s, a = b = 1: by time [s], pressures [MPa], depths
+worn at r = 25, 70 and 115 mm [µm], worn volume [mm³]."""

@@ -1,0 +1,72 @@
+"""Sampling the bodies on a fine grid in every cell, gathered on rank 0."""
+
+from __future__ import annotations
+
+import numpy as np
+import ufl
+from dolfinx import fem
+
+from ..bulk.field import as_function
+from ..compat import evaluate
+from .result import BodyFields
+from .state import BodyState
+from .system import System
+
+_INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
+
+
+def sample(system: System, state: BodyState, motion: np.ndarray) -> BodyFields | None:
+    """Displacement (holder's motion included), temperature and von Mises stress.
+
+    Every rank calls; ranks other than 0 get None. Cells come in the order of the mesh file.
+    """
+    mesh, elastic = system.bodies.mesh, system.elastic
+    n = max(system.case.mesh.degree, 2)
+    grid, quads = _grid(n)
+    inside = np.clip(grid, _INSET, 1 - _INSET)
+    cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
+    u = as_function(elastic.space, _with_holder(system, state.displacement, motion), "u")
+    du = as_function(elastic.space, state.displacement, "u")
+    rise, ambient = None, 0.0
+    if state.rise is not None and system.thermal is not None:
+        rise = as_function(system.thermal.conduction.space, state.rise, "rise")
+        ambient = system.thermal.ambient
+    σ = elastic.stress(du, rise)
+    wanted = [u, _von_mises(σ)] + ([] if rise is None else [rise])
+    values = [evaluate(fem.Expression(ufl.SpatialCoordinate(mesh), grid), mesh, cells)]
+    values += [evaluate(fem.Expression(w, inside), mesh, cells) for w in wanted]
+    body = np.zeros(len(cells), dtype=np.int64)
+    tags = system.bodies.cell_tags
+    local = tags.indices < len(cells)
+    body[tags.indices[local]] = tags.values[local]
+    original = mesh.topology.original_cell_index[: len(cells)]
+    parts = mesh.comm.gather((original, body, *values), root=0)
+    if parts is None:
+        return None
+    order = np.argsort(np.concatenate([part[0] for part in parts]))
+    body, points, displacement, mises, *temperature = (
+        np.concatenate([part[k] for part in parts])[order] for k in range(1, len(parts[0]))
+    )
+    absolute = temperature[0][..., 0] + ambient if temperature else None
+    return BodyFields(points, quads, body, displacement, absolute, mises[..., 0])
+
+
+def _with_holder(system: System, displacement: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Add the rigid motion of the holder to the nodes of body 1."""
+    upper = system.elastic.owned_by(system.case.geometry.bodies[0])
+    moved = displacement.reshape(-1, len(system.direction)).copy()
+    moved[upper] += motion[0] * system.direction
+    return moved.ravel()
+
+
+def _von_mises(σ):
+    s = σ - ufl.tr(σ) / 3 * ufl.Identity(3)
+    return ufl.sqrt(1.5 * ufl.inner(s, s))
+
+
+def _grid(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of an (n + 1)² grid on the reference square, and its small quadrilaterals."""
+    x = np.linspace(0.0, 1.0, n + 1)
+    points = np.array([(a, b) for b in x for a in x])
+    corner = np.array([j * (n + 1) + i for j in range(n) for i in range(n)])
+    return points, corner[:, None] + np.array([0, 1, n + 2, n + 1])

@@ -1,0 +1,103 @@
+"""What a run returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Interface:
+    """The contact points, one entry a point; names and units are those of ``interface.csv``.
+
+    Without ``[heat]`` temperatures and fluxes are NaN. Temperatures are absolute.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    s: np.ndarray
+    weight: np.ndarray
+    pressure: np.ndarray
+    gap: np.ndarray
+    shape: np.ndarray
+    wear_1: np.ndarray
+    wear_2: np.ndarray
+    wear_rate_1: np.ndarray
+    wear_rate_2: np.ndarray
+    temperature_1: np.ndarray
+    temperature_2: np.ndarray
+    heat_flux_1: np.ndarray
+    heat_flux_2: np.ndarray
+
+    def columns(self) -> list[np.ndarray]:
+        return [getattr(self, field.name) for field in fields(self)]
+
+
+@dataclass(frozen=True)
+class HistoryRow:
+    """A step of a running-in; names and units are those of ``history.csv``."""
+
+    time: float
+    sliding_distance: float
+    max_pressure: float
+    contact_area: float
+    wear_volume_1: float
+    wear_volume_2: float
+    max_temperature: float
+    approach: float
+    step: float
+    error: float
+
+
+@dataclass(frozen=True)
+class BodyFields:
+    """Fields on a fine grid of points in each cell, on rank 0.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n_cells, n_points, gdim) [m]
+    quads : ndarray of int, shape (n_quads, 4)
+        Small quadrilaterals between the points of one cell.
+    body : ndarray of int, shape (n_cells,)
+        1 or 2.
+    displacement : ndarray, shape (n_cells, n_points, gdim) [m]
+    temperature : ndarray or None, shape (n_cells, n_points) [K]
+    von_mises : ndarray, shape (n_cells, n_points) [Pa]
+    """
+
+    points: np.ndarray
+    quads: np.ndarray
+    body: np.ndarray
+    displacement: np.ndarray
+    temperature: np.ndarray | None
+    von_mises: np.ndarray
+
+
+@dataclass(frozen=True)
+class Result:
+    """A finished (or interrupted) run.
+
+    Attributes
+    ----------
+    interface : Interface
+        At the end.
+    summary : dict
+        SI, the unit in the key.
+    history : list of HistoryRow
+        Of a transient analysis.
+    outputs : dict of float to Interface
+        At the output times.
+    fields : BodyFields or None
+        On rank 0.
+    stopped : Exception or None
+        What ended the run before its time.
+    """
+
+    interface: Interface
+    summary: dict
+    history: list[HistoryRow]
+    outputs: dict[float, Interface]
+    fields: BodyFields | None
+    stopped: BaseException | None = None

@@ -1,0 +1,76 @@
+"""The bodies under a known contact pressure: temperatures, displacements, balances."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..contact.heat import ThermalState
+from ..parallel import sum_over_ranks
+from .system import System
+
+
+@dataclass(frozen=True)
+class BodyState:
+    """Fields of both bodies and what they do to the interface.
+
+    Attributes
+    ----------
+    displacement : ndarray, shape (n_owned,)
+        Without the holder's rigid motion [m].
+    rise : ndarray or None, shape (n_owned,)
+        Temperature over the ambient [K].
+    opening : ndarray, shape (n,)
+        ``B u``: gap at the contact points that load and heat open [m].
+    thermal : ThermalState or None
+        Temperatures and fluxes of the faces.
+    hottest : float
+        Highest temperature of the bodies [K]; NaN without heat.
+    heat_error, force_error : float
+        Relative imbalance of heat and of forces; the former NaN without heat.
+    """
+
+    displacement: np.ndarray
+    rise: np.ndarray | None
+    opening: np.ndarray
+    thermal: ThermalState | None
+    hottest: float
+    heat_error: float
+    force_error: float
+
+
+def body_state(system: System, pressure: np.ndarray) -> BodyState:
+    """Solve the bodies for a contact pressure [Pa] at the points. Every rank calls."""
+    thermal, rise, hottest, heat_error = None, None, float("nan"), float("nan")
+    loads = traction = system.trace @ (system.weights * pressure)
+    if system.thermal is not None:
+        face, conduction = system.thermal.face, system.thermal.conduction
+        generated = system.friction_heat(pressure)
+        thermal = face.exchange(pressure > 0).state(generated)
+        rise = conduction.solve(face.nodal_heat(thermal, bath=True))
+        loads = traction + system.thermal.forces(rise)
+        highest = max(system.comm.allgather(float(rise.max(initial=-np.inf))))
+        hottest = max(highest, float(np.max(thermal.rise))) + system.thermal.ambient
+        outflow, turnover = conduction.outflow(rise, face.nodal_heat(thermal, bath=False))
+        power = float(system.weights @ generated)
+        heat_error = abs(outflow - power) / max(power, turnover)
+    displacement = system.elastic.solve(loads)
+    opening = sum_over_ranks(system.comm, system.trace.T @ displacement)
+    force_error = _force_error(system, displacement, loads)
+    return BodyState(displacement, rise, opening, thermal, hottest, heat_error, force_error)
+
+
+def _force_error(system: System, displacement: np.ndarray, loads: np.ndarray) -> float:
+    """How far the supports' reactions are from the load, relative to it.
+
+    The holder must push body 1 with the load, the support must push body 2 back.
+    """
+    reactions = system.elastic.reactions(displacement, loads).reshape(-1, len(system.direction))
+    along = reactions @ system.direction
+    upper = system.elastic.owned_by(system.case.geometry.bodies[0])
+    held, supported = sum_over_ranks(
+        system.comm, np.array([along[upper].sum(), along[~upper].sum()])
+    )
+    load = system.load[0]
+    return float(max(abs(held - load), abs(supported + load)) / load)

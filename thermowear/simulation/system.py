@@ -1,0 +1,212 @@
+"""A case made computable: meshed, paired, assembled; condensed when first asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from petsc4py import PETSc
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..bulk.bodies import Bodies, distribute
+from ..bulk.conduction import Conduction, conduction
+from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
+from ..bulk.field import lagrange_space
+from ..bulk.kinematics import MODELS
+from ..case.schema import Case
+from ..contact.condensation import CondensedContact, condense
+from ..contact.face import gather_face
+from ..contact.heat import (
+    InterfaceHeat,
+    ThermalDistortion,
+    bath_matrix,
+    condense_distortion,
+    condense_heat,
+)
+from ..contact.pairing import Pairing, pair
+from ..contact.pressure import pressure_basis
+from ..contact.traces import gap_trace, value_trace
+from ..laws import WearLaw
+from ..parallel import on_root
+from .phases import Phases
+
+
+@dataclass(frozen=True)
+class ThermalSystem:
+    """The conducting bodies and their share in the interface.
+
+    Attributes
+    ----------
+    conduction : Conduction
+    load : petsc4py.PETSc.Mat
+        G: nodal forces per nodal rise [N/K].
+    face : InterfaceHeat
+    ambient : float
+        [K]
+    """
+
+    conduction: Conduction
+    load: PETSc.Mat
+    face: InterfaceHeat
+    ambient: float
+
+    def forces(self, rise: np.ndarray) -> np.ndarray:
+        """Nodal forces of a temperature rise, owned rows [N]."""
+        right, result = self.load.createVecs()
+        right.setArray(rise)
+        self.load.mult(right, result)
+        return result.getArray().copy()
+
+
+@dataclass(frozen=True)
+class System:
+    """Everything an analysis needs.
+
+    Attributes
+    ----------
+    case : Case
+    bodies : Bodies
+    pairing : Pairing
+    elastic : Elasticity
+    trace : csr_matrix, shape (n_owned, n)
+        Bᵀ.
+    basis : ndarray, shape (n, m)
+        Ψ.
+    direction : ndarray, shape (gdim,)
+        Unit translation of body 1 that its holder leaves free, along the load.
+    rigid : ndarray, shape (n, 1)
+        R.
+    load : ndarray, shape (1,)
+        F [N].
+    speed : ndarray, shape (n,)
+        Sliding speed at the contact points [m/s].
+    thermal : ThermalSystem or None
+    phases : Phases
+    """
+
+    case: Case
+    bodies: Bodies
+    pairing: Pairing
+    elastic: Elasticity
+    trace: sp.csr_matrix
+    basis: np.ndarray
+    direction: np.ndarray
+    rigid: np.ndarray
+    load: np.ndarray
+    speed: np.ndarray
+    thermal: ThermalSystem | None
+    phases: Phases
+
+    @property
+    def comm(self):
+        return self.bodies.mesh.comm
+
+    @property
+    def weights(self) -> np.ndarray:
+        return self.pairing.weights
+
+    @property
+    def friction(self) -> float:
+        return self.case.contact.friction
+
+    @cached_property
+    def laws(self) -> dict[int, WearLaw]:
+        """Wear laws by index of the body (0 is body 1); bodies that do not wear are left out."""
+        laws = {}
+        for index, name in enumerate(self.case.geometry.bodies):
+            if name in self.case.wear:
+                wear = self.case.wear[name]
+                κ, b, a = wear.coefficient_si(), wear.pressure_exponent, wear.velocity_exponent
+                laws[index] = (
+                    WearLaw.per_friction_stress(κ, self.friction, b, a)
+                    if wear.per == "friction-stress"
+                    else WearLaw(κ, b, a)
+                )
+        return laws
+
+    @cached_property
+    def contact(self) -> CondensedContact:
+        """Elasticity condensed to the pressure space."""
+        with self.phases("condense elasticity"):
+            return condense(self.elastic, self.pairing, self.trace, self.basis, self.rigid)
+
+    @cached_property
+    def distortion(self) -> ThermalDistortion | None:
+        """Thermal distortion condensed to the pressure space; None without heat."""
+        thermal, contact = self.thermal, self.contact
+        if thermal is None:
+            return None
+        with self.phases("condense distortion"):
+            return condense_distortion(thermal.conduction, thermal.load, contact, thermal.face)
+
+    def friction_heat(self, pressure: np.ndarray) -> np.ndarray:
+        """``q = mu p v`` at the points [W/m²]."""
+        return self.friction * pressure * self.speed
+
+
+def build(case: Case, comm, phases: Phases) -> System:
+    """Mesh, pair and assemble a case. Every rank calls.
+
+    Raises
+    ------
+    CaseError
+        If the geometry cannot be meshed or paired.
+    """
+    model, degree, geometry = MODELS[case.model], case.mesh.degree, case.geometry
+    with phases("mesh"):
+        bodies = distribute(on_root(comm, lambda: geometry.build(case.mesh)), comm)
+    with phases("pair"):
+        face_1, face_2 = (gather_face(bodies, surface) for surface in geometry.contact)
+        pairing = pair(face_1, face_2, model, degree + 2)
+        pressure_degree = case.contact.pressure_degree or max(degree - 1, 1)
+        basis = pressure_basis(pairing, pressure_degree)
+    with phases("assemble elasticity"):
+        materials = {name: _elastic_material(case, name) for name in geometry.bodies}
+        clamped = [geometry.held, geometry.fixed]
+        elastic = elasticity(bodies, model, degree, materials, clamped)
+    direction = np.array(model.press_direction)
+    return System(
+        case=case,
+        bodies=bodies,
+        pairing=pairing,
+        elastic=elastic,
+        trace=gap_trace(elastic.space, pairing),
+        basis=basis,
+        direction=direction,
+        rigid=(pairing.normals @ direction)[:, None],
+        load=np.array([case.force()]),
+        speed=model.speed(pairing.points, case.motion) if case.motion else 0.0 * pairing.weights,
+        thermal=_thermal(case, bodies, model, pairing, elastic, basis, phases),
+        phases=phases,
+    )
+
+
+def _elastic_material(case: Case, body: str) -> ElasticMaterial:
+    material = case.material(body)
+    E, ν, α = material.young_modulus, material.poisson_ratio, material.expansion
+    assert E is not None  # the case has been checked
+    assert ν is not None
+    return ElasticMaterial(E, ν, α if case.heat is not None and α is not None else 0.0)
+
+
+def _thermal(case, bodies, model, pairing, elastic, basis, phases) -> ThermalSystem | None:
+    heat = case.heat
+    if heat is None:
+        return None
+    with phases("assemble conduction"):
+        space = lagrange_space(bodies.mesh, case.mesh.degree)
+        upper, lower = pairing.sides
+        traces = (value_trace(space, upper), value_trace(space, lower))
+        conductivities = {b: case.material(b).conductivity for b in case.geometry.bodies}
+        shift = max(conductivities.values()) / pairing.position[-1]
+        given = {name: value - heat.ambient for name, value in heat.temperature.items()}
+        bath = bath_matrix(space, traces, pairing.weights, shift)
+        conducting = conduction(bodies, model, space, conductivities, heat.cooling, given, bath)
+        load = elastic.thermal_load(space)
+    with phases("condense conduction"):
+        face = condense_heat(
+            conducting, pairing.weights, basis, traces, shift, heat.conductance, heat.partition
+        )
+    return ThermalSystem(conducting, load, face, heat.ambient)

@@ -1,0 +1,9 @@
+"""Verification: the program against references, by ``thermowear verify`` and by the tests."""
+
+from . import annular_punch, running_in
+from .check import Check, Checks, compare
+
+CASES: dict[str, Checks] = {case.ID: case.checks for case in (annular_punch, running_in)}
+"""Verification cases by id; each yields its checks."""
+
+__all__ = ["CASES", "Check", "compare"]

@@ -18,6 +18,6 @@ MESHES = {
 if __name__ == "__main__":
     for name, overrides in MESHES.items():
         case = tw.load(CASE, overrides)
-        mesh = case.geometry.build(case.mesh)
+        mesh = case.tagged_mesh()
         write_mesh(mesh, HERE / name)
         print(f"{name}: {len(mesh.cells)} quadrilaterals, {len(mesh.points)} points")

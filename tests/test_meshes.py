@@ -22,7 +22,7 @@ def in_order(points):
 def test_reference_mesh(name):
     """requirement: same points, elements and names."""
     case = tw.load(MESHES.parent / "demos" / "annular_punch.toml", KNOWN[name])
-    made = case.geometry.build(case.mesh)
+    made = case.tagged_mesh()
     kept = meshio.read(MESHES / name)
     np.testing.assert_allclose(in_order(kept.points[:, :2]), in_order(made.points), atol=1e-9)
     assert set(kept.field_data) == {*made.bodies, *made.surfaces}

@@ -152,7 +152,7 @@ def _mesh(chosen) -> int:
     check_ending(chosen.output)
     case = load(chosen.case, tuple(chosen.overrides))
     _guard(chosen.output, chosen.overwrite)
-    mesh = case.geometry.build(case.mesh)
+    mesh = case.tagged_mesh()
     write_mesh(mesh, chosen.output)
     print(f"wrote {chosen.output}: {len(mesh.cells)} cells, {len(mesh.points)} points")
     return 0

@@ -10,7 +10,7 @@ from ..conftest import HOT
 
 def mesh_of(*overrides):
     case = tw.load(HOT, overrides)
-    return case, case.geometry.build(case.mesh)
+    return case, case.tagged_mesh()
 
 
 def area(mesh, body):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import basix
 import basix.ufl
 import dolfinx
 import numpy as np
@@ -11,7 +12,10 @@ from dolfinx import fem, io
 
 from ..compat import cell_perm_array
 
-_CELLS = {"quadrilateral": dolfinx.mesh.CellType.quadrilateral}
+_CELLS = {
+    "quadrilateral": dolfinx.mesh.CellType.quadrilateral,
+    "triangle": dolfinx.mesh.CellType.triangle,
+}
 
 
 @dataclass(frozen=True)
@@ -79,14 +83,17 @@ def distribute(tagged, comm) -> Bodies:
     kind, gdim, cell_nodes, facet_nodes, names, surfaces = head
     cell_type = _CELLS[kind]
     if comm.rank == 0:
-        order = cell_perm_array(cell_type, cell_nodes)
-        cells, points, cell_tags = tagged.cells[:, order], tagged.points, tagged.cell_tags
+        from_gmsh = cell_perm_array(cell_type, cell_nodes)
+        cells, points, cell_tags = tagged.cells[:, from_gmsh], tagged.points, tagged.cell_tags
         facets, facet_tags = tagged.facets, tagged.facet_tags
     else:
         cells, points = np.empty((0, cell_nodes), dtype=np.int64), np.empty((0, gdim))
         facets = np.empty((0, facet_nodes), dtype=np.int64)
         cell_tags, facet_tags = np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32)
-    element = basix.ufl.element("Lagrange", kind, 1, shape=(gdim,))
+    order = facet_nodes - 1
+    element = basix.ufl.element(
+        "Lagrange", kind, order, shape=(gdim,), lagrange_variant=basix.LagrangeVariant.equispaced
+    )
     mesh = dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element)
     tdim = mesh.topology.dim
     return Bodies(

@@ -45,7 +45,7 @@ class Elasticity:
     factor : Factor
         Of the supported stiffness.
     lame : tuple of dolfinx.fem.Function
-        λ, μ and the thermal stress per kelvin (3 λ + 2 μ) α, constant on each body [Pa, Pa/K].
+        λ, μ of the model and its thermal modulus times α, constant on each body [Pa, Pa/K].
     """
 
     bodies: Bodies
@@ -60,8 +60,7 @@ class Elasticity:
         """Stress of a displacement and a temperature rise, 3 x 3 [Pa]."""
         λ, μ, m = self.lame
         ε = self.model.strain(self.bodies.mesh, u)
-        σ = λ * ufl.tr(ε) * ufl.Identity(3) + 2 * μ * ε
-        return σ if rise is None else σ - m * rise * ufl.Identity(3)
+        return self.model.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
 
     def solve(self, loads: np.ndarray) -> np.ndarray:
         """Displacements [m] under nodal loads [N], owned rows, one or several columns."""
@@ -85,7 +84,7 @@ class Elasticity:
         return belongs
 
     def thermal_load(self, temperature_space: fem.FunctionSpace) -> PETSc.Mat:
-        """G: nodal loads of a temperature rise, ``∫ (3 λ + 2 μ) α T tr ε(δu) dV`` [N/K]."""
+        """G: nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K]."""
         mesh = self.bodies.mesh
         rise, δu = ufl.TrialFunction(temperature_space), ufl.TestFunction(self.space)
         ε = self.model.strain(mesh, δu)
@@ -102,6 +101,7 @@ def elasticity(
     degree: int,
     materials: dict[str, ElasticMaterial],
     clamped: list[str],
+    symmetric: tuple[str, ...] = (),
 ) -> Elasticity:
     """Assemble and factorise.
 
@@ -115,17 +115,19 @@ def elasticity(
         By body.
     clamped : list of str
         Surfaces held in all directions. Every body needs one.
+    symmetric : tuple of str
+        Surfaces on a plane of symmetry x = const.: the first displacement vanishes.
     """
     mesh = bodies.mesh
     space = lagrange_space(mesh, degree, mesh.geometry.dim)
-    lame = _lame(bodies, materials)
+    lame = _lame(bodies, model, materials)
     u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
     λ, μ, _ = lame
     ε, δε = model.strain(mesh, u), model.strain(mesh, δu)
     energy = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
     stiffness = assemble_matrix(compiled(model.integral(mesh, energy, section_measure(degree))))
     stiffness.assemble()
-    fixed = _fixed(bodies, model, space, clamped)
+    fixed = _fixed(bodies, model, space, clamped, symmetric)
     supported = stiffness.copy()
     first = stiffness.getOwnershipRange()[0]
     rows = (np.flatnonzero(fixed) + first).astype(PETSc.IntType)
@@ -140,18 +142,17 @@ def _max():
     return MPI.MAX
 
 
-def _lame(bodies: Bodies, materials: dict[str, ElasticMaterial]):
+def _lame(bodies: Bodies, model: Model, materials: dict[str, ElasticMaterial]):
     λ, μ, m = {}, {}, {}
     for name, material in materials.items():
         E, ν = material.young_modulus, material.poisson_ratio
-        λ[name] = E * ν / ((1 + ν) * (1 - 2 * ν))
-        μ[name] = E / (2 * (1 + ν))
-        m[name] = (3 * λ[name] + 2 * μ[name]) * material.expansion
+        λ[name], μ[name] = model.lame(E, ν)
+        m[name] = model.thermal_modulus(E, ν) * material.expansion
     return bodies.per_body(λ), bodies.per_body(μ), bodies.per_body(m)
 
 
-def _fixed(bodies: Bodies, model: Model, space, clamped: list[str]) -> np.ndarray:
-    """Which owned values the supports and the axis of symmetry hold at zero."""
+def _fixed(bodies: Bodies, model: Model, space, clamped, symmetric) -> np.ndarray:
+    """Which owned values the supports and the planes or axis of symmetry hold at zero."""
     mesh = bodies.mesh
     tdim = mesh.topology.dim
     zero = default_scalar_type(0)
@@ -159,6 +160,7 @@ def _fixed(bodies: Bodies, model: Model, space, clamped: list[str]) -> np.ndarra
     for component in range(mesh.geometry.dim):
         facets = [bodies.facets(surface) for surface in clamped]
         if component == 0:
+            facets += [bodies.facets(surface) for surface in symmetric]
             facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, model.on_axis))
         dofs = fem.locate_dofs_topological(
             space.sub(component), tdim - 1, np.unique(np.concatenate(facets)).astype(np.int32)

@@ -1,4 +1,4 @@
-"""How a two-dimensional mesh stands for a solid: strain and volume of each model.
+"""How a two-dimensional mesh stands for a solid: strain, stress and volume of each model.
 
 Strains and stresses are always full 3 x 3 tensors in the order (x, y, out of plane), or (r, z, θ).
 """
@@ -24,11 +24,26 @@ class Model(ABC):
     """
 
     name: str
-    press_direction: tuple[float, float]
+    press_direction: tuple[float, float] = (0.0, -1.0)
 
     @abstractmethod
     def speed(self, points: np.ndarray, motion) -> np.ndarray:
         """Sliding speed [m/s] at points of shape (n, 2) under the motion of the case."""
+
+    @abstractmethod
+    def slip_direction(self, normals: np.ndarray, motion) -> np.ndarray:
+        """Part within the section of the unit sliding direction of body 1 over body 2.
+
+        Parameters
+        ----------
+        normals : ndarray, shape (n, 2)
+            Outward unit normals of body 1.
+        motion : thermowear.case.schema.Motion
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+        """
 
     @abstractmethod
     def integral(self, mesh, density, measure):
@@ -42,9 +57,34 @@ class Model(ABC):
     def strain(self, mesh, u):
         """ε(u), 3 x 3."""
 
-    @abstractmethod
+    def lame(self, young_modulus: float, poisson_ratio: float) -> tuple[float, float]:
+        """λ and μ of the law ``σ = λ tr ε I + 2 μ ε`` between `strain` and `stress` [Pa]."""
+        E, ν = young_modulus, poisson_ratio
+        return E * ν / ((1 + ν) * (1 - 2 * ν)), E / (2 * (1 + ν))
+
+    def thermal_modulus(self, young_modulus: float, poisson_ratio: float) -> float:
+        """Stress per prevented thermal strain [Pa]."""
+        λ, μ = self.lame(young_modulus, poisson_ratio)
+        return 3 * λ + 2 * μ
+
+    def stress(self, strain, lame, thermal):
+        """σ, 3 x 3 [Pa].
+
+        Parameters
+        ----------
+        strain : UFL expression
+            From `strain`.
+        lame : tuple of UFL expressions
+            λ and μ [Pa].
+        thermal : UFL expression or float
+            Thermal modulus times thermal strain, 0 without heat [Pa].
+        """
+        λ, μ = lame
+        return (λ * ufl.tr(strain) - thermal) * ufl.Identity(3) + 2 * μ * strain
+
     def on_axis(self, x: np.ndarray) -> np.ndarray:
         """Marks points whose first displacement vanishes by symmetry; x of shape (3, n)."""
+        return np.zeros(x.shape[1], dtype=bool)
 
 
 class Axisymmetric(Model):
@@ -54,10 +94,12 @@ class Axisymmetric(Model):
     """
 
     name = "axisymmetric"
-    press_direction = (0.0, -1.0)
 
     def speed(self, points, motion):
         return motion.angular_velocity * points[:, 0]
+
+    def slip_direction(self, normals, motion):
+        return np.zeros_like(normals)  # it slides round the axis, across the section
 
     def integral(self, mesh, density, measure):
         return 2 * math.pi * ufl.SpatialCoordinate(mesh)[0] * density * measure
@@ -74,12 +116,76 @@ class Axisymmetric(Model):
         return np.abs(x[0]) < 1e-12
 
 
+class PlaneStrain(Model):
+    """A long solid cut to a thickness; no strain across it.
+
+    Body 1 lies above body 2 and is pressed down; it slides along x.
+
+    Parameters
+    ----------
+    thickness : float
+        Of the whole, twice the modelled one where only half of a symmetric section is meshed [m].
+    """
+
+    name = "plane-strain"
+
+    def __init__(self, thickness: float):
+        self.thickness = thickness
+
+    def speed(self, points, motion):
+        return np.full(len(points), abs(motion.velocity))
+
+    def slip_direction(self, normals, motion):
+        tangents = np.column_stack([-normals[:, 1], normals[:, 0]])
+        return tangents * np.sign(tangents[:, :1] * motion.velocity)
+
+    def integral(self, mesh, density, measure):
+        return self.thickness * density * measure
+
+    def area_factor(self, points):
+        return np.full(len(points), self.thickness)
+
+    def strain(self, mesh, u):
+        e = ufl.sym(ufl.grad(u))
+        return ufl.as_tensor([[e[0, 0], e[0, 1], 0], [e[1, 0], e[1, 1], 0], [0, 0, 0]])
+
+
+class PlaneStress(PlaneStrain):
+    """A thin plate; no stress across it. `strain` leaves out the strain across it."""
+
+    name = "plane-stress"
+
+    def lame(self, young_modulus, poisson_ratio):
+        E, ν = young_modulus, poisson_ratio
+        return E * ν / (1 - ν**2), E / (2 * (1 + ν))
+
+    def thermal_modulus(self, young_modulus, poisson_ratio):
+        return young_modulus / (1 - poisson_ratio)
+
+    def stress(self, strain, lame, thermal):
+        σ = super().stress(strain, lame, thermal)
+        return ufl.as_tensor([[σ[0, 0], σ[0, 1], 0], [σ[1, 0], σ[1, 1], 0], [0, 0, 0]])
+
+
+def section_model(name: str, thickness: float | None) -> Model:
+    """The model of a name.
+
+    Parameters
+    ----------
+    name : str
+        The value of ``model`` in a case file.
+    thickness : float or None
+        Of plane models, see `PlaneStrain` [m].
+    """
+    if name == Axisymmetric.name:
+        return Axisymmetric()
+    assert thickness is not None
+    return {model.name: model for model in (PlaneStrain, PlaneStress)}[name](thickness)
+
+
 def section_measure(degree: int):
     """Integration over cells, exact for products of two fields of a degree on straight cells.
 
     Stated because the automatic choice differs between releases and takes 1/r for a polynomial.
     """
     return ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
-
-
-MODELS: dict[str, Model] = {model.name: model for model in (Axisymmetric(),)}

@@ -71,8 +71,26 @@ def _materials(case: Case) -> Iterator[Fault]:
 
 
 def _load(case: Case) -> Iterator[Fault]:
-    if (case.load.force is None) == (case.load.mean_pressure is None):
-        yield "load", "needs exactly one of force and mean_pressure"
+    load = case.load
+    given = [x is not None for x in (load.force, load.mean_pressure, load.approach)]
+    if sum(given) != 1:
+        yield "load", "needs exactly one of force, mean_pressure and approach"
+    if load.mean_pressure is not None and case.geometry.contact_area() is None:
+        yield "load.mean_pressure", "this geometry has no nominal contact area; give the force"
+    if load.approach is not None and case.analysis.type == "steady":
+        yield "load.approach", "nothing presses in the end; the steady state needs a force"
+
+
+def _motion(case: Case) -> Iterator[Fault]:
+    if case.motion is None:
+        return
+    kinds = {"angular_velocity": "axisymmetric models", "velocity": "plane models"}
+    needed = "angular_velocity" if case.model == "axisymmetric" else "velocity"
+    for key, models in kinds.items():
+        if key != needed and getattr(case.motion, key) is not None:
+            yield f"motion.{key}", f"is for {models}; {case.model} needs motion.{needed}"
+    if getattr(case.motion, needed) is None:
+        yield f"motion.{needed}", f"missing; {case.model} needs it"
 
 
 def _sliding(case: Case) -> Iterator[Fault]:
@@ -116,4 +134,4 @@ def _degrees(case: Case) -> Iterator[Fault]:
         yield "contact.pressure_degree", f"found {own}; at most mesh.degree = {case.mesh.degree}"
 
 
-_CHECKS = (_names, _model, _materials, _load, _sliding, _heat, _degrees)
+_CHECKS = (_names, _model, _materials, _load, _motion, _sliding, _heat, _degrees)

@@ -6,13 +6,34 @@ file by its ``type`` as soon as that room is imported.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, SerializeAsAny
 
 from .section import KeyFault, Section
+from .units import Length
 
 _KNOWN: dict[str, type[Geometry]] = {}
+
+
+@dataclass(frozen=True)
+class Pressing:
+    """How hard the bodies are pressed together, for estimates.
+
+    Attributes
+    ----------
+    force : float or None
+        Normal force [N]; None where the approach is given.
+    approach : float or None
+        [m]; None where the force is given.
+    modulus : float
+        Contact modulus E*, ``1/E* = Σ (1 - ν²)/E`` [Pa].
+    """
+
+    force: float | None
+    approach: float | None
+    modulus: float
 
 
 class Geometry(Section):
@@ -46,24 +67,63 @@ class Geometry(Section):
 
     def __init_subclass__(cls, **kwargs: Any):
         super().__init_subclass__(**kwargs)
-        _KNOWN[cls.name] = cls
+        if cls.__dict__.get("name"):  # bases of several geometries have none
+            _KNOWN[cls.name] = cls
 
-    def contact_area(self) -> float:
-        """Nominal contact area, which turns a mean pressure into a force [m²]."""
-        raise NotImplementedError
+    @property
+    def symmetry(self) -> tuple[str, ...]:
+        """Surfaces on a plane of symmetry x = const."""
+        return ()
 
-    def build(self, mesh):
+    @property
+    def thickness_factor(self) -> float | None:
+        """Thickness of plane models that forces are of; twice the given one for half models [m]."""
+        return None
+
+    def contact_area(self) -> float | None:
+        """Nominal contact area, which turns a mean pressure into a force; None without one [m²]."""
+        return None
+
+    def expected_zone(self, pressing: Pressing) -> tuple[float, float] | None:
+        """Where the faces will touch, as a range of x; None where the whole face is meshed alike.
+
+        An estimate is enough: the mesh is refined there.
+        """
+        return None
+
+    def build(self, mesh, zone: tuple[float, float] | None):
         """Mesh both bodies.
 
         Parameters
         ----------
         mesh : thermowear.case.schema.Mesh
+        zone : tuple of float, optional
+            Range of x where the faces touch; element ends lie at both ends of it where it is not
+            the whole face.
 
         Returns
         -------
         thermowear.geometry.tagged.TaggedMesh
         """
         raise NotImplementedError
+
+
+class PlaneGeometry(Geometry):
+    """Base of geometries for plane models.
+
+    Attributes
+    ----------
+    thickness : float
+        Forces are of this thickness [m].
+    """
+
+    name: ClassVar[str] = ""
+
+    thickness: Length = 1e-3
+
+    @property
+    def thickness_factor(self) -> float | None:
+        return self.thickness
 
 
 def known_geometries() -> dict[str, type[Geometry]]:

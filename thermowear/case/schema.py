@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from . import units
 from .checks import check
-from .geometry import AnyGeometry
+from .geometry import AnyGeometry, Pressing
 from .materials import Body, resolve_like
 from .section import KeyFault, Number, Section
 from .wear import Wear
@@ -55,16 +55,36 @@ class Mesh(Section):
 
 
 class Load(Section):
-    """What presses body 1 on body 2: a force, or a mean pressure on the nominal contact area."""
+    """What presses body 1 on body 2: exactly one of these.
+
+    Attributes
+    ----------
+    mean_pressure : float or None
+        On the nominal contact area [Pa].
+    force : float or None
+        Of the whole ring, or of the thickness [N].
+    approach : float or None
+        How far the holder moves from where it stands in the mesh [m].
+    """
 
     mean_pressure: units.Pressure | None = None
     force: units.Force | None = None
+    approach: units.Length | None = None
 
 
 class Motion(Section):
-    """Sliding of body 1 over body 2."""
+    """Sliding of body 1 over body 2.
 
-    angular_velocity: units.AngularVelocity
+    Attributes
+    ----------
+    angular_velocity : float or None
+        About the axis, for axisymmetric models [rad/s].
+    velocity : float or None
+        Along x, for plane models; negative: against it [m/s].
+    """
+
+    angular_velocity: units.AngularVelocity | None = None
+    velocity: units.Velocity | None = None
 
 
 class Contact(Section):
@@ -161,7 +181,7 @@ class Case(Section):
     """A complete case: what to compute, of which bodies, under which load."""
 
     title: str = ""
-    model: Literal["axisymmetric"]
+    model: Literal["axisymmetric", "plane-strain", "plane-stress"]
     geometry: AnyGeometry
     mesh: Mesh = Mesh()
     bodies: dict[str, Body]
@@ -177,12 +197,34 @@ class Case(Section):
         check(self)
         return self
 
-    def force(self) -> float:
-        """Normal force on body 1 [N]."""
-        if self.load.mean_pressure is not None:
-            return self.load.mean_pressure * self.geometry.contact_area()
-        assert self.load.force is not None  # one of them is given, see `checks`
+    def force(self) -> float | None:
+        """Normal force on body 1 [N]; None where the approach is given."""
+        area = self.geometry.contact_area()
+        if self.load.mean_pressure is not None and area is not None:
+            return self.load.mean_pressure * area
         return self.load.force
+
+    def pressing(self) -> Pressing:
+        """How hard the bodies are pressed together, for estimates."""
+        softness = 0.0
+        for name in self.geometry.bodies:
+            body = self.material(name)
+            assert body.young_modulus is not None  # the case has been checked
+            assert body.poisson_ratio is not None
+            softness += (1 - body.poisson_ratio**2) / body.young_modulus
+        return Pressing(self.force(), self.load.approach, 1 / softness)
+
+    def tagged_mesh(self, zone: tuple[float, float] | None = None):
+        """The mesh of the case, made for a contact zone (by default the expected one).
+
+        Parameters
+        ----------
+        zone : tuple of float, optional
+            Range of x [m].
+        """
+        if zone is None:
+            zone = self.geometry.expected_zone(self.pressing())
+        return self.geometry.build(self.mesh, zone)
 
     def material(self, body: str) -> Body:
         """The material of a body, ``like`` followed to its end."""

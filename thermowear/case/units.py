@@ -15,7 +15,11 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, PlainSerializer
 
 _NUMBER = re.compile(r"\s*([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))", re.IGNORECASE)
-_BOUNDS = {"gt": (operator.gt, "greater than"), "ge": (operator.ge, "at least")}
+_BOUNDS = {
+    "gt": (operator.gt, "greater than"),
+    "ge": (operator.ge, "at least"),
+    "ne": (operator.ne, "other than"),
+}
 
 
 @lru_cache(maxsize=1)
@@ -104,7 +108,7 @@ def quantity(unit: str, example: str, **bounds: float):
     example : str
         A well-formed value, shown in messages.
     **bounds
-        ``gt``, ``ge`` in SI.
+        ``gt``, ``ge``, ``ne`` in SI.
     """
     return Annotated[
         float,
@@ -118,6 +122,7 @@ Pressure = quantity("Pa", "50 MPa", gt=0)
 Force = quantity("N", "2.2 MN", gt=0)
 Time = quantity("s", "100 s", gt=0)
 AngularVelocity = quantity("rad/s", "10 rad/s", gt=0)
+Velocity = quantity("m/s", "50 mm/s", ne=0)
 Conductivity = quantity("W/m/K", "50 W/(m K)", gt=0)
 Expansion = quantity("1/K", "1.2e-5 1/K", ge=0)
 Density = quantity("kg/m^3", "7800 kg/m^3", gt=0)

@@ -62,7 +62,7 @@ class AnnularPunch(Geometry):
     def contact_area(self) -> float:
         return math.pi * (self.outer_radius**2 - self.inner_radius**2)
 
-    def build(self, mesh) -> TaggedMesh:
+    def build(self, mesh, zone=None) -> TaggedMesh:
         with gmsh_model(self.name) as gmsh:
             punch = self._punch(gmsh.model, *mesh.face("punch"))
             plate, face = self._plate(gmsh.model, *mesh.face("plate"))

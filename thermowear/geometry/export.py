@@ -9,7 +9,15 @@ import numpy as np
 from ..errors import CaseError
 from .tagged import TaggedMesh
 
-_MESHIO_CELLS = {"quadrilateral": "quad"}
+_MESHIO_CELLS = {
+    ("quadrilateral", 4): "quad",
+    ("quadrilateral", 9): "quad9",
+    ("quadrilateral", 16): "quad16",
+    ("triangle", 3): "triangle",
+    ("triangle", 6): "triangle6",
+    ("triangle", 10): "triangle10",
+}
+_MESHIO_FACETS = {2: "line", 3: "line3", 4: "line4"}
 _FORMATS = {".msh": "gmsh22", ".vtu": "vtu", ".xdmf": "xdmf", ".inp": "abaqus"}
 
 
@@ -30,7 +38,10 @@ def write_mesh(mesh: TaggedMesh, path: Path) -> None:
     import meshio
 
     check_ending(path)
-    cells = [(_MESHIO_CELLS[mesh.cell_type], mesh.cells), ("line", mesh.facets)]
+    cells = [
+        (_MESHIO_CELLS[mesh.cell_type, mesh.cells.shape[1]], mesh.cells),
+        (_MESHIO_FACETS[mesh.facets.shape[1]], mesh.facets),
+    ]
     n = len(mesh.bodies)
     # one numbering for both dimensions, so that a tag names one thing in every format
     tags = [mesh.cell_tags, mesh.facet_tags + n]

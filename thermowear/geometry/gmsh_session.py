@@ -9,7 +9,12 @@ import numpy as np
 
 from .tagged import TaggedMesh
 
-_CELL_TYPES = {3: "quadrilateral"}
+_CELL_TYPES = {3: "quadrilateral", 10: "quadrilateral", 36: "quadrilateral"} | {
+    2: "triangle",
+    9: "triangle",
+    21: "triangle",
+}
+"""gmsh's numbers of plane cells of order 1, 2 and 3."""
 
 
 @contextmanager

@@ -18,8 +18,9 @@ class TaggedMesh:
     ----------
     points : ndarray, shape (n_points, gdim) [m]
     cell_type : str
-        ``"quadrilateral"``; the type of all cells.
+        ``"quadrilateral"`` or ``"triangle"``; the type of all cells.
     cells : ndarray of int64, shape (n_cells, nodes_per_cell)
+        Of any order: curved cells have nodes between their corners.
     cell_tags : ndarray of int32, shape (n_cells,)
     facets : ndarray of int64, shape (n_facets, nodes_per_facet)
         Named boundary facets only.

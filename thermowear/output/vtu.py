@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+_CELLS = {3: "triangle", 4: "quad"}
+
 
 def write_fields(path: Path, fields) -> None:
-    """Write the fields as small bilinear quadrilaterals, discontinuous between cells.
+    """Write the fields as small triangles or quadrilaterals, discontinuous between cells.
 
     Parameters
     ----------
@@ -19,16 +21,17 @@ def write_fields(path: Path, fields) -> None:
 
     n_cells, n_points, gdim = fields.points.shape
     first = np.arange(n_cells)[:, None, None] * n_points
-    quads = (first + fields.quads).reshape(-1, 4)
+    corners = fields.pieces.shape[1]
+    pieces = (first + fields.pieces).reshape(-1, corners)
     data = {
         "displacement_m": _three(fields.displacement.reshape(-1, gdim)),
         "von_mises_Pa": fields.von_mises.ravel(),
     }
     if fields.temperature is not None:
         data["temperature_K"] = fields.temperature.ravel()
-    body = np.repeat(fields.body, len(fields.quads))
+    body = np.repeat(fields.body, len(fields.pieces))
     mesh = meshio.Mesh(
-        _three(fields.points.reshape(-1, gdim)), [("quad", quads)], data, {"body": [body]}
+        _three(fields.points.reshape(-1, gdim)), [(_CELLS[corners], pieces)], data, {"body": [body]}
     )
     mesh.write(path)
 

@@ -22,8 +22,9 @@ def sample(system: System, state: BodyState, motion: np.ndarray) -> BodyFields |
     """
     mesh, elastic = system.bodies.mesh, system.elastic
     n = max(system.case.mesh.degree, 2)
-    grid, quads = _grid(n)
-    inside = np.clip(grid, _INSET, 1 - _INSET)
+    grid, pieces = _GRIDS[mesh.topology.cell_name()](n)
+    centre = grid.mean(axis=0)
+    inside = centre + (grid - centre) * (1 - _INSET)
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
     u = as_function(elastic.space, _with_holder(system, state.displacement, motion), "u")
     du = as_function(elastic.space, state.displacement, "u")
@@ -48,7 +49,7 @@ def sample(system: System, state: BodyState, motion: np.ndarray) -> BodyFields |
         np.concatenate([part[k] for part in parts])[order] for k in range(1, len(parts[0]))
     )
     absolute = temperature[0][..., 0] + ambient if temperature else None
-    return BodyFields(points, quads, body, displacement, absolute, mises[..., 0])
+    return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 
 def _with_holder(system: System, displacement: np.ndarray, motion: np.ndarray) -> np.ndarray:
@@ -64,9 +65,26 @@ def _von_mises(σ):
     return ufl.sqrt(1.5 * ufl.inner(s, s))
 
 
-def _grid(n: int) -> tuple[np.ndarray, np.ndarray]:
+def _square(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Points of an (n + 1)² grid on the reference square, and its small quadrilaterals."""
     x = np.linspace(0.0, 1.0, n + 1)
     points = np.array([(a, b) for b in x for a in x])
     corner = np.array([j * (n + 1) + i for j in range(n) for i in range(n)])
     return points, corner[:, None] + np.array([0, 1, n + 2, n + 1])
+
+
+def _triangle(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of a regular grid on the reference triangle, and its small triangles."""
+    x = np.linspace(0.0, 1.0, n + 1)
+    points = np.array([(x[i], x[j]) for j in range(n + 1) for i in range(n + 1 - j)])
+    start = np.cumsum([0, *(n + 1 - j for j in range(n + 1))])
+    upright = [(start[j] + i, start[j] + i + 1, start[j + 1] + i) for j, i in _below(n)]
+    turned = [(start[j] + i + 1, start[j + 1] + i + 1, start[j + 1] + i) for j, i in _below(n - 1)]
+    return points, np.array(upright + turned)
+
+
+def _below(n: int) -> list[tuple[int, int]]:
+    return [(j, i) for j in range(n) for i in range(n - j)]
+
+
+_GRIDS = {"quadrilateral": _square, "triangle": _triangle}

@@ -58,8 +58,8 @@ class BodyFields:
     Attributes
     ----------
     points : ndarray, shape (n_cells, n_points, gdim) [m]
-    quads : ndarray of int, shape (n_quads, 4)
-        Small quadrilaterals between the points of one cell.
+    pieces : ndarray of int, shape (n_pieces, 3 or 4)
+        Small triangles or quadrilaterals between the points of one cell.
     body : ndarray of int, shape (n_cells,)
         1 or 2.
     displacement : ndarray, shape (n_cells, n_points, gdim) [m]
@@ -68,7 +68,7 @@ class BodyFields:
     """
 
     points: np.ndarray
-    quads: np.ndarray
+    pieces: np.ndarray
     body: np.ndarray
     displacement: np.ndarray
     temperature: np.ndarray | None

@@ -14,7 +14,7 @@ from ..bulk.bodies import Bodies, distribute
 from ..bulk.conduction import Conduction, conduction
 from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
 from ..bulk.field import lagrange_space
-from ..bulk.kinematics import MODELS
+from ..bulk.kinematics import section_model
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, condense
 from ..contact.face import gather_face
@@ -146,7 +146,7 @@ class System:
         return self.friction * pressure * self.speed
 
 
-def build(case: Case, comm, phases: Phases) -> System:
+def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = None) -> System:
     """Mesh, pair and assemble a case. Every rank calls.
 
     Raises
@@ -154,9 +154,10 @@ def build(case: Case, comm, phases: Phases) -> System:
     CaseError
         If the geometry cannot be meshed or paired.
     """
-    model, degree, geometry = MODELS[case.model], case.mesh.degree, case.geometry
+    degree, geometry = case.mesh.degree, case.geometry
+    model = section_model(case.model, geometry.thickness_factor)
     with phases("mesh"):
-        bodies = distribute(on_root(comm, lambda: geometry.build(case.mesh)), comm)
+        bodies = distribute(on_root(comm, lambda: case.tagged_mesh(zone)), comm)
     with phases("pair"):
         face_1, face_2 = (gather_face(bodies, surface) for surface in geometry.contact)
         pairing = pair(face_1, face_2, model, degree + 2)
@@ -165,7 +166,7 @@ def build(case: Case, comm, phases: Phases) -> System:
     with phases("assemble elasticity"):
         materials = {name: _elastic_material(case, name) for name in geometry.bodies}
         clamped = [geometry.held, geometry.fixed]
-        elastic = elasticity(bodies, model, degree, materials, clamped)
+        elastic = elasticity(bodies, model, degree, materials, clamped, geometry.symmetry)
     direction = np.array(model.press_direction)
     return System(
         case=case,

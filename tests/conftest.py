@@ -43,7 +43,14 @@ def wear_law(b: float) -> tuple[str, str]:
 
 
 def two_blocks(
-    inner=0.05, outer=0.09, heights=(0.02, 0.03), columns=(3, 3), rows=(2, 2), growth=(1.0, 1.0)
+    inner=0.05,
+    outer=0.09,
+    heights=(0.02, 0.03),
+    columns=(3, 3),
+    rows=(2, 2),
+    growth=(1.0, 1.0),
+    triangles=False,
+    order=1,
 ):
     """Two blocks of one width, one above the other; faces match if their columns do.
 
@@ -72,6 +79,9 @@ def two_blocks(
         for name, curves in parts.items():
             gmsh.model.addPhysicalGroup(1, curves, name=name)
         gmsh.model.mesh.generate(2)
+        if triangles:
+            gmsh.model.mesh.splitQuadrangles(1.0)
+        gmsh.model.mesh.setOrder(order)
         return tagged_mesh(gmsh.model, ("upper", "lower"), tuple(parts))
 
 

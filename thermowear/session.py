@@ -10,7 +10,7 @@ from .errors import ComputationError
 from .output.console import Progress, Terminal, print_summary
 from .output.folder import ResultsFolder
 from .parallel import on_root
-from .simulation import HistoryRow, Interface, Observer, run
+from .simulation import HistoryRow, Interface, LoadRow, Observer, run
 from .simulation.phases import Phases
 
 
@@ -33,8 +33,18 @@ class _Recorder(Observer):
         if self._progress is not None:
             self._progress.step(self._steps, row, distance)
 
-    def output(self, time: float, interface: Interface) -> None:
-        self._save(lambda: self._folder.output(time, interface))
+    def load_step(self, row: LoadRow) -> None:
+        self._steps += 1
+        self._save(lambda: self._folder.load_step(row))
+        if self._progress is not None:
+            self._progress.load_step(self._steps, row)
+
+    def note(self, text: str) -> None:
+        if self._progress is not None:
+            self._progress.note(text)
+
+    def output(self, time: float, interface: Interface, friction=None) -> None:
+        self._save(lambda: self._folder.output(time, interface, friction))
 
     def _save(self, action) -> None:
         on_root(self._comm, lambda: _writing(action))

@@ -15,8 +15,8 @@ import numpy as np
 
 import thermowear as tw
 from thermowear.bulk.factor import Factor
-from thermowear.simulation.interface_problem import InterfaceProblem
 from thermowear.simulation.phases import Phases
+from thermowear.simulation.preparation import interface_problem
 from thermowear.simulation.steady import steady_wear
 from thermowear.simulation.system import build
 from thermowear.simulation.transient import moments
@@ -46,7 +46,7 @@ def main():
     system = build(case, MPI.COMM_WORLD, Phases())
     condensation = seconds(lambda: system.contact, repeat=1)
     steady = steady_wear(system).pressure
-    problem = InterfaceProblem(system)
+    problem = interface_problem(system)
     steps = len(list(moments(problem, case.analysis, steady))) - 1
     implicit = seconds(lambda: list(moments(problem, case.analysis, steady)))
 

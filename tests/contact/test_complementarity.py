@@ -10,6 +10,7 @@ from thermowear.contact.complementarity import (
     ContactSolution,
     _checked,
     _pressing_by_lemke,
+    _Problem,
     solve_contact,
 )
 from thermowear.contact.lemke import lemke
@@ -52,13 +53,44 @@ def test_every_solution_satisfies_the_conditions(seed, n, skew):
     assert violations(problem, solution) < 1e-8
 
 
+@settings(max_examples=200, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), far=st.sampled_from([0.0, 50.0]))
+def test_a_given_approach_needs_no_modes(seed, n, far):
+    """requirement: V10 under displacement control, from any start; from far nothing touches."""
+    compliance, gap, modes, _ = random_problem(seed, n)
+    problem = compliance, gap + far, modes[:, :0], np.zeros(0)
+    start = np.random.default_rng(seed).random(n) < 0.5
+    λ = solve_contact(*problem, start=start).coefficients
+    r = compliance @ λ + gap + far
+    scale = np.abs(compliance @ λ).max() + np.abs(gap + far).max()
+    assert λ.min() >= 0
+    assert r.min() >= -1e-8 * scale
+    assert np.abs(λ * r).max() <= 1e-8 * scale * max(λ.max(), 1.0)
+    assert not far or not λ.any()
+
+
+@settings(max_examples=200, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40))
+def test_friction_in_the_section_enters_equilibrium(seed, n):
+    """requirement: V10 with forces that work on other modes than those that close the gap."""
+    compliance, gap, modes, load = random_problem(seed, n, 0.01)
+    forces = modes + 0.1 * np.random.default_rng(seed).uniform(size=modes.shape)
+    solution = solve_contact(compliance, gap, modes, load, force_modes=forces)
+    r = compliance @ solution.coefficients + gap - modes @ solution.motion
+    scale = np.abs(compliance @ solution.coefficients).max() + np.abs(gap).max()
+    assert solution.coefficients.min() >= 0
+    assert r.min() > -1e-8 * scale
+    assert np.abs(solution.coefficients * r).max() < 1e-8 * scale * solution.coefficients.max()
+    assert forces.T @ solution.coefficients == pytest.approx(load, rel=1e-8, abs=1e-8)
+
+
 @settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 30))
 def test_lemke_agrees_with_the_active_set(seed, n):
     """requirement: the fallback finds the same contact."""
     problem = random_problem(seed, n)
     solution = solve_contact(*problem)
-    active = _pressing_by_lemke(*problem)
+    active = _pressing_by_lemke(_Problem(*problem, problem[2]))
     pressing = solution.coefficients > 1e-9 * solution.coefficients.max()
     assert np.array_equal(active, pressing)
 
@@ -79,9 +111,10 @@ def test_every_wrong_pressure_is_caught(wrong):
         load = load * (1 + 1e-6)
     solution = ContactSolution(λ, np.array([d]), λ != 0)
     with pytest.raises(ComputationError):
-        _checked(compliance, gap, modes, load, solution)
+        _checked(_Problem(compliance, gap, modes, load, modes), solution)
     right = ContactSolution(np.ones(3), np.array([1.0]), np.ones(3, dtype=bool))
-    assert _checked(compliance, np.zeros(3), modes, np.array([3.0]), right) is not None
+    problem = _Problem(compliance, np.zeros(3), modes, np.array([3.0]), modes)
+    assert _checked(problem, right) is not None
 
 
 def test_nearly_parallel_modes_from_a_start_that_cannot_carry():
@@ -98,7 +131,7 @@ def test_nearly_parallel_modes_from_a_start_that_cannot_carry():
         solution = solve_contact(*problem, start=np.array(active, dtype=bool))
         assert violations(problem, solution) < 1e-8
         assert solution.coefficients == pytest.approx([0.53504581, 0.21302487, 0.86135493])
-    assert _pressing_by_lemke(*problem).all()
+    assert _pressing_by_lemke(_Problem(*problem, problem[2])).all()
 
 
 @settings(max_examples=100, deadline=None)

@@ -11,6 +11,7 @@ from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.contact.complementarity import solve_contact
 from thermowear.contact.condensation import condense
 from thermowear.contact.face import gather_face
+from thermowear.contact.holder import hold
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis
 from thermowear.contact.traces import gap_trace
@@ -37,8 +38,8 @@ def condensed(degree, columns, poisson_ratio=0.3):
     )
     trace = gap_trace(elastic.space, pairing)
     basis = pressure_basis(pairing, max(degree - 1, 1))
-    rigid = (pairing.normals @ [0.0, -1.0])[:, None]
-    return elastic, pairing, trace, condense(elastic, pairing, trace, basis, rigid)
+    holder = hold(pairing, pairing.normals, (0.0, -1.0), 1.0, None)
+    return elastic, pairing, trace, condense(elastic, pairing, trace, trace, basis, holder)
 
 
 @pytest.mark.parametrize("columns", [(3, 3), (2, 5)])

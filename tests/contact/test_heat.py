@@ -15,6 +15,7 @@ from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.contact.condensation import condense
 from thermowear.contact.face import gather_face
 from thermowear.contact.heat import bath_matrix, condense_distortion, condense_heat
+from thermowear.contact.holder import hold
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis
 from thermowear.contact.traces import gap_trace, value_trace
@@ -122,7 +123,9 @@ def test_condensed_distortion_equals_the_bodies_own():
     }
     elastic = elasticity(bodies, Axisymmetric(), 5, materials, ["upper_end", "lower_end"])
     trace = gap_trace(elastic.space, pairing)
-    contact = condense(elastic, pairing, trace, basis, np.ones((len(pairing.weights), 1)))
+    contact = condense(
+        elastic, pairing, trace, trace, basis, hold(pairing, pairing.normals, (0, -1), 1.0, None)
+    )
     load = elastic.thermal_load(conducting.space)
     distortion = condense_distortion(conducting, load, contact, face)
     exchange = face.exchange(pairing.points[:, 0] < 0.08)

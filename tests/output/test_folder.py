@@ -14,7 +14,7 @@ from thermowear.case import as_plain
 from thermowear.case.starters import starter_text
 from thermowear.output.folder import ResultsFolder
 from thermowear.output.quantities import HISTORY
-from thermowear.output.tables import interface_name, read
+from thermowear.output.tables import name_at, read
 from thermowear.simulation import HistoryRow
 
 TABLES = as_plain(tw.load(tomllib.loads(starter_text("annular-punch-running-in"))))
@@ -121,9 +121,9 @@ def test_an_interface_of_any_time_is_known_as_ours(time, tmp_path):
     requirement: --overwrite finds the interface files of all output times.
     """
     opened(tmp_path)
-    (tmp_path / interface_name(time)).write_text("old", encoding="utf-8")
+    (tmp_path / name_at("interface", time)).write_text("old", encoding="utf-8")
     opened(tmp_path, overwrite=True)
-    assert not (tmp_path / interface_name(time)).exists()
+    assert not (tmp_path / name_at("interface", time)).exists()
 
 
 @pytest.mark.parametrize(

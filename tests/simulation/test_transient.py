@@ -82,16 +82,15 @@ def test_second_order_in_time():
     """requirement: V19, the error of the wear step falls with the square of its size."""
     from mpi4py import MPI
 
-    from thermowear.simulation.interface_problem import InterfaceProblem, WornContact
     from thermowear.simulation.phases import Phases
+    from thermowear.simulation.preparation import interface_problem
     from thermowear.simulation.system import build
-    from thermowear.simulation.wear_step import advance
+    from thermowear.simulation.wear_step import WornContact, advance
 
     case = tw.load(COLD_RUNNING_IN, ("mesh.degree=3", "mesh.elements=8"))
-    problem = InterfaceProblem(build(case, MPI.COMM_WORLD, Phases()))
-    solution = problem.unworn()
-    pressure = problem.pressure(solution)
-    state = WornContact(np.zeros_like(problem.rates(pressure)), solution, pressure)
+    problem = interface_problem(build(case, MPI.COMM_WORLD, Phases()))
+    contact = problem.unworn()
+    state = WornContact(np.zeros_like(problem.rates(contact.pressure)), contact)
     for _ in range(40):  # let the singular start pass
         state = advance(problem, state, 0.05)
 

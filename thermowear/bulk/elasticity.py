@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from petsc4py import PETSc
 
 import numpy as np
+import scipy.sparse as sp
 import ufl
 from dolfinx import default_scalar_type, fem
 from dolfinx import mesh as dmesh
@@ -62,8 +63,10 @@ class Elasticity:
         ε = self.model.strain(self.bodies.mesh, u)
         return self.model.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
 
-    def solve(self, loads: np.ndarray) -> np.ndarray:
+    def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] under nodal loads [N], owned rows, one or several columns."""
+        if sp.issparse(loads):
+            return self.factor.solve(sp.diags(~self.fixed, dtype=float) @ loads)
         supported = np.array(loads, dtype=float)
         supported[self.fixed] = 0.0
         return self.factor.solve(supported)

@@ -57,6 +57,25 @@ class Model(ABC):
     def strain(self, mesh, u):
         """ε(u), 3 x 3."""
 
+    def strain_across(
+        self, values: np.ndarray, slopes: np.ndarray, points: np.ndarray
+    ) -> np.ndarray:
+        """Strain across the section due to a first displacement, as numbers; as in `strain`.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n, m)
+            m displacements at the points.
+        slopes : ndarray, shape (n, m, 2)
+            Their derivatives along both coordinates [1/m].
+        points : ndarray, shape (n, 2) [m]
+
+        Returns
+        -------
+        ndarray, shape (n, m) [1/m]
+        """
+        return np.zeros_like(values)
+
     def lame(self, young_modulus: float, poisson_ratio: float) -> tuple[float, float]:
         """λ and μ of the law ``σ = λ tr ε I + 2 μ ε`` between `strain` and `stress` [Pa]."""
         E, ν = young_modulus, poisson_ratio
@@ -111,6 +130,11 @@ class Axisymmetric(Model):
         r = ufl.SpatialCoordinate(mesh)[0]
         e = ufl.sym(ufl.grad(u))
         return ufl.as_tensor([[e[0, 0], e[0, 1], 0], [e[1, 0], e[1, 1], 0], [0, 0, u[0] / r]])
+
+    def strain_across(self, values, slopes, points):
+        axis = self.on_axis(points.T)
+        radius = np.where(axis, 1.0, points[:, 0])
+        return np.where(axis[:, None], slopes[..., 0], values / radius[:, None])
 
     def on_axis(self, x):
         return np.abs(x[0]) < 1e-12

@@ -71,9 +71,12 @@ def _materials(case: Case) -> Iterator[Fault]:
 
 
 def _load(case: Case) -> Iterator[Fault]:
-    load = case.load
+    load, history = case.load, case.load.history
     given = [x is not None for x in (load.force, load.mean_pressure, load.approach)]
-    if sum(given) != 1:
+    if history is not None and (history.force is not None or history.approach is not None):
+        if sum(given) > 0:
+            yield "load", "the history gives the force or the approach already"
+    elif sum(given) != 1:
         yield "load", "needs exactly one of force, mean_pressure and approach"
     if load.mean_pressure is not None and case.geometry.contact_area() is None:
         yield "load.mean_pressure", "this geometry has no nominal contact area; give the force"
@@ -94,7 +97,7 @@ def _motion(case: Case) -> Iterator[Fault]:
 
 
 def _sliding(case: Case) -> Iterator[Fault]:
-    wears = case.analysis.type != "initial"
+    wears = case.analysis.type in ("steady", "transient")
     if wears and not case.wear:
         yield "wear", f"missing; a {case.analysis.type} analysis needs the wear law of a body"
     if (wears or case.heat is not None) and case.motion is None:
@@ -108,6 +111,35 @@ def _sliding(case: Case) -> Iterator[Fault]:
                     "contact.friction",
                     f'is 0; wear.{name} is per friction stress (write per = "pressure" instead)',
                 )
+
+
+def _fretting(case: Case) -> Iterator[Fault]:
+    history = case.load.history
+    if case.analysis.type != "fretting":
+        if history is not None:
+            yield "load.history", f"is for a fretting analysis, not for {case.analysis.type}"
+        return
+    if history is None:
+        yield "load.history", "missing; a fretting analysis follows a history of loads"
+    elif history.tangential and case.model == "axisymmetric":
+        yield "load.history", "an axisymmetric body has no tangential motion"
+    elif history.tangential and case.geometry.symmetry:
+        yield "geometry.half", "tangential loads are not symmetric; mesh the whole section"
+    else:
+        late = [t for t in case.analysis.output_times if not _within(t, history.time)]
+        if late:
+            yield "analysis.output_times", f"{late[0]:g} s lies outside load.history.time"
+    if case.contact.method != "condensed":
+        yield "contact.method", f"{case.contact.method!r} does not know sticking; use condensed"
+    for table in ("heat", "motion"):
+        if getattr(case, table) is not None:
+            yield table, "is not for a fretting analysis"
+    if case.wear:
+        yield "wear", "is not for a fretting analysis"
+
+
+def _within(time: float, times: tuple[float, ...]) -> bool:
+    return times[0] <= time <= times[-1]
 
 
 def _heat(case: Case) -> Iterator[Fault]:
@@ -130,8 +162,33 @@ def _heat(case: Case) -> Iterator[Fault]:
 
 def _degrees(case: Case) -> Iterator[Fault]:
     own = case.contact.pressure_degree
-    if own is not None and own > case.mesh.degree:
+    if isinstance(own, int) and own > case.mesh.degree:
         yield "contact.pressure_degree", f"found {own}; at most mesh.degree = {case.mesh.degree}"
 
 
-_CHECKS = (_names, _model, _materials, _load, _motion, _sliding, _heat, _degrees)
+def _method(case: Case) -> Iterator[Fault]:
+    keys = {"penalty": "penalty", "theta": "nitsche", "gamma": "nitsche"}
+    for key, method in keys.items():
+        if getattr(case.contact, key) is not None and case.contact.method != method:
+            yield f"contact.{key}", f'is for method = "{method}"'
+
+
+def _symmetry(case: Case) -> Iterator[Fault]:
+    drags = case.contact.friction > 0 and case.motion is not None
+    if drags and case.model != "axisymmetric" and case.geometry.symmetry:
+        yield "geometry.half", "sliding friction is not symmetric; mesh the whole section"
+
+
+_CHECKS = (
+    _names,
+    _model,
+    _materials,
+    _load,
+    _motion,
+    _sliding,
+    _fretting,
+    _heat,
+    _degrees,
+    _method,
+    _symmetry,
+)

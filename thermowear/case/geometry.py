@@ -6,10 +6,11 @@ file by its ``type`` as soon as that room is imported.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, SerializeAsAny
+from pydantic import BeforeValidator, Field, SerializeAsAny
 
 from .section import KeyFault, Section
 from .units import Length
@@ -36,8 +37,15 @@ class Pressing:
     modulus: float
 
 
+def keyed(value: Callable[[Any], Any]) -> Any:
+    """Decorate what one geometry works out from its keys and others have as a plain attribute."""
+    return property(value)
+
+
 class Geometry(Section):
     """Base of all geometries.
+
+    Names are attributes of the class, or `keyed` where they follow from the keys.
 
     Attributes
     ----------
@@ -115,15 +123,18 @@ class PlaneGeometry(Geometry):
     ----------
     thickness : float
         Forces are of this thickness [m].
+    half : bool
+        Mesh only x >= 0 of bodies and loads that are symmetric about x = 0.
     """
 
     name: ClassVar[str] = ""
 
     thickness: Length = 1e-3
+    half: Annotated[bool, Field(strict=True)] = False
 
     @property
     def thickness_factor(self) -> float | None:
-        return self.thickness
+        return 2 * self.thickness if self.half else self.thickness
 
 
 def known_geometries() -> dict[str, type[Geometry]]:

@@ -32,7 +32,7 @@ _MESSAGES = {
     "tuple_type": "must be a list",
 }
 
-_ANALYSES = "'initial', 'steady', 'transient'"
+_ANALYSES = "'initial', 'steady', 'transient', 'fretting'"
 
 
 def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -> Case:

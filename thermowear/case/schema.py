@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from . import units
 from .checks import check
 from .geometry import AnyGeometry, Pressing
+from .history import History
 from .materials import Body, resolve_like
 from .section import KeyFault, Number, Section
 from .wear import Wear
@@ -65,11 +66,14 @@ class Load(Section):
         Of the whole ring, or of the thickness [N].
     approach : float or None
         How far the holder moves from where it stands in the mesh [m].
+    history : History or None
+        What changes, for a fretting analysis.
     """
 
     mean_pressure: units.Pressure | None = None
     force: units.Force | None = None
     approach: units.Length | None = None
+    history: History | None = None
 
 
 class Motion(Section):
@@ -94,11 +98,30 @@ class Contact(Section):
     ----------
     friction : float
         Coefficient of friction in the direction of sliding.
+    method : str
+        ``"condensed"``: the bodies condensed to the interface; ``"penalty"`` and ``"nitsche"`` on
+        the full system.
+    pressure_degree : int or str or None
+        Of the pressure space, by default one below the displacement; ``"lobatto"``: point by point.
+    penalty : float or None
+        Pressure per penetration of the penalty method, by default from the mesh [Pa/m].
+    theta : int or None
+        Variant of Nitsche's method: 1 symmetric (default), 0 incomplete, -1 skew-symmetric.
+    gamma : float or None
+        Stabilisation of Nitsche's method, times ``E degree² / h``.
+    positioning : bool
+        Move the mesh until element ends lie at the edges of the contact.
     """
 
     friction: Annotated[Number, Field(ge=0.0)] = 0.0
-    method: Literal["condensed"] = "condensed"
-    pressure_degree: Annotated[int, Field(ge=1, le=10, strict=True)] | None = None
+    method: Literal["condensed", "penalty", "nitsche"] = "condensed"
+    pressure_degree: Annotated[int, Field(ge=1, le=10, strict=True)] | Literal["lobatto"] | None = (
+        None
+    )
+    penalty: units.Foundation | None = None
+    theta: Literal[1, 0, -1] | None = None
+    gamma: Annotated[Number, Field(gt=0.0)] | None = None
+    positioning: bool = False
 
 
 class Heat(Section):
@@ -177,6 +200,22 @@ class Transient(Section):
         return self
 
 
+class Fretting(Section):
+    """Sticking and slipping under a history of loads.
+
+    Attributes
+    ----------
+    increments : int
+        From each corner of the history to the next.
+    output_times : tuple of float
+        Times that get files of their own [s].
+    """
+
+    type: Literal["fretting"]
+    increments: Annotated[int, Field(ge=1, strict=True)] = 20
+    output_times: tuple[units.Instant, ...] = ()
+
+
 class Case(Section):
     """A complete case: what to compute, of which bodies, under which load."""
 
@@ -190,7 +229,7 @@ class Case(Section):
     contact: Contact = Contact()
     wear: dict[str, Wear] = {}
     heat: Heat | None = None
-    analysis: Annotated[Initial | Steady | Transient, Field(discriminator="type")]
+    analysis: Annotated[Initial | Steady | Transient | Fretting, Field(discriminator="type")]
 
     @model_validator(mode="after")
     def _consistent(self):
@@ -198,11 +237,21 @@ class Case(Section):
         return self
 
     def force(self) -> float | None:
-        """Normal force on body 1 [N]; None where the approach is given."""
+        """Normal force on body 1 [N], the largest of a history; None under a given approach."""
+        history = self.load.history
+        if history is not None and history.force is not None:
+            return max(history.force)
         area = self.geometry.contact_area()
         if self.load.mean_pressure is not None and area is not None:
             return self.load.mean_pressure * area
         return self.load.force
+
+    def approach(self) -> float | None:
+        """Given approach of the holder [m], the largest of a history."""
+        history = self.load.history
+        if history is not None and history.approach is not None:
+            return max(history.approach)
+        return self.load.approach
 
     def pressing(self) -> Pressing:
         """How hard the bodies are pressed together, for estimates."""
@@ -212,7 +261,7 @@ class Case(Section):
             assert body.young_modulus is not None  # the case has been checked
             assert body.poisson_ratio is not None
             softness += (1 - body.poisson_ratio**2) / body.young_modulus
-        return Pressing(self.force(), self.load.approach, 1 / softness)
+        return Pressing(self.force(), self.approach(), 1 / softness)
 
     def tagged_mesh(self, zone: tuple[float, float] | None = None):
         """The mesh of the case, made for a contact zone (by default the expected one).

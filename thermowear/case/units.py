@@ -118,8 +118,14 @@ def quantity(unit: str, example: str, **bounds: float):
 
 
 Length = quantity("m", "20 mm", gt=0)
+Radius = quantity("m", "0.5 mm", ge=0)
+Area = quantity("m^2", "200 mm^2", gt=0)
 Pressure = quantity("Pa", "50 MPa", gt=0)
+Foundation = quantity("Pa/m", "1e15 Pa/m", gt=0)
 Force = quantity("N", "2.2 MN", gt=0)
+SignedForce = quantity("N", "36 N")
+Displacement = quantity("m", "25 um")
+Instant = quantity("s", "1 s", ge=0)
 Time = quantity("s", "100 s", gt=0)
 AngularVelocity = quantity("rad/s", "10 rad/s", gt=0)
 Velocity = quantity("m/s", "50 mm/s", ne=0)

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 
 from ..bulk.elasticity import Elasticity
 from ..parallel import sum_over_ranks
+from .holder import Holder
 from .pairing import Pairing
 
 
@@ -25,9 +26,11 @@ class CondensedContact:
     weighted : ndarray, shape (n, m)
         ``diag(w) Ψ``.
     compliance : ndarray, shape (m, m)
-        A = Ψᵀ w B K⁻¹ Bᵗ w Ψ [m⁵/N = weak gap per coefficient].
+        A = Ψᵀ w B K⁻¹ B_tᵗ w Ψ [m⁵/N = weak gap per coefficient].
     modes : ndarray, shape (m, k)
-        Rw = Ψᵀ w R: weak gap closed per unit of each rigid motion of the holder.
+        Rw = Ψᵀ w R: weak gap closed per unit of each free rigid motion of the holder.
+    force_modes : ndarray, shape (m, k)
+        Ψᵀ w T: generalised force of each coefficient on each of these motions.
     influence : ndarray, shape (n_owned, m)
         K⁻¹ Bᵗ w Ψ: the weak gap due to any nodal load f is ``influenceᵀ f``.
     """
@@ -36,6 +39,7 @@ class CondensedContact:
     weighted: np.ndarray
     compliance: np.ndarray
     modes: np.ndarray
+    force_modes: np.ndarray
     influence: np.ndarray
 
     def weak(self, values: np.ndarray) -> np.ndarray:
@@ -47,8 +51,9 @@ def condense(
     elastic: Elasticity,
     pairing: Pairing,
     trace: sp.csr_matrix,
+    traction: sp.csr_matrix,
     basis: np.ndarray,
-    rigid: np.ndarray,
+    holder: Holder,
 ) -> CondensedContact:
     """Condense elasticity to the pressure space. Every rank calls.
 
@@ -56,16 +61,20 @@ def condense(
     ----------
     elastic : Elasticity
     pairing : Pairing
-    trace : csr_matrix, shape (n_owned, n)
-        Bᵀ, from `traces.gap_trace`.
+    trace, traction : csr_matrix, shape (n_owned, n)
+        Bᵀ and B_tᵀ: of the gap and of what the pressure does work on; the same matrix where there
+        is no friction in the section.
     basis : ndarray, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
-    rigid : ndarray, shape (n, k)
-        R, normal components of the holder's unit motions.
+    holder : Holder
     """
     weighted = pairing.weights[:, None] * basis
-    loads = trace @ weighted
+    # only nodes of cells at the contact carry loads: 2 % of the rows
+    loads = trace @ sp.csr_matrix(weighted)
     influence = elastic.solve(loads)
-    compliance = sum_over_ranks(elastic.space.mesh.comm, loads.T @ influence)
-    compliance = (compliance + compliance.T) / 2
-    return CondensedContact(basis, weighted, compliance, weighted.T @ rigid, influence)
+    pulls = loads if traction is trace else traction @ sp.csr_matrix(weighted)
+    compliance = sum_over_ranks(elastic.space.mesh.comm, (pulls.T @ influence).T)
+    if traction is trace:
+        compliance = (compliance + compliance.T) / 2
+    modes, force_modes = weighted.T @ holder.modes, weighted.T @ holder.force_modes
+    return CondensedContact(basis, weighted, compliance, modes, force_modes, influence)

@@ -6,10 +6,12 @@ Sign convention (the only place where it is stated)
 
     g = g0 + (u2 - u1)·n
 
-A pressure ``p >= 0`` presses: traction ``-p n`` on body 1, ``+p n`` on body 2, so that the nodal
-loads of a pressure are ``Bᵀ w p`` with ``B u = (u2 - u1)·n``. The holder moves body 1 by ``m d``,
-with ``m`` a unit rigid motion in the direction of its load; that changes the gap by ``-R d`` with
-``R = m·n``, and the load ``F`` is in equilibrium when ``Rᵀ w p = F``.
+A pressure ``p >= 0`` presses and sliding friction drags: traction ``-p (n + mu e)`` on body 1 and
+the opposite on body 2, where ``e`` is the unit direction in which body 1 slides over body 2. The
+nodal loads of a pressure are ``B_tᵀ w p``, ``B_t u = (u2 - u1)·(n + mu e)``; where there is no
+friction in the section that is ``B u = (u2 - u1)·n``. The holder moves body 1 by ``m d``, where
+``m`` is a unit rigid motion along its load; that changes the gap by ``-R d`` with ``R = m·n``, and
+the load ``F`` is in equilibrium when ``Tᵀ w p = F`` with ``T = m·(n + mu e)``.
 """
 
 from __future__ import annotations
@@ -50,6 +52,8 @@ class Pairing:
         Of the unloaded, unworn bodies along the normal [m].
     sides : tuple of Side
         On body 1 and body 2.
+    unpaired : float
+        Part of the face of body 1 that has nothing opposite and cannot touch.
     """
 
     points: np.ndarray
@@ -58,9 +62,15 @@ class Pairing:
     normals: np.ndarray
     gap: np.ndarray
     sides: tuple[Side, Side]
+    unpaired: float
+
+    def locate(self, position) -> np.ndarray:
+        """Coordinates of positions along the face, shape (n, 2) [m]."""
+        columns = [np.interp(position, self.position, x) for x in self.points.T]
+        return np.column_stack(columns)
 
 
-def pair(face_1: Face, face_2: Face, model: Model, order: int) -> Pairing:
+def pair(face_1: Face, face_2: Face, model: Model, order: int, refine: bool = True) -> Pairing:
     """Pair two faces on their common refinement.
 
     The facets of body 1 are cut where facets of body 2 end, so that everything that is smooth
@@ -72,14 +82,17 @@ def pair(face_1: Face, face_2: Face, model: Model, order: int) -> Pairing:
     face_1, face_2 : Face
     model : thermowear.bulk.kinematics.Model
     order : int
-        Points on each piece, at least 3; the rule is exact to degree ``2 order - 3``.
+        Points on each piece; the rule is exact to degree ``2 order - 3``.
+    refine : bool
+        False: the facets of body 1 are not cut, each has the points of one rule.
 
     Raises
     ------
     CaseError
         If no point of body 1 faces body 2.
     """
-    cuts = _common_refinement(face_1, face_2)
+    whole = [np.array([0.0, 1.0])] * len(face_1.nodes)
+    cuts = _common_refinement(face_1, face_2) if refine else whole
     facet, t, weight = _rule_on_pieces(cuts, order)
     speed = np.linalg.norm(face_1.tangents(facet, t), axis=1)
     points = face_1.points(facet, t)
@@ -88,18 +101,20 @@ def pair(face_1: Face, face_2: Face, model: Model, order: int) -> Pairing:
     other, other_t, offset = project(face_2, points)
     beside = _beside(face_2, other, other_t, offset).reshape(-1, order)
     # whole pieces: the end of one outside the contact is a point of the next one inside
-    facing = np.repeat(beside[:, 1:-1].max(axis=1) <= 1e-9 * _extent(face_1), order)
+    inner = beside[:, 1:-1] if order > 2 else beside
+    facing = np.repeat(inner.max(axis=1) <= 1e-9 * _extent(face_1), order)
     if not facing.any():
         raise CaseError("geometry: the contact faces do not lie opposite each other")
     lengths = np.bincount(facet, weight * speed, minlength=len(face_1.nodes))
     start = np.concatenate([[0.0], np.cumsum(lengths)])
     position = start[facet] + _length_within(face_1, facet, t)
     gap = np.einsum("ni,ni->n", offset, normals)
+    unpaired = 1.0 - float(np.sum((weight * speed)[facing]) / lengths.sum())
     columns = (points, position, weights, normals, gap, facet, t, other, other_t)
     merged = _merge(*(column[facing] for column in columns))
     points, position, weights, normals, gap, facet, t, other, other_t = merged
     sides = (Side(face_1, facet, t), Side(face_2, other, other_t))
-    return Pairing(points, position, weights, normals, gap, sides)
+    return Pairing(points, position, weights, normals, gap, sides, max(unpaired, 0.0))
 
 
 def project(face: Face, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -6,6 +6,8 @@ shape functions of one side's cell at contact point j.
 
 from __future__ import annotations
 
+from petsc4py import PETSc
+
 import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
@@ -20,7 +22,7 @@ def value_trace(space: fem.FunctionSpace, side: Side) -> sp.csr_matrix:
     ``E v`` are the values of a field at the points of one side.
     """
     nodes, point, values = _local_values(space, side)
-    return _gather_rows(space, nodes, point, values, len(side.t))
+    return gather_rows(space, nodes, point, values, len(side.t))
 
 
 def gap_trace(space: fem.FunctionSpace, pairing: Pairing) -> sp.csr_matrix:
@@ -28,14 +30,40 @@ def gap_trace(space: fem.FunctionSpace, pairing: Pairing) -> sp.csr_matrix:
 
     ``B u = (u2 - u1)·n``, see `pairing` for the sign.
     """
+    return vector_trace(space, pairing, pairing.normals)
+
+
+def vector_trace(
+    space: fem.FunctionSpace, pairing: Pairing, directions: np.ndarray
+) -> sp.csr_matrix:
+    """Transposed trace of ``(u2 - u1)·e``: shape (n_owned, n_points). Every rank calls.
+
+    Parameters
+    ----------
+    space : dolfinx.fem.FunctionSpace
+        Of vectors in the section.
+    pairing : Pairing
+    directions : ndarray, shape (n_points, 2)
+        e at each point; not necessarily a unit vector (the traction of a sliding contact).
+    """
     result = sp.csr_matrix((owned(space), len(pairing.weights)))
     for sign, side in zip((-1.0, 1.0), pairing.sides, strict=True):
         nodes, point, values = _local_values(space, side)
         for component in range(space.dofmap.index_map_bs):
-            scaled = sign * pairing.normals[point, component] * values
+            scaled = sign * directions[point, component] * values
             dofs = nodes * space.dofmap.index_map_bs + component
-            result = result + _gather_rows(space, dofs, point, scaled, len(pairing.weights))
+            result = result + gather_rows(space, dofs, point, scaled, len(pairing.weights))
     return result.tocsr()
+
+
+def distributed(space: fem.FunctionSpace, trace: sp.csr_matrix) -> PETSc.Mat:
+    """A transposed trace as a PETSc matrix, its columns (points) spread over the ranks too."""
+    index_map, bs = space.dofmap.index_map, space.dofmap.index_map_bs
+    rows = (index_map.size_local * bs, index_map.size_global * bs)
+    csr = (trace.indptr.astype(PETSc.IntType), trace.indices.astype(PETSc.IntType), trace.data)
+    return PETSc.Mat().createAIJ(
+        (rows, (PETSc.DECIDE, trace.shape[1])), csr=csr, comm=space.mesh.comm
+    )
 
 
 def _local_values(space: fem.FunctionSpace, side: Side):
@@ -43,7 +71,7 @@ def _local_values(space: fem.FunctionSpace, side: Side):
     mesh = space.mesh
     mine = np.flatnonzero(side.face.rank[side.facet] == mesh.comm.rank)
     element = reference_element(mesh, space.ufl_element().degree)
-    reference = _reference_points(side, mine, element.cell_type)
+    reference = reference_points(side, mine, element.cell_type)
     if len(mine) == 0:  # basix takes no empty lists
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64), np.empty(0)
     values = element.tabulate(0, reference)[0].reshape(len(mine), -1)
@@ -52,7 +80,7 @@ def _local_values(space: fem.FunctionSpace, side: Side):
     return nodes.ravel(), point, values.ravel()
 
 
-def _reference_points(side: Side, chosen: np.ndarray, cell_type) -> np.ndarray:
+def reference_points(side: Side, chosen: np.ndarray, cell_type) -> np.ndarray:
     """Reference coordinates of points on facets of their cells."""
     import basix
 
@@ -65,8 +93,11 @@ def _reference_points(side: Side, chosen: np.ndarray, cell_type) -> np.ndarray:
     return (1 - t) * a + t * b
 
 
-def _gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:
-    """Sum entries of all ranks into the rows that each rank owns; rows are local dof numbers."""
+def gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:
+    """Sum entries of all ranks into the rows that each rank owns; rows are local dof numbers.
+
+    Every rank calls; shape (n_owned, n_points).
+    """
     comm, bs, index_map = space.mesh.comm, space.dofmap.index_map_bs, space.dofmap.index_map
     nodes = index_map.local_to_global((rows // bs).astype(np.int32))
     rows = nodes * bs + rows % bs

@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -109,6 +111,14 @@ def _first_size(interval: Interval) -> float:
     n, g = interval.elements, interval.growth
     length = interval.end - interval.start
     return length / n if g == 1.0 else length * (1 - g) / (1 - g**n)
+
+
+def sizes(intervals: list[Interval]) -> np.ndarray:
+    """Sizes of all elements of a direction."""
+    parts = [i.growth ** np.arange(i.elements) for i in intervals]
+    return np.concatenate(
+        [p / p.sum() * (i.end - i.start) for p, i in zip(parts, intervals, strict=True)]
+    )
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CaseError
+from .orders import order_of, quadratic
 from .tagged import TaggedMesh
 
 _MESHIO_CELLS = {
@@ -30,6 +31,8 @@ def check_ending(path: Path) -> None:
 def write_mesh(mesh: TaggedMesh, path: Path) -> None:
     """Write bodies and named surfaces as physical groups (.msh), sets (.inp) or tags (.vtu, .xdmf).
 
+    Cells of the third order are known to .msh only; elsewhere the second stands for it.
+
     Raises
     ------
     CaseError
@@ -38,6 +41,8 @@ def write_mesh(mesh: TaggedMesh, path: Path) -> None:
     import meshio
 
     check_ending(path)
+    if path.suffix != ".msh" and order_of(mesh) > 2:
+        mesh = quadratic(mesh)
     cells = [
         (_MESHIO_CELLS[mesh.cell_type, mesh.cells.shape[1]], mesh.cells),
         (_MESHIO_FACETS[mesh.facets.shape[1]], mesh.facets),

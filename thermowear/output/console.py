@@ -56,6 +56,22 @@ class Progress:
             f"t = {row.time:.4g} s   step {number}   largest pressure "
             f"{row.max_pressure / 1e6:.4g} MPa   distance from steady {distance:.2e}"
         )
+        self._say(text)
+
+    def load_step(self, number: int, row) -> None:
+        """An increment of a fretting analysis was accepted."""
+        sticking = row.stick_area / row.contact_area if row.contact_area else 0.0
+        self._say(
+            f"t = {row.time:.4g} s   increment {number}   tangential force "
+            f"{row.tangential_force:.4g} N   {sticking:.0%} of the contact sticks"
+        )
+
+    def note(self, text: str) -> None:
+        """Something the user should know."""
+        self._console.print(f"note: {text}", highlight=False)
+
+    def _say(self, text: str) -> None:
+        """The newest state: on the live line, or as a line from time to time."""
         self._unsaid = text
         if self._status is not None:
             self._status.update(text)
@@ -112,8 +128,12 @@ def _highlights(summary: dict):
         yield "friction power", f"{summary['friction_power_W']:.6g} W"
     if summary.get("rigid_wear_velocity_m_per_s") is not None:
         yield "steady wear rate", f"{summary['rigid_wear_velocity_m_per_s'] * 1e9:.5g} nm/s"
+    if summary.get("dissipated_energy_J") is not None:
+        yield "tangential force", f"{summary['tangential_force_N']:.6g} N"
+        yield "energy dissipated", f"{summary['dissipated_energy_J'] * 1e3:.5g} mJ"
     if summary["analysis"] == "transient":
         yield "time, steps", f"{summary['time_s']:.6g} s, {summary['steps']}"
         volumes = (summary["wear_volume_1_m3"], summary["wear_volume_2_m3"])
         yield "worn volume, body 1 and 2", " and ".join(f"{v * 1e9:.5g} mm³" for v in volumes)
-        yield "distance from steady", f"{summary['distance_from_steady']:.2e}"
+        if summary["distance_from_steady"] is not None:
+            yield "distance from steady", f"{summary['distance_from_steady']:.2e}"

@@ -14,12 +14,14 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from .tables import HistoryWriter, interface_name, write_interface
+from .quantities import FRICTION, HISTORY, INTERFACE, LOADS
+from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields
 
 _OURS = re.compile(
-    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|history\.csv"
-    r"|interface(_[-+.0-9e]+)?\.csv|(interface|wear|history|bodies|deformed)\.png"
+    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|loads)\.csv"
+    r"|(interface|friction)(_[-+.0-9e]+)?\.csv"
+    r"|(interface|wear|history|friction|loads|bodies|deformed)\.png"
 )
 
 
@@ -51,7 +53,7 @@ class ResultsFolder:
             "ranks": ranks,
             "versions": _versions(),
         }
-        self._history: HistoryWriter | None = None
+        self._rows: RowWriter | None = None
         try:
             path.mkdir(parents=True, exist_ok=True)
             present = [entry for entry in path.iterdir() if _OURS.fullmatch(entry.name)]
@@ -74,17 +76,29 @@ class ResultsFolder:
 
     def step(self, row) -> None:
         """Append a step of a transient run."""
-        if self._history is None:
-            self._history = HistoryWriter(self.path / "history.csv")
-        self._history.add(row)
+        self._add(row, "history.csv", HISTORY)
 
-    def output(self, time: float, interface) -> None:
-        """Write the interface at an output time."""
-        write_interface(self.path / interface_name(time), interface)
+    def load_step(self, row) -> None:
+        """Append an increment of a fretting analysis."""
+        self._add(row, "loads.csv", LOADS)
+
+    def _add(self, row, name: str, table: dict) -> None:
+        if self._rows is None:
+            self._rows = RowWriter(self.path / name, table)
+        self._rows.add(row)
+
+    def output(self, time: float, interface, friction=None) -> None:
+        """Write the interface at an output time, and how it sticks and slips."""
+        self._points(time, interface, friction)
+
+    def _points(self, time: float | None, interface, friction) -> None:
+        write_points(self.path / name_at("interface", time), INTERFACE, interface)
+        if friction is not None:
+            write_points(self.path / name_at("friction", time), FRICTION, friction)
 
     def finish(self, result, seconds: dict[str, float]) -> None:
         """Write interface, fields and summary of a `thermowear.simulation.Result`."""
-        write_interface(self.path / interface_name(None), result.interface)
+        self._points(None, result.interface, result.friction and result.friction.last)
         write_fields(self.path / "fields.vtu", result.fields)
         rounded = {name: round(value, 4) for name, value in seconds.items()}
         self._write_json("summary.json", result.summary | {"seconds": rounded})

@@ -71,3 +71,30 @@ HISTORY = {
     "step": Quantity("step_s", "time step", "s"),
     "error": Quantity("error", "error of the step", "1"),
 }
+
+FRICTION = {
+    "x": INTERFACE["x"],
+    "y": INTERFACE["y"],
+    "s": INTERFACE["s"],
+    "weight": INTERFACE["weight"],
+    "pressure": INTERFACE["pressure"],
+    "shear": Quantity("shear_Pa", "shear traction on body 1", "MPa", 1e-6),
+    "slip": Quantity("slip_m", "slip of body 1", "µm", 1e6),
+    "dissipated": Quantity("dissipated_J_per_m2", "energy dissipated", "J/m²"),
+    "status": Quantity("status", "0 open, 1 stick, 2 slip", "1"),
+}
+
+LOADS = {
+    "time": HISTORY["time"],
+    "normal_force": Quantity("normal_force_N", "normal force", "N"),
+    "approach": HISTORY["approach"],
+    "tangential_force": Quantity("tangential_force_N", "tangential force", "N"),
+    "tangential_displacement": Quantity(
+        "tangential_displacement_m", "tangential displacement", "µm", 1e6
+    ),
+    "max_pressure": HISTORY["max_pressure"],
+    "contact_area": HISTORY["contact_area"],
+    "stick_area": Quantity("stick_area_m2", "area that sticks", "mm²", 1e6),
+    "dissipated": Quantity("dissipated_J", "energy dissipated", "mJ", 1e3),
+    "iterations": Quantity("iterations", "Newton iterations", "1"),
+}

@@ -8,40 +8,43 @@ from pathlib import Path
 
 import numpy as np
 
-from .quantities import HISTORY, INTERFACE, Quantity
+from .quantities import Quantity
 
 _NUMBER = "{:.15g}"
 
 
-def interface_name(time: float | None) -> str:
-    """File name of the interface at an output time, or at the end."""
-    return "interface.csv" if time is None else f"interface_{time:g}.csv"
+def name_at(stem: str, time: float | None) -> str:
+    """File name of a table at an output time, or at the end."""
+    return f"{stem}.csv" if time is None else f"{stem}_{time:g}.csv"
 
 
-def write_interface(path: Path, interface) -> None:
+def write_points(path: Path, table: dict[str, Quantity], points) -> None:
     """Write a row a contact point.
 
     Parameters
     ----------
     path : Path
-    interface : thermowear.simulation.Interface
+    table : dict of str to Quantity
+        `INTERFACE` or `FRICTION`.
+    points : thermowear.simulation.Interface or FrictionInterface
     """
-    columns = [getattr(interface, name) for name in INTERFACE]
-    _write(path, INTERFACE, zip(*columns, strict=True))
+    columns = [getattr(points, name) for name in table]
+    _write(path, table, zip(*columns, strict=True))
 
 
-class HistoryWriter:
-    """``history.csv``, a row a step; every row is on disk as soon as it is known."""
+class RowWriter:
+    """``history.csv`` or ``loads.csv``, a row a step, on disk as soon as it is known."""
 
-    def __init__(self, path: Path):
+    def __init__(self, path: Path, table: dict[str, Quantity]):
         self._path = path
-        _write(path, HISTORY, [])
+        self._table = table
+        _write(path, table, [])
 
     def add(self, row) -> None:
-        """Append a `thermowear.simulation.HistoryRow`."""
+        """Append a `thermowear.simulation.HistoryRow` or `LoadRow`."""
         with self._path.open("a", encoding="utf-8", newline="") as file:
             csv.writer(file, lineterminator="\n").writerow(
-                _NUMBER.format(getattr(row, name)) for name in HISTORY
+                _NUMBER.format(getattr(row, name)) for name in self._table
             )
 
 

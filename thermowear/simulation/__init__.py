@@ -1,6 +1,16 @@
-"""The analyses: initial contact, steady state, running-in."""
+"""The analyses: initial contact, steady state, running-in, fretting."""
 
-from .result import BodyFields, HistoryRow, Interface, Result
-from .run import Observer, run
+from .observer import Observer
+from .result import BodyFields, FrictionInterface, HistoryRow, Interface, LoadRow, Result
+from .run import run
 
-__all__ = ["BodyFields", "HistoryRow", "Interface", "Observer", "Result", "run"]
+__all__ = [
+    "BodyFields",
+    "FrictionInterface",
+    "HistoryRow",
+    "Interface",
+    "LoadRow",
+    "Observer",
+    "Result",
+    "run",
+]

@@ -1,17 +1,102 @@
-"""The interface alone: contact, friction heat and an implicit step of wear, small and dense."""
+"""The interface alone: contact, friction heat and an implicit step of wear."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 
-from ..contact.complementarity import ContactSolution, solve_contact
 from ..errors import ComputationError
 from .friction_heat import FrictionHeat
 from .system import System
 
 _NEWTON_STEPS = 40
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A solved contact.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (n,) [Pa]
+    approach : float
+        How far the holder has moved along its direction [m].
+    memory : object
+        What the method that solved it starts from next time.
+    """
+
+    pressure: np.ndarray
+    approach: float
+    memory: Any
+
+
+class ContactMethod(Protocol):
+    """A way to solve contact with given loads: condensed, or on the full system.
+
+    Attributes
+    ----------
+    note : str or None
+        What the user should know about its settings.
+    """
+
+    note: str | None
+
+    def solve(
+        self, gap: np.ndarray, slope: np.ndarray, guess: Contact | None, closed: np.ndarray
+    ) -> Contact:
+        """Contact of bodies with friction heat and a local compliance.
+
+        Parameters
+        ----------
+        gap : ndarray, shape (n,)
+            Without pressure, heat and motion of the holder [m].
+        slope : ndarray, shape (n,)
+            Gap that each point's own pressure opens in addition to the bodies [m/Pa].
+        guess : Contact or None
+        closed : ndarray of bool, shape (n,)
+            Points that exchange heat.
+
+        Raises
+        ------
+        ComputationError
+        """
+
+    def steady(self, pressure: np.ndarray, rates) -> np.ndarray:
+        """Steady pressure as the method discretises it, from that of the principle [Pa].
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (n,) [Pa]
+        rates : WearRates
+        """
+
+    def opening(self, contact: Contact) -> float:
+        """Largest change of the gap by the bodies' deformation [m]."""
+
+
+@dataclass(frozen=True)
+class WearRates:
+    """The wear laws at the contact points.
+
+    Attributes
+    ----------
+    laws : list of WearLaw
+        Of the wearing bodies.
+    speed : ndarray, shape (n,) [m/s]
+    """
+
+    laws: list
+    speed: np.ndarray
+
+    def __call__(self, pressure: np.ndarray) -> np.ndarray:
+        """Wear rates, shape (n_wearing, n) [m/s]."""
+        return np.array([law.rate(pressure, self.speed) for law in self.laws])
+
+    def slope(self, pressure: np.ndarray) -> np.ndarray:
+        """Derivative of their sum by the pressure, shape (n,) [m/s/Pa]."""
+        return np.sum([law.slope(pressure, self.speed) for law in self.laws], axis=0)
 
 
 class InterfaceProblem:
@@ -20,36 +105,30 @@ class InterfaceProblem:
     Parameters
     ----------
     system : System
+    method : ContactMethod
+    heat : FrictionHeat or None
     """
 
-    def __init__(self, system: System):
-        self._contact = system.contact
-        self._initial = self._contact.weak(system.pairing.gap)
-        self._load = system.load
-        self._speed = system.speed
-        self._laws = list(system.laws.values())
-        self._heat = None
-        if system.thermal is not None and system.distortion is not None:
-            self._heat = FrictionHeat(system, system.thermal, system.distortion)
+    def __init__(self, system: System, method: ContactMethod, heat: FrictionHeat | None):
+        self._method = method
+        self._heat = heat
+        self._gap = system.pairing.gap - system.holder.imposed
+        self.rates = WearRates(list(system.laws.values()), system.speed)
 
-    def pressure(self, solution: ContactSolution) -> np.ndarray:
-        """Pressure at the points [Pa]."""
-        return self._contact.basis @ solution.coefficients
+    @property
+    def note(self) -> str | None:
+        """What the user should know about the settings of the method."""
+        return self._method.note
 
-    def rates(self, pressure: np.ndarray) -> np.ndarray:
-        """Wear rates of the wearing bodies, shape (n_wearing, n) [m/s]."""
-        return np.array([law.rate(pressure, self._speed) for law in self._laws])
-
-    def deflection(self, solution: ContactSolution) -> float:
-        """Largest elastic (mean) opening of the gap under a pressure [m]."""
-        opened = self._contact.compliance @ solution.coefficients
-        return float((opened / self._contact.weighted.sum(axis=0)).max())
+    def deflection(self, contact: Contact) -> float:
+        """Largest change of the gap by the bodies' deformation under a pressure [m]."""
+        return self._method.opening(contact)
 
     def hottest(self, pressure: np.ndarray) -> float:
         """Highest temperature of both faces [K]; NaN without heat."""
         return float("nan") if self._heat is None else self._heat.hottest(pressure)
 
-    def unworn(self) -> ContactSolution:
+    def unworn(self) -> Contact:
         """Contact of the unworn faces; the points that exchange heat are found by iteration.
 
         Raises
@@ -57,13 +136,13 @@ class InterfaceProblem:
         ComputationError
             If the set of touching points does not settle.
         """
-        nothing = np.zeros(len(self._speed))
-        closed = nothing == 0
+        nothing = np.zeros(len(self._gap))
+        closed, contact = nothing == 0, None
         for _ in range(50):
-            solution = self.solve(nothing, 0.0, None, closed)
-            touching = self.pressure(solution) > 0
+            contact = self.solve(nothing, 0.0, None, closed)
+            touching = contact.pressure > 0
             if self._heat is None or np.array_equal(touching, closed):
-                return solution
+                return contact
             closed = touching
         raise ComputationError(
             "contact: the touching points do not settle under friction heat; "
@@ -71,16 +150,12 @@ class InterfaceProblem:
         )
 
     def solve(
-        self,
-        worn: np.ndarray,
-        step: float,
-        guess: ContactSolution | None,
-        closed: np.ndarray,
-    ) -> ContactSolution:
+        self, worn: np.ndarray, step: float, guess: Contact | None, closed: np.ndarray
+    ) -> Contact:
         """Contact at the end of an implicit step of wear, by Newton's method.
 
-        Each Newton step is a complementarity problem: wear that grows with the pressure adds
-        ``Ψᵀ w (step · ∂rate/∂p) Ψ`` to the compliance.
+        Each Newton step is a contact problem of its own: wear that grows with the pressure adds
+        ``step · ∂rate/∂p`` to the compliance of each point.
 
         Parameters
         ----------
@@ -88,7 +163,7 @@ class InterfaceProblem:
             Depth worn off both bodies before the step [m].
         step : float
             [s]; 0 for contact alone.
-        guess : ContactSolution or None
+        guess : Contact or None
         closed : ndarray of bool, shape (n,)
             Points that exchange heat.
 
@@ -96,73 +171,56 @@ class InterfaceProblem:
         ------
         ComputationError
         """
-        contact = self._contact
-        compliance, resting = self._with_heat(closed)
-        base = self._initial + resting + contact.weak(worn)
-        if guess is None:
-            guess = solve_contact(compliance, base, contact.modes, self._load)
+        gap, rigid = self._gap + worn, np.zeros(len(worn))
+        if guess is None or step == 0.0:
+            guess = self._method.solve(gap, rigid, guess, closed)
         if step == 0.0:
-            return solve_contact(compliance, base, contact.modes, self._load, guess.active)
-        return self._with_wear(compliance, base, step, guess)
+            return guess
+        return self._with_wear(gap, step, guess, closed)
 
     def steady(self, pressure: np.ndarray) -> np.ndarray:
         """Steady pressure of the discrete interface: what a running-in of it tends to [Pa].
-
-        The principle in the pressure space: the mean wear rates, weighted by the basis, are those
-        of the rigid motion. That is the implicit step of wear of bodies that do not yield.
 
         Parameters
         ----------
         pressure : ndarray, shape (n,)
             The steady pressure point by point [Pa].
         """
-        contact = self._contact
-        coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
-        active = np.ones(len(coefficients), dtype=bool)
-        start = ContactSolution(coefficients, np.zeros(1), active)
-        rigid, flat = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
-        return self.pressure(self._with_wear(rigid, flat, 1.0, start))
+        return self._method.steady(pressure, self.rates)
 
-    def _with_wear(
-        self, compliance: np.ndarray, base: np.ndarray, step: float, guess: ContactSolution
-    ) -> ContactSolution:
-        """Newton's method on contact with wear that grows with the pressure."""
-        contact = self._contact
-        pressure = self.pressure(guess)
-        for _ in range(_NEWTON_STEPS):
-            rate = step * self.rates(pressure).sum(axis=0)
-            slope = step * np.sum([law.slope(pressure, self._speed) for law in self._laws], axis=0)
-            matrix = compliance + contact.weighted.T @ (slope[:, None] * contact.basis)
-            gap = base + contact.weak(rate - slope * pressure)
-            guess = solve_contact(matrix, gap, contact.modes, self._load, guess.active)
-            change = self.pressure(guess) - pressure
-            pressure = pressure + change
-            exact = step * self.rates(pressure).sum(axis=0)
-            if np.abs(exact - rate - slope * change).max() <= 1e-11 * np.abs(exact).max():
-                return guess
-        raise ComputationError("contact: Newton's method for the implicit step of wear failed")
-
-    def _with_heat(self, closed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compliance with friction heat, and the weak gap of heat from elsewhere."""
-        compliance = self._contact.compliance
-        if self._heat is None:
-            return compliance, np.zeros(len(self._initial))
-        coupling = self._heat.coupling(closed)
-        return compliance + coupling.compliance, coupling.resting
+    def _with_wear(self, gap, step: float, guess: Contact, closed) -> Contact:
+        return newton_with_wear(
+            lambda worn, slope, last: self._method.solve(gap + worn, slope, last, closed),
+            self.rates,
+            step,
+            guess,
+        )
 
 
-@dataclass(frozen=True)
-class WornContact:
-    """State of a running-in.
+def newton_with_wear(solve, rates: WearRates, step: float, guess: Contact) -> Contact:
+    """Newton's method on contact with wear that grows with the pressure.
 
-    Attributes
+    Parameters
     ----------
-    worn : ndarray, shape (n_wearing, n)
-        Depths worn off [m].
-    solution : ContactSolution
-    pressure : ndarray, shape (n,) [Pa]
-    """
+    solve : callable
+        Contact for a worn depth at zero pressure (n,), its slope by the pressure (n,), and a guess.
+    rates : WearRates
+    step : float
+        [s]
+    guess : Contact
 
-    worn: np.ndarray
-    solution: ContactSolution
-    pressure: np.ndarray
+    Raises
+    ------
+    ComputationError
+    """
+    pressure = guess.pressure
+    for _ in range(_NEWTON_STEPS):
+        rate = step * rates(pressure).sum(axis=0)
+        slope = step * rates.slope(pressure)
+        guess = solve(rate - slope * pressure, slope, guess)
+        change = guess.pressure - pressure
+        pressure = guess.pressure
+        exact = step * rates(pressure).sum(axis=0)
+        if np.abs(exact - rate - slope * change).max() <= 1e-11 * np.abs(exact).max():
+            return guess
+    raise ComputationError("contact: Newton's method for the implicit step of wear failed")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .result import HistoryRow, Interface
+from .result import FrictionHistory, HistoryRow, Interface
 from .state import BodyState
 
 
@@ -17,22 +17,25 @@ class Outcome:
     Attributes
     ----------
     pressure : ndarray, shape (n,) [Pa]
-    motion : ndarray, shape (1,)
-        Rigid motion of the holder [m].
+    translation : ndarray, shape (2,)
+        How far the holder has moved [m].
     state : BodyState
     interface : Interface
     extra : dict
         What the analysis adds to the summary.
     history : list of HistoryRow
     outputs : dict of float to Interface
+    friction : FrictionHistory or None
+        Of a fretting analysis.
     stopped : BaseException or None
     """
 
     pressure: np.ndarray
-    motion: np.ndarray
+    translation: np.ndarray
     state: BodyState
     interface: Interface
     extra: dict
     history: list[HistoryRow]
     outputs: dict[float, Interface]
+    friction: FrictionHistory | None = None
     stopped: BaseException | None = None

@@ -52,6 +52,57 @@ class HistoryRow:
 
 
 @dataclass(frozen=True)
+class FrictionInterface:
+    """Sticking and slipping at the contact points; names and units are those of ``friction.csv``.
+
+    The signs are those of `thermowear.contact.tangential`.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    s: np.ndarray
+    weight: np.ndarray
+    pressure: np.ndarray
+    shear: np.ndarray
+    slip: np.ndarray
+    dissipated: np.ndarray
+    status: np.ndarray
+
+
+@dataclass(frozen=True)
+class LoadRow:
+    """An increment of a history of loads; names and units are those of ``loads.csv``."""
+
+    time: float
+    normal_force: float
+    approach: float
+    tangential_force: float
+    tangential_displacement: float
+    max_pressure: float
+    contact_area: float
+    stick_area: float
+    dissipated: float
+    iterations: int
+
+
+@dataclass(frozen=True)
+class FrictionHistory:
+    """What a fretting analysis finds beside the interface.
+
+    Attributes
+    ----------
+    rows : list of LoadRow
+    last : FrictionInterface
+    outputs : dict of float to FrictionInterface
+        At the output times.
+    """
+
+    rows: list[LoadRow]
+    last: FrictionInterface
+    outputs: dict[float, FrictionInterface]
+
+
+@dataclass(frozen=True)
 class BodyFields:
     """Fields on a fine grid of points in each cell, on rank 0.
 
@@ -91,6 +142,8 @@ class Result:
         At the output times.
     fields : BodyFields or None
         On rank 0.
+    friction : FrictionHistory or None
+        Of a fretting analysis.
     stopped : Exception or None
         What ended the run before its time.
     """
@@ -100,4 +153,5 @@ class Result:
     history: list[HistoryRow]
     outputs: dict[float, Interface]
     fields: BodyFields | None
+    friction: FrictionHistory | None = None
     stopped: BaseException | None = None

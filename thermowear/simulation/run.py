@@ -1,4 +1,4 @@
-"""From a case to a result: the three analyses, told as a story."""
+"""From a case to a result: the analyses, told as a story."""
 
 from __future__ import annotations
 
@@ -7,29 +7,22 @@ import numpy as np
 from ..case.schema import Case, Transient
 from ..errors import ComputationError
 from .fields import sample
+from .fretting import fretting
 from .interface_problem import InterfaceProblem
 from .interrupt import StopRequest
+from .observer import Observer
 from .outcome import Outcome
 from .phases import Phases
+from .preparation import interface_problem, prepare
+from .recording import interface_at, record
 from .result import HistoryRow, Interface, Result
 from .state import BodyState, body_state
 from .steady import steady_wear
 from .summary import summarise
-from .system import System, build
+from .system import System
 from .transient import Moment, moments
 
-
-class Observer:
-    """Told what happens during a run; the base class ignores it. Called on every rank."""
-
-    def phase(self, name: str) -> None:
-        """A phase of the run begins."""
-
-    def step(self, row: HistoryRow, distance: float) -> None:
-        """A step of a transient analysis was accepted, at a distance from the steady pressure."""
-
-    def output(self, time: float, interface: Interface) -> None:
-        """An output time was reached."""
+_UNPAIRED = 1e-6
 
 
 def run(
@@ -62,25 +55,43 @@ def run(
         comm = MPI.COMM_WORLD
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
-    system = build(case, comm, phases)
+    system = prepare(case, comm, phases)
+    if system.pairing.unpaired > _UNPAIRED:
+        observer.note(
+            f"{system.pairing.unpaired:.2%} of the contact face of body 1 has nothing opposite and "
+            "stays out of the contact"
+        )
     outcome = _ANALYSES[case.analysis.type](system, observer)
     with phases("fields"):
-        fields = sample(system, outcome.state, outcome.motion)
+        fields = sample(system, outcome.state, outcome.translation)
     summary = summarise(system, outcome)
     return Result(
-        outcome.interface, summary, outcome.history, outcome.outputs, fields, outcome.stopped
+        outcome.interface,
+        summary,
+        outcome.history,
+        outcome.outputs,
+        fields,
+        outcome.friction,
+        outcome.stopped,
     )
+
+
+def _problem(system: System, observer: Observer) -> InterfaceProblem:
+    """The interface problem; what is odd about its settings is said."""
+    problem = interface_problem(system)
+    if problem.note is not None:
+        observer.note(problem.note)
+    return problem
 
 
 def _initial(system: System, observer: Observer) -> Outcome:
     """Contact of the unworn faces."""
-    problem = InterfaceProblem(system)
     with system.phases("contact"):
-        solution = problem.unworn()
-    pressure = problem.pressure(solution)
-    still = np.zeros((2, len(pressure)))
-    state, interface = _at(system, pressure, solution.motion, still)
-    return Outcome(pressure, solution.motion, state, interface, {"steps": 0}, [], {})
+        contact = _problem(system, observer).unworn()
+    still = np.zeros((2, len(contact.pressure)))
+    translation = contact.approach * system.holder.direction
+    state, interface = interface_at(system, contact.pressure, translation, still)
+    return Outcome(contact.pressure, translation, state, interface, {"steps": 0}, [], {})
 
 
 def _steady(system: System, observer: Observer) -> Outcome:
@@ -92,8 +103,8 @@ def _steady(system: System, observer: Observer) -> Outcome:
     shape = state.opening - state.opening.min()
     pressing = steady.pressure > 0
     # the holder stands where the unworn face would lose just enough material to fit
-    motion = np.array([state.opening.max()])
-    interface = _interface(
+    translation = state.opening.max() * system.holder.direction
+    interface = record(
         system,
         steady.pressure,
         state,
@@ -106,22 +117,22 @@ def _steady(system: System, observer: Observer) -> Outcome:
         "rigid_wear_velocity_m_per_s": float(steady.velocity[0]),
         "wear_dissipation_W": steady.dissipation,
     }
-    return Outcome(steady.pressure, motion, state, interface, extra, [], {})
+    return Outcome(steady.pressure, translation, state, interface, extra, [], {})
 
 
 def _transient(system: System, observer: Observer) -> Outcome:
     """Running-in. What was computed before an error or Ctrl-C is kept."""
     settings = system.case.analysis
     assert isinstance(settings, Transient)
-    steady = steady_wear(system)
-    problem = InterfaceProblem(system)
+    steady = steady_wear(system) if system.holder.approach is None else None
+    problem = _problem(system, observer)
     history: list[HistoryRow] = []
     outputs: dict[float, Interface] = {}
     last: Moment | None = None
     stopped: BaseException | None = None
     with system.phases("time stepping"), StopRequest() as stop:
         try:
-            for moment in moments(problem, settings, steady.pressure):
+            for moment in moments(problem, settings, None if steady is None else steady.pressure):
                 last = moment
                 history.append(_row(system, problem, moment))
                 observer.step(history[-1], moment.distance)
@@ -141,14 +152,27 @@ def _transient(system: System, observer: Observer) -> Outcome:
     extra = {
         "steps": len(history) - 1,
         "time_s": last.time,
-        "distance_from_steady": last.distance,
-        "rigid_wear_velocity_m_per_s": float(steady.velocity[0]),
+        "distance_from_steady": None if steady is None else last.distance,
+        "rigid_wear_velocity_m_per_s": None if steady is None else float(steady.velocity[0]),
     }
-    pressure, motion = last.state.pressure, last.state.solution.motion
-    return Outcome(pressure, motion, state, interface, extra, history, outputs, stopped)
+    return Outcome(
+        pressure=last.state.pressure,
+        translation=last.state.contact.approach * system.holder.direction,
+        state=state,
+        interface=interface,
+        extra=extra,
+        history=history,
+        outputs=outputs,
+        stopped=stopped,
+    )
 
 
-_ANALYSES = {"initial": _initial, "steady": _steady, "transient": _transient}
+_ANALYSES = {
+    "initial": _initial,
+    "steady": _steady,
+    "transient": _transient,
+    "fretting": fretting,
+}
 
 
 def _by_body(system: System, worn: np.ndarray) -> np.ndarray:
@@ -170,52 +194,14 @@ def _row(system: System, problem: InterfaceProblem, moment: Moment) -> HistoryRo
         wear_volume_1=float(volumes[0]),
         wear_volume_2=float(volumes[1]),
         max_temperature=problem.hottest(pressure),
-        approach=float(moment.state.solution.motion[0]),
+        approach=moment.state.contact.approach,
         step=moment.step,
         error=moment.error,
     )
 
 
 def _moment(system: System, moment: Moment) -> tuple[BodyState, Interface]:
-    state = moment.state
-    return _at(system, state.pressure, state.solution.motion, _by_body(system, state.worn))
-
-
-def _at(system: System, pressure, motion, worn) -> tuple[BodyState, Interface]:
-    """Bodies and interface at a contact state with known wear."""
-    state = body_state(system, pressure)
-    lost = system.pairing.gap + worn.sum(axis=0)
-    gap = lost + state.opening - system.rigid @ motion
-    return state, _interface(system, pressure, state, gap, lost.max() - lost, worn)
-
-
-def _interface(system: System, pressure, state: BodyState, gap, shape, worn) -> Interface:
-    points = system.pairing.points
-    nothing = np.full(len(pressure), np.nan)
-    rates = np.zeros((2, len(pressure)))
-    for index, law in system.laws.items():
-        rates[index] = law.rate(pressure, system.speed)
-    temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
-    fluxes = temperatures
-    if state.thermal is not None and system.thermal is not None:
-        T1, T2 = state.thermal.rise
-        temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
-        fluxes = state.thermal.flux
-    return Interface(
-        x=points[:, 0],
-        y=points[:, 1],
-        z=np.zeros(len(pressure)),
-        s=system.pairing.position,
-        weight=system.weights,
-        pressure=pressure,
-        gap=gap,
-        shape=shape,
-        wear_1=worn[0],
-        wear_2=worn[1],
-        wear_rate_1=rates[0],
-        wear_rate_2=rates[1],
-        temperature_1=temperatures[0],
-        temperature_2=temperatures[1],
-        heat_flux_1=fluxes[0],
-        heat_flux_2=fluxes[1],
-    )
+    contact = moment.state.contact
+    translation = contact.approach * system.holder.direction
+    worn = _by_body(system, moment.state.worn)
+    return interface_at(system, contact.pressure, translation, worn)

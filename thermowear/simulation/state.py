@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..contact.heat import ThermalState
+from ..contact.tangential import tangents
+from ..contact.traces import vector_trace
 from ..parallel import sum_over_ranks
 from .system import System
 
@@ -40,10 +42,22 @@ class BodyState:
     force_error: float
 
 
-def body_state(system: System, pressure: np.ndarray) -> BodyState:
-    """Solve the bodies for a contact pressure [Pa] at the points. Every rank calls."""
+def body_state(system: System, pressure: np.ndarray, shear: np.ndarray | None = None) -> BodyState:
+    """Solve the bodies for what the contact does to them. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    pressure : ndarray, shape (n,) [Pa]
+    shear : ndarray, shape (n,), optional
+        Traction of sticking and slipping on body 1, see `contact.tangential` [Pa].
+    """
     thermal, rise, hottest, heat_error = None, None, float("nan"), float("nan")
-    loads = traction = system.trace @ (system.weights * pressure)
+    loads = traction = system.traction @ (system.weights * pressure)
+    if shear is not None:
+        pairing = system.pairing
+        along = vector_trace(system.elastic.space, pairing, -tangents(pairing.normals)[0])
+        loads = traction = traction + along @ (system.weights * shear)
     if system.thermal is not None:
         face, conduction = system.thermal.face, system.thermal.conduction
         generated = system.friction_heat(pressure)
@@ -57,20 +71,28 @@ def body_state(system: System, pressure: np.ndarray) -> BodyState:
         heat_error = abs(outflow - power) / max(power, turnover)
     displacement = system.elastic.solve(loads)
     opening = sum_over_ranks(system.comm, system.trace.T @ displacement)
-    force_error = _force_error(system, displacement, loads)
+    force_error = _force_error(system, pressure, shear, displacement, loads)
     return BodyState(displacement, rise, opening, thermal, hottest, heat_error, force_error)
 
 
-def _force_error(system: System, displacement: np.ndarray, loads: np.ndarray) -> float:
+def _force_error(system: System, pressure, shear, displacement, loads) -> float:
     """How far the supports' reactions are from the load, relative to it.
 
     The holder must push body 1 with the load, the support must push body 2 back.
     """
-    reactions = system.elastic.reactions(displacement, loads).reshape(-1, len(system.direction))
-    along = reactions @ system.direction
+    holder = system.holder
+    reactions = system.elastic.reactions(displacement, loads).reshape(-1, len(holder.direction))
+    along = reactions @ holder.direction
     upper = system.elastic.owned_by(system.case.geometry.bodies[0])
     held, supported = sum_over_ranks(
         system.comm, np.array([along[upper].sum(), along[~upper].sum()])
     )
-    load = system.load[0]
+    carried = holder.carried(pressure, system.weights)
+    if shear is not None:
+        along = tangents(system.pairing.normals)[0] @ holder.direction
+        carried -= float(system.weights @ (shear * along))
+    # the largest of a history may be over
+    load = carried if holder.force is None or shear is not None else holder.force
+    if load == 0.0:
+        return 0.0
     return float(max(abs(held - load), abs(supported + load)) / load)

@@ -10,9 +10,9 @@ def steady_wear(system: System) -> SteadyWear:
     """Steady pressure, wear rates and rigid-body wear velocity of a system."""
     return steady_pressure(
         weights=system.weights,
-        normal_modes=system.rigid,
-        force_modes=system.rigid,
-        load=system.load,
+        normal_modes=system.holder.modes,
+        force_modes=system.holder.force_modes,
+        load=system.holder.load,
         laws=list(system.laws.values()),
         speed=system.speed,
     )

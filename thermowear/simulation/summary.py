@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..bulk.field import total
+from ..contact.zones import contact_zones
 from .outcome import Outcome
 from .system import System
 
@@ -24,15 +25,18 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "dofs_displacement": total(system.elastic.space),
         "dofs_temperature": _thermal_dofs(system),
         "contact_points": len(w),
-        "normal_force_N": float(w @ (p * system.rigid[:, 0])),
+        "friction": system.friction,
+        "normal_force_N": system.holder.carried(p, w),
         "friction_force_N": float(w @ friction),
-        "friction_torque_Nm": float(w @ (friction * system.pairing.points[:, 0])),
+        "friction_torque_Nm": _torque(system, friction),
+        "guide_force_N": _guide_force(system, p),
         "max_pressure_Pa": float(p.max()),
-        "mean_pressure_Pa": float(w @ p / w[worn].sum()),
+        "mean_pressure_Pa": float(w @ p / w[worn].sum()) if worn.any() else 0.0,
         "min_pressure_Pa": float(p.min()),
         "contact_area_m2": float(w[worn].sum()),
+        "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": float(outcome.motion[0]),
+        "approach_m": float(outcome.translation @ system.holder.direction),
         "max_temperature_K": _number(outcome.state.hottest),
         "friction_power_W": float(w @ system.friction_heat(p)),
         "heat_balance_relative_error": _number(outcome.state.heat_error),
@@ -44,6 +48,20 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "wear_coefficient_per": {name: law.per for name, law in case.wear.items()},
     }
     return summary | outcome.extra
+
+
+def _torque(system: System, friction: np.ndarray) -> float | None:
+    """Friction moment about the axis [N m]; None for plane models."""
+    if system.case.model != "axisymmetric":
+        return None
+    return float(system.weights @ (friction * system.pairing.points[:, 0]))
+
+
+def _guide_force(system: System, pressure: np.ndarray) -> float | None:
+    """Force along x with which the guide keeps body 1 sliding [N]; None for axisymmetric models."""
+    if system.case.model == "axisymmetric":
+        return None
+    return float(system.weights @ (pressure * system.pull[:, 0]))
 
 
 def _thermal_dofs(system: System) -> int:

@@ -25,9 +25,10 @@ from ..contact.heat import (
     condense_distortion,
     condense_heat,
 )
+from ..contact.holder import Holder, hold
 from ..contact.pairing import Pairing, pair
 from ..contact.pressure import pressure_basis
-from ..contact.traces import gap_trace, value_trace
+from ..contact.traces import gap_trace, value_trace, vector_trace
 from ..laws import WearLaw
 from ..parallel import on_root
 from .phases import Phases
@@ -70,16 +71,13 @@ class System:
     bodies : Bodies
     pairing : Pairing
     elastic : Elasticity
-    trace : csr_matrix, shape (n_owned, n)
-        Bᵀ.
+    trace, traction : csr_matrix, shape (n_owned, n)
+        Bᵀ and B_tᵀ, see `contact.pairing`.
     basis : ndarray, shape (n, m)
         Ψ.
-    direction : ndarray, shape (gdim,)
-        Unit translation of body 1 that its holder leaves free, along the load.
-    rigid : ndarray, shape (n, 1)
-        R.
-    load : ndarray, shape (1,)
-        F [N].
+    holder : Holder
+    pull : ndarray, shape (n, 2)
+        ``n + mu e``: the traction on body 1 is minus the pressure times it.
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
     thermal : ThermalSystem or None
@@ -91,10 +89,10 @@ class System:
     pairing: Pairing
     elastic: Elasticity
     trace: sp.csr_matrix
+    traction: sp.csr_matrix
     basis: np.ndarray
-    direction: np.ndarray
-    rigid: np.ndarray
-    load: np.ndarray
+    holder: Holder
+    pull: np.ndarray
     speed: np.ndarray
     thermal: ThermalSystem | None
     phases: Phases
@@ -130,7 +128,9 @@ class System:
     def contact(self) -> CondensedContact:
         """Elasticity condensed to the pressure space."""
         with self.phases("condense elasticity"):
-            return condense(self.elastic, self.pairing, self.trace, self.basis, self.rigid)
+            return condense(
+                self.elastic, self.pairing, self.trace, self.traction, self.basis, self.holder
+            )
 
     @cached_property
     def distortion(self) -> ThermalDistortion | None:
@@ -160,28 +160,39 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
         bodies = distribute(on_root(comm, lambda: case.tagged_mesh(zone)), comm)
     with phases("pair"):
         face_1, face_2 = (gather_face(bodies, surface) for surface in geometry.contact)
-        pairing = pair(face_1, face_2, model, degree + 2)
-        pressure_degree = case.contact.pressure_degree or max(degree - 1, 1)
-        basis = pressure_basis(pairing, pressure_degree)
+        pairing, basis = _points(face_1, face_2, model, degree, case.contact.pressure_degree)
+        pull = pairing.normals.copy()
+        if case.motion is not None:
+            pull += case.contact.friction * model.slip_direction(pairing.normals, case.motion)
     with phases("assemble elasticity"):
         materials = {name: _elastic_material(case, name) for name in geometry.bodies}
         clamped = [geometry.held, geometry.fixed]
         elastic = elasticity(bodies, model, degree, materials, clamped, geometry.symmetry)
-    direction = np.array(model.press_direction)
+    trace = gap_trace(elastic.space, pairing)
+    drags = not np.array_equal(pull, pairing.normals)
     return System(
         case=case,
         bodies=bodies,
         pairing=pairing,
         elastic=elastic,
-        trace=gap_trace(elastic.space, pairing),
+        trace=trace,
+        traction=vector_trace(elastic.space, pairing, pull) if drags else trace,
         basis=basis,
-        direction=direction,
-        rigid=(pairing.normals @ direction)[:, None],
-        load=np.array([case.force()]),
+        holder=hold(pairing, pull, model.press_direction, case.force(), case.approach()),
+        pull=pull,
         speed=model.speed(pairing.points, case.motion) if case.motion else 0.0 * pairing.weights,
         thermal=_thermal(case, bodies, model, pairing, elastic, basis, phases),
         phases=phases,
     )
+
+
+def _points(face_1, face_2, model, degree: int, pressure_degree) -> tuple[Pairing, np.ndarray]:
+    """Contact points and pressure space."""
+    if pressure_degree == "lobatto":  # point by point, at the nodes of body 1's facets
+        pairing = pair(face_1, face_2, model, degree + 1, refine=False)
+        return pairing, np.eye(len(pairing.weights))
+    pairing = pair(face_1, face_2, model, degree + 2)
+    return pairing, pressure_basis(pairing, pressure_degree or max(degree - 1, 1))
 
 
 def _elastic_material(case: Case, body: str) -> ElasticMaterial:

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..case.schema import Transient
-from ..contact.complementarity import ContactSolution
 from ..errors import ComputationError
-from .interface_problem import InterfaceProblem, WornContact
-from .wear_step import advance_with_error, next_step
+from .interface_problem import Contact, InterfaceProblem
+from .wear_step import WornContact, advance_with_error, next_step
 
 _SMALLEST = 1e-12  # of the time that has passed
 
@@ -30,7 +29,8 @@ class Moment:
     is_output : bool
         Whether this is one of the output times.
     distance : float
-        Largest difference to the steady pressure, relative to the largest steady pressure.
+        Largest difference to the steady pressure, relative to the largest steady pressure; NaN
+        without one.
     """
 
     time: float
@@ -41,28 +41,29 @@ class Moment:
     distance: float
 
 
-def moments(problem: InterfaceProblem, settings: Transient, steady: np.ndarray) -> Iterator[Moment]:
+def moments(
+    problem: InterfaceProblem, settings: Transient, steady: np.ndarray | None
+) -> Iterator[Moment]:
     """The moments of a running-in, from the unworn contact on.
 
     Parameters
     ----------
     problem : InterfaceProblem
     settings : Transient
-    steady : ndarray, shape (n,)
-        Steady pressure from the principle [Pa].
+    steady : ndarray or None, shape (n,)
+        Steady pressure from the principle [Pa]; None without one (a given approach).
 
     Raises
     ------
     ComputationError
         If the step has become too small or the steps too many. What was yielded stays valid.
     """
-    solution = problem.unworn()
-    pressure = problem.pressure(solution)
-    rates = problem.rates(pressure)
-    state = WornContact(np.zeros_like(rates), solution, pressure)
-    steady = problem.steady(steady)
-    distance = _distance(pressure, steady)
-    time, step = 0.0, _first_step(problem, solution, rates)
+    contact = problem.unworn()
+    rates = problem.rates(contact.pressure)
+    state = WornContact(np.zeros_like(rates), contact)
+    steady = None if steady is None else problem.steady(steady)
+    distance = _distance(state.pressure, steady)
+    time, step = 0.0, _first_step(problem, contact, rates)
     targets = _targets(settings)
     yield Moment(0.0, 0.0, state, 0.0, False, distance)
     for _ in range(settings.max_steps):
@@ -111,10 +112,12 @@ def _is_steady(settings: Transient, distance: float) -> bool:
     return settings.until == "steady" and distance <= settings.steady_tolerance
 
 
-def _distance(pressure: np.ndarray, steady: np.ndarray) -> float:
+def _distance(pressure: np.ndarray, steady: np.ndarray | None) -> float:
+    if steady is None:
+        return float("nan")
     return float(np.abs(pressure - steady).max() / steady.max())
 
 
-def _first_step(problem: InterfaceProblem, solution: ContactSolution, rates: np.ndarray) -> float:
+def _first_step(problem: InterfaceProblem, contact: Contact, rates: np.ndarray) -> float:
     """A step in which wear is small against the elastic deflection of the bodies."""
-    return 1e-3 * problem.deflection(solution) / float(rates.sum(axis=0).max())
+    return 1e-3 * problem.deflection(contact) / float(rates.sum(axis=0).max())

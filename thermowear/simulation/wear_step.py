@@ -2,11 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from .interface_problem import InterfaceProblem, WornContact
+from .interface_problem import Contact, InterfaceProblem
 
 _γ = 1 - 1 / np.sqrt(2)
+
+
+@dataclass(frozen=True)
+class WornContact:
+    """State of a running-in.
+
+    Attributes
+    ----------
+    worn : ndarray, shape (n_wearing, n)
+        Depths worn off [m].
+    contact : Contact
+    """
+
+    worn: np.ndarray
+    contact: Contact
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """At the points, shape (n,) [Pa]."""
+        return self.contact.pressure
 
 
 def advance(problem: InterfaceProblem, state: WornContact, step: float) -> WornContact:
@@ -16,13 +38,11 @@ def advance(problem: InterfaceProblem, state: WornContact, step: float) -> WornC
     are positive, so wear never goes back (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006).
     """
     closed = state.pressure > 0
-    first = problem.solve(state.worn.sum(axis=0), _γ * step, state.solution, closed)
-    rates = problem.rates(problem.pressure(first))
+    first = problem.solve(state.worn.sum(axis=0), _γ * step, state.contact, closed)
+    rates = problem.rates(first.pressure)
     before = state.worn + (1 - _γ) * step * rates
-    solution = problem.solve(before.sum(axis=0), _γ * step, first, closed)
-    pressure = problem.pressure(solution)
-    worn = before + _γ * step * problem.rates(pressure)
-    return WornContact(worn, solution, pressure)
+    last = problem.solve(before.sum(axis=0), _γ * step, first, closed)
+    return WornContact(before + _γ * step * problem.rates(last.pressure), last)
 
 
 def advance_with_error(

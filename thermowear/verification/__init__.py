@@ -1,9 +1,30 @@
 """Verification: the program against references, by ``thermowear verify`` and by the tests."""
 
-from . import annular_punch, running_in
+from . import (
+    annular_punch,
+    flat_punch,
+    hertz_line,
+    hertz_sphere,
+    methods_agree,
+    mindlin,
+    patch,
+    running_in,
+)
 from .check import Check, Checks, compare
 
-CASES: dict[str, Checks] = {case.ID: case.checks for case in (annular_punch, running_in)}
+CASES: dict[str, Checks] = {
+    case.ID: case.checks
+    for case in (
+        annular_punch,
+        running_in,
+        patch,
+        hertz_line,
+        hertz_sphere,
+        flat_punch,
+        methods_agree,
+        mindlin,
+    )
+}
 """Verification cases by id; each yields its checks."""
 
 __all__ = ["CASES", "Check", "compare"]

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from .. import tables
 from ..quantities import HISTORY, INTERFACE, Quantity
 
-_STYLE = {
+STYLE = {
     "font.size": 10,
     "axes.grid": True,
     "grid.alpha": 0.3,
@@ -28,10 +28,10 @@ def draw_interface(folder: Path) -> None:
     data = tables.read(folder / "interface.csv", INTERFACE)
     hot = np.isfinite(data["temperature_1"]).all()
     panels = [["pressure"], *([["temperature_1", "temperature_2"]] if hot else []), ["shape"]]
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 2.3 * len(panels)), layout="constrained", dpi=150)
         axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
-        place = _abscissa(data)
+        place = abscissa(data)
         for axis, names in zip(axes, panels, strict=True):
             for name, color, line in zip(names, _BODIES, ("-", "--"), strict=False):
                 drawn = INTERFACE[name].drawn(data[name])
@@ -60,12 +60,12 @@ def draw_wear(folder: Path) -> None:
     if not bodies:
         return
     colors = mpl.colormaps["viridis"](np.linspace(0.9, 0.0, len(states)))
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 3.6 * len(bodies)), layout="constrained", dpi=150)
         axes = figure.subplots(len(bodies), sharex=True, squeeze=False)[:, 0]
         for axis, name in zip(axes, bodies, strict=True):
             for (time, data), color in zip(states.items(), colors, strict=True):
-                label, place = _abscissa(data)
+                label, place = abscissa(data)
                 axis.plot(
                     place, INTERFACE[name].drawn(data[name]), color=color, label=f"{time:.4g} s"
                 )
@@ -84,7 +84,7 @@ def draw_history(folder: Path) -> None:
     if len(data["time"]) < 2:
         return
     time = HISTORY["time"].drawn(data["time"])
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 5.4), layout="constrained", dpi=150)
         upper, lower = figure.subplots(2)
         pressure = HISTORY["max_pressure"].drawn(data["max_pressure"])
@@ -101,9 +101,9 @@ def draw_history(folder: Path) -> None:
         figure.savefig(folder / "history.png")
 
 
-def _abscissa(data: dict[str, np.ndarray]) -> tuple[str, np.ndarray]:
-    """Label and values of the horizontal axis: x where the face is flat, else the arc length."""
-    flat = np.ptp(data["y"]) <= 1e-9 * np.ptp(data["x"])
+def abscissa(data: dict[str, np.ndarray]) -> tuple[str, np.ndarray]:
+    """Label and values of the horizontal axis: x where the face is nearly flat, else the arc."""
+    flat = np.ptp(data["y"]) <= 0.1 * np.ptp(data["x"])
     quantity = INTERFACE["x" if flat else "s"]
     return quantity.axis, quantity.drawn(data["x" if flat else "s"])
 

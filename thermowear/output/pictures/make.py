@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ...errors import CaseError
 from .curves import draw_history, draw_interface, draw_wear
+from .friction import draw_friction, draw_loads
 
 _TIMEOUT = 180.0  # seconds for the rendering process
 
@@ -35,6 +36,8 @@ def make_pictures(folder: Path) -> list[str]:
     draw_interface(folder)
     draw_wear(folder)
     draw_history(folder)
+    draw_friction(folder)
+    draw_loads(folder)
     if not (folder / "fields.vtu").is_file():
         return [f"{folder}: no fields.vtu, so no pictures of the bodies"]
     reason = _render(folder)

@@ -1,0 +1,142 @@
+"""Plane strain, plane stress and axisymmetry, on straight and curved cells of both kinds."""
+
+from mpi4py import MPI
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from dolfinx.fem.petsc import assemble_vector
+
+from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.field import as_function, lagrange_space, owned
+from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, section_model
+from thermowear.case.schema import Motion
+
+from ..conftest import two_blocks
+
+E, ν, α = 2e11, 0.3, 1.2e-5
+THICKNESS = 0.007
+CELLS = [(False, 1), (True, 1), (False, 2), (True, 2), (False, 3), (True, 3)]
+PLANE = [PlaneStrain(THICKNESS), PlaneStress(THICKNESS)]
+
+
+def bent(points):
+    """A smooth, curving move of all points; sides of cells become curves."""
+    x, y = points[:, 0], points[:, 1]
+    moved, raised = np.sin(90 * y + 20 * x), np.cos(70 * x) * np.sin(50 * y)
+    return points + 2e-3 * np.column_stack([moved, raised])
+
+
+def build(model, degree, triangles=False, order=1, clamped=()):
+    tagged = two_blocks(triangles=triangles, order=order) if MPI.COMM_WORLD.rank == 0 else None
+    if tagged is not None:
+        tagged.points[:] = bent(tagged.points)
+    bodies = distribute(tagged, MPI.COMM_WORLD)
+    materials = dict.fromkeys(("upper", "lower"), ElasticMaterial(E, ν, α))
+    return elasticity(bodies, model, degree, materials, list(clamped))
+
+
+def nodal(elastic, function):
+    u = fem.Function(elastic.space)
+    u.interpolate(function)
+    return u.x.array[: owned(elastic.space)].copy()
+
+
+def multiply(matrix, values):
+    x, y = matrix.createVecs()
+    x.setArray(values)
+    matrix.mult(x, y)
+    return y.getArray().copy()
+
+
+def hooke(model, e):
+    """σ within the section of a strain within the section, by the textbook, 2 x 2 [Pa]."""
+    if isinstance(model, PlaneStress):
+        return E / (1 - ν**2) * ((1 - ν) * e + ν * np.trace(e) * np.eye(2))
+    return E / (1 + ν) * (e + ν / (1 - 2 * ν) * np.trace(e) * np.eye(2))
+
+
+@pytest.mark.parametrize(("triangles", "order"), CELLS)
+@pytest.mark.parametrize("model", PLANE, ids=lambda m: m.name)
+def test_linear_patch_on_curved_cells(model, triangles, order):
+    """requirement: V3, forces of a linear field are its tractions to 1e-12, degree >= the order."""
+    elastic = build(model, max(order, 2), triangles, order, ("upper_end",))
+    gradient = np.array([[1e-3, -4e-4], [2e-4, 7e-4]])
+    strain = (gradient + gradient.T) / 2
+    forces = multiply(elastic.stiffness, nodal(elastic, lambda x: gradient @ x[:2]))
+    mesh = elastic.bodies.mesh
+    σ, n = ufl.as_matrix(hooke(model, strain).tolist()), ufl.FacetNormal(mesh)
+    δu = ufl.TestFunction(elastic.space)
+    ds = ufl.ds(metadata={"quadrature_degree": 2 * max(order, 2) + 2 * order})
+    tractions = assemble_vector(fem.form(THICKNESS * ufl.inner(σ * n, δu) * ds)).getArray()
+    assert forces == pytest.approx(tractions, abs=1e-11 * np.abs(tractions).max())
+
+
+@pytest.mark.parametrize("model", PLANE, ids=lambda m: m.name)
+def test_free_expansion_is_free_of_stress(model):
+    """requirement: V4, uniform heat moves a free body without stress, by α T or (1 + ν) α T."""
+    elastic = build(model, 2, clamped=("upper_end",))
+    rise, stretch = 80.0, 1.0 if isinstance(model, PlaneStress) else 1 + ν
+    expanded = nodal(elastic, lambda x: stretch * α * rise * x[:2])
+    space = lagrange_space(elastic.bodies.mesh, 2)
+    heated = multiply(elastic.thermal_load(space), np.full(owned(space), rise))
+    forces = multiply(elastic.stiffness, expanded)
+    assert forces == pytest.approx(heated, abs=1e-10 * np.abs(heated).max())
+    u = as_function(elastic.space, expanded, "u")
+    σ = elastic.stress(u, fem.Constant(elastic.bodies.mesh, rise))
+    across = _mean(elastic, σ[2, 2])
+    expected = 0.0 if isinstance(model, PlaneStress) else -E * α * rise
+    assert across == pytest.approx(expected, abs=1e-10 * E * α * rise)
+    for i, j in ((0, 0), (1, 1), (0, 1)):
+        assert _mean(elastic, abs(σ[i, j])) < 1e-10 * E * α * rise
+
+
+def _mean(elastic, density):
+    """Mean over both blocks."""
+    mesh = elastic.bodies.mesh
+    total = fem.assemble_scalar(fem.form(density * ufl.dx(mesh)))
+    area = fem.assemble_scalar(fem.form(fem.Constant(mesh, 1.0) * ufl.dx(mesh)))
+    return mesh.comm.allreduce(total) / mesh.comm.allreduce(area)
+
+
+def test_volumes():
+    """requirement: plane models count the thickness, axisymmetric ones the circumference."""
+    mesh = build(PlaneStrain(THICKNESS), 1, clamped=("upper_end",)).bodies.mesh
+    one = fem.Constant(mesh, 1.0)
+    section = fem.assemble_scalar(fem.form(one * ufl.dx(mesh)))
+    plane = fem.assemble_scalar(fem.form(PLANE[0].integral(mesh, one, ufl.dx)))
+    assert plane == pytest.approx(THICKNESS * section)
+    x = ufl.SpatialCoordinate(mesh)
+    moment = fem.assemble_scalar(fem.form(x[0] * ufl.dx(mesh)))
+    ring = fem.assemble_scalar(fem.form(Axisymmetric().integral(mesh, one, ufl.dx)))
+    assert ring == pytest.approx(2 * np.pi * moment)
+
+
+def test_symmetric_side_rolls():
+    """requirement: on a plane of symmetry nothing moves across it, all may move along it."""
+    materials = dict.fromkeys(("upper", "lower"), ElasticMaterial(E, ν))
+    bodies = distribute(two_blocks(), MPI.COMM_WORLD)
+    sides = ("upper_inside", "lower_inside")
+    elastic = elasticity(bodies, PLANE[0], 2, materials, ["upper_end", "lower_end"], sides)
+    load = nodal(elastic, lambda x: np.array([np.ones(x.shape[1]), -np.ones(x.shape[1])]))
+    u = as_function(elastic.space, elastic.solve(load), "u").x.array.reshape(-1, 2)
+    x = elastic.space.tabulate_dof_coordinates()
+    side = (np.abs(x[:, 0] - 0.05) < 1e-12) & (x[:, 1] > -0.029) & (x[:, 1] < 0.019)
+    assert side.sum() > 4
+    assert np.abs(u[side, 0]).max() == 0.0
+    assert np.abs(u[side, 1]).min() > 0.0
+
+
+@pytest.mark.parametrize("velocity", ["50 mm/s", "-50 mm/s"])
+def test_sliding_of_plane_models(velocity):
+    """requirement: e is the unit direction, along the face, in which body 1 slides."""
+    motion = Motion(velocity=velocity)
+    normals = np.array([[0.0, -1.0], [0.6, -0.8], [-0.6, -0.8]])
+    model = section_model("plane-strain", 1.0)
+    e = model.slip_direction(normals, motion)
+    assert np.sign(e[:, 0]) == pytest.approx(np.sign(motion.velocity))
+    assert (e * normals).sum(axis=1) == pytest.approx(0.0)
+    assert np.linalg.norm(e, axis=1) == pytest.approx(1.0)
+    assert model.speed(normals, motion) == pytest.approx(0.05)

@@ -1,0 +1,79 @@
+"""Areas and shapes of curved cells, for tests of meshes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thermowear.geometry.orders import reference_nodes
+
+
+def _powers(order: int, triangle: bool) -> list[tuple[int, int]]:
+    n = range(order + 1)
+    return [(i, j) for i in n for j in n if not triangle or i + j <= order]
+
+
+def _tangents(mesh, x, y):
+    """Derivatives of the coordinates along both reference directions, (n_cells, n_points, 2)."""
+    triangle = mesh.cell_type == "triangle"
+    order = mesh.facets.shape[1] - 1
+    nodes = reference_nodes(mesh.cell_type, order)
+    powers = _powers(order, triangle)
+    matrix = np.stack([nodes[:, 0] ** i * nodes[:, 1] ** j for i, j in powers], axis=1)
+    inverse = np.linalg.inv(matrix)
+    along = np.stack([i * x ** max(i - 1, 0) * y**j for i, j in powers], axis=1) @ inverse
+    across = np.stack([j * x**i * y ** max(j - 1, 0) for i, j in powers], axis=1) @ inverse
+    places = mesh.points[mesh.cells]
+    return tuple(np.einsum("qk,nki->nqi", slopes, places) for slopes in (along, across))
+
+
+def _determinants(tangents):
+    a, b = tangents
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def areas(mesh, body: str) -> np.ndarray:
+    """Area of each cell of a body, by quadrature that is exact for its polynomial [m²]."""
+    t, w = np.polynomial.legendre.leggauss(8)
+    t, w = (t + 1) / 2, w / 2
+    x, y = (v.ravel() for v in np.meshgrid(t, t, indexing="ij"))
+    weights = np.outer(w, w).ravel()
+    if mesh.cell_type == "triangle":
+        weights, y = weights * (1 - x), y * (1 - x)
+    cells = mesh.cell_tags == mesh.bodies.index(body) + 1
+    return _determinants(_tangents(mesh, x, y))[cells] @ weights
+
+
+def scaled_jacobians(mesh) -> np.ndarray:
+    """Smallest sine of the angle between the grid lines of each cell, negative if inverted."""
+    x, y = (v.ravel() for v in np.meshgrid(*[np.linspace(0, 1, 7)] * 2))
+    if mesh.cell_type == "triangle":
+        x, y = x[x + y < 1.01], y[x + y < 1.01]
+    tangents = _tangents(mesh, x, y)
+    lengths = np.prod([np.linalg.norm(v, axis=2) for v in tangents], axis=0)
+    return (_determinants(tangents) / lengths).min(axis=1)
+
+
+def dofs(mesh, degree: int) -> int:
+    """Displacements of a mesh of quadrilaterals."""
+    sides = np.concatenate([mesh.cells[:, [i, (i + 1) % 4]] for i in range(4)])
+    edges = len(np.unique(np.sort(sides, axis=1), axis=0))
+    corners = len(np.unique(mesh.cells[:, :4]))
+    return 2 * (corners + edges * (degree - 1) + len(mesh.cells) * (degree - 1) ** 2)
+
+
+def edges(mesh, surface: str) -> np.ndarray:
+    """Nodes of the facets of a surface, shape (n_facets, order + 1, 2) [m]."""
+    return mesh.points[mesh.facets[mesh.facet_tags == mesh.surfaces.index(surface) + 1]]
+
+
+def ends(mesh, surface: str) -> np.ndarray:
+    """x at the ends of the elements of a surface, increasing [m]."""
+    return np.unique(np.round(edges(mesh, surface)[:, :2, 0], 12))
+
+
+def unnamed(mesh) -> int:
+    """Boundary edges that belong to no surface."""
+    n = 4 if mesh.cell_type == "quadrilateral" else 3
+    sides = np.concatenate([mesh.cells[:, [i, (i + 1) % n]] for i in range(n)])
+    _, count = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
+    return int((count == 1).sum()) - len(mesh.facets)

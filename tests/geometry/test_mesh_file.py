@@ -1,0 +1,465 @@
+"""Meshes that are read from files."""
+
+import textwrap
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import thermowear as tw
+from thermowear.case.schema import Mesh
+from thermowear.errors import CaseError
+from thermowear.geometry.cylinder_on_block import CylinderOnBlock
+from thermowear.geometry.export import write_mesh
+from thermowear.geometry.gmsh_session import gmsh_model
+from thermowear.geometry.mesh_file import MeshFile
+from thermowear.geometry.orders import order_of
+
+from ..case.starter import STEADY, tables
+from ..conftest import two_blocks
+from .measure import areas, edges, scaled_jacobians, unnamed
+
+NAMES = {
+    "bodies": {"upper": "upper", "lower": "lower"},
+    "contact": ["upper_face", "lower_face"],
+    "held": "upper_end",
+    "fixed": "lower_end",
+}
+
+
+def file_geometry(path, **keys):
+    return MeshFile.model_validate({"type": "file", "path": str(path)} | NAMES | keys)
+
+
+def read(path, **keys):
+    return file_geometry(path, **keys).build(Mesh(), None)
+
+
+def fault(path, **keys):
+    with pytest.raises(CaseError) as error:
+        read(path, **keys)
+    assert len(error.value.faults) == 1
+    assert "\n" not in error.value.faults[0]
+    return error.value.faults[0]
+
+
+def numbered(mesh):
+    """Keys for formats without names: numbers as written by the export."""
+    number = {name: str(i) for i, name in enumerate((*mesh.bodies, *mesh.surfaces), start=1)}
+    return {
+        "bodies": {name: number[name] for name in mesh.bodies},
+        "surfaces": {name: number[name] for name in mesh.surfaces},
+    }
+
+
+def gmsh_blocks(path, version=4.1, order=1, triangles=False, glued=False, names=True):
+    """Two blocks of 40 x 20 and 40 x 30, in the unit of the file, as a user of gmsh makes them."""
+    with gmsh_model("blocks") as gmsh:
+        model, occ = gmsh.model, gmsh.model.occ
+        upper, lower = occ.addRectangle(50, 0, 0, 40, 20), occ.addRectangle(50, -30, 0, 40, 30)
+        if glued:
+            occ.fragment([(2, upper)], [(2, lower)])
+        occ.synchronize()
+        box = model.getEntitiesInBoundingBox
+        lines = {
+            "FACE": box(49, -1, -1, 91, 1, 1, dim=1),
+            "TOP": box(49, 19, -1, 91, 21, 1, dim=1),
+            "BOTTOM": box(49, -31, -1, 91, -29, 1, dim=1),
+        }
+        for name, body in {"PUNCH": upper, "PLATE": lower}.items():
+            model.addPhysicalGroup(2, [body], name=name if names else "")
+        for name, found in lines.items():
+            model.addPhysicalGroup(1, [tag for _, tag in found], name=name if names else "")
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 8)
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.option.setNumber("Mesh.RecombineAll", 0 if triangles else 1)
+        gmsh.option.setNumber("Mesh.RecombinationAlgorithm", 3)
+        gmsh.option.setNumber("Mesh.ElementOrder", order)
+        model.mesh.generate(2)
+        gmsh.write(str(path))
+    return path
+
+
+GMSH_NAMES = {
+    "length_unit": "1 mm",
+    "bodies": {"punch": "PUNCH", "plate": "PLATE"},
+    "surfaces": {"punch_face": "FACE", "plate_face": "FACE"},
+    "contact": ["punch_face", "plate_face"],
+    "held": "TOP",
+    "fixed": "BOTTOM",
+}
+
+
+@pytest.mark.parametrize("version", [2.2, 4.1])
+@pytest.mark.parametrize(("order", "triangles"), [(1, False), (2, False), (2, True), (3, True)])
+@pytest.mark.parametrize("glued", [False, True])
+def test_meshes_of_gmsh(tmp_path, version, order, triangles, glued):
+    """
+    requirement: .msh of both versions, any order; the unit of length; bodies that share the nodes
+    of the contact come apart.
+    """
+    mesh = read(gmsh_blocks(tmp_path / "a.msh", version, order, triangles, glued), **GMSH_NAMES)
+    assert mesh.cell_type == ("triangle" if triangles else "quadrilateral")
+    assert order_of(mesh) == order
+    assert areas(mesh, "punch").sum() == pytest.approx(40e-3 * 20e-3, rel=1e-9)
+    assert areas(mesh, "plate").sum() == pytest.approx(40e-3 * 30e-3, rel=1e-9)
+    assert scaled_jacobians(mesh).min() > 0.1
+    for face in ("punch_face", "plate_face"):
+        x, y = np.moveaxis(edges(mesh, face), 2, 0)
+        assert np.all(np.abs(y) < 1e-12)
+        assert np.ptp(x) == pytest.approx(40e-3, rel=1e-9)
+    own = [set(mesh.cells[mesh.cell_tags == tag].ravel()) for tag in (1, 2)]
+    assert own[0].isdisjoint(own[1])
+    for tag, face in ((1, "punch_face"), (2, "plate_face")):
+        of_face = mesh.facets[mesh.facet_tags == mesh.surfaces.index(face) + 1]
+        assert set(of_face.ravel()) <= own[tag - 1]
+
+
+def test_numbers_stand_for_physical_groups_without_names(tmp_path):
+    """
+    requirement: physical tags without names go by their numbers.
+    """
+    keys = GMSH_NAMES | {
+        "bodies": {"punch": "1", "plate": "2"},
+        "surfaces": {"punch_face": "3", "plate_face": "3", "top": "4", "bottom": "5"},
+        "held": "top",
+        "fixed": "bottom",
+    }
+    path = gmsh_blocks(tmp_path / "a.msh", 2.2, names=False)
+    mesh = read(path, **keys)
+    assert areas(mesh, "punch").sum() == pytest.approx(40e-3 * 20e-3, rel=1e-9)
+
+
+@pytest.mark.parametrize("ending", ["msh", "inp", "vtu", "xdmf"])
+def test_exports_are_read_back(tmp_path, ending):
+    """
+    requirement: what `thermowear mesh -o` writes can be read as a case's geometry.
+    """
+    made = two_blocks()
+    path = tmp_path / f"mesh.{ending}"
+    write_mesh(made, path)
+    mesh = read(path, **(numbered(made) if ending in ("vtu", "xdmf") else {}))
+    assert mesh.bodies == made.bodies
+    for body in made.bodies:
+        assert areas(mesh, body).sum() == pytest.approx(areas(made, body).sum(), rel=1e-12)
+    assert set(mesh.surfaces) <= set(made.surfaces)
+    for surface in mesh.surfaces:
+        one, two = (np.sort(edges(m, surface)[:, :2].sum(axis=(1, 2))) for m in (mesh, made))
+        np.testing.assert_allclose(one, two, atol=1e-12)
+
+
+@pytest.mark.parametrize("ending", ["msh", "inp", "vtu"])
+def test_curved_exports_are_read_back(tmp_path, ending):
+    """
+    requirement: cells of the third order as such, or as cells of the second whose nodes lie on
+    them.
+    """
+    cylinder = CylinderOnBlock(
+        type="cylinder-on-block", radius="10 mm", block_width="40 mm", block_height="20 mm"
+    )
+    made = cylinder.build(Mesh(elements=20), (-5e-4, 5e-4))
+    path = tmp_path / f"mesh.{ending}"
+    write_mesh(made, path)
+    keys = numbered(made) if ending == "vtu" else {"bodies": {b: b for b in made.bodies}}
+    keys |= {"contact": list(cylinder.contact), "held": cylinder.held, "fixed": cylinder.fixed}
+    keys.setdefault("surfaces", {name: name for name in made.surfaces})
+    mesh = read(path, **keys)
+    assert order_of(mesh) == (3 if ending == "msh" else 2)
+    assert unnamed(mesh) == 0
+    for body in made.bodies:
+        assert areas(mesh, body).sum() == pytest.approx(areas(made, body).sum(), rel=1e-3)
+    p = edges(mesh, "cylinder_face")
+    np.testing.assert_allclose(np.hypot(p[..., 0], p[..., 1] - 1e-2), 1e-2, rtol=1e-8)
+
+
+DECK = """\
+    ** two cells of eight nodes, numbered clockwise in body 2
+    *HEADING
+    *Node, NSET=ALL
+    1, 0., 0.
+    2, 1., 0.
+    3, 1., 1.
+    4, 0., 1.
+    5, .5, 0.
+    6, 1.2, .5
+    7, .5, 1.
+    8, 0., .5
+    11, 0., 0., 0.
+    12, 1., 0., 0.
+    13, 1., -1., 0.
+    14, 0., -1., 0.
+    15, .5, 0., 0.
+    16, 1., -.5, 0.
+    17, .5, -1., 0.
+    18, 0., -.5, 0.
+    *Element, type=CPS8R, elset=PUNCH
+    1, 1, 2, 3, 4, 5, 6, 7, 8
+    *Element, type=CPS8R
+    2, 11, 12, 13, 14, 15,
+    16, 17, 18
+    *Elset, elset=PLATE, generate
+    2, 2, 1
+    *Nset, nset=TOP
+    3, 4, 7
+    *Nset, nset=NOTHING
+    1, 3
+    *Nset, nset=BOTTOM, generate
+    13, 14
+    *Nset, nset=BOTTOM
+    17
+    *Surface, name=PUNCH_FACE, type=element
+    PUNCH, S1
+    *Surface, name=PLATE_FACE
+    2, S1
+    """
+DECK_NAMES = {
+    "bodies": {"punch": "PUNCH", "plate": "PLATE"},
+    "contact": ["PUNCH_FACE", "PLATE_FACE"],
+    "held": "TOP",
+    "fixed": "BOTTOM",
+}
+
+
+def deck(tmp_path, *changes):
+    text = textwrap.dedent(DECK)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "deck.inp"
+    path.write_text(text)
+    return path
+
+
+def test_abaqus(tmp_path):
+    """
+    requirement: sets of elements and of nodes, surfaces, cells of eight nodes (which get a node in
+    the middle), cells listed clockwise.
+    """
+    mesh = read(deck(tmp_path), **DECK_NAMES)
+    assert mesh.cells.shape == (2, 9)
+    assert areas(mesh, "plate") == pytest.approx([1.0], rel=1e-12)
+    assert areas(mesh, "punch") == pytest.approx([1.0 + 2 / 3 * 0.2], rel=1e-12)
+    centre = mesh.points[mesh.cells[mesh.cell_tags == 1][0, 8]]
+    assert centre == pytest.approx([0.6, 0.5], abs=1e-12)
+    assert np.all(edges(mesh, "TOP")[..., 1] == 1.0)
+    assert np.all(edges(mesh, "BOTTOM")[..., 1] == -1.0)
+    for face in ("PUNCH_FACE", "PLATE_FACE"):
+        assert edges(mesh, face).shape == (1, 3, 2)
+        assert np.all(edges(mesh, face)[..., 1] == 0.0)
+
+
+NO_CELLS = "geometry.bodies.punch: the file has no cells named"
+NO_SURFACE = "the file has no surface named"
+SURFACES = "one of: ALL, BOTTOM, NOTHING, PLATE_FACE, PUNCH_FACE, TOP"
+ELSEWHERE = "is not on the boundary of"
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ({"bodies": {"punch": "P", "plate": "PLATE"}}, f"{NO_CELLS} 'P'; one of: PLATE, PUNCH"),
+        ({"bodies": {"punch": "TOP", "plate": "PLATE"}}, f"{NO_CELLS} 'TOP'"),
+        (
+            {"bodies": {"punch": "PUNCH", "plate": "PUNCH"}},
+            "geometry.bodies: 1 cells are in 'PUNCH' and 'PUNCH' both",
+        ),
+        ({"contact": ["FACE", "PLATE_FACE"]}, f"geometry.contact: {NO_SURFACE} 'FACE'; {SURFACES}"),
+        (
+            {"contact": ["PLATE_FACE", "PUNCH_FACE"]},
+            f"geometry.contact: 'PLATE_FACE' {ELSEWHERE} body 'punch'",
+        ),
+        (
+            {"held": "BOTTOM", "fixed": "TOP"},
+            f"geometry.held: 'BOTTOM' {ELSEWHERE} body 'punch'",
+        ),
+        ({"surfaces": {"cold": "BOTTM"}}, f"geometry.surfaces.cold: {NO_SURFACE} 'BOTTM'"),
+        ({"symmetry": ["NOTHING"]}, f"geometry.symmetry: 'NOTHING' {ELSEWHERE} a body"),
+    ],
+)
+def test_names_that_are_not_there(tmp_path, keys, expected):
+    """
+    requirement: one clear line with the key's path that lists the names of the file.
+    """
+    assert fault(deck(tmp_path), **(DECK_NAMES | keys)).startswith(expected)
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("1, 1, 2, 3, 4, 5, 6, 7, 8", "1, 1, 2, 3, 4, 5"), "does not have 8 nodes"),
+        (("16, 17, 18", "16, 17, 99"), "99"),
+        (("*Element, type=CPS8R, elset", "*Element, type=C3D8, elset"), "type C3D8"),
+        (("2, 1., 0.", "2, 1., zero"), "zero"),
+        (("2, 1., 0.", "2, 1., nan"), "nodes without a place"),
+        (("13, 1., -1., 0.", "13, 1., -1., 1."), "do not lie in a plane"),
+    ],
+)
+def test_broken_abaqus_files(tmp_path, change, expected):
+    """
+    requirement: one clear line for whatever is wrong in a file.
+    """
+    text = fault(deck(tmp_path, change), **DECK_NAMES)
+    assert text.startswith("geometry.path: ")
+    assert expected in text
+
+
+def test_cells_without_area(tmp_path):
+    """
+    requirement: degenerate cells are refused.
+    """
+    changes = [("13, 1., -1., 0.", "13, 1., 0., 0."), ("14, 0., -1.", "14, 0., 0.")]
+    assert fault(deck(tmp_path, *changes), **DECK_NAMES).endswith("cells without area")
+
+
+def test_mixed_cells(tmp_path):
+    """
+    requirement: triangles among quadrilaterals are refused in one line.
+    """
+    with gmsh_model("mixed") as gmsh:
+        for name, x in (("upper", 0), ("lower", 5)):
+            body = gmsh.model.occ.addRectangle(x, 0, 0, 1, 1)
+            gmsh.model.occ.synchronize()
+            gmsh.model.addPhysicalGroup(2, [body], name=name)
+            if name == "upper":
+                gmsh.model.mesh.setRecombine(2, body)
+        gmsh.model.mesh.generate(2)
+        gmsh.write(str(tmp_path / "a.msh"))
+    text = fault(tmp_path / "a.msh")
+    assert text.startswith("geometry.bodies: the bodies have different cells, triangles of 3 nodes")
+
+
+def test_three_dimensional_cells(tmp_path):
+    """
+    requirement: a plane section is needed.
+    """
+    with gmsh_model("solid") as gmsh:
+        gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(tmp_path / "a.msh"))
+    assert "three-dimensional cells" in fault(tmp_path / "a.msh")
+
+
+@pytest.mark.parametrize("ending", ["msh", "inp", "vtu", "xdmf", "med"])
+@pytest.mark.parametrize("content", ["", "nonsense\n1 2 3\n", "cut"])
+def test_unreadable_files(tmp_path, ending, content):
+    """
+    requirement: empty, foreign and truncated files give one line.
+    """
+    path = tmp_path / f"mesh.{ending}"
+    if content == "cut" and ending != "med":
+        write_mesh(two_blocks(), path)
+        content = path.read_text()[: path.stat().st_size // 2]
+    path.write_text(content)
+    assert fault(path).startswith("geometry.")
+
+
+def test_files_that_are_not_there(tmp_path):
+    """
+    requirement: missing files and unknown endings give one line.
+    """
+    assert fault(tmp_path / "no.msh").endswith("cannot be read: No such file or directory")
+    assert "unknown ending; one of: .msh, .inp" in fault(tmp_path / "mesh.stl")
+    (tmp_path / "folder.msh").mkdir()
+    assert fault(tmp_path / "folder.msh").endswith("cannot be read: Is a directory")
+
+
+def med_file(path):
+    """Two squares with families, as Salome writes them."""
+    import meshio
+
+    x = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    points = np.concatenate([x, x - [0, 1]])
+    lines = np.array([[0, 1], [2, 3], [7, 6], [4, 5]])
+    mesh = meshio.Mesh(points, [("quad", np.array([[0, 1, 2, 3], [4, 5, 6, 7]])), ("line", lines)])
+    mesh.cell_data["cell_tags"] = [np.array([-1, -2]), np.array([-3, -4, -5, -6])]
+    names = ("upper", "lower", "upper_face", "upper_end", "lower_face", "lower_end")
+    mesh.cell_tags = {-i: [name] for i, name in enumerate(names, start=1)}
+    mesh.point_tags = {}
+    meshio.write(path, mesh)
+
+
+def test_families_of_med(tmp_path):
+    """
+    requirement: .med by the names of its groups.
+    """
+    med_file(tmp_path / "a.med")
+    mesh = read(tmp_path / "a.med")
+    assert areas(mesh, "upper").sum() == pytest.approx(1.0)
+    assert np.all(edges(mesh, "upper_end")[..., 1] == 1.0)
+    assert np.all(edges(mesh, "lower_end")[..., 1] == -1.0)
+
+
+def file_tables(path, **changes):
+    keys = {"type": "file", "path": str(path)} | GMSH_NAMES | changes
+    case = tables(STEADY)
+    case["geometry"] = keys
+    case["heat"]["cooling"] = {"BOTTOM": "1 kW/(m^2 K)"}
+    case["load"] = {"force": "1 kN"}
+    return case
+
+
+def test_a_case_with_a_file(tmp_path):
+    """
+    requirement: keys of the case file, names of bodies and surfaces in its other tables, and the
+    case written out again.
+    """
+    path = gmsh_blocks(tmp_path / "a.msh")
+    case = tw.load(file_tables(path, contact_area="200 mm^2"))
+    geometry = case.geometry
+    assert geometry.bodies == ("punch", "plate")
+    assert geometry.contact == ("punch_face", "plate_face")
+    assert (geometry.held, geometry.fixed) == ("TOP", "BOTTOM")
+    assert geometry.surfaces == ("punch_face", "plate_face", "TOP", "BOTTOM")
+    assert geometry.contact_area() == pytest.approx(2e-4)
+    plain = tw.case.as_plain(case)
+    assert plain["geometry"]["bodies"] == GMSH_NAMES["bodies"]
+    assert tw.load(plain) == case
+    mesh = case.tagged_mesh()
+    assert mesh.surfaces == geometry.surfaces
+    assert len(np.unique(mesh.facet_tags)) == 4
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"bodies": {"punch": "PUNCH"}}, "geometry.bodies: needs two"),
+        ({"bodies": ["PUNCH", "PLATE"]}, "geometry.bodies: "),
+        ({"contact": ["punch_face"]}, "geometry.contact"),
+        ({"contact": ["FACE", "FACE"]}, "geometry.contact: 'FACE' is there twice"),
+        ({"held": "BOTTOM"}, "geometry.fixed: 'BOTTOM' is there twice"),
+        ({"held": 3}, "geometry.held: found 3; must be text"),
+        ({"length_unit": "1 s"}, "geometry.length_unit: "),
+        ({"length_unit": 0.001}, "geometry.length_unit: found 0.001; needs a quantity"),
+        ({"contact_area": "1 mm"}, "geometry.contact_area: "),
+        ({"surface": {}}, "geometry.surface: unknown key"),
+    ],
+)
+def test_faulty_keys(changes, expected):
+    """
+    requirement: one line with the path of the key as it stands in the case file.
+    """
+    with pytest.raises(CaseError) as error:
+        tw.load(file_tables("mesh.msh", **changes))
+    assert error.value.faults[0].startswith(expected), error.value.faults
+
+
+@pytest.mark.parametrize("key", ["path", "bodies", "contact", "held", "fixed"])
+def test_missing_keys(key):
+    """
+    requirement: keys that every file needs.
+    """
+    case = file_tables("mesh.msh")
+    del case["geometry"][key]
+    with pytest.raises(CaseError) as error:
+        tw.load(case)
+    assert f"geometry.{key}: missing" in error.value.faults
+
+
+def test_paths_are_relative_to_the_current_directory(tmp_path, monkeypatch):
+    """
+    requirement: relative paths.
+    """
+    write_mesh(two_blocks(), tmp_path / "here.msh")
+    monkeypatch.chdir(tmp_path)
+    assert len(read(Path("here.msh")).cells) > 0

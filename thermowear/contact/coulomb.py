@@ -1,0 +1,208 @@
+"""Signorini's and Coulomb's conditions together, for one increment on the condensed interface.
+
+Find pressure coefficients λ, shear coefficients τ and the free motions d of the holder with
+
+    (y_n, y_t) = A (λ, τ) + q - R d,     Rᵀ (λ, τ) = F,
+    y_n >= 0,   λ >= 0,   λ y_n = 0,
+    |τ| <= mu λ,   y_t = 0 where |τ| < mu λ,   y_t = -κ τ with κ >= 0 elsewhere,
+
+for each coefficient; y_n is the gap and y_t the slip of the increment, both in the mean. With
+Bernstein polynomials ``|t| <= mu p`` then holds at every point. The conditions say that λ and τ
+are the projections
+
+    λ = max(0, λ - c y_n),     τ = P(τ - c y_t),     P onto the disc of radius mu max(0, λ - c y_n)
+
+for any c > 0 (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353). That is a system
+of equations with kinks; `coulomb_solver` solves it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class CoulombProblem:
+    """The data of the module's docstring; t tangential directions, ``M = m (1 + t)``.
+
+    Attributes
+    ----------
+    compliance : ndarray, shape (M, M)
+        A, symmetric and positive definite [m⁵/N].
+    offset : ndarray, shape (M,)
+        q [m³].
+    modes : ndarray, shape (M, k)
+        R of the free motions [m²].
+    force : ndarray, shape (k,)
+        F [N].
+    friction : ndarray, shape (m,)
+        mu.
+    """
+
+    compliance: np.ndarray
+    offset: np.ndarray
+    modes: np.ndarray
+    force: np.ndarray
+    friction: np.ndarray
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """c, one value for all tangential directions of a coefficient, shape (M,) [N/m⁵]."""
+        blocks = np.diag(self.compliance).reshape(-1, len(self.friction)).copy()
+        blocks[1:] = blocks[1:].mean(axis=0)
+        return 1 / blocks.ravel()
+
+    def relative(self, unknowns: np.ndarray) -> np.ndarray:
+        """y: gap and slip of the increment, in the mean, shape (M,) [m³]."""
+        x, d = np.split(unknowns, [len(self.offset)])
+        return self.compliance @ x + self.offset - self.modes @ d
+
+    def sizes(self, unknowns: np.ndarray) -> np.ndarray:
+        """Sum of the magnitudes of which y is the balance, shape (M,) [m³]."""
+        x, d = np.split(np.abs(unknowns), [len(self.offset)])
+        return np.abs(self.compliance) @ x + np.abs(self.offset) + np.abs(self.modes) @ d
+
+    def projection(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What λ and τ should equal, and where it sticks.
+
+        Returns
+        -------
+        pressure : ndarray, shape (m,)
+        shear : ndarray, shape (m, t)
+        sticking : ndarray of bool, shape (m,)
+            False also where it is open.
+        """
+        normal, tangential = self.trial(unknowns)
+        radius = self.friction * np.maximum(normal, 0.0)
+        length = np.linalg.norm(tangential, axis=1)
+        sticking = (length <= radius) & (radius > 0)
+        shrink = np.where(sticking, 1.0, radius / np.where(length > 0, length, 1.0))
+        return np.maximum(normal, 0.0), shrink[:, None] * tangential, sticking
+
+    def trial(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What is projected: ``λ - c y_n``, shape (m,), and ``τ - c y_t``, shape (m, t) [Pa]."""
+        x = unknowns[: len(self.offset)]
+        blocks = (x - self.stiffness * self.relative(unknowns)).reshape(-1, len(self.friction))
+        return blocks[0], blocks[1:].T
+
+
+def residual(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
+    """Distance of the coefficients from their projections, and imbalance of the forces.
+
+    Parameters
+    ----------
+    problem : CoulombProblem
+    unknowns : ndarray, shape (M + k,)
+        x and d.
+
+    Returns
+    -------
+    ndarray, shape (M + k,) [Pa]
+        The forces are divided by the area they act on.
+    """
+    pressure, shear, _ = problem.projection(unknowns)
+    x = unknowns[: len(problem.offset)]
+    unbalanced = (problem.modes.T @ x - problem.force) / _areas(problem)
+    return np.concatenate([x - np.concatenate([pressure, shear.T.ravel()]), unbalanced])
+
+
+def jacobian(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
+    """Derivative of `residual` (one of them, where it has a kink), shape (M + k, M + k)."""
+    m, total, k = len(problem.friction), len(problem.offset), len(problem.force)
+    trial = np.zeros((total, total + k))  # derivative of x - c y
+    trial[:, :total] = np.eye(total) - problem.stiffness[:, None] * problem.compliance
+    trial[:, total:] = problem.stiffness[:, None] * problem.modes
+    normal, tangential = trial[:m], trial[m:].reshape(-1, m, total + k)
+    direction, carried, turned = _tangential_slopes(problem, unknowns)
+    closed = problem.trial(unknowns)[0] > 0
+    result = np.zeros((total + k, total + k))
+    result[:total, :total] = np.eye(total)
+    result[:m] -= closed[:, None] * normal
+    shear = (problem.friction * carried)[:, None, None] * direction[..., None] * normal[:, None]
+    shear = shear + np.einsum("mij,jmu->miu", turned, tangential)
+    result[m:total] -= shear.transpose(1, 0, 2).reshape(total - m, total + k)
+    result[total:, :total] = problem.modes.T / _areas(problem)[:, None]
+    return result
+
+
+def _tangential_slopes(problem: CoulombProblem, unknowns: np.ndarray):
+    """Of the projected shear: its direction, whether it slips, its slope by the trial shear."""
+    tangential = problem.trial(unknowns)[1]
+    pressure, _, sticking = problem.projection(unknowns)
+    length = np.linalg.norm(tangential, axis=1)
+    direction = tangential / np.where(length > 0, length, 1.0)[:, None]
+    slipping = (pressure > 0) & ~sticking
+    identity = np.eye(tangential.shape[1])
+    across = identity - direction[:, :, None] * direction[:, None, :]
+    turn = slipping * problem.friction * pressure / np.where(length > 0, length, 1.0)
+    return direction, slipping, sticking[:, None, None] * identity + turn[:, None, None] * across
+
+
+def scales(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
+    """Sizes that the residual is measured against, shape (M + k,) [Pa]."""
+    x = np.abs(unknowns[: len(problem.offset)])
+    forces = np.abs(problem.modes).T @ x + np.abs(problem.force)
+    local = x.max() + problem.stiffness * problem.sizes(unknowns)
+    return np.concatenate([local, forces / _areas(problem)])
+
+
+def _areas(problem: CoulombProblem) -> np.ndarray:
+    return np.abs(problem.modes).sum(axis=0)
+
+
+@dataclass(frozen=True)
+class CoulombSolution:
+    """A checked solution: coefficients are exactly within their bounds.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (m,) [Pa]
+    shear : ndarray, shape (m, t) [Pa]
+    motion : ndarray, shape (k,) [m]
+        Free motions.
+    sticking : ndarray of bool, shape (m,)
+    iterations : int
+        Of Newton's method.
+    """
+
+    pressure: np.ndarray
+    shear: np.ndarray
+    motion: np.ndarray
+    sticking: np.ndarray
+    iterations: int
+
+    @property
+    def stacked(self) -> np.ndarray:
+        """x, shape (M,) [Pa]."""
+        return np.concatenate([self.pressure, self.shear.T.ravel()])
+
+
+def violated(problem: CoulombProblem, solution: CoulombSolution) -> list[str]:
+    """Conditions that do not hold to 1e-9 of what they balance; none for a solution."""
+    x = solution.stacked
+    unknowns = np.concatenate([x, solution.motion])
+    if not np.all(np.isfinite(unknowns)):
+        return ["finite"]
+    m = len(problem.friction)
+    y, sizes = (f(unknowns).reshape(-1, m) for f in (problem.relative, problem.sizes))
+    gap, slip, small = y[0], y[1:].T, _TOLERANCE * sizes
+    λ, bound = solution.pressure, problem.friction * solution.pressure
+    carried, slipped = (np.linalg.norm(v, axis=1) for v in (solution.shear, slip))
+    nothing = np.linalg.norm(small[1:], axis=0)
+    opposed = carried * slipped + (solution.shear * slip).sum(axis=1)
+    unbalanced = np.abs(problem.modes.T @ x - problem.force)
+    forces = np.abs(problem.modes).T @ np.abs(x) + np.abs(problem.force)
+    conditions = {
+        "no tension": np.all(λ >= 0),
+        "no penetration": np.all(gap >= -small[0]),
+        "pressure only where closed": np.all((λ == 0) | (np.abs(gap) <= small[0])),
+        "shear within friction": np.all(carried <= bound * (1 + _TOLERANCE)),
+        "slip only at the limit": np.all((bound - carried) * slipped <= bound * nothing),
+        "slip against shear": np.all(opposed <= bound * nothing),
+        "equilibrium": np.all(unbalanced <= _TOLERANCE * forces),
+    }
+    return [name for name, holds in conditions.items() if not holds]

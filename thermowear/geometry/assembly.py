@@ -1,0 +1,174 @@
+"""From the contents of a mesh file to a tagged mesh, by the names of bodies and surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import CaseError
+from .file_contents import Block, Contents
+from .orders import CORNERS, boundary, compact, turned
+from .tagged import TaggedMesh
+
+_TYPES = {corners: name for name, corners in CORNERS.items()}
+_ORDERS = {(3, 3): 1, (3, 6): 2, (3, 10): 3, (4, 4): 1, (4, 8): 2, (4, 9): 2, (4, 16): 3}
+"""Geometric order by numbers of corners and nodes."""
+
+
+@dataclass(frozen=True)
+class Named:
+    """A part of the case: its name, its name in the file, and the key that says so.
+
+    `body` is the position of the only body it can belong to.
+    """
+
+    name: str
+    in_file: str
+    key: str
+    body: int | None = None
+
+
+def assemble(contents: Contents, bodies: list[Named], surfaces: list[Named]) -> TaggedMesh:
+    """Pick the cells of the bodies and the edges of the surfaces.
+
+    Raises
+    ------
+    CaseError
+        One line, charged to the key at fault.
+    """
+    points = _plane(contents.points)
+    found = [_cells_of(contents, body) for body in bodies]
+    _only_one_type(found)
+    _apart(found, bodies)
+    corners = found[0].corners
+    kind, order = _TYPES[corners], _ORDERS[corners, found[0].nodes.shape[1]]
+    points, cells = _completed(points, [block.nodes for block in found], corners)
+    # nodes that both bodies have are doubled, or the bodies would be glued together
+    cells = [nodes + i * len(points) for i, nodes in enumerate(cells)]
+    points = np.concatenate([points] * len(cells))
+    cells = [_the_right_way_round(points, nodes, kind, order) for nodes in cells]
+    edges = [boundary(kind, order, nodes) for nodes in cells]
+    original = len(points) // len(cells)
+    picked = [_edges_of(contents, surface, edges, bodies, original) for surface in surfaces]
+    counts = [len(nodes) for nodes in cells], [len(nodes) for nodes in picked]
+    tags = [np.repeat(np.arange(len(n), dtype=np.int32) + 1, n) for n in counts]
+    return compact(
+        TaggedMesh(
+            points=points,
+            cell_type=kind,
+            cells=np.concatenate(cells),
+            cell_tags=tags[0],
+            facets=np.concatenate(picked),
+            facet_tags=tags[1],
+            bodies=tuple(body.name for body in bodies),
+            surfaces=tuple(surface.name for surface in surfaces),
+        )
+    )
+
+
+def _plane(points: np.ndarray) -> np.ndarray:
+    extent = np.ptp(points, axis=0).max(initial=0.0)
+    if not np.isfinite(points).all() or extent == 0.0:
+        raise CaseError("geometry.path: the file has nodes without a place, or all at one place")
+    if points.shape[1] == 3 and np.ptp(points[:, 2]) > 1e-9 * extent:
+        raise CaseError("geometry.path: the nodes do not lie in a plane z = const")
+    return np.ascontiguousarray(points[:, :2])
+
+
+def _unknown(part: Named, known: list[str], what: str) -> CaseError:
+    names = f"one of: {', '.join(known)}" if known else f"it has no names of {what}"
+    return CaseError(f"{part.key}: the file has no {what} named {part.in_file!r}; {names}")
+
+
+def _cells_of(contents: Contents, body: Named) -> Block:
+    """The cells of a body, in one block."""
+    blocks = [b for b in contents.blocks if b.dim == 2 and len(b.sets.get(body.in_file, ()))]
+    if not blocks:
+        raise _unknown(body, contents.names(2), "cells")
+    shapes = {(b.corners, b.nodes.shape[1]) for b in blocks}
+    if len(shapes) > 1:
+        raise CaseError(f"{body.key}: the cells are mixed, {_listed(shapes)}; one type is possible")
+    nodes = np.concatenate([b.nodes[b.sets[body.in_file]] for b in blocks])
+    shape = shapes.pop()
+    if shape not in _ORDERS:
+        raise CaseError(f"{body.key}: cells with {shape[1]} nodes are not supported")
+    return Block(2, shape[0], nodes, {})
+
+
+def _listed(shapes) -> str:
+    return " and ".join(f"{_TYPES.get(c, 'cell')}s of {n} nodes" for c, n in sorted(shapes))
+
+
+def _only_one_type(found: list[Block]) -> None:
+    shapes = {(block.corners, block.nodes.shape[1]) for block in found}
+    if len(shapes) > 1:
+        raise CaseError(
+            f"geometry.bodies: the bodies have different cells, {_listed(shapes)}; "
+            "one type is possible"
+        )
+
+
+def _apart(found: list[Block], bodies: list[Named]) -> None:
+    """No cell may belong to both bodies, or be there twice."""
+    cells = np.sort(np.concatenate([b.nodes[:, : b.corners] for b in found]), axis=1)
+    double = len(cells) - len(np.unique(cells, axis=0))
+    if double:
+        raise CaseError(
+            f"geometry.bodies: {double} cells are in {bodies[0].in_file!r} and "
+            f"{bodies[1].in_file!r} both, or twice in one of them"
+        )
+
+
+def _completed(
+    points: np.ndarray, cells: list[np.ndarray], corners: int
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Quadrilaterals of eight nodes get the one in the middle that their shape functions mean."""
+    if corners != 4 or cells[0].shape[1] != 8:
+        return points, cells
+    result = []
+    for nodes in cells:
+        x = points[nodes]
+        centre = x[:, 4:].sum(axis=1) / 2 - x[:, :4].sum(axis=1) / 4
+        result.append(np.column_stack([nodes, len(points) + np.arange(len(nodes))]))
+        points = np.concatenate([points, centre])
+    return points, result
+
+
+def _the_right_way_round(points, nodes: np.ndarray, kind: str, order: int) -> np.ndarray:
+    """Cells with their nodes counter-clockwise."""
+    x, y = np.moveaxis(points[nodes[:, : CORNERS[kind]]], 2, 0)
+    area = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
+    if np.any(np.abs(area) <= 1e-12 * np.abs(area).max()):
+        raise CaseError("geometry.path: the file has cells without area")
+    nodes = nodes.copy()
+    nodes[area < 0] = nodes[area < 0][:, turned(kind, order)]
+    return nodes
+
+
+def _edges_of(
+    contents: Contents, surface: Named, edges: list[np.ndarray], bodies: list[Named], copies: int
+) -> np.ndarray:
+    """Boundary edges of a surface; the nodes of body i are those of the file plus i * copies."""
+    belongs = _membership(contents, surface)
+    masks = [belongs(of_body - i * copies) for i, of_body in enumerate(edges)]
+    allowed = range(len(edges)) if surface.body is None else [surface.body]
+    result = np.concatenate([edges[i][masks[i]] for i in allowed])
+    if not len(result):
+        whose = "a body" if surface.body is None else f"body {bodies[surface.body].name!r}"
+        raise CaseError(f"{surface.key}: {surface.in_file!r} is not on the boundary of {whose}")
+    return result
+
+
+def _membership(contents: Contents, surface: Named) -> Callable[[np.ndarray], np.ndarray]:
+    """Which edges, by their nodes, belong to a surface of the file: a set of lines or of nodes."""
+    name = surface.in_file
+    lines = [b.nodes[b.sets[name]] for b in contents.blocks if b.dim == 1 and name in b.sets]
+    if lines:
+        wanted = {frozenset(pair) for part in lines for pair in part[:, :2].tolist()}
+        return lambda edges: np.array([frozenset(e) in wanted for e in edges[:, :2].tolist()])
+    if name in contents.node_sets:
+        members = contents.node_sets[name]
+        return lambda edges: np.all(np.isin(edges, members), axis=1)
+    raise _unknown(surface, sorted({*contents.names(1), *contents.node_sets}), "surface")

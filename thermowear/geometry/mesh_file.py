@@ -1,0 +1,137 @@
+"""Bodies that were meshed elsewhere and are read from a file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, model_serializer, model_validator
+
+from ..case.geometry import PlaneGeometry, keyed
+from ..case.section import KeyFault
+from ..case.units import Area, Length
+from .assembly import Named, assemble
+from .file_contents import read_contents
+
+_KEYS = {
+    "body_names": "bodies",
+    "contact_names": "contact",
+    "held_name": "held",
+    "fixed_name": "fixed",
+    "symmetry_names": "symmetry",
+    "surface_names": "surfaces",
+}
+"""Attributes whose keys have the names of what every geometry answers."""
+
+
+class MeshFile(PlaneGeometry):
+    """Which file, and what is what in it.
+
+    The file names bodies and surfaces by physical groups (gmsh), sets (Abaqus), families (MED) or
+    the numbers of integer cell data (VTK, XDMF). A surface that has no name under ``surfaces``
+    goes by its name in the file.
+
+    Attributes
+    ----------
+    path : str
+        ``.msh``, ``.inp``, ``.vtu``, ``.xdmf`` or ``.med``; relative to the current directory.
+    length_unit : float
+        What 1 in the file stands for [m].
+    body_names : dict of str to str
+        Key ``bodies``: name in the file of body 1 (held and loaded) and body 2, by their names
+        in the case.
+    contact_names : tuple of str
+        Key ``contact``: contact faces of body 1 and body 2.
+    held_name, fixed_name : str
+        Keys ``held`` and ``fixed``: surface of body 1 on the holder, fixed surface of body 2.
+    symmetry_names : tuple of str
+        Key ``symmetry``: surfaces on a plane of symmetry x = const.
+    surface_names : dict of str to str
+        Key ``surfaces``: names in the file of further surfaces, or of those above, by their names
+        in the case.
+    contact_area_given : float or None
+        Key ``contact_area``: for a mean pressure [m²].
+    """
+
+    name = "file"
+    models = ("axisymmetric", "plane-strain", "plane-stress")
+
+    type: Literal["file"]
+    path: str
+    length_unit: Length = 1.0
+    body_names: dict[str, str] = Field(alias="bodies")
+    contact_names: tuple[str, str] = Field(alias="contact")
+    held_name: str = Field(alias="held")
+    fixed_name: str = Field(alias="fixed")
+    symmetry_names: tuple[str, ...] = Field(alias="symmetry", default=())
+    surface_names: dict[str, str] = Field(alias="surfaces", default={})
+    contact_area_given: Area | None = Field(alias="contact_area", default=None)
+
+    @model_validator(mode="after")
+    def _complete(self):
+        if len(self.body_names) != 2:
+            raise KeyFault("bodies", f"needs two, the held one first; found {len(self.body_names)}")
+        roles = {"contact": self.contact, "held": (self.held,), "fixed": (self.fixed,)}
+        seen: set[str] = set()
+        for key, names in roles.items():
+            for name in names:
+                if name in seen:
+                    raise KeyFault(key, f"{name!r} is there twice; each surface has one purpose")
+                seen.add(name)
+        return self
+
+    @model_serializer(mode="wrap")
+    def _by_keys(self, handler) -> dict[str, Any]:
+        keys = _KEYS | {"contact_area_given": "contact_area"}
+        return {keys.get(name, name): value for name, value in handler(self).items()}
+
+    @keyed
+    def bodies(self) -> tuple[str, ...]:
+        return tuple(self.body_names)
+
+    @keyed
+    def contact(self) -> tuple[str, str]:
+        return self.contact_names
+
+    @keyed
+    def held(self) -> str:
+        return self.held_name
+
+    @keyed
+    def fixed(self) -> str:
+        return self.fixed_name
+
+    @property
+    def symmetry(self) -> tuple[str, ...]:
+        return self.symmetry_names
+
+    @keyed
+    def surfaces(self) -> tuple[str, ...]:
+        return tuple(self._purposes())
+
+    def contact_area(self) -> float | None:
+        return self.contact_area_given
+
+    def build(self, mesh, zone):
+        contents = read_contents(Path(self.path))
+        bodies = [
+            Named(name, in_file, f"geometry.bodies.{name}")
+            for name, in_file in self.body_names.items()
+        ]
+        tagged = assemble(contents, bodies, list(self._purposes().values()))
+        return replace(tagged, points=tagged.points * self.length_unit)
+
+    def _purposes(self) -> dict[str, Named]:
+        """All surfaces by their names in the case."""
+        (upper, lower) = self.contact_names
+        uses: list[tuple[str, str, int | None]] = [("contact", upper, 0), ("contact", lower, 1)]
+        uses += [("held", self.held_name, 0), ("fixed", self.fixed_name, 1)]
+        uses += [("symmetry", name, None) for name in self.symmetry_names]
+        uses += [("surfaces", name, None) for name in self.surface_names]
+        result: dict[str, Named] = {}
+        for use, name, body in uses:
+            renamed = name in self.surface_names
+            key = f"geometry.surfaces.{name}" if renamed else f"geometry.{use}"
+            result.setdefault(name, Named(name, self.surface_names.get(name, name), key, body))
+        return result

@@ -1,0 +1,52 @@
+"""What a cylinder and a sphere on a block share: a disc that touches a rectangle.
+
+They touch at the origin. Of the disc, which is above, the lower half is meshed (or the right half
+of that); it is held on the flat at the height of its centre.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from ..case.units import Length
+from .face_ends import face_ends, growth, row_ratio
+from .on_block import ORDER, OnBlock, near, within
+from .outlines import Disc, ringed_body
+from .quads import mesh_body
+
+
+class RoundOnBlock(OnBlock):
+    """Base: body 1 is round.
+
+    Attributes
+    ----------
+    radius : float [m]
+    """
+
+    name: ClassVar[str] = ""
+
+    radius: Length
+
+    def upper_limits(self):
+        return {"radius": self.radius / 2}
+
+    def upper_body(self, mesh, zone):
+        radius = self.radius
+        elements, grading = mesh.face(self.bodies[0])
+        limits = (-0.65 * radius, 0.65 * radius)
+        ends, largest = face_ends(zone, elements, grading, self.right_only, limits)
+        along = radius * np.arcsin(ends / radius)
+        rows = largest, row_ratio(elements)
+        sheets = ringed_body(Disc(radius, self.right_only), along, rows, growth(elements))
+
+        def on_arc(p):
+            return near(np.hypot(p[..., 0], p[..., 1] - radius), radius, radius)
+
+        claims = {
+            "face": lambda p: on_arc(p) & within(p, (ends[0], ends[-1])),
+            "side": on_arc,
+            "top": lambda p: near(p[..., 1], radius, radius),
+        }
+        return mesh_body(sheets, ORDER), claims

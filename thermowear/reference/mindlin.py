@@ -1,0 +1,147 @@
+"""Tangential loading of a Hertz contact that sticks and slips (Cattaneo, Mindlin).
+
+Johnson, Contact Mechanics (1985), ch. 7. Both bodies are elastically similar, so that shear leaves
+the pressure as it is. P is the normal force, Q the tangential one, ``|Q| <= mu P``; of a line
+contact both are per length. Under Q it sticks in ``|x| < c`` and slips outside. On unloading, the
+shear of the change of Q is superposed, with the bound ``2 mu p`` (Masing's rule).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log, pi, sqrt
+
+import numpy as np
+
+from .hertz import Hertz, line_contact
+
+
+@dataclass(frozen=True)
+class MindlinLine:
+    """A cylinder on a half-plane, or two parallel cylinders; forces per length.
+
+    Attributes
+    ----------
+    force : float
+        P [N/m].
+    radius : float
+        Relative radius R, ``1/R = 1/R1 + 1/R2`` [m].
+    modulus : float
+        Contact modulus E*, ``1/E* = (1 - ν1²)/E1 + (1 - ν2²)/E2`` [Pa].
+    friction : float
+        mu.
+    """
+
+    force: float
+    radius: float
+    modulus: float
+    friction: float
+
+    @property
+    def normal(self) -> Hertz:
+        """Half-width and pressure, which the tangential force leaves as they are."""
+        return line_contact(self.force, self.radius, self.modulus)
+
+    @property
+    def limit(self) -> float:
+        """Tangential force of full sliding ``mu P`` [N/m]."""
+        return self.friction * self.force
+
+    def stick_half_width(self, tangential: float) -> float:
+        """``c = a sqrt(1 - |Q|/(mu P))`` on first loading [m]."""
+        return self.normal.half_width * sqrt(1 - abs(tangential) / self.limit)
+
+    def shear(self, x, tangential: float) -> np.ndarray:
+        """Shear along Q that the body pushed by Q exerts on first loading [Pa].
+
+        ``mu p0 (sqrt(1 - x²/a²) - c/a sqrt(1 - x²/c²))`` (Johnson, section 7.2).
+        """
+        p0, a, c = self.normal.peak, self.normal.half_width, self.stick_half_width(tangential)
+        stuck = Hertz(c, p0 * c / a).pressure(np.asarray(x)) if c > 0 else 0.0
+        return np.sign(tangential) * self.friction * (self.normal.pressure(np.asarray(x)) - stuck)
+
+    def shear_after(self, x, largest: float, tangential: float) -> np.ndarray:
+        """Shear traction after loading to ``largest`` and back to ``tangential`` [Pa]."""
+        change = (largest - tangential) / 2
+        return self.shear(x, largest) - 2 * self.shear(x, change)
+
+    def slip(self, x, tangential: float) -> np.ndarray:
+        """Slip of the body pushed by Q, against the sticking zone, on first loading [m].
+
+        Of similar half-planes, ``ds/dx = 2/(π E*) ∫ q(ξ)/(x - ξ) dξ`` (Johnson, section 2.5); both
+        ellipses of the shear have closed integrals, which leave
+        ``ds/dx = 2 mu p0/(E* a) sqrt(x² - c²)`` in ``c < x < a``, thus
+        ``s = mu p0/(E* a) (x sqrt(x² - c²) - c² arcosh(x/c))``.
+        """
+        p0, a, c = self.normal.peak, self.normal.half_width, self.stick_half_width(tangential)
+        x = np.clip(np.abs(np.asarray(x, dtype=float)), c, None)
+        lost = c**2 * np.arccosh(x / c) if c > 0 else 0.0
+        scale = self.friction * p0 / (self.modulus * a)
+        return np.sign(tangential) * scale * (x * np.sqrt(x**2 - c**2) - lost)
+
+    def loss_on_loading(self, tangential: float) -> float:
+        """Energy dissipated on first loading to Q [J/m].
+
+        The slip of each point grows under a constant ``mu p``, so that the loss is
+        ``2 ∫ mu p s dx`` from c to a. With ``k = c/a`` the first term of `slip` gives
+        ``∫ x sqrt((1 - x²)(x² - k²)) dx = π (1 - k²)²/16`` from k to 1. The second,
+        ``I = ∫ sqrt(1 - x²) arcosh(x/k) dx``, has ``dI/dk = -π (1 - k²)/(4 k)`` and vanishes for
+        ``k = 1``: ``I = π/4 (-ln k - (1 - k²)/2)``. With ``p0 a = 2 P/π`` and
+        ``k² = 1 - f``, ``f = |Q|/(mu P)``::
+
+            (mu P)²/(2 π E*) (f (2 - f) + 2 (1 - f) ln(1 - f)).
+        """
+        f = abs(tangential) / self.limit
+        decay = 2 * (1 - f) * log(1 - f) if f < 1 else 0.0
+        return self.limit**2 / (2 * pi * self.modulus) * (f * (2 - f) + decay)
+
+    def loss_per_cycle(self, amplitude: float) -> float:
+        """Energy dissipated in a full cycle of Q between plus and minus the amplitude [J/m].
+
+        Each half changes Q by twice the amplitude, which slips twice as far as first loading under
+        the same ``mu p``: four times `loss_on_loading`.
+        """
+        return 4 * self.loss_on_loading(amplitude)
+
+
+@dataclass(frozen=True)
+class MindlinSphere:
+    """Two spheres; the small slip across Q is neglected, as Mindlin did.
+
+    Attributes
+    ----------
+    force : float
+        P [N].
+    radius : float
+        Of the contact, a [m].
+    compliance : float
+        ``(2 - ν1)/G1 + (2 - ν2)/G2`` [1/Pa].
+    friction : float
+        mu.
+    """
+
+    force: float
+    radius: float
+    compliance: float
+    friction: float
+
+    def displacement(self, tangential: float) -> float:
+        """Of distant points on first loading, ``3 mu P/(16 a) K (1 - (1 - f)^(2/3))`` [m].
+
+        Johnson, section 7.2, with ``f = |Q|/(mu P)`` and K the compliance.
+        """
+        limit = self.friction * self.force
+        scale = 3 * limit * self.compliance / (16 * self.radius)
+        return float(np.sign(tangential) * scale * (1 - (1 - abs(tangential) / limit) ** (2 / 3)))
+
+    def loss_per_cycle(self, amplitude: float) -> float:
+        """Energy dissipated in a full cycle of Q between plus and minus the amplitude [J].
+
+        The area of the loop that Masing's rule makes of `displacement`,
+        ``8 (∫ Q dδ - Q δ/2)``, which is the result of Mindlin and Deresiewicz (1953)
+        ``9 (mu P)²/(10 a) K (1 - (1 - f)^(5/3) - 5 f/6 (1 + (1 - f)^(2/3)))``.
+        """
+        limit = self.friction * self.force
+        f = abs(amplitude) / limit
+        shape = 1 - (1 - f) ** (5 / 3) - 5 * f / 6 * (1 + (1 - f) ** (2 / 3))
+        return 9 * limit**2 * self.compliance / (10 * self.radius) * shape

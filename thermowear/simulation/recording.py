@@ -1,0 +1,68 @@
+"""Bodies and interface at a contact state, as results keep them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .result import Interface
+from .state import BodyState, body_state
+from .system import System
+
+
+def interface_at(
+    system: System,
+    pressure: np.ndarray,
+    translation: np.ndarray,
+    worn: np.ndarray,
+    shear: np.ndarray | None = None,
+) -> tuple[BodyState, Interface]:
+    """Solve the bodies and record the interface. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    pressure : ndarray, shape (n,) [Pa]
+    translation : ndarray, shape (2,)
+        Of the holder [m].
+    worn : ndarray, shape (2, n)
+        Depth worn off each body [m].
+    shear : ndarray, shape (n,), optional
+        See `body_state` [Pa].
+    """
+    state = body_state(system, pressure, shear)
+    lost = system.pairing.gap + worn.sum(axis=0)
+    gap = lost + state.opening - system.pairing.normals @ translation
+    return state, record(system, pressure, state, gap, lost.max() - lost, worn)
+
+
+def record(system: System, pressure, state: BodyState, gap, shape, worn) -> Interface:
+    """The interface as it is written out; arrays of shape (n,), `worn` of (2, n)."""
+    points = system.pairing.points
+    nothing = np.full(len(pressure), np.nan)
+    rates = np.zeros((2, len(pressure)))
+    for index, law in system.laws.items():
+        rates[index] = law.rate(pressure, system.speed)
+    temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
+    fluxes = temperatures
+    if state.thermal is not None and system.thermal is not None:
+        T1, T2 = state.thermal.rise
+        temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
+        fluxes = state.thermal.flux
+    return Interface(
+        x=points[:, 0],
+        y=points[:, 1],
+        z=np.zeros(len(pressure)),
+        s=system.pairing.position,
+        weight=system.weights,
+        pressure=pressure,
+        gap=gap,
+        shape=shape,
+        wear_1=worn[0],
+        wear_2=worn[1],
+        wear_rate_1=rates[0],
+        wear_rate_2=rates[1],
+        temperature_1=temperatures[0],
+        temperature_2=temperatures[1],
+        heat_flux_1=fluxes[0],
+        heat_flux_2=fluxes[1],
+    )

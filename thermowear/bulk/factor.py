@@ -67,10 +67,11 @@ class Factor:
         ndarray
             The solutions, same shape.
         """
-        if sp.issparse(loads) and self._comm.size > 1:  # MUMPS wants sparse ones on one rank
-            loads = loads.toarray(order="F")
+        if not isinstance(loads, np.ndarray) and self._comm.size > 1:
+            loads = loads.toarray()  # MUMPS wants sparse ones on one rank
         flat = loads.reshape(loads.shape[0], -1)
-        right = self._sparse(flat) if sp.issparse(flat) else self._dense(np.asfortranarray(flat))
+        dense = isinstance(flat, np.ndarray)
+        right = self._dense(np.asfortranarray(flat)) if dense else self._sparse(flat)
         result = np.empty(flat.shape, order="F")  # written in place: it may be large
         x = self._dense(result)
         for matrix in (right, x):

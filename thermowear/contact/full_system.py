@@ -162,7 +162,8 @@ class FullContact(ContactEquations):
         solution, and the steps never turn round.
         """
         gap, springs = self.gap(loading, displacement), self.carried * self.stiffness[:, None]
-        closed, motion = np.ones(len(gap), dtype=bool), np.zeros(len(loading.load))
+        closed: np.ndarray = np.ones(len(gap), dtype=bool)
+        motion = np.zeros(len(loading.load))
         for _ in range(_ITERATIONS):
             matrix, right = springs[closed].T @ self.modes[closed], springs[closed].T @ gap[closed]
             motion = np.linalg.lstsq(matrix, loading.load + right, rcond=None)[0]

@@ -10,10 +10,10 @@ help: ## this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 12
 
 demo: ## compute the demo cases into results/
-	$(ENV) python3 -m thermowear run demos/annular_punch.toml \
-	    -o results/annular_punch --overwrite
-	$(ENV) python3 -m thermowear run demos/annular_punch_running_in.toml \
-	    -o results/annular_punch_running_in --overwrite
+	for case in demos/*.toml; do \
+	    $(ENV) python3 -m thermowear run $$case \
+	        -o results/$$(basename $$case .toml) --overwrite || exit; \
+	done
 
 test: ## the tests but the slow ones
 	$(PYTEST) -n 2 -m "not slow"

@@ -10,6 +10,18 @@ from typing import Any
 from thermowear.case.starters import starter_text
 
 STEADY, RUNNING_IN = "annular-punch", "annular-punch-running-in"
+HERTZ, FRETTING, PUNCH = "cylinder-on-block", "cylinder-stick-slip", "punch-on-block"
+SPHERE = "sphere-on-block"
+
+FILE = {
+    "type": "file",
+    "path": "mesh.msh",
+    "bodies": {"cylinder": "upper", "block": "lower"},
+    "contact": ["cylinder_face", "block_face"],
+    "held": "cylinder_top",
+    "fixed": "block_bottom",
+}
+"""Keys of a geometry that was meshed elsewhere, with the bodies of the cylinder."""
 
 
 class _Gone:
@@ -38,7 +50,7 @@ def tables(name: str = STEADY, changes: dict[str, Any] | None = None) -> dict[st
         if value is GONE:
             del table[key]
         else:
-            table[key] = value
+            table[key] = copy.deepcopy(value)
     return result
 
 

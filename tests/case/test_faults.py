@@ -13,7 +13,7 @@ import tomli_w
 import thermowear as tw
 from thermowear.cli import main
 
-from .starter import GONE, RUNNING_IN, STEADY, tables
+from .starter import FILE, FRETTING, GONE, HERTZ, PUNCH, RUNNING_IN, SPHERE, STEADY, tables
 
 
 @dataclass(frozen=True)
@@ -285,7 +285,263 @@ RELATIONS = [
     Bad("until never", {"analysis.until": "never"}, "analysis.until", "'steady'", RUNNING_IN),
 ]
 
-ALL = NAMES + QUANTITIES + NUMBERS + KINDS + RELATIONS
+SPEED, TURN = {"velocity": "50 mm/s"}, {"angular_velocity": "1 rad/s"}
+
+MOTIONS = [
+    Bad("ring moved along", {"motion": SPEED}, "motion.velocity", "needs motion.angular_velocity"),
+    Bad("ring turned and moved", {"motion.velocity": "1 m/s"}, "motion.velocity", "plane models"),
+    Bad("ring not moved", {"motion": {}}, "motion.angular_velocity", "missing"),
+    Bad(
+        "punch turned", {"motion": TURN}, "motion.angular_velocity", "needs motion.velocity", PUNCH
+    ),
+    Bad("punch not moved", {"motion": {}}, "motion.velocity", "missing; plane-strain", PUNCH),
+    Bad(
+        "velocity 0",
+        {"motion": {"velocity": "0 mm/s"}},
+        "motion.velocity",
+        "must be other than 0 m/s",
+        PUNCH,
+    ),
+    Bad(
+        "angular velocity 0",
+        {"motion": {"angular_velocity": "0 rad/s"}},
+        "motion.angular_velocity",
+        "greater than 0",
+    ),
+    Bad(
+        "half of what slides with friction",
+        {"motion": SPEED, "contact.friction": 0.3},
+        "geometry.half",
+        "mesh the whole section",
+        HERTZ,
+    ),
+]
+
+ONE = "exactly one of force, mean_pressure and approach"
+
+LOADS = [
+    Bad("pressure and approach", {"load.approach": "1 um"}, "load", ONE, PUNCH),
+    Bad("force and approach", {"load.force": "1 N"}, "load", ONE, HERTZ),
+    Bad("all three", {"load.force": "1 N", "load.approach": "1 um"}, "load", ONE, PUNCH),
+    Bad("no load in the table", {"load": {}}, "load", ONE, HERTZ),
+    Bad(
+        "mean pressure of a cylinder",
+        {"load": {"mean_pressure": "1 MPa"}},
+        "load.mean_pressure",
+        "no nominal contact area; give the force",
+        HERTZ,
+    ),
+    Bad(
+        "mean pressure of a file without an area",
+        {"geometry": FILE, "contact": {}, "load": {"mean_pressure": "1 MPa"}},
+        "load.mean_pressure",
+        "no nominal contact area",
+        HERTZ,
+    ),
+    Bad("steady approach", {"load": {"approach": "1 um"}}, "load.approach", "needs a force"),
+    Bad("negative force", {"load": {"force": "-1 N"}}, "load.force", "greater than 0 N", HERTZ),
+    Bad("negative approach", {"load": {"approach": "-1 um"}}, "load.approach", "greater", HERTZ),
+]
+
+HISTORY = "load.history"
+PAST, PUSH, MOVE = f"{HISTORY}.time", f"{HISTORY}.tangential_force", f"{HISTORY}.approach"
+
+HISTORIES = [
+    Bad(
+        "history of an initial contact",
+        {HISTORY: {"time": ["0 s"]}},
+        HISTORY,
+        "for a fretting analysis, not for initial",
+        HERTZ,
+    ),
+    Bad("fretting without history", {HISTORY: GONE}, HISTORY, "missing; a fretting", FRETTING),
+    Bad("history without time", {PAST: GONE}, PAST, "missing", FRETTING),
+    Bad("empty history", {HISTORY: {"time": []}}, PAST, "is empty", FRETTING),
+    Bad("lists that differ", {PUSH: ["0 N", "1 N"]}, PUSH, "has 2 values for 4 times", FRETTING),
+    Bad("time goes back", {PAST: ["0 s", "2 s", "1 s", "3 s"]}, PAST, "must increase", FRETTING),
+    Bad("time stands still", {PAST: ["0 s", "1 s", "1 s", "3 s"]}, PAST, "increase", FRETTING),
+    Bad("time below 0", {PAST: ["-1 s", "1 s", "2 s", "3 s"]}, f"{PAST}.0", "at least", FRETTING),
+    Bad("time is no list", {PAST: "0 s"}, PAST, "must be a list", FRETTING),
+    Bad(
+        "force and approach in the history",
+        {"load": {"history": {"time": ["0 s"], "force": ["1 N"], "approach": ["1 um"]}}},
+        MOVE,
+        "only one of force and approach",
+        FRETTING,
+    ),
+    Bad(
+        "force and displacement across",
+        {f"{HISTORY}.tangential_displacement": ["0 um"] * 4},
+        f"{HISTORY}.tangential_displacement",
+        "only one of tangential_force and",
+        FRETTING,
+    ),
+    Bad(
+        "force twice",
+        {f"{HISTORY}.force": ["1 N"] * 4},
+        "load",
+        "the history gives the force or the approach already",
+        FRETTING,
+    ),
+    Bad("force, approach over time", {MOVE: ["1 um"] * 4}, "load", "already", FRETTING),
+    Bad("nothing presses", {"load.force": GONE}, "load", ONE, FRETTING),
+    Bad("pull", {f"{HISTORY}.force": ["1 N", "0 N"]}, f"{HISTORY}.force.1", "greater", FRETTING),
+    Bad("half pushed across", {"geometry.half": True}, "geometry.half", "not symmetric", FRETTING),
+    Bad(
+        "sphere pushed across",
+        {
+            "analysis": {"type": "fretting"},
+            HISTORY: {"time": ["0 s"], "tangential_force": ["1 N"]},
+            "contact": {},
+        },
+        HISTORY,
+        "axisymmetric body has no tangential motion",
+        SPHERE,
+    ),
+    Bad("output after the history", {TIMES: ["1 s", "4 s"]}, TIMES, "4 s lies outside", FRETTING),
+    Bad(
+        "output before the history",
+        {TIMES: ["1 s"], PAST: ["2 s", "3 s", "4 s", "5 s"]},
+        TIMES,
+        "1 s lies outside",
+        FRETTING,
+    ),
+    Bad("output of fretting twice", {TIMES: ["1 s", "1000 ms"]}, TIMES, "twice", FRETTING),
+    Bad("no increments", {"analysis.increments": 0}, "analysis.increments", "at least 1", FRETTING),
+    Bad(
+        "fretting by Nitsche",
+        {"contact.method": "nitsche"},
+        "contact.method",
+        "'nitsche' does not know sticking",
+        FRETTING,
+    ),
+    Bad(
+        "fretting by penalty",
+        {"contact.method": "penalty"},
+        "contact.method",
+        "use condensed",
+        FRETTING,
+    ),
+    Bad("fretting and sliding", {"motion": SPEED}, "motion", "not for a fretting", FRETTING),
+    Bad(
+        "fretting and wear",
+        {"wear.block": {"coefficient": "1e-7 1/MPa"}},
+        "wear",
+        "not for a fretting",
+        FRETTING,
+    ),
+    Bad(
+        "fretting and heat",
+        {
+            "heat.cooling": {"block_bottom": "1 W/(m^2 K)"},
+            "bodies.cylinder.conductivity": "50 W/(m K)",
+            "bodies.cylinder.expansion": "1e-5 1/K",
+        },
+        "heat",
+        "not for a fretting",
+        FRETTING,
+    ),
+]
+
+NITSCHE, PENALTY = ({"contact": {"method": name}} for name in ("nitsche", "penalty"))
+STIFF, THETA, GAMMA = (f"contact.{key}" for key in ("penalty", "theta", "gamma"))
+DEGREE = "contact.pressure_degree"
+
+METHODS = [
+    Bad("penalty, condensed", {STIFF: "1e15 Pa/m"}, STIFF, 'method = "penalty"', HERTZ),
+    Bad("penalty of Nitsche", NITSCHE | {STIFF: "1e15 Pa/m"}, STIFF, 'method = "penalty"', HERTZ),
+    Bad("penalty 0", PENALTY | {STIFF: "0 Pa/m"}, STIFF, "greater than 0 Pa/m", HERTZ),
+    Bad("penalty a pressure", PENALTY | {STIFF: "1e15 Pa"}, STIFF, "needs one of Pa/m", HERTZ),
+    Bad("theta, condensed", {THETA: 1}, THETA, 'method = "nitsche"', HERTZ),
+    Bad("theta of penalty", PENALTY | {THETA: 0}, THETA, 'method = "nitsche"', HERTZ),
+    Bad("theta 2", NITSCHE | {THETA: 2}, THETA, "found 2; must be 1, 0 or -1", HERTZ),
+    Bad("theta 1.0", NITSCHE | {THETA: 1.0}, THETA, "found 1.0; must be 1, 0 or -1", HERTZ),
+    Bad("theta true", NITSCHE | {THETA: True}, THETA, "found True; must be 1, 0 or -1", HERTZ),
+    Bad("gamma, condensed", {GAMMA: 10.0}, GAMMA, 'method = "nitsche"', HERTZ),
+    Bad("gamma of penalty", PENALTY | {GAMMA: 10.0}, GAMMA, 'method = "nitsche"', HERTZ),
+    Bad("gamma 0", NITSCHE | {GAMMA: 0}, GAMMA, "found 0; must be greater than 0", HERTZ),
+    Bad("pressure of Gauss", {DEGREE: "gauss"}, DEGREE, 'from 1 to 10, or "lobatto"', HERTZ),
+    Bad("pressure degree 0", {DEGREE: 0}, DEGREE, "found 0; must be a whole number", HERTZ),
+    Bad("pressure degree 2.5", {DEGREE: 2.5}, DEGREE, "found 2.5; must be a whole", HERTZ),
+    Bad("pressure degree true", {DEGREE: True}, DEGREE, "found True; must be a whole", HERTZ),
+    Bad("pressure degree in a list", {DEGREE: [3]}, DEGREE, "found [3]; must be a whole", HERTZ),
+    Bad("pressure degree 7 of 6", {DEGREE: 7}, DEGREE, "found 7; at most mesh.degree = 6", HERTZ),
+    Bad("positioning 1", {"contact.positioning": 1}, "contact.positioning", "true or false", HERTZ),
+    Bad("positioning yes", {"contact.positioning": "yes"}, "contact.positioning", "true", HERTZ),
+    Bad(
+        "positioning of a ring",
+        {"contact.positioning": True},
+        "contact.positioning",
+        "the mesh of 'annular-punch' cannot be moved",
+    ),
+    Bad(
+        "positioning of a file",
+        {"geometry": FILE},
+        "contact.positioning",
+        "the mesh of 'file' cannot be moved",
+        HERTZ,
+    ),
+    Bad("key of the contact", {"contact.penlty": 1}, "contact.penlty", "mean penalty?", HERTZ),
+]
+
+WIDE = "geometry.block_width"
+
+PLANE = [
+    Bad("ring in a plane", {"model": "plane-strain"}, "model", "allowed: axisymmetric"),
+    Bad("cylinder turned", {"model": "axisymmetric"}, "model", "allowed: plane-strain", HERTZ),
+    Bad("sphere in a plane", {"model": "plane-stress"}, "model", "allowed: axisymmetric", SPHERE),
+    Bad("thickness 0", {"geometry.thickness": "0 mm"}, "geometry.thickness", "greater", HERTZ),
+    Bad("half as text", {"geometry.half": "yes"}, "geometry.half", "must be true or false", HERTZ),
+    Bad("half of a sphere", {"geometry.half": True}, "geometry.half", "unknown key here", SPHERE),
+    Bad(
+        "edges rounder than the punch",
+        {"geometry.edge_radius": "5 mm"},
+        "geometry.edge_radius",
+        "less than half the width 0.005 m",
+        PUNCH,
+    ),
+    Bad(
+        "negative rounding",
+        {"geometry.edge_radius": "-1 mm"},
+        "geometry.edge_radius",
+        "at least 0 m",
+        PUNCH,
+    ),
+    Bad("narrow block", {WIDE: "13 mm"}, WIDE, "greater than 4/3 of width 0.01 m", PUNCH),
+]
+
+
+def of_file(name: str, key: str, value: Any, path: str, text: str) -> Bad:
+    """A fault in the keys of a geometry that is read from a file."""
+    geometry = {k: v for k, v in (FILE | {key: value}).items() if v is not GONE}
+    return Bad(name, {"geometry": geometry, "contact": {}}, f"geometry.{path}", text, HERTZ)
+
+
+OF_FILES = [
+    of_file("no path", "path", GONE, "path", "missing"),
+    of_file("no bodies", "bodies", GONE, "bodies", "missing"),
+    of_file("no contact", "contact", GONE, "contact", "missing"),
+    of_file("no holder", "held", GONE, "held", "missing"),
+    of_file("nothing fixed", "fixed", GONE, "fixed", "missing"),
+    of_file("one body", "bodies", {"cylinder": "a"}, "bodies", "needs two"),
+    of_file("list of bodies", "bodies", ["a", "b"], "bodies", "must be a table"),
+    of_file("one face", "contact", ["a"], "contact.1", "missing"),
+    of_file("three faces", "contact", ["a", "b", "c"], "contact", "at most 2"),
+    of_file("faces as text", "contact", "a", "contact", "must be a list"),
+    of_file("face by number", "contact", ["a", 2], "contact.1", "must be text"),
+    of_file("one face twice", "contact", ["a", "a"], "contact", "'a' is there twice"),
+    of_file("face on the holder", "held", "block_face", "held", "'block_face' is there twice"),
+    of_file("unit of mass", "length_unit", "1 kg", "length_unit", "dimension [mass]"),
+    of_file("unit without number", "length_unit", "mm", "length_unit", "cannot read"),
+    of_file("area a length", "contact_area", "1 m", "contact_area", "needs one of m^2"),
+    of_file("unknown key of a file", "helt", "a", "helt", "did you mean held?"),
+    of_file("name of an attribute", "held_name", "a", "held_name", "did you mean held?"),
+    of_file("key of another geometry", "radius", "1 mm", "radius", "unknown key here"),
+]
+
+ALL = (NAMES + QUANTITIES + NUMBERS + KINDS + RELATIONS) + (
+    MOTIONS + LOADS + HISTORIES + METHODS + PLANE + OF_FILES
+)
 
 
 @pytest.mark.parametrize("bad", ALL, ids=lambda bad: bad.name)

@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import thermowear as tw
+from thermowear.case.starters import starters
 
-from .starter import RUNNING_IN, STEADY, paths, tables
+from .starter import paths, tables
 
-PLACES = [(name, path) for name in (STEADY, RUNNING_IN) for path in paths(tables(name))]
+PLACES = [(name, path) for name in starters() for path in paths(tables(name))]
 # no towers of powers: a text of ten characters can stand for more digits than there is memory
 words = st.text(max_size=12).filter(lambda text: "^" not in text and "**" not in text)
 quantities = st.builds(

@@ -13,7 +13,7 @@ import thermowear as tw
 from thermowear.case import as_plain
 from thermowear.case.starters import starters
 
-from .starter import GONE, RUNNING_IN, STEADY, tables
+from .starter import FILE, FRETTING, GONE, HERTZ, PUNCH, RUNNING_IN, STEADY, tables
 
 VARIANTS = {
     **{name: (name, {}) for name in starters()},
@@ -25,6 +25,48 @@ VARIANTS = {
     "faces differ": (STEADY, {"mesh.bodies": {"plate": {"elements": 17}}}),
     "two laws": (STEADY, {"wear.plate": {"coefficient": "3e-9 mm^2/N", "per": "pressure"}}),
     "given temperature": (STEADY, {"heat.temperature": {"plate_side": "31.7 degC"}}),
+    "to the left": (PUNCH, {"motion": {"velocity": "-33.3 mm/s"}, "contact": {"friction": 0.1}}),
+    "penalty": (HERTZ, {"contact": {"method": "penalty", "penalty": "1e3 MPa/um"}}),
+    "Nitsche": (HERTZ, {"contact": {"method": "nitsche", "theta": -1, "gamma": 3.7}}),
+    "pressure degree": (HERTZ, {"contact.pressure_degree": 2}),
+    "point by point": (HERTZ, {"contact.pressure_degree": "lobatto"}),
+    "pulled to and fro": (
+        FRETTING,
+        {
+            "load": {
+                "history": {
+                    "time": ["0 s", "100 ms"],
+                    "approach": ["1.1 um", "1.3 um"],
+                    "tangential_displacement": ["0 um", "-0.3 um"],
+                }
+            },
+            "analysis.output_times": ["0 s", "33 ms"],
+        },
+    ),
+    "pressed harder": (
+        FRETTING,
+        {
+            "load": {"history": {"time": ["0 s"], "force": ["0.1 kN"]}},
+            "analysis.output_times": [],
+        },
+    ),
+    "file": (HERTZ, {"geometry": FILE, "contact": {}}),
+    "every key of a file": (
+        HERTZ,
+        {
+            "geometry": FILE
+            | {
+                "length_unit": "1 inch",
+                "symmetry": ["axis"],
+                "half": True,
+                "thickness": "3 mm",
+                "contact_area": "12 mm^2",
+                "surfaces": {"cylinder_side": "SIDE", "cylinder_face": "FACE"},
+            },
+            "contact": {},
+            "load": {"mean_pressure": "1 MPa"},
+        },
+    ),
 }
 
 

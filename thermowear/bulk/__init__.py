@@ -3,7 +3,7 @@
 from .bodies import Bodies, distribute
 from .conduction import Conduction, conduction
 from .elasticity import Elasticity, ElasticMaterial, elasticity
-from .kinematics import Axisymmetric
+from .kinematics import Axisymmetric, PlaneStrain, PlaneStress
 
 __all__ = [
     "Axisymmetric",
@@ -11,6 +11,8 @@ __all__ = [
     "Conduction",
     "ElasticMaterial",
     "Elasticity",
+    "PlaneStrain",
+    "PlaneStress",
     "conduction",
     "distribute",
     "elasticity",

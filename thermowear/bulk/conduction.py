@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from petsc4py import PETSc
 
 import numpy as np
+import scipy.sparse as sp
 import ufl
 from dolfinx import default_scalar_type, fem
 from dolfinx.fem.petsc import assemble_matrix
@@ -53,8 +54,10 @@ class Conduction:
     given: np.ndarray
     lifted: np.ndarray
 
-    def respond(self, heat: np.ndarray) -> np.ndarray:
+    def respond(self, heat: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Rise [K] due to nodal heat [W] alone, given temperatures at ambient; columns allowed."""
+        if sp.issparse(heat):
+            return self.factor.solve((sp.diags(~self.fixed, dtype=float) @ heat).tocsr())
         free = np.array(heat, dtype=float)
         free[self.fixed] = 0.0
         return self.factor.solve(free)

@@ -66,7 +66,7 @@ class Elasticity:
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] under nodal loads [N], owned rows, one or several columns."""
         if sp.issparse(loads):
-            return self.factor.solve(sp.diags(~self.fixed, dtype=float) @ loads)
+            return self.factor.solve((sp.diags(~self.fixed, dtype=float) @ loads).tocsr())
         supported = np.array(loads, dtype=float)
         supported[self.fixed] = 0.0
         return self.factor.solve(supported)

@@ -85,18 +85,21 @@ def _load(case: Case) -> Iterator[Fault]:
 
 
 def _motion(case: Case) -> Iterator[Fault]:
-    if case.motion is None:
+    if case.motion is None or case.model not in case.geometry.models:
         return
     kinds = {"angular_velocity": "axisymmetric models", "velocity": "plane models"}
     needed = "angular_velocity" if case.model == "axisymmetric" else "velocity"
     for key, models in kinds.items():
         if key != needed and getattr(case.motion, key) is not None:
             yield f"motion.{key}", f"is for {models}; {case.model} needs motion.{needed}"
+            return
     if getattr(case.motion, needed) is None:
         yield f"motion.{needed}", f"missing; {case.model} needs it"
 
 
 def _sliding(case: Case) -> Iterator[Fault]:
+    if case.analysis.type == "fretting":
+        return
     wears = case.analysis.type in ("steady", "transient")
     if wears and not case.wear:
         yield "wear", f"missing; a {case.analysis.type} analysis needs the wear law of a body"
@@ -173,6 +176,11 @@ def _method(case: Case) -> Iterator[Fault]:
             yield f"contact.{key}", f'is for method = "{method}"'
 
 
+def _positioning(case: Case) -> Iterator[Fault]:
+    if case.contact.positioning and not case.geometry.follows_contact:
+        yield "contact.positioning", f"the mesh of {case.geometry.type!r} cannot be moved"
+
+
 def _symmetry(case: Case) -> Iterator[Fault]:
     drags = case.contact.friction > 0 and case.motion is not None
     if drags and case.model != "axisymmetric" and case.geometry.symmetry:
@@ -190,5 +198,6 @@ _CHECKS = (
     _heat,
     _degrees,
     _method,
+    _positioning,
     _symmetry,
 )

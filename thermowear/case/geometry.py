@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, Field, SerializeAsAny
+from pydantic import BeforeValidator, SerializeAsAny
 
-from .section import KeyFault, Section
+from .section import KeyFault, Section, Switch
 from .units import Length
 
 _KNOWN: dict[str, type[Geometry]] = {}
@@ -88,6 +88,11 @@ class Geometry(Section):
         """Thickness of plane models that forces are of; twice the given one for half models [m]."""
         return None
 
+    @property
+    def follows_contact(self) -> bool:
+        """Whether the mesh is made for where the faces touch, and moves with it."""
+        return type(self).expected_zone is not Geometry.expected_zone
+
     def contact_area(self) -> float | None:
         """Nominal contact area, which turns a mean pressure into a force; None without one [m²]."""
         return None
@@ -130,7 +135,7 @@ class PlaneGeometry(Geometry):
     name: ClassVar[str] = ""
 
     thickness: Length = 1e-3
-    half: Annotated[bool, Field(strict=True)] = False
+    half: Switch = False
 
     @property
     def thickness_factor(self) -> float | None:

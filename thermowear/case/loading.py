@@ -25,6 +25,7 @@ _MESSAGES = {
     "finite_number": "must be a finite number",
     "int_type": "must be a whole number",
     "int_from_float": "must be a whole number",
+    "bool_type": "must be true or false",
     "string_type": "must be text in quotation marks",
     "model_type": "must be a table",
     "model_attributes_type": "must be a table",
@@ -121,7 +122,9 @@ def _suggestion(location: tuple[Any, ...]) -> str:
     """A key that is known near there and reads alike."""
     table = Case.model_fields.get(location[0])
     sections = _sections(table.annotation) if table else (Case,)
-    words = {name for section in sections for name in section.model_fields}
+    words = {
+        field.alias or name for section in sections for name, field in section.model_fields.items()
+    }
     if location[-1] in words:
         return " here"
     close = difflib.get_close_matches(str(location[-1]), sorted(words), n=1)

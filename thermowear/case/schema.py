@@ -7,19 +7,36 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from . import units
 from .checks import check
 from .geometry import AnyGeometry, Pressing
 from .history import History
 from .materials import Body, resolve_like
-from .section import KeyFault, Number, Section
+from .section import KeyFault, Number, Section, Switch
 from .wear import Wear
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
 Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
 Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
+
+
+def _pressure_degree(value: Any) -> Any:
+    whole = isinstance(value, int) and not isinstance(value, bool)
+    if value is None or value == "lobatto" or (whole and 1 <= value <= 10):
+        return value
+    raise ValueError(f'found {value!r}; must be a whole number from 1 to 10, or "lobatto"')
+
+
+def _variant(value: Any) -> Any:
+    if isinstance(value, bool | float):  # equal to 1 in Python, but not what was asked for
+        raise ValueError(f"found {value!r}; must be 1, 0 or -1")
+    return value
+
+
+PressureDegree = Annotated[int | Literal["lobatto"] | None, BeforeValidator(_pressure_degree)]
+Variant = Annotated[Literal[1, 0, -1] | None, BeforeValidator(_variant)]
 
 
 class FaceMesh(Section):
@@ -115,13 +132,11 @@ class Contact(Section):
 
     friction: Annotated[Number, Field(ge=0.0)] = 0.0
     method: Literal["condensed", "penalty", "nitsche"] = "condensed"
-    pressure_degree: Annotated[int, Field(ge=1, le=10, strict=True)] | Literal["lobatto"] | None = (
-        None
-    )
+    pressure_degree: PressureDegree = None
     penalty: units.Foundation | None = None
-    theta: Literal[1, 0, -1] | None = None
+    theta: Variant = None
     gamma: Annotated[Number, Field(gt=0.0)] | None = None
-    positioning: bool = False
+    positioning: Switch = False
 
 
 class Heat(Section):
@@ -160,6 +175,14 @@ class Steady(Section):
     type: Literal["steady"]
 
 
+def _all_different(output_times: tuple[float, ...]) -> None:
+    """Refuse times that would share a file."""
+    names = [f"{t:g}" for t in output_times]
+    twice = [name for name in names if names.count(name) > 1]
+    if twice:
+        raise KeyFault("output_times", f"{twice[0]} s is there twice (to six digits)")
+
+
 class Transient(Section):
     """Running-in.
 
@@ -187,10 +210,7 @@ class Transient(Section):
     def _ends(self):
         if self.end_time is None and self.until is None:
             raise KeyFault("end_time", 'missing; needs end_time = "…" or until = "steady"')
-        names = [f"{t:g}" for t in self.output_times]
-        twice = [name for name in names if names.count(name) > 1]
-        if twice:
-            raise KeyFault("output_times", f"{twice[0]} s is there twice (to six digits)")
+        _all_different(self.output_times)
         if self.end_time is not None:
             late = [t for t in self.output_times if t > self.end_time]
             if late:
@@ -214,6 +234,11 @@ class Fretting(Section):
     type: Literal["fretting"]
     increments: Annotated[int, Field(ge=1, strict=True)] = 20
     output_times: tuple[units.Instant, ...] = ()
+
+    @model_validator(mode="after")
+    def _outputs(self):
+        _all_different(self.output_times)
+        return self
 
 
 class Case(Section):

@@ -16,6 +16,7 @@ import scipy.sparse as sp
 from ..bulk.conduction import Conduction
 from ..parallel import sum_over_ranks
 from .condensation import CondensedContact
+from .traces import distributed
 
 
 @dataclass(frozen=True)
@@ -182,7 +183,7 @@ def condense_heat(
     """
     comm = conduction.space.mesh.comm
     # the bodies do not touch in the bulk: one solution serves a column of both faces
-    field = conduction.respond((traces[0] + traces[1]).multiply(weights).toarray())
+    field = conduction.respond(((traces[0] + traces[1]) @ sp.diags(weights)).tocsr())
     still = conduction.solve(np.zeros(field.shape[0]))
     Θ1, Θ2 = (sum_over_ranks(comm, trace.T @ field) for trace in traces)
     T1, T2 = (sum_over_ranks(comm, trace.T @ still) for trace in traces)
@@ -221,28 +222,12 @@ def condense_distortion(
 
 def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
     """``Σ E_iᵀ w s E_i``: the bath at both faces, for `bulk.conduction`. Every rank calls."""
-    comm = space.mesh.comm
-    index_map = space.dofmap.index_map
-    rows = (index_map.size_local, index_map.size_global)
-    matrix = None
-    for trace in traces:
-        csr = trace.tocsr()
-        left = PETSc.Mat().createAIJ(
-            (rows, (PETSc.DECIDE, len(weights))),
-            csr=(csr.indptr.astype(PETSc.IntType), csr.indices.astype(PETSc.IntType), csr.data),
-            comm=comm,
-        )
-        scale = left.createVecRight()
-        first, last = scale.getOwnershipRange()
-        scale.setArray(np.sqrt(weights[first:last] * shift))
-        left.diagonalScale(None, scale)
-        right = PETSc.Mat()
-        left.transpose(right)
-        part = left.matMult(right)
-        if matrix is None:
-            matrix = part
-        else:
-            matrix.axpy(1.0, part, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    first, second = (
+        distributed(space, (trace @ sp.diags(np.sqrt(weights * shift))).tocsr()) for trace in traces
+    )
+    matrix = first.matMult(first.copy().transpose())
+    other = second.matMult(second.copy().transpose())
+    matrix.axpy(1.0, other, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     return matrix
 
 

@@ -122,7 +122,9 @@ def _highlights(summary: dict):
     yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
     low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
     yield "pressure", f"{low:.5g} … {high:.5g} MPa"
-    yield "shape, highest to lowest", f"{summary['shape_range_m'] * 1e6:.5g} µm"
+    yield "approach", f"{summary['approach_m'] * 1e6:.5g} µm"
+    if summary["shape_range_m"] > 0:
+        yield "shape, highest to lowest", f"{summary['shape_range_m'] * 1e6:.5g} µm"
     if summary["max_temperature_K"] is not None:
         yield "highest temperature", f"{summary['max_temperature_K'] - 273.15:.5g} °C"
         yield "friction power", f"{summary['friction_power_W']:.6g} W"

@@ -58,9 +58,14 @@ def _torque(system: System, friction: np.ndarray) -> float | None:
 
 
 def _guide_force(system: System, pressure: np.ndarray) -> float | None:
-    """Force along x with which the guide keeps body 1 sliding [N]; None for axisymmetric models."""
+    """Force along x with which the guide keeps body 1 sliding [N]; None for axisymmetric models.
+
+    Of the whole: what the halves of a symmetric section push apart is in balance.
+    """
     if system.case.model == "axisymmetric":
         return None
+    if system.case.geometry.symmetry:
+        return 0.0
     return float(system.weights @ (pressure * system.pull[:, 0]))
 
 

@@ -12,9 +12,16 @@ import numpy as np
 import pyvista
 from matplotlib.figure import Figure
 
+from .. import tables
+from ..quantities import INTERFACE
+
 _DEFORMED_PART = 0.06  # of the bodies' size: how far the largest displacement is drawn
 _PIXELS = 1400  # of the longer side of a rendered picture
 _BEHIND = 1e-3  # of the bodies' size: how far body 1 is set back
+_SMALL = 0.15  # of the bodies' size: contacts smaller than that get panels of their own
+_AROUND = 3.0  # sizes of the contact that such a panel shows
+
+Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]
 
 
 def draw_bodies(folder: Path) -> None:
@@ -26,7 +33,7 @@ def draw_bodies(folder: Path) -> None:
     if "temperature_K" in grid.point_data:
         grid["temperature [°C]"] = grid["temperature_K"] - 273.15
         fields.insert(0, ("temperature [°C]", "inferno"))
-    _draw(folder / "bodies.png", grid, fields, "")
+    _draw(folder / "bodies.png", grid, fields, "", _contact(folder))
     largest = float(np.linalg.norm(grid["displacement_m"], axis=1).max()) * 1e3
     size = float(np.ptp(grid.points, axis=0).max())
     factor = _round(_DEFORMED_PART * size / largest) if largest > 0 else 1.0
@@ -34,38 +41,66 @@ def draw_bodies(folder: Path) -> None:
     _draw(folder / "deformed.png", grid, fields, f"displacements magnified {factor:g} times")
 
 
-def _draw(path: Path, grid, fields: list[tuple[str, str]], note: str) -> None:
-    """One panel a field, side by side."""
-    width, height = np.ptp(grid.points, axis=0)[:2]
-    size = (5.2 * len(fields), 3.45 * height / width + (1.0 if note else 0.7))
-    figure = Figure(figsize=size, layout="constrained", dpi=150)
-    for axis, (name, colors) in zip(
-        figure.subplots(1, len(fields), squeeze=False)[0], fields, strict=True
-    ):
-        limits = _limits(grid[name])
-        picture, extent = _render(grid, name, colors, limits)
-        axis.imshow(picture, extent=extent, interpolation="antialiased")
-        scale = axis.imshow([limits], cmap=colors, extent=extent, visible=False)
-        axis.set_xlim(extent[:2])
-        axis.set_ylim(extent[2:])
-        over = np.nanmax(grid[name]) > limits[1] * (1 + 1e-9)
-        figure.colorbar(scale, ax=axis, label=name, shrink=0.8, extend="max" if over else "neither")
-        axis.set_xlabel("x [mm]")
-        axis.set_ylabel("y [mm]")
-        axis.spines[["top", "right"]].set_visible(False)
-    if note:
-        figure.suptitle(note, fontsize=11)
-    figure.savefig(path)
+def _contact(folder: Path) -> Extent | None:
+    """What lies around the contact, where there is one."""
+    table = tables.read(folder / "interface.csv", INTERFACE)
+    pressed = table["pressure"] > 0
+    if not pressed.any():
+        return None
+    ends = [(v[pressed].min() * 1e3, v[pressed].max() * 1e3) for v in (table["x"], table["y"])]
+    reach = _AROUND / 2 * max(high - low for low, high in ends)
+    x, y = (sum(pair) / 2 for pair in ends)
+    return x - reach, x + reach, y - reach, y + reach
 
 
-def _render(grid, name: str, colors: str, limits) -> tuple[np.ndarray, tuple[float, ...]]:
-    """Picture of a plane grid, and the coordinates of its left, right, lower and upper edge.
+def _draw(path: Path, grid, fields: list[tuple[str, str]], note: str, contact=None) -> None:
+    """One panel a field, side by side, and another for the surroundings of a small contact.
 
-    Body 1 lies a little behind body 2: what has been worn off it does not show.
+    That one is beside the panel of a single field, else below.
     """
     x0, x1, y0, y1 = np.array(grid.bounds)[:4]
     margin = 0.02 * max(x1 - x0, y1 - y0)
-    extent = (x0 - margin, x1 + margin, y0 - margin, y1 + margin)
+    windows: list[Extent] = [(x0 - margin, x1 + margin, y0 - margin, y1 + margin)]
+    if contact is not None and (contact[1] - contact[0]) < _AROUND * _SMALL * (x1 - x0):
+        windows.append((max(contact[0], x0), min(contact[1], x1), *contact[2:]))
+    shapes = [(upper - lower) / (right - left) for left, right, lower, upper in windows]
+    beside = len(fields) == 1
+    rows, columns = (1, len(windows)) if beside else (len(windows), len(fields))
+    tall = max(shapes) if beside else sum(shapes)
+    size = (5.2 * columns, 3.45 * tall + 0.7 * rows + (0.3 if note else 0.0))
+    figure = Figure(figsize=size, layout="constrained", dpi=150)
+    ratios = None if beside else shapes
+    panels = figure.subplots(rows, columns, squeeze=False, height_ratios=ratios)
+    for row, extent in zip(panels.T if beside else panels, windows, strict=True):
+        for axis, (name, colors) in zip(row, fields, strict=True):
+            _panel(figure, axis, grid, name, colors, extent)
+    if note:
+        figure.suptitle(note, fontsize=11)
+    figure.savefig(path, bbox_inches="tight")
+
+
+def _panel(figure, axis, grid, name: str, colors: str, extent: Extent) -> None:
+    """A window on a field with its own range of colours."""
+    x, y = grid.points[:, 0], grid.points[:, 1]
+    inside = (x >= extent[0]) & (x <= extent[1]) & (y >= extent[2]) & (y <= extent[3])
+    limits = _limits(grid[name][inside])
+    picture = _render(grid, name, colors, limits, extent)
+    axis.imshow(picture, extent=extent, interpolation="antialiased")
+    scale = axis.imshow([limits], cmap=colors, extent=extent, visible=False)
+    axis.set_xlim(extent[:2])
+    axis.set_ylim(extent[2:])
+    over = np.nanmax(grid[name][inside]) > limits[1] * (1 + 1e-9)
+    figure.colorbar(scale, ax=axis, label=name, shrink=0.8, extend="max" if over else "neither")
+    axis.set_xlabel("x [mm]")
+    axis.set_ylabel("y [mm]")
+    axis.spines[["top", "right"]].set_visible(False)
+
+
+def _render(grid, name: str, colors: str, limits, extent: Extent) -> np.ndarray:
+    """Picture of a plane grid in a window.
+
+    Body 1 lies a little behind body 2: what has been worn off it does not show.
+    """
     width, height = extent[1] - extent[0], extent[3] - extent[2]
     scale = _PIXELS / max(width, height)
     plotter = pyvista.Plotter(
@@ -89,7 +124,7 @@ def _render(grid, name: str, colors: str, limits) -> tuple[np.ndarray, tuple[flo
     plotter.camera.parallel_scale = height / 2
     picture = plotter.screenshot(None, return_img=True)
     plotter.close()
-    return picture, extent
+    return picture
 
 
 def _limits(values: np.ndarray) -> tuple[float, float]:

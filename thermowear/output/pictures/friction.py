@@ -36,6 +36,7 @@ def draw_friction(folder: Path) -> None:
         pressed = place[table["pressure"] > 0]
         margin = 0.1 * np.ptp(pressed)
         lower.set_xlim(pressed.min() - margin, pressed.max() + margin)
+        lower.locator_params(axis="x", nbins=7)
         upper.set_ylabel(FRICTION["shear"].axis)
         lower.set_ylabel(FRICTION["slip"].axis)
         lower.set_xlabel(label)

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..case.schema import Case, Fretting
+from ..case.analyses import Fretting
+from ..case.schema import Case
 from ..contact.loads import Loads
 from ..contact.stick_slip import StickSlipState, follow
 from ..contact.tangential import FrictionalContact, condense_tangential

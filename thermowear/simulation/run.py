@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..case.schema import Case, Transient
+from ..case.analyses import Transient
+from ..case.schema import Case
 from ..errors import ComputationError
 from .fields import sample
 from .fretting import fretting

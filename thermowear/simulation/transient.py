@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..case.schema import Transient
+from ..case.analyses import Transient
 from ..errors import ComputationError
 from .interface_problem import Contact, InterfaceProblem
 from .wear_step import WornContact, advance_with_error, next_step

@@ -1,0 +1,88 @@
+"""The analyses a case can ask for."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from . import units
+from .section import KeyFault, Number, Section
+
+
+class Initial(Section):
+    """Contact of the unworn faces."""
+
+    type: Literal["initial"]
+
+
+class Steady(Section):
+    """Steady state of wear, directly."""
+
+    type: Literal["steady"]
+
+
+def _all_different(output_times: tuple[float, ...]) -> None:
+    """Refuse times that would share a file."""
+    names = [f"{t:g}" for t in output_times]
+    twice = [name for name in names if names.count(name) > 1]
+    if twice:
+        raise KeyFault("output_times", f"{twice[0]} s is there twice (to six digits)")
+
+
+class Transient(Section):
+    """Running-in.
+
+    Attributes
+    ----------
+    end_time : float or None
+        [s]
+    until : str or None
+        ``"steady"``: stop when the pressure is within `steady_tolerance` of the steady one.
+    output_times : tuple of float
+        Times that get an interface file of their own [s].
+    tolerance : float
+        Allowed error of one step, relative to the mean pressure and to the wear of the step.
+    """
+
+    type: Literal["transient"]
+    end_time: units.Time | None = None
+    until: Literal["steady"] | None = None
+    steady_tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 1e-3
+    output_times: tuple[units.Time, ...] = ()
+    tolerance: Annotated[Number, Field(ge=1e-9, le=0.1)] = 1e-4
+    max_steps: Annotated[int, Field(ge=1, strict=True)] = 10_000
+
+    @model_validator(mode="after")
+    def _ends(self):
+        if self.end_time is None and self.until is None:
+            raise KeyFault("end_time", 'missing; needs end_time = "…" or until = "steady"')
+        _all_different(self.output_times)
+        if self.end_time is not None:
+            late = [t for t in self.output_times if t > self.end_time]
+            if late:
+                raise KeyFault(
+                    "output_times", f"{late[0]:g} s lies after end_time {self.end_time:g} s"
+                )
+        return self
+
+
+class Fretting(Section):
+    """Sticking and slipping under a history of loads.
+
+    Attributes
+    ----------
+    increments : int
+        From each corner of the history to the next.
+    output_times : tuple of float
+        Times that get files of their own [s].
+    """
+
+    type: Literal["fretting"]
+    increments: Annotated[int, Field(ge=1, strict=True)] = 20
+    output_times: tuple[units.Instant, ...] = ()
+
+    @model_validator(mode="after")
+    def _outputs(self):
+        _all_different(self.output_times)
+        return self

@@ -7,6 +7,7 @@ import tomllib
 from functools import lru_cache
 from typing import Any
 
+import thermowear as tw
 from thermowear.case.starters import starter_text
 
 STEADY, RUNNING_IN = "annular-punch", "annular-punch-running-in"
@@ -62,3 +63,8 @@ def paths(table: dict[str, Any], above: str = "") -> list[str]:
         if isinstance(value, dict):
             found += paths(value, f"{above}{key}.")
     return found
+
+
+def solved(name: str, changes: dict[str, Any] | None = None, *overrides: str, **more: Any):
+    """Result of a starter case with changes; `more` is for `thermowear.run`."""
+    return tw.run(tw.load(tables(name, changes), overrides), **more)

@@ -469,12 +469,6 @@ METHODS = [
     Bad("positioning 1", {"contact.positioning": 1}, "contact.positioning", "true or false", HERTZ),
     Bad("positioning yes", {"contact.positioning": "yes"}, "contact.positioning", "true", HERTZ),
     Bad(
-        "positioning of a ring",
-        {"contact.positioning": True},
-        "contact.positioning",
-        "the mesh of 'annular-punch' cannot be moved",
-    ),
-    Bad(
         "positioning of a file",
         {"geometry": FILE},
         "contact.positioning",

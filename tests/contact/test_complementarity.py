@@ -73,8 +73,10 @@ def test_a_given_approach_needs_no_modes(seed, n, far):
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40))
 def test_friction_in_the_section_enters_equilibrium(seed, n):
     """requirement: V10 with forces that work on other modes than those that close the gap."""
-    compliance, gap, modes, load = random_problem(seed, n, 0.01)
-    forces = modes + 0.1 * np.random.default_rng(seed).uniform(size=modes.shape)
+    compliance, gap, modes, _ = random_problem(seed, n, 0.01)
+    rng = np.random.default_rng(seed)
+    forces = modes + 0.1 * rng.uniform(size=modes.shape)
+    load = forces.T @ rng.uniform(0.1, 1, n)
     solution = solve_contact(compliance, gap, modes, load, force_modes=forces)
     r = compliance @ solution.coefficients + gap - modes @ solution.motion
     scale = np.abs(compliance @ solution.coefficients).max() + np.abs(gap).max()

@@ -161,7 +161,7 @@ def test_few_iterations_whatever_the_gap(degree, kind):
     for gap in (case.bump, rough, case.bump + 0.5):
         for load in (1e2, 1e4, 1e6):
             solution = contact.solve(gap, np.array([load]))
-            assert solution.iterations <= 12
+            assert solution.iterations <= 10
             assert case.weights @ solution.pressure == pytest.approx(load, rel=1e-9)
 
 
@@ -207,7 +207,7 @@ def test_holder_that_tilts(kind):
     contact = method(case, kind, modes=modes)
     for lever in (0.0, 0.01, 0.019):
         solution = contact.solve(case.bump + 0.1, np.array([3e4, 3e4 * lever]))
-        assert solution.iterations <= 12
+        assert solution.iterations <= 10
         assert case.weights @ solution.pressure == pytest.approx(3e4, rel=1e-9)
         moment = case.weights @ (solution.pressure * arm)
         assert moment == pytest.approx(3e4 * lever, abs=1e-9 * 3e4)

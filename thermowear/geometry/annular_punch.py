@@ -18,6 +18,9 @@ from .gmsh_session import gmsh_model, tagged_mesh
 from .tagged import TaggedMesh
 
 
+_APART = 1e-6  # of the outer radius: an edge of contact nearer to the face's edge is the same
+
+
 class AnnularPunch(Geometry):
     """Sizes of punch and plate [m]."""
 
@@ -59,13 +62,17 @@ class AnnularPunch(Geometry):
             )
         return self
 
+    @property
+    def follows_contact(self) -> bool:
+        return True  # heat can part the faces
+
     def contact_area(self) -> float:
         return math.pi * (self.outer_radius**2 - self.inner_radius**2)
 
     def build(self, mesh, zone=None) -> TaggedMesh:
         with gmsh_model(self.name) as gmsh:
-            punch = self._punch(gmsh.model, *mesh.face("punch"))
-            plate, face = self._plate(gmsh.model, *mesh.face("plate"))
+            punch = self._punch(gmsh.model, *mesh.face("punch"), zone)
+            plate, face = self._plate(gmsh.model, *mesh.face("plate"), zone)
             gmsh.model.geo.synchronize()
             parts = {
                 "punch_face": punch.bottom,
@@ -83,14 +90,14 @@ class AnnularPunch(Geometry):
             gmsh.model.mesh.generate(2)
             return tagged_mesh(gmsh.model, self.bodies, self.surfaces)
 
-    def _punch(self, model, elements: int, grading: float):
-        columns = graded_face(self.inner_radius, self.outer_radius, elements, grading)
+    def _punch(self, model, elements: int, grading: float, zone):
+        columns = self._face(elements, grading, zone)
         contact, support, largest = self._sizes(columns, elements)
         rows = growing_from_both(0.0, self.punch_height, (contact, support), grading, largest)
         return add_grid(model, columns, rows)
 
-    def _plate(self, model, elements: int, grading: float):
-        face = graded_face(self.inner_radius, self.outer_radius, elements, grading)
+    def _plate(self, model, elements: int, grading: float, zone):
+        face = self._face(elements, grading, zone)
         contact, support, largest = self._sizes(face, elements)
         inside = growing(self.inner_radius, 0.0, contact, grading, largest)
         outside = growing_from_both(
@@ -101,6 +108,20 @@ class AnnularPunch(Geometry):
         plate = add_grid(model, columns, rows)
         inner = len(inside)
         return plate, plate.top[inner : inner + len(face)]
+
+    def _face(self, elements: int, grading: float, zone) -> list[Interval]:
+        """The contact face, graded to its edges, or to those of a contact that ends inside it."""
+        inner, outer = self.inner_radius, self.outer_radius
+        if zone is None:
+            return graded_face(inner, outer, elements, grading)
+        start, end = max(zone[0], inner), min(zone[1], outer)
+        face = graded_face(start, end, elements, grading)
+        size, largest = smallest(face), (end - start) / elements
+        if start - inner > _APART * outer:
+            face = growing_from_both(inner, start, (size, size), grading, largest) + face
+        if outer - end > _APART * outer:
+            face = face + growing_from_both(end, outer, (size, size), grading, largest)
+        return face
 
     def _sizes(self, face: list[Interval], elements: int) -> tuple[float, float, float]:
         """Element sizes at the contact edges, at the clamped edges, and elsewhere at most.

@@ -16,6 +16,7 @@ from .system import System, build
 
 _PASSES = 12
 _SETTLED = 0.1  # of the element at the edge
+_STEEPEST = 4.0
 
 
 def interface_problem(system: System) -> InterfaceProblem:
@@ -38,18 +39,18 @@ def prepare(case: Case, comm, phases: Phases) -> System:
     """
     if not case.contact.positioning:
         return build(case, comm, phases)
-    zone = case.geometry.expected_zone(case.pressing())
-    if zone is None:
-        zone = touching(build(case, comm, phases))
-    for step in range(_PASSES):
-        system = build(case, comm, phases, zone)
+    expected = case.geometry.expected_zone(case.pressing())
+    zone = np.array(touching(build(case, comm, phases)) if expected is None else expected)
+    before: tuple[np.ndarray, np.ndarray] | None = None
+    for _ in range(_PASSES):
+        system = build(case, comm, phases, (float(zone[0]), float(zone[1])))
         with phases("contact"):
-            found = touching(system)
-        if _distance(found, zone, case.geometry.symmetry) < _SETTLED * _smallest(system):
+            missed = np.array(touching(system)) - zone
+        # half models have no left edge
+        off = np.abs(missed[1:] if case.geometry.symmetry else missed).max()
+        if off < _SETTLED * _smallest(system):
             return system
-        # what is found varies a little with the mesh: later meshes count less
-        share = 1 / max(step, 1)
-        zone = (zone[0] + share * (found[0] - zone[0]), zone[1] + share * (found[1] - zone[1]))
+        zone, before = zone + _step(zone, missed, before), (zone, missed)
     raise ComputationError(
         f"contact.positioning: the edges of the contact did not settle in {_PASSES} meshes; "
         "use more elements (mesh.elements), or contact.positioning = false"
@@ -75,10 +76,16 @@ def touching(system: System) -> tuple[float, float]:
     return float(first), float(last)
 
 
-def _distance(found: tuple[float, float], zone: tuple[float, float], symmetry) -> float:
-    """How far the edges are from where the mesh has them; half models have the right one only."""
-    moved = [abs(a - b) for a, b in zip(found, zone, strict=True)]
-    return moved[1] if symmetry else max(moved)
+def _step(zone: np.ndarray, missed: np.ndarray, before) -> np.ndarray:
+    """How far to move each edge that was missed by so much: by a secant where there is one.
+
+    Where an edge is found depends a little on where the mesh has it.
+    """
+    if before is None:
+        return missed
+    moved, changed = zone - before[0], missed - before[1]
+    slope = np.divide(changed, moved, out=np.full(2, -1.0), where=moved != 0.0)
+    return missed / -np.clip(slope, -_STEEPEST, -1 / _STEEPEST)
 
 
 def _smallest(system: System) -> float:

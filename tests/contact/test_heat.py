@@ -124,7 +124,13 @@ def test_condensed_distortion_equals_the_bodies_own():
     elastic = elasticity(bodies, Axisymmetric(), 5, materials, ["upper_end", "lower_end"])
     trace = gap_trace(elastic.space, pairing)
     contact = condense(
-        elastic, pairing, trace, trace, basis, hold(pairing, pairing.normals, (0, -1), 1.0, None)
+        elastic,
+        pairing,
+        trace,
+        trace,
+        basis,
+        hold(pairing, pairing.normals, (0, -1), 1.0, None),
+        keep_influence=True,
     )
     load = elastic.thermal_load(conducting.space)
     distortion = condense_distortion(conducting, load, contact, face)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from thermowear import CaseError
+from thermowear.case.starters import starter_text
 from thermowear.cli import main
 from thermowear.output.pictures import make
 from thermowear.output.pictures.make import make_pictures
@@ -40,6 +41,28 @@ def test_every_picture_shows_something(folders):
             assert min(image.shape[:2]) > 400, path
             assert (np.abs(image - image[0, 0]).max(axis=2) > 0.05).mean() > 0.01, path
             assert len(np.unique(np.round(image.reshape(-1, 3), 1), axis=0)) > 5, path
+
+
+STARTERS = {
+    "cylinder-on-block": {"interface", "bodies", "deformed"},
+    "cylinder-stick-slip": {"interface", "bodies", "deformed", "friction", "loads"},
+}
+
+
+@pytest.mark.parametrize(("name", "expected"), STARTERS.items(), ids=STARTERS)
+def test_pictures_of_curved_faces(name, expected, tmp_path):
+    """requirement: R1 for a plane half model and for a history of loads, drawn by the run."""
+    file, folder = tmp_path / "case.toml", tmp_path / "results"
+    file.write_text(starter_text(name), encoding="utf-8")
+    small = ["--set=mesh.degree=3", "--set=mesh.elements=12"]
+    if name == "cylinder-stick-slip":
+        small.append("--set=analysis.increments=3")
+    assert main(["run", str(file), "-o", str(folder), *small]) == 0
+    assert {p.stem for p in folder.glob("*.png")} == expected
+    for path in folder.glob("*.png"):
+        image = mpimg.imread(path)[..., :3]
+        assert min(image.shape[:2]) > 400, path
+        assert (np.abs(image - image[0, 0]).max(axis=2) > 0.05).mean() > 0.01, path
 
 
 def test_bodies_are_drawn_in_colour(folders):

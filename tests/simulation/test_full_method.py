@@ -109,24 +109,44 @@ def test_hot_contact_is_that_of_condensed_contact(method, condensed_heat):
     rise, known_rise = (at(r, radii, "temperature_1") - 293.15 for r in (result, known))
     assert rise == pytest.approx(known_rise, rel=1e-3)
     assert result.summary["contact_area_m2"] < 0.95 * np.pi * 0.014
-    assert result.summary["contact_area_m2"] == pytest.approx(
-        known.summary["contact_area_m2"], rel=5e-2
-    )
+    (zone,), (known_zone,) = (r.summary["contact_zones_m"] for r in (result, known))
+    assert zone == pytest.approx(known_zone, rel=1e-2)
     assert result.summary["heat_balance_relative_error"] < 1e-9
     assert result.summary["equilibrium_relative_error"] < 1e-9
 
 
-@pytest.mark.parametrize("method", FULL)
-def test_hot_steps(method):
-    """requirement: heat and wear together, step by step, by every method."""
+def test_variants_of_nitsche_know_the_thermal_stress():
+    """requirement: consistent with heat: the approach is the same whatever theta is."""
+    changes = {"analysis": {"type": "initial"}, "wear": GONE}
+    approaches = [
+        solved(STEADY, changes, *SMALL, SLOW, by("nitsche"), f"contact.theta={theta}").summary[
+            "approach_m"
+        ]
+        for theta in (1, 0, -1)
+    ]
+    assert approaches == pytest.approx([approaches[0]] * 3, rel=1e-6)
+
+
+def hot_steps(method):
     changes = {"analysis": {"type": "transient", "end_time": "20 s", "tolerance": 1e-2}}
-    result, known = (solved(STEADY, changes, *SMALL, SLOW, by(m)) for m in (method, "condensed"))
+    return solved(STEADY, changes, "mesh.degree=5", "mesh.elements=8", SLOW, by(method))
+
+
+@pytest.fixture(scope="module")
+def condensed_steps():
+    return hot_steps("condensed")
+
+
+@pytest.mark.parametrize("method", FULL)
+def test_hot_steps(method, condensed_steps):
+    """requirement: heat and wear together, step by step, by every method."""
+    result, known = hot_steps(method), condensed_steps
     assert len(result.history) > 2
     assert result.stopped is None
     radii = np.linspace(0.03, 0.08, 40)
-    assert at(result, radii) == pytest.approx(at(known, radii), rel=2e-2)
+    assert at(result, radii) == pytest.approx(at(known, radii), rel=1e-2)
     volume = known.summary["wear_volume_1_m3"]
-    assert result.summary["wear_volume_1_m3"] == pytest.approx(volume, rel=1e-2)
+    assert result.summary["wear_volume_1_m3"] == pytest.approx(volume, rel=1e-3)
     assert result.summary["heat_balance_relative_error"] < 1e-9
 
 

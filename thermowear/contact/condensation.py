@@ -12,6 +12,9 @@ from ..parallel import sum_over_ranks
 from .holder import Holder
 from .pairing import Pairing
 
+_COLUMNS = 32
+"""Solved together: the displacements of all at once would not fit the caches, or the memory."""
+
 
 @dataclass(frozen=True)
 class CondensedContact:
@@ -31,8 +34,9 @@ class CondensedContact:
         Rw = Ψᵀ w R: weak gap closed per unit of each free rigid motion of the holder.
     force_modes : ndarray, shape (m, k)
         Ψᵀ w T: generalised force of each coefficient on each of these motions.
-    influence : ndarray, shape (n_owned, m)
-        K⁻¹ Bᵗ w Ψ: the weak gap due to any nodal load f is ``influenceᵀ f``.
+    influence : ndarray or None, shape (n_owned, m)
+        K⁻¹ Bᵗ w Ψ: the weak gap due to any nodal load f is ``influenceᵀ f``. Large, and kept where
+        it is asked for.
     """
 
     basis: np.ndarray
@@ -40,7 +44,7 @@ class CondensedContact:
     compliance: np.ndarray
     modes: np.ndarray
     force_modes: np.ndarray
-    influence: np.ndarray
+    influence: np.ndarray | None
 
     def weak(self, values: np.ndarray) -> np.ndarray:
         """Weighted means ``Ψᵀ w v`` of values at the points, shape (m,)."""
@@ -54,6 +58,7 @@ def condense(
     traction: sp.csr_matrix,
     basis: np.ndarray,
     holder: Holder,
+    keep_influence: bool = False,
 ) -> CondensedContact:
     """Condense elasticity to the pressure space. Every rank calls.
 
@@ -67,14 +72,22 @@ def condense(
     basis : ndarray, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
     holder : Holder
+    keep_influence : bool
+        For thermal distortion.
     """
     weighted = pairing.weights[:, None] * basis
     # only nodes of cells at the contact carry loads: 2 % of the rows
     loads = trace @ sp.csr_matrix(weighted)
-    influence = elastic.solve(loads)
     pulls = loads if traction is trace else traction @ sp.csr_matrix(weighted)
-    compliance = sum_over_ranks(elastic.space.mesh.comm, (pulls.T @ influence).T)
+    rows, kept, loads = [], [], loads.tocsc()
+    for start in range(0, weighted.shape[1], _COLUMNS):
+        displacements = elastic.solve(loads[:, start : start + _COLUMNS].tocsr())
+        rows.append((pulls.T @ displacements).T)
+        if keep_influence:
+            kept.append(displacements)
+    compliance = sum_over_ranks(elastic.space.mesh.comm, np.vstack(rows))
     if traction is trace:
         compliance = (compliance + compliance.T) / 2
     modes, force_modes = weighted.T @ holder.modes, weighted.T @ holder.force_modes
+    influence = np.hstack(kept) if keep_influence else None
     return CondensedContact(basis, weighted, compliance, modes, force_modes, influence)

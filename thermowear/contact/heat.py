@@ -208,9 +208,11 @@ def condense_distortion(
     thermal_load : petsc4py.PETSc.Mat
         G, from `Elasticity.thermal_load`.
     contact : CondensedContact
+        With its influence.
     face : InterfaceHeat
     """
     comm = conduction.space.mesh.comm
+    assert contact.influence is not None
     per_rise = transpose_product(thermal_load, contact.influence)
     adjoint = conduction.respond(per_rise)
     still = conduction.solve(np.zeros(len(per_rise)))

@@ -17,7 +17,6 @@ from .blocks import Interval, add_grid, graded_face, growing, growing_from_both,
 from .gmsh_session import gmsh_model, tagged_mesh
 from .tagged import TaggedMesh
 
-
 _APART = 1e-6  # of the outer radius: an edge of contact nearer to the face's edge is the same
 
 
@@ -71,8 +70,8 @@ class AnnularPunch(Geometry):
 
     def build(self, mesh, zone=None) -> TaggedMesh:
         with gmsh_model(self.name) as gmsh:
-            punch = self._punch(gmsh.model, *mesh.face("punch"), zone)
-            plate, face = self._plate(gmsh.model, *mesh.face("plate"), zone)
+            punch = self._punch(gmsh.model, zone, *mesh.face("punch"))
+            plate, face = self._plate(gmsh.model, zone, *mesh.face("plate"))
             gmsh.model.geo.synchronize()
             parts = {
                 "punch_face": punch.bottom,
@@ -90,13 +89,13 @@ class AnnularPunch(Geometry):
             gmsh.model.mesh.generate(2)
             return tagged_mesh(gmsh.model, self.bodies, self.surfaces)
 
-    def _punch(self, model, elements: int, grading: float, zone):
+    def _punch(self, model, zone, elements: int, grading: float):
         columns = self._face(elements, grading, zone)
         contact, support, largest = self._sizes(columns, elements)
         rows = growing_from_both(0.0, self.punch_height, (contact, support), grading, largest)
         return add_grid(model, columns, rows)
 
-    def _plate(self, model, elements: int, grading: float, zone):
+    def _plate(self, model, zone, elements: int, grading: float):
         face = self._face(elements, grading, zone)
         contact, support, largest = self._sizes(face, elements)
         inside = growing(self.inner_radius, 0.0, contact, grading, largest)

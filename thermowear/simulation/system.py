@@ -129,7 +129,13 @@ class System:
         """Elasticity condensed to the pressure space."""
         with self.phases("condense elasticity"):
             return condense(
-                self.elastic, self.pairing, self.trace, self.traction, self.basis, self.holder
+                self.elastic,
+                self.pairing,
+                self.trace,
+                self.traction,
+                self.basis,
+                self.holder,
+                keep_influence=self.thermal is not None,
             )
 
     @cached_property

@@ -1,0 +1,407 @@
+"""Whole runs by the command line: every starter case, and bodies that were meshed elsewhere."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tomli_w
+
+import thermowear as tw
+from thermowear.case.starters import starter_text, starters
+from thermowear.cli import main
+from thermowear.geometry.gmsh_session import gmsh_model
+from thermowear.output import tables
+from thermowear.output.quantities import FRICTION, HISTORY, INTERFACE, LOADS
+
+from ..case import starter
+from ..case.starter import FRETTING, HERTZ, PUNCH, RUNNING_IN, SPHERE, STEADY
+
+ALWAYS = {"summary.json", "run.json", "case.resolved.toml", "interface.csv", "fields.vtu"}
+MORE = {
+    RUNNING_IN: {"history.csv", "interface_1.csv"},
+    FRETTING: {
+        "loads.csv",
+        "friction.csv",
+        *(f"{stem}_{time}.csv" for stem in ("friction", "interface") for time in (1, 2)),
+    },
+}
+COARSE = ("mesh.degree=3", "mesh.elements=6")
+QUICK = {
+    RUNNING_IN: ("analysis.end_time=2 s", 'analysis.output_times=["1 s"]'),
+    FRETTING: ("mesh.degree=2", "mesh.elements=12", "analysis.increments=3"),
+}
+HEADS = {
+    "interface": "x_m,y_m,z_m,s_m,weight_m2,pressure_Pa,gap_m,shape_m,wear_1_m,wear_2_m,"
+    "wear_rate_1_m_per_s,wear_rate_2_m_per_s,temperature_1_K,temperature_2_K,"
+    "heat_flux_1_W_per_m2,heat_flux_2_W_per_m2",
+    "friction": "x_m,y_m,s_m,weight_m2,pressure_Pa,shear_Pa,slip_m,dissipated_J_per_m2,status",
+    "loads": "time_s,normal_force_N,approach_m,tangential_force_N,tangential_displacement_m,"
+    "max_pressure_Pa,contact_area_m2,stick_area_m2,dissipated_J,iterations",
+    "history": "time_s,sliding_distance_m,max_pressure_Pa,contact_area_m2,wear_volume_1_m3,"
+    "wear_volume_2_m3,max_temperature_K,approach_m,step_s,error",
+}
+
+
+def run(file: Path, folder: Path, *words: str) -> int:
+    return main(["run", str(file), "-o", str(folder), "--no-pictures", *words])
+
+
+def sets(*overrides: str) -> list[str]:
+    return [f"--set={text}" for text in overrides]
+
+
+def summary_of(folder: Path) -> dict:
+    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+
+
+# ---- the starter cases ----
+
+
+@pytest.fixture(scope="module", params=list(starters()))
+def finished(request, tmp_path_factory):
+    """A starter case by name, and the folder of a coarse run of it."""
+    name = request.param
+    place = tmp_path_factory.mktemp(name)
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert main(["init", name, "-o", str(place / "case.toml")]) == 0
+        words = sets(*COARSE, *QUICK.get(name, ()))
+        assert run(place / "case.toml", place / "results", *words) == 0
+    return name, place / "results"
+
+
+def test_a_starter_leaves_its_files(finished):
+    """requirement: the files of the contract, no others, and status done."""
+    name, folder = finished
+    assert {path.name for path in folder.iterdir()} == ALWAYS | MORE.get(name, set())
+    assert json.loads((folder / "run.json").read_text(encoding="utf-8"))["status"] == "done"
+
+
+def test_the_columns_are_those_of_the_contract(finished):
+    """requirement: other programs rely on these headers."""
+    _, folder = finished
+    for path in folder.glob("*.csv"):
+        head = path.read_text(encoding="utf-8").splitlines()[0]
+        assert head == HEADS[path.stem.partition("_")[0]], path
+
+
+def test_the_resolved_case_is_the_same_case(finished):
+    """requirement: case.resolved.toml is a valid case again, every override in it."""
+    name, folder = finished
+    case = tw.load(tomllib.loads(starter_text(name)), (*COARSE, *QUICK.get(name, ())))
+    assert tw.load(folder / "case.resolved.toml") == case
+
+
+def test_summary_and_interface_tell_one_story(finished):
+    """requirement: peak, area and force of the summary are those of interface.csv."""
+    name, folder = finished
+    summary, i = summary_of(folder), tables.read(folder / "interface.csv", INTERFACE)
+    pressing = i["pressure"] > 0
+    assert len(i["x"]) == summary["contact_points"]
+    assert i["pressure"].max() == pytest.approx(summary["max_pressure_Pa"], rel=1e-12)
+    assert i["weight"][pressing].sum() == pytest.approx(summary["contact_area_m2"], rel=1e-12)
+    # the normals of a round face lean: its pressure adds up to a little more than the force
+    flat = name not in (HERTZ, FRETTING, SPHERE)
+    carried = i["weight"] @ i["pressure"]
+    assert carried == pytest.approx(summary["normal_force_N"], rel=1e-9 if flat else 2e-3)
+    assert np.all(i["z"] == 0)
+    assert np.all(np.diff(i["s"]) >= 0)
+    assert summary["equilibrium_relative_error"] < 1e-9
+    hot = name == STEADY
+    assert np.isfinite(i["temperature_1"]).all() == hot
+    if summary["guide_force_N"] is not None:
+        assert abs(summary["guide_force_N"]) < 1e-9 * summary["normal_force_N"]
+
+
+FORCES = {PUNCH: 200.0, SPHERE: 500.0, FRETTING: 120.0, STEADY: 50e6 * np.pi * 0.014}
+
+
+def test_a_starter_carries_its_load(finished):
+    """requirement: the force of the case; Hertz's starter its approach."""
+    name, folder = finished
+    summary = summary_of(folder)
+    if name == HERTZ:
+        assert summary["approach_m"] == pytest.approx(50e-6, rel=1e-9)
+        assert summary["normal_force_N"] == pytest.approx(2230.2, rel=2e-3)
+    else:
+        force = FORCES.get(name, FORCES[STEADY])
+        assert summary["normal_force_N"] == pytest.approx(force, rel=1e-9)
+
+
+@pytest.fixture(scope="module")
+def fretting(tmp_path_factory):
+    """Case file and results of the stick-slip starter."""
+    place = tmp_path_factory.mktemp("fretting")
+    (place / "case.toml").write_text(starter_text(FRETTING), encoding="utf-8")
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert run(place / "case.toml", place / "results", *sets(*COARSE, *QUICK[FRETTING])) == 0
+    return place
+
+
+def test_tables_of_fretting_agree(fretting):
+    """requirement: loads.csv, friction.csv and interface.csv are of the same states."""
+    folder, summary = fretting / "results", summary_of(fretting / "results")
+    loads = tables.read(folder / "loads.csv", LOADS)
+    assert len(loads["time"]) == summary["steps"] == 4 * 3
+    assert loads["time"][[2, 5, 8, 11]] == pytest.approx([0, 1, 2, 3])
+    assert loads["tangential_force"][[5, 8, 11]] == pytest.approx([36, -36, 36], rel=1e-9)
+    assert loads["dissipated"][-1] == pytest.approx(summary["dissipated_energy_J"], rel=1e-12)
+    assert np.all(loads["iterations"][1:] >= 1)
+    for time, row in ((1, 5), (2, 8), (None, 11)):
+        f, i = (
+            tables.read(folder / tables.name_at(stem, time), table)
+            for stem, table in (("friction", FRICTION), ("interface", INTERFACE))
+        )
+        for column in ("x", "y", "s", "weight", "pressure"):
+            np.testing.assert_array_equal(f[column], i[column])
+        assert f["weight"] @ f["shear"] == pytest.approx(-loads["tangential_force"][row], rel=2e-3)
+        assert f["weight"] @ f["dissipated"] == pytest.approx(loads["dissipated"][row], rel=1e-9)
+        assert set(f["status"]) == {0.0, 1.0, 2.0}
+        stuck = f["weight"][f["status"] == 1].sum()
+        assert stuck == pytest.approx(loads["stick_area"][row], rel=1e-9)
+
+
+def test_another_analysis_leaves_nothing_of_fretting(fretting, tmp_path):
+    """requirement: --overwrite removes the files of fretting that the new run does not write."""
+    folder = tmp_path / "results"
+    quick = sets(*COARSE, *QUICK[FRETTING])
+    assert run(fretting / "case.toml", folder, *quick) == 0
+    (folder / "notes.txt").write_text("mine", encoding="utf-8")
+    (folder / "friction.png").write_bytes(b"of an earlier run")
+    (folder / "loads.png").write_bytes(b"of an earlier run")
+    fewer = sets('analysis.output_times=["1.5 s"]')
+    assert run(fretting / "case.toml", folder, *quick, *fewer, "--overwrite") == 0
+    found = {path.name for path in folder.iterdir()}
+    assert found == ALWAYS | {
+        "notes.txt",
+        "loads.csv",
+        "friction.csv",
+        "friction_1.5.csv",
+        "interface_1.5.csv",
+    }
+    other = tmp_path / "punch.toml"
+    other.write_text(starter_text(PUNCH), encoding="utf-8")
+    assert run(other, folder, *sets(*COARSE), "--overwrite") == 0
+    assert {path.name for path in folder.iterdir()} == ALWAYS | {"notes.txt"}
+
+
+def test_too_large_a_load_is_one_line(tmp_path, capsys):
+    """requirement: a contact that outgrows its body is a fault of the case, at its key."""
+    file = tmp_path / "case.toml"
+    file.write_text(starter_text(HERTZ), encoding="utf-8")
+    words = sets(*COARSE, 'load={force="1 MN"}')
+    assert run(file, tmp_path / "results", *words) == 1
+    assert main(["mesh", str(file), *words, "-o", str(tmp_path / "mesh.msh")]) == 1
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2
+    for line in lines:
+        assert line.startswith("error: geometry.radius: too small for the contact, which is")
+        assert "up to 0.005 m" in line
+    assert not (tmp_path / "mesh.msh").exists()
+
+
+# ---- bodies that were meshed elsewhere ----
+
+PLAIN = {
+    PUNCH: {},
+    STEADY: {"analysis": {"type": "initial"}},
+    HERTZ: {"contact": {}, "load": {"force": "1.5 kN"}},
+}
+MESHED = ("mesh.degree=4", "mesh.elements=6")
+
+
+def by_gmsh(path: Path) -> None:
+    """Let gmsh read a mesh and write it again, as it writes its own."""
+    with gmsh_model("again") as gmsh:
+        gmsh.merge(str(path))
+        gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+        gmsh.option.setNumber("Mesh.Binary", 1)
+        gmsh.option.setNumber("Mesh.SaveAll", 0)
+        gmsh.write(str(path))
+        gmsh.option.setNumber("Mesh.Binary", 0)
+    assert path.read_bytes().startswith(b"$MeshFormat\n4.1 1")
+
+
+def file_geometry(case, path: Path) -> dict:
+    """Keys that name the parts of a mesh that was written from another geometry."""
+    geometry = case.geometry
+    upper, lower = geometry.bodies
+    keys = {
+        "type": "file",
+        "path": str(path),
+        "bodies": {upper: upper, lower: lower},
+        "contact": list(geometry.contact),
+        "held": geometry.held,
+        "fixed": geometry.fixed,
+        "symmetry": list(geometry.symmetry),
+        "surfaces": {name: name for name in geometry.surfaces},
+    }
+    if geometry.contact_area() is not None:
+        keys["contact_area"] = f"{geometry.contact_area()!r} m^2"
+    if geometry.thickness_factor is not None:
+        keys |= {"thickness": f"{geometry.thickness!r} m", "half": geometry.half}
+    return keys
+
+
+@pytest.mark.parametrize(
+    ("name", "ending", "allowed"),
+    [
+        (PUNCH, ".msh", 1e-9),
+        (PUNCH, ".inp", 1e-9),
+        (PUNCH, ".vtu", 1e-9),
+        (STEADY, ".msh", 1e-9),
+        (STEADY, ".inp", 1e-9),
+        (HERTZ, ".msh", 1e-9),
+        (HERTZ, ".inp", 1e-5),  # arcs of the third order are written as of the second
+    ],
+)
+def test_a_mesh_from_a_file_gives_the_same_pressure(name, ending, allowed, tmp_path, capsys):
+    """requirement: a mesh that other programs wrote gives what the geometry itself gives."""
+    original, again = tmp_path / "original.toml", tmp_path / "again.toml"
+    mesh = tmp_path / f"mesh{ending}"
+    changes = PLAIN[name]
+    original.write_text(tomli_w.dumps(starter.tables(name, changes)), encoding="utf-8")
+    case = tw.load(original, MESHED)
+    assert run(original, tmp_path / "one", *sets(*MESHED)) == 0
+    assert main(["mesh", str(original), *sets(*MESHED), "-o", str(mesh)]) == 0
+    if ending == ".msh":
+        by_gmsh(mesh)
+    keys = file_geometry(case, mesh)
+    if ending == ".vtu":  # numbers for names
+        numbers = {n: str(i) for i, n in enumerate((*keys["bodies"], *keys["surfaces"]), 1)}
+        for table in ("bodies", "surfaces"):
+            keys[table] = {name: numbers[name] for name in keys[table]}
+    again.write_text(
+        tomli_w.dumps(starter.tables(name, changes | {"geometry": keys})), encoding="utf-8"
+    )
+    assert main(["validate", str(again)]) == 0
+    assert run(again, tmp_path / "two", *sets(*MESHED)) == 0
+    one, two = (tables.read(tmp_path / f / "interface.csv", INTERFACE) for f in ("one", "two"))
+    np.testing.assert_allclose(two["x"], one["x"], rtol=0, atol=1e-3 * allowed)
+    assert np.abs(two["pressure"] - one["pressure"]).max() < allowed * one["pressure"].max()
+    first, second = summary_of(tmp_path / "one"), summary_of(tmp_path / "two")
+    for key in ("normal_force_N", "approach_m", "contact_area_m2"):
+        assert second[key] == pytest.approx(first[key], rel=1e-6 if allowed < 1e-6 else 3e-5)
+    assert tw.load(tmp_path / "two" / "case.resolved.toml") == tw.load(again, MESHED)
+    assert capsys.readouterr().err == ""
+
+
+def gmsh_punch(path: Path) -> None:
+    """The bodies of the starter case, in millimetres, as a user of gmsh meshes them."""
+    with gmsh_model("punch") as gmsh:
+        model, occ = gmsh.model, gmsh.model.occ
+        punch = occ.addRectangle(-5, 0, 0, 10, 10)
+        block = occ.addRectangle(-100, -100, 0, 200, 100)
+        ends = [occ.addPoint(x, 0, 0) for x in (-5, 5)]
+        face = occ.addLine(*ends)
+        occ.fragment([(2, block)], [(1, face)])
+        occ.synchronize()
+        box = model.getEntitiesInBoundingBox
+        lines = {
+            "PUNCH_FACE": model.getBoundary([(2, punch)], oriented=False),
+            "BLOCK_FACE": box(-5.1, -0.1, -1, 5.1, 0.1, 1, dim=1),
+            "TOP": box(-6, 9.9, -1, 6, 10.1, 1, dim=1),
+            "BOTTOM": box(-101, -101, -1, 101, -99, 1, dim=1),
+        }
+        flat = {tag for _, tag in lines["BLOCK_FACE"]}
+        lines["PUNCH_FACE"] = [(1, t) for _, t in lines["PUNCH_FACE"] if t in flat]
+        lines["BLOCK_FACE"] = [(1, t) for t in flat if (1, t) not in lines["PUNCH_FACE"]]
+        for name, tag in (("PUNCH", punch), ("BLOCK", block)):
+            model.addPhysicalGroup(2, [tag], name=name)
+        for name, found in lines.items():
+            model.addPhysicalGroup(1, [tag for _, tag in found], name=name)
+        ball = model.mesh.field.add("Ball")
+        for key, value in {"Radius": 7, "Thickness": 60, "VIn": 0.6, "VOut": 15}.items():
+            model.mesh.field.setNumber(ball, key, value)
+        model.mesh.field.setAsBackgroundMesh(ball)
+        gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
+        model.mesh.generate(2)
+        gmsh.write(str(path))
+
+
+def test_triangles_of_gmsh_give_the_pressure_of_the_starter(tmp_path):
+    """requirement: a mesh of one's own, of other cells and in another unit, away from the edges."""
+    gmsh_punch(tmp_path / "own.msh")
+    geometry = {
+        "type": "file",
+        "path": str(tmp_path / "own.msh"),
+        "length_unit": "1 mm",
+        "bodies": {"punch": "PUNCH", "block": "BLOCK"},
+        "contact": ["PUNCH_FACE", "BLOCK_FACE"],
+        "held": "TOP",
+        "fixed": "BOTTOM",
+        "contact_area": "10 mm^2",
+    }
+    file = tmp_path / "case.toml"
+    file.write_text(tomli_w.dumps(starter.tables(PUNCH, {"geometry": geometry})), encoding="utf-8")
+    assert run(file, tmp_path / "own", *sets("mesh.degree=4")) == 0
+    own = tables.read(tmp_path / "own" / "interface.csv", INTERFACE)
+    known = starter.solved(PUNCH, {}, "mesh.degree=6").interface
+    x = np.linspace(-3.5e-3, 3.5e-3, 60)
+    pressures = np.interp(x, own["x"], own["pressure"]), np.interp(x, known.x, known.pressure)
+    assert pressures[0] == pytest.approx(pressures[1], rel=1e-2)
+    assert summary_of(tmp_path / "own")["normal_force_N"] == pytest.approx(200.0, rel=1e-9)
+
+
+WRONG = {
+    "body": ({"bodies": {"punch": "PINCH", "block": "block"}}, "geometry.bodies.punch", "'PINCH'"),
+    "face": ({"contact": ["face", "block_face"]}, "geometry.contact", "punch_face, punch_side"),
+    "holder": ({"held": "top"}, "geometry.held", "block_bottom, block_face"),
+    "support": ({"fixed": "punch_side"}, "geometry.fixed", "not on the boundary of body 'block'"),
+    "surface": ({"surfaces": {"side": "SIDE"}}, "geometry.surfaces.side", "'SIDE'; one of: "),
+    "no file": ({"path": "none.msh"}, "geometry.path", "none.msh cannot be read: No such file"),
+    "folder": ({"path": "folder.msh"}, "geometry.path", "folder.msh cannot be read: Is a dir"),
+    "no mesh": ({"path": "text.inp"}, "geometry.path", "text.inp has no plane cells"),
+    "ending": ({"path": "mesh.stl"}, "geometry.path", "unknown ending; one of: .msh, .inp"),
+}
+
+
+@pytest.mark.parametrize(("keys", "path", "text"), WRONG.values(), ids=WRONG)
+def test_what_is_not_in_the_file(keys, path, text, tmp_path, monkeypatch, capsys):
+    """requirement: exit code 1 and one line: the key, and the names that there are."""
+    monkeypatch.chdir(tmp_path)
+    Path("punch.toml").write_text(starter_text(PUNCH), encoding="utf-8")
+    Path("folder.msh").mkdir()
+    Path("text.inp").write_text("hello\n", encoding="utf-8")
+    assert main(["mesh", "punch.toml", *sets(*COARSE), "-o", "mesh.inp"]) == 0
+    geometry = {
+        "type": "file",
+        "path": "mesh.inp",
+        "bodies": {"punch": "punch", "block": "block"},
+        "contact": ["punch_face", "block_face"],
+        "held": "punch_top",
+        "fixed": "block_bottom",
+        "contact_area": "10 mm^2",
+    }
+    changes = {"geometry": geometry | keys}
+    Path("case.toml").write_text(tomli_w.dumps(starter.tables(PUNCH, changes)), encoding="utf-8")
+    capsys.readouterr()
+    for words in (["mesh", "case.toml", "-o", "again.msh"], ["run", "case.toml", "--no-pictures"]):
+        assert main([*words, *sets(*COARSE)]) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith(f"error: {path}: ")
+        assert text in line
+    assert not Path("again.msh").exists()
+
+
+def test_history_rows_are_written_as_they_come(tmp_path):
+    """requirement: history.csv of a plane running-in has the worn volume of Archard's law."""
+    changes = {
+        "motion": {"velocity": "1 m/s"},
+        "contact": {"friction": 0.3},
+        "wear": {"punch": {"coefficient": "1e-6 1/MPa"}},
+        "analysis": {"type": "transient", "end_time": "1 s", "tolerance": 1e-2},
+    }
+    file = tmp_path / "case.toml"
+    file.write_text(tomli_w.dumps(starter.tables(PUNCH, changes)), encoding="utf-8")
+    assert run(file, tmp_path / "results", *sets(*COARSE)) == 0
+    history = tables.read(tmp_path / "results" / "history.csv", HISTORY)
+    np.testing.assert_allclose(
+        history["wear_volume_1"], 6e-11 * history["sliding_distance"], rtol=1e-6, atol=1e-20
+    )
+    assert np.isnan(history["max_temperature"]).all()

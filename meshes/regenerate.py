@@ -6,18 +6,20 @@ import thermowear as tw
 from thermowear.geometry.export import write_mesh
 
 HERE = Path(__file__).parent
-CASE = HERE.parent / "demos" / "annular_punch.toml"
+DEMOS = HERE.parent / "demos"
 MESHES = {
-    "annular_punch.msh": (),
+    "annular_punch.msh": ("annular_punch.toml",),
     "annular_punch_not_matching.msh": (
+        "annular_punch.toml",
         "mesh.bodies.plate.elements=17",
         "mesh.bodies.plate.grading=0.45",
     ),
+    "cylinder_on_block.msh": ("cylinder_on_block.toml",),
 }
+"""The demo and what is changed in it, by file."""
 
 if __name__ == "__main__":
-    for name, overrides in MESHES.items():
-        case = tw.load(CASE, overrides)
-        mesh = case.tagged_mesh()
+    for name, (demo, *overrides) in MESHES.items():
+        mesh = tw.load(DEMOS / demo, tuple(overrides)).tagged_mesh()
         write_mesh(mesh, HERE / name)
         print(f"{name}: {len(mesh.cells)} quadrilaterals, {len(mesh.points)} points")

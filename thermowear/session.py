@@ -6,7 +6,7 @@ from pathlib import Path
 
 from . import load
 from .case import as_plain
-from .errors import ComputationError
+from .errors import CaseError, ComputationError
 from .output.console import Progress, Terminal, print_summary
 from .output.folder import ResultsFolder
 from .parallel import on_root
@@ -79,6 +79,10 @@ def run_session(chosen, comm, import_seconds: float) -> int:
         console.print(f"results in {path}")
         if result.stopped is not None:
             raise result.stopped
+    except CaseError:  # found while meshing: nothing was computed, and the next try needs the place
+        if folder is not None:
+            _writing(folder.abandon)
+        raise
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
         _close(folder, "interrupted" if interrupted else "failed", str(error))

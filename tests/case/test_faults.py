@@ -486,6 +486,13 @@ PLANE = [
     Bad("sphere in a plane", {"model": "plane-stress"}, "model", "allowed: axisymmetric", SPHERE),
     Bad("thickness 0", {"geometry.thickness": "0 mm"}, "geometry.thickness", "greater", HERTZ),
     Bad("half as text", {"geometry.half": "yes"}, "geometry.half", "must be true or false", HERTZ),
+    Bad("half without its plane", {"geometry": FILE | {"half": True}}, "geometry.half", "symmetry"),
+    Bad(
+        "plane of a whole",
+        {"geometry": FILE | {"symmetry": ["AXIS"]}},
+        "geometry.symmetry",
+        "half = true",
+    ),
     Bad("half of a sphere", {"geometry.half": True}, "geometry.half", "unknown key here", SPHERE),
     Bad(
         "edges rounder than the punch",

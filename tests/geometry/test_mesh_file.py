@@ -273,7 +273,10 @@ ELSEWHERE = "is not on the boundary of"
             f"geometry.held: 'BOTTOM' {ELSEWHERE} body 'punch'",
         ),
         ({"surfaces": {"cold": "BOTTM"}}, f"geometry.surfaces.cold: {NO_SURFACE} 'BOTTM'"),
-        ({"symmetry": ["NOTHING"]}, f"geometry.symmetry: 'NOTHING' {ELSEWHERE} a body"),
+        (
+            {"symmetry": ["NOTHING"], "half": True},
+            f"geometry.symmetry: 'NOTHING' {ELSEWHERE} a body",
+        ),
     ],
 )
 def test_names_that_are_not_there(tmp_path, keys, expected):

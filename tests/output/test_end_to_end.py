@@ -203,6 +203,7 @@ def test_too_large_a_load_is_one_line(tmp_path, capsys):
         assert line.startswith("error: geometry.radius: too small for the contact, which is")
         assert "up to 0.005 m" in line
     assert not (tmp_path / "mesh.msh").exists()
+    assert not (tmp_path / "results").exists()  # the corrected case finds its place free
 
 
 # ---- bodies that were meshed elsewhere ----

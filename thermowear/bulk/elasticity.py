@@ -131,18 +131,18 @@ def elasticity(
     stiffness = assemble_matrix(compiled(model.integral(mesh, energy, section_measure(degree))))
     stiffness.assemble()
     fixed = _fixed(bodies, model, space, clamped, symmetric)
-    supported = stiffness.copy()
+    factor = Factor(supported(stiffness, fixed))
+    return Elasticity(bodies, model, space, stiffness, fixed, factor, lame)
+
+
+def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
+    """A copy of a stiffness with rows and columns of fixed values eliminated. Every rank calls."""
+    result = stiffness.copy()
     first = stiffness.getOwnershipRange()[0]
     rows = (np.flatnonzero(fixed) + first).astype(PETSc.IntType)
-    scale = float(np.abs(stiffness.getDiagonal().getArray()).max(initial=0.0))
-    supported.zeroRowsColumns(rows, diag=mesh.comm.allreduce(scale, op=_max()))
-    return Elasticity(bodies, model, space, stiffness, fixed, Factor(supported), lame)
-
-
-def _max():
-    from mpi4py import MPI
-
-    return MPI.MAX
+    largest = float(np.abs(stiffness.getDiagonal().getArray()).max(initial=0.0))
+    result.zeroRowsColumns(rows, diag=max(stiffness.comm.tompi4py().allgather(largest)))
+    return result
 
 
 def _lame(bodies: Bodies, model: Model, materials: dict[str, ElasticMaterial]):

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from ..errors import CaseError
 from . import units
 from .analyses import Fretting, Initial, Steady, Transient
 from .checks import check
@@ -221,7 +222,11 @@ class Case(Section):
         """
         if zone is None:
             zone = self.geometry.expected_zone(self.pressing())
-        return self.geometry.build(self.mesh, zone)
+        mesh = self.geometry.build(self.mesh, zone)
+        x = mesh.points[:, 0]
+        if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():
+            raise CaseError("geometry: x is the radius of an axisymmetric mesh, found x < 0")
+        return mesh
 
     def material(self, body: str) -> Body:
         """The material of a body, ``like`` followed to its end."""

@@ -215,7 +215,7 @@ class FullContact(ContactEquations):
     def _advice(self) -> str:
         change = "make contact.penalty smaller"
         if self.nitsche:
-            change = "set contact.theta = -1 or make contact.gamma larger"
+            change = "leave contact.gamma at its default, set contact.theta = -1"
         return (
             "contact: Newton's method found no equilibrium, however small the load; "
             f'{change}, or use contact.method = "condensed"'

@@ -7,7 +7,7 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
-from ..bulk.elasticity import Elasticity
+from ..bulk.elasticity import Elasticity, supported
 from ..bulk.factor import Factor
 from ..errors import ComputationError
 from .traces import distributed
@@ -44,7 +44,7 @@ class NewtonMatrix:
         symmetry: str,
     ):
         self._symmetry = symmetry
-        fixed = _supported(elastic)
+        fixed = supported(elastic.stiffness, elastic.fixed)
         if subtracted.any():
             columns = distributed(elastic.space, stress)
             rows = _transposed(columns)
@@ -89,16 +89,6 @@ class NewtonMatrix:
             )
         self._factors = factors
         return self._factor
-
-
-def _supported(elastic: Elasticity) -> PETSc.Mat:
-    """The stiffness with its supports eliminated."""
-    matrix = elastic.stiffness.copy()
-    first, _ = matrix.getOwnershipRange()
-    largest = np.abs(matrix.getDiagonal().getArray()).max(initial=0.0)
-    rows = (np.flatnonzero(elastic.fixed) + first).astype(PETSc.IntType)
-    matrix.zeroRowsColumns(rows, diag=max(elastic.space.mesh.comm.allgather(largest)))
-    return matrix
 
 
 def _transposed(matrix: PETSc.Mat) -> PETSc.Mat:

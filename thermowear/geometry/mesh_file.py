@@ -72,6 +72,10 @@ class MeshFile(PlaneGeometry):
     def _complete(self):
         if len(self.body_names) != 2:
             raise KeyFault("bodies", f"needs two, the held one first; found {len(self.body_names)}")
+        if self.half and not self.symmetry:
+            raise KeyFault("half", "needs the surfaces on the plane of symmetry: symmetry = [...]")
+        if self.symmetry and not self.half:
+            raise KeyFault("symmetry", "is for half models; add half = true")
         roles = {"contact": self.contact, "held": (self.held,), "fixed": (self.fixed,)}
         seen: set[str] = set()
         for key, names in roles.items():

@@ -54,6 +54,7 @@ class ResultsFolder:
             "versions": _versions(),
         }
         self._rows: RowWriter | None = None
+        self._made = not os.path.exists(path)  # unlike Path.exists, no error at odd names
         try:
             path.mkdir(parents=True, exist_ok=True)
             present = [entry for entry in path.iterdir() if _OURS.fullmatch(entry.name)]
@@ -111,6 +112,13 @@ class ResultsFolder:
             **({"message": message} if message else {}),
         }
         self._write_run()
+
+    def abandon(self) -> None:
+        """Take back what was written; for a case that turns out wrong before it is computed."""
+        for name in ("case.resolved.toml", "run.json"):
+            (self.path / name).unlink(missing_ok=True)
+        if self._made:
+            self.path.rmdir()
 
     def _write_run(self) -> None:
         self._write_json("run.json", self._run)

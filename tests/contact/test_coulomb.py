@@ -49,8 +49,9 @@ def violations(problem, solution):
     λ, τ = solution.pressure, solution.shear
     x = np.concatenate([λ, *τ.T])
     y = problem.compliance @ x + problem.offset - problem.modes @ solution.motion
-    scale = np.abs(x).max(), np.abs(y).max() + np.abs(problem.compliance).max() * np.abs(x).max()
-    worst = [np.abs(problem.modes.T @ x - problem.force).sum() / np.abs(x).sum()]
+    size = np.abs(x).max() or 1.0  # all open
+    scale = size, np.abs(y).max() + np.abs(problem.compliance).max() * size
+    worst = [np.abs(problem.modes.T @ x - problem.force).sum() / size]
     for i, mu in enumerate(problem.friction):
         gap, *slip = y.reshape(-1, len(λ))[:, i]
         worst += [-gap / scale[1], -λ[i] / scale[0], abs(λ[i] * gap) / scale[0] / scale[1]]
@@ -72,7 +73,7 @@ def test_every_solution_satisfies_the_conditions(seed, directions, forced):
     problem = random_problem(seed, directions, forced)
     solution = solve(problem)
     assert violations(problem, solution) < 1e-8
-    assert solution.iterations <= 12
+    assert solution.iterations <= 10
 
 
 def test_pivoting_finds_the_same():

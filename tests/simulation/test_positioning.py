@@ -160,3 +160,32 @@ def test_refinement_of_degree():
     """requirement: eight positioned elements converge in their degree, see `POSITIONED`."""
     graded = ("mesh.elements=8", "mesh.grading=0.5")
     falls({k: error_of(*graded, f"mesh.degree={k}") for k in POSITIONED}, POSITIONED)
+
+
+class Listener(tw.simulation.Observer):
+    """Keeps what is said."""
+
+    def __init__(self):
+        self.notes = []
+
+    def note(self, text):
+        self.notes.append(text)
+
+
+@pytest.mark.parametrize("half", [True, False])
+def test_a_contact_that_outgrows_its_face(monkeypatch, half):
+    """requirement: pressure cut off where the contact face ends is said; positioning mends it."""
+    kind = type(tw.load(tables(HERTZ, {})).geometry)
+    monkeypatch.setattr(kind, "expected_zone", lambda self, pressing: (-1e-4, 1e-4))
+    pressures, notes = [], []
+    for on in ("false", "true"):
+        listener = Listener()
+        keys = (f"contact.positioning={on}", f"geometry.half={str(half).lower()}")
+        result = tw.run(tw.load(tables(HERTZ, {}), keys), observer=listener)
+        pressures.append(result.summary["max_pressure_Pa"])
+        notes.append(listener.notes)
+    assert len(notes[0]) == 1
+    assert "reaches the end of the contact face" in notes[0][0]
+    assert notes[1] == []
+    assert pressures[0] > 1.5 * pressures[1]
+    assert pressures[1] == pytest.approx(2.8648e9, rel=1e-3)

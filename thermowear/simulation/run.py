@@ -63,6 +63,11 @@ def run(
             "stays out of the contact"
         )
     outcome = _ANALYSES[case.analysis.type](system, observer)
+    if _outgrown(system, outcome.pressure):
+        observer.note(
+            "the contact reaches the end of the contact face, which was meshed for a smaller one; "
+            "use contact.positioning = true"
+        )
     with phases("fields"):
         fields = sample(system, outcome.state, outcome.translation)
     summary = summarise(system, outcome)
@@ -75,6 +80,17 @@ def run(
         outcome.friction,
         outcome.stopped,
     )
+
+
+def _outgrown(system: System, pressure: np.ndarray) -> bool:
+    """Whether it presses at an end of the face that should lie beyond the contact."""
+    case, x = system.case, system.pairing.points[:, 0]
+    zone = case.geometry.expected_zone(case.pressing())
+    if zone is None:
+        return False
+    margin = 1e-6 * (zone[1] - zone[0])
+    ends = ((0, x[0] < zone[0] - margin), (-1, x[-1] > zone[1] + margin))
+    return any(beyond and pressure[end] > 0 for end, beyond in ends)
 
 
 def _problem(system: System, observer: Observer) -> InterfaceProblem:

@@ -164,3 +164,16 @@ def test_indefinite_compliance_is_reported():
     """requirement: V10, beyond the instability the solver says so instead of returning."""
     with pytest.raises(ComputationError, match="instability"):
         solve_contact(-np.eye(6) - 0.2, np.linspace(0, 1, 6), np.ones((6, 1)), np.ones(1))
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_lemke_with_friction_in_the_section(seed):
+    """requirement: the fallback finds the same contact where forces work on other modes."""
+    compliance, gap, modes, _ = random_problem(seed, 3 + seed % 28, 0.01)
+    rng = np.random.default_rng(seed)
+    forces = modes + 0.1 * rng.uniform(size=modes.shape)
+    load = forces.T @ rng.uniform(0.1, 1, len(gap))
+    solution = solve_contact(compliance, gap, modes, load, force_modes=forces)
+    active = _pressing_by_lemke(_Problem(compliance, gap, modes, load, forces))
+    pressing = solution.coefficients > 1e-9 * solution.coefficients.max()
+    assert np.array_equal(active, pressing)

@@ -187,3 +187,10 @@ def elevated(bodies, space):
     mine = nodes[nodes < len(values) // 2]
     values[2 * mine + 1] = 1e-3
     return values
+
+
+def test_unpaired_is_a_part_of_the_length():
+    """requirement: what has nothing opposite is told as a part of the face's length."""
+    upper, lower = faces(blocks((3, 4), (1.6, 1.0)))  # facets of unlike length
+    pairing = pair(upper, moved(lower, [0.013, 0.0]), Axisymmetric(), 5)
+    assert pairing.unpaired == pytest.approx(0.013 / 0.04, rel=1e-9)

@@ -2,6 +2,7 @@
 
 import dataclasses
 import itertools
+import re
 
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -381,3 +382,18 @@ def test_loads_that_do_not_hold_the_body(blocks, wrong):
     """requirement: exactly one of force and translation along each motion."""
     with pytest.raises(ValueError, match="loads:"):
         advance(blocks[1], 0.3, unloaded(blocks[1]), Loads(**wrong))
+
+
+def test_friction_carries_what_sliding_takes(blocks):
+    """requirement: the refused force is held against what sliding under the approach takes."""
+    _, contact = blocks
+    friction = np.linspace(0.05, 0.4, contact.basis.shape[1])
+    start = unloaded(contact)
+    pressed = Loads(normal_force=PRESS, tangential_force=0.0)
+    near = advance(contact, friction, start, pressed).motion[0]
+    slid = advance(contact, friction, start, Loads(approach=near, tangential_displacement=1e-2))
+    push = Loads(approach=near, tangential_force=1.01 * slid.force[1])
+    with pytest.raises(FullSliding) as refused:
+        advance(contact, friction, slid, push)
+    carried = float(re.search(r"carries ([\d.e+]+) N", str(refused.value)).group(1))
+    assert carried == pytest.approx(slid.force[1], rel=1e-5)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 from mpi4py import MPI
 
@@ -296,3 +297,31 @@ def test_full_sliding_from_the_command_line(tmp_path, capsys):
         last = list(csv.DictReader(rows))[-1]
     assert float(last["time_s"]) == pytest.approx(summary["time_s"], rel=1e-12)
     assert float(last["tangential_force_N"]) == pytest.approx(summary["tangential_force_N"])
+
+
+def slid(**history):
+    """Pushed across the press from one instant to the next."""
+    changes = {"load.history": {"time": ["0 s", "1 s"]} | history, "analysis.output_times": []}
+    return solved(FRETTING, changes, *SMALL, "analysis.increments=4")
+
+
+def test_the_limit_of_a_round_face():
+    """requirement: the force that is said to be carried is that of sliding, not yet displaced."""
+    near, far = (
+        slid(tangential_displacement=["0 um", f"{d} um"]).friction.rows[-1].tangential_force
+        for d in (5, 10)
+    )
+    refused = str(slid(tangential_force=["0 N", "100 N"]).stopped)
+    carried = float(re.search(r"carries ([\d.e+]+) N", refused).group(1))
+    assert carried == pytest.approx(2 * near - far, rel=2e-5)
+
+
+def test_the_interface_after_sliding_back():
+    """requirement: gap, area and friction force of a body that has moved across the press."""
+    moved = slid(tangential_displacement=["0 um", "-10 um"])
+    last, i = moved.friction.rows[-1], moved.interface
+    assert moved.summary["friction_force_N"] == pytest.approx(-last.tangential_force, rel=1e-12)
+    assert last.contact_area == pytest.approx(i.weight[i.pressure > 0].sum(), rel=1e-12)
+    assert last.contact_area < 0.9 * i.weight.sum()
+    pressing = i.pressure > 0.2 * i.pressure.max()
+    assert np.abs(i.gap[pressing]).max() < 2e-3 * last.approach

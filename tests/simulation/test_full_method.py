@@ -255,3 +255,19 @@ def test_a_stiff_penalty_is_still_right(run):
     assert stiff.summary["normal_force_N"] == pytest.approx(1500.0, rel=1e-8)
     approach = known.summary["approach_m"]
     assert stiff.summary["approach_m"] == pytest.approx(approach, rel=1e-4)
+
+
+def test_the_thermal_stress_is_that_of_body_1():
+    """requirement: consistent where the faces differ in temperature."""
+    changes = {
+        "analysis": {"type": "initial"},
+        "wear": GONE,
+        "heat.conductance": "1e3 W/(m^2 K)",
+    }
+    approaches = [
+        solved(STEADY, changes, *SMALL, SLOW, by("nitsche"), f"contact.theta={theta}").summary[
+            "approach_m"
+        ]
+        for theta in (1, 0, -1)
+    ]
+    assert approaches == pytest.approx([approaches[0]] * 3, rel=1e-6)

@@ -254,3 +254,25 @@ def test_steady_pressure_of_a_translation_is_uniform(hot):
     assert summary["equilibrium_relative_error"] < 1e-9
     # friction shears the faces: the worn shape is not symmetric
     assert relative(i.shape, i.shape[::-1]) > 1e-3
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_sliding_cylinder_carries_its_load(method):
+    """requirement: on a round face pressure and friction together carry load and guide force."""
+    changes = {
+        "geometry.half": False,
+        "motion": {"velocity": "1 m/s"},
+        "contact": {"friction": 0.3, "method": method},
+        "load": {"force": "1.5 kN"},
+    }
+    result = solved(HERTZ, changes, *SMALL)
+    i, summary = result.interface, result.summary
+    across = i.x / 10e-3
+    down = np.sqrt(1 - across**2)
+    load = i.weight * i.pressure
+    assert load @ (down - 0.3 * across) == pytest.approx(1500.0, rel=1e-8)
+    assert load @ (across + 0.3 * down) == pytest.approx(summary["guide_force_N"], rel=1e-8)
+    assert summary["normal_force_N"] == pytest.approx(1500.0, rel=1e-8)
+    assert summary["equilibrium_relative_error"] < 1e-9
+    pressing = i.pressure > 0.2 * i.pressure.max()
+    assert np.abs(i.gap[pressing]).max() < 2e-3 * summary["approach_m"]

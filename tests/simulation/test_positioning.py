@@ -189,3 +189,18 @@ def test_a_contact_that_outgrows_its_face(monkeypatch, half):
     assert notes[1] == []
     assert pressures[0] > 1.5 * pressures[1]
     assert pressures[1] == pytest.approx(2.8648e9, rel=1e-3)
+
+
+def test_several_zones_are_refused(monkeypatch):
+    """requirement: positioning is for one contact zone, and says so."""
+    zones = "thermowear.simulation.preparation.contact_zones"
+    monkeypatch.setattr(zones, lambda *_: [(0.0, 1e-4), (2e-4, 3e-4)])
+    with pytest.raises(tw.ComputationError, match="2 places"):
+        positioned(HERTZ, {}, "mesh.degree=2", "mesh.elements=8")
+
+
+@pytest.mark.parametrize("zone", [(0.0, -1e-4), (1e-4, 1e-4), (-1e-4, 0.0)])
+def test_a_zone_that_is_none_is_refused(zone):
+    """requirement: no mesh is tried for a contact without width."""
+    with pytest.raises(tw.CaseError, match="geometry"):
+        tw.load(tables(HERTZ, {})).tagged_mesh(zone)

@@ -12,7 +12,7 @@ from .lemke import lemke
 
 _ITERATIONS = 30
 _CONVERGED = 1e-12
-_SPRING = 1e-3
+_SPRINGS = (1e-3, 1e-2, 1e-1, 1.0)  # parts of the contact's own stiffness, one after the other
 _SPRUNG_SOLUTIONS = 20
 
 
@@ -108,14 +108,15 @@ def _sticking(problem: CoulombProblem, closed: np.ndarray) -> np.ndarray | None:
 
 
 def _better_starts(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]:
-    yield from _sprung(problem, closed)
+    for part in _SPRINGS:
+        yield from _sprung(problem, closed, part)
     start = _complementary(problem)
     if start is not None:
         yield start
 
 
-def _sprung(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]:
-    """Solutions with a soft spring between the holder and its load, whose other end follows.
+def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterator[np.ndarray]:
+    """Solutions with a spring between the holder and its load, whose other end follows.
 
     ``Rᵀ x = F - k (d - d0)`` puts ``R k⁻¹ Rᵀ`` into the compliance and leaves no free motion;
     ``d0 <- d`` makes it the method of multipliers for the equilibrium.
@@ -123,7 +124,7 @@ def _sprung(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]
     if len(problem.force) == 0:
         return
     modes, force = problem.modes, problem.force
-    spring = _SPRING * np.diag(modes.T @ np.linalg.solve(problem.compliance, modes))
+    spring = part * np.diag(modes.T @ np.linalg.solve(problem.compliance, modes))
     softer = problem.compliance + modes / spring @ modes.T
     anchor, start = np.zeros(len(force)), None
     for _ in range(_SPRUNG_SOLUTIONS):

@@ -118,6 +118,10 @@ class OnBlock(Geometry):
 
     def _check(self, zone: tuple[float, float]) -> None:
         outer = zone[1] if self.right_only else max(-zone[0], zone[1])
+        if not outer > max(zone[0], 0.0):
+            raise CaseError(
+                f"geometry: a contact from x = {zone[0]:.3g} to {zone[1]:.3g} m is none"
+            )
         limits = self.upper_limits() | {self.block_key: 0.75 * self.block_reach}
         for key, limit in limits.items():
             if not outer <= limit:

@@ -17,6 +17,7 @@ from .system import System, build
 _PASSES = 12
 _SETTLED = 0.1  # of the element at the edge
 _STEEPEST = 4.0
+_LONGEST = 0.4  # of the zone: its edges never change places
 
 
 def interface_problem(system: System) -> InterfaceProblem:
@@ -85,7 +86,8 @@ def _step(zone: np.ndarray, missed: np.ndarray, before) -> np.ndarray:
         return missed
     moved, changed = zone - before[0], missed - before[1]
     slope = np.divide(changed, moved, out=np.full(2, -1.0), where=moved != 0.0)
-    return missed / -np.clip(slope, -_STEEPEST, -1 / _STEEPEST)
+    longest = _LONGEST * (zone[1] - zone[0])
+    return np.clip(missed / -np.clip(slope, -_STEEPEST, -1 / _STEEPEST), -longest, longest)
 
 
 def _smallest(system: System) -> float:

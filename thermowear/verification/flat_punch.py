@@ -27,4 +27,4 @@ def checks() -> Iterator[Check]:
         found = along(result.interface, places, result.interface.pressure)
         for place, p, known in zip(PLACES, found, exact, strict=True):
             quantity = f"pressure at x = {place:g} of the half-width, {model} [Pa]"
-            yield compare(ID, quantity, p, known, 3e-2, JOHNSON)
+            yield compare(ID, quantity, p, known, 1e-2, JOHNSON)

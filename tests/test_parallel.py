@@ -65,7 +65,9 @@ def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):
             np.testing.assert_allclose(parallel[key], expected, rtol=1e-8)
             continue
         if isinstance(expected, float):
-            expected = pytest.approx(expected, rel=1e-8, abs=1e-12 * abs(serial["normal_force_N"]))
+            # a force that vanishes by symmetry is rounding of the load
+            noise_of_load = 1e-12 * serial["normal_force_N"] if key.endswith("_force_N") else 0.0
+            expected = pytest.approx(expected, rel=1e-8, abs=noise_of_load)
             if key == "distance_from_steady":
                 expected = pytest.approx(serial[key], abs=1e-8)
         assert parallel[key] == expected, key

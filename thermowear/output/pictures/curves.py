@@ -27,7 +27,9 @@ def draw_interface(folder: Path) -> None:
     """``interface.png``: pressure, temperatures and shape along the contact."""
     data = tables.read(folder / "interface.csv", INTERFACE)
     hot = np.isfinite(data["temperature_1"]).all()
-    panels = [["pressure"], *([["temperature_1", "temperature_2"]] if hot else []), ["shape"]]
+    panels = [["pressure"], *([["temperature_1", "temperature_2"]] if hot else [])]
+    if np.ptp(data["shape"]) > 0:  # flat faces that have not worn have nothing to show
+        panels.append(["shape"])
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 2.3 * len(panels)), layout="constrained", dpi=150)
         axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]

@@ -13,6 +13,7 @@ from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, section_model
 from thermowear.case.schema import Motion
+from thermowear.contact.sliding import sliding
 
 from ..conftest import two_blocks
 
@@ -135,8 +136,33 @@ def test_sliding_of_plane_models(velocity):
     motion = Motion(velocity=velocity)
     normals = np.array([[0.0, -1.0], [0.6, -0.8], [-0.6, -0.8]])
     model = section_model("plane-strain", 1.0)
-    e = model.slip_direction(normals, motion)
+    slides = sliding(model.sliding(normals, motion), normals, (0.0, -1.0))
+    e = slides.along
     assert np.sign(e[:, 0]) == pytest.approx(np.sign(motion.velocity))
     assert (e * normals).sum(axis=1) == pytest.approx(0.0)
     assert np.linalg.norm(e, axis=1) == pytest.approx(1.0)
-    assert model.speed(normals, motion) == pytest.approx(0.05)
+    assert slides.speed == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize("turning", ["2 rad/s", "-2 rad/s"])
+def test_sliding_over_a_turning_disk(turning):
+    """requirement: a disk that turns anticlockwise drags what lies on top of it along -x."""
+    motion = Motion(angular_velocity=turning)
+    angle = np.array([-0.4, 0.0, 0.7])
+    outward = np.column_stack([np.sin(angle), np.cos(angle)])
+    center = np.array([0.1, -0.2])
+    velocity = section_model("plane-strain", 1.0).sliding(center + 0.3 * outward, motion, center)
+    slides = sliding(velocity, -outward, (0.0, -1.0))
+    assert slides.speed == pytest.approx(0.6)
+    assert (slides.along * outward).sum(axis=1) == pytest.approx(0.0)
+    dragged = -slides.pull(-outward, 0.3, 0.0) - outward  # friction's part of the traction
+    assert np.sign(dragged[:, 0]) == pytest.approx(-np.sign(motion.angular_velocity))
+    assert np.linalg.norm(dragged, axis=1) == pytest.approx(0.3)
+
+
+def test_transverse_friction_holds_back_on_a_cone():
+    """requirement: across the sliding, friction carries part of the load of a conical face."""
+    normals = np.array([[0.6, -0.8], [0.0, -1.0], [-0.6, -0.8]])
+    velocity = np.tile([0.0, 0.0, 3.0], (3, 1))
+    pull = sliding(velocity, normals, (0.0, -1.0)).pull(normals, 0.25, 0.1)
+    assert pull @ [0.0, -1.0] == pytest.approx([0.8 + 0.1 * 0.6, 1.0, 0.8 + 0.1 * 0.6])

@@ -72,7 +72,7 @@ NAMES = [
     Bad("unknown analysis", {"analysis.type": "modal"}, "analysis.type", "found 'modal'"),
     Bad("analysis without type", {"analysis.type": GONE}, "analysis.type", "'transient'"),
     Bad("unknown method", {"contact.method": "magic"}, "contact.method", "'condensed'"),
-    Bad("unknown model", {"model": "3d"}, "model", "found '3d'"),
+    Bad("unknown model", {"model": "4d"}, "model", "found '4d'"),
     Bad(
         "unknown pressure or stress",
         {"wear.punch.per": "area"},
@@ -289,7 +289,7 @@ SPEED, TURN = {"velocity": "50 mm/s"}, {"angular_velocity": "1 rad/s"}
 
 MOTIONS = [
     Bad("ring moved along", {"motion": SPEED}, "motion.velocity", "needs motion.angular_velocity"),
-    Bad("ring turned and moved", {"motion.velocity": "1 m/s"}, "motion.velocity", "plane models"),
+    Bad("ring turned and moved", {"motion.velocity": "1 m/s"}, "motion.velocity", "does not fit"),
     Bad("ring not moved", {"motion": {}}, "motion.angular_velocity", "missing"),
     Bad(
         "punch turned", {"motion": TURN}, "motion.angular_velocity", "needs motion.velocity", PUNCH
@@ -306,7 +306,7 @@ MOTIONS = [
         "angular velocity 0",
         {"motion": {"angular_velocity": "0 rad/s"}},
         "motion.angular_velocity",
-        "greater than 0",
+        "other than 0",
     ),
     Bad(
         "half of what slides with friction",
@@ -571,7 +571,7 @@ def test_several_faults_give_a_line_each():
     """
     requirement: one line per fault, not one run per fault.
     """
-    found = faults({NU: 0.6, "mesh.degree": 11, "model": "3d", "geometry.plate_radius": "1 s"})
+    found = faults({NU: 0.6, "mesh.degree": 11, "model": "4d", "geometry.plate_radius": "1 s"})
     assert sorted(line.split(":")[0] for line in found) == [
         NU,
         "geometry.plate_radius",

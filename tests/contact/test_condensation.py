@@ -11,10 +11,11 @@ from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.contact.complementarity import solve_contact
 from thermowear.contact.condensation import condense
 from thermowear.contact.face import gather_face
-from thermowear.contact.holder import hold
+from thermowear.contact.holder import Drive, hold
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis
 from thermowear.contact.traces import gap_trace
+from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks
 
 from ..conftest import two_blocks
@@ -38,7 +39,7 @@ def condensed(degree, columns, poisson_ratio=0.3):
     )
     trace = gap_trace(elastic.space, pairing)
     basis = pressure_basis(pairing, max(degree - 1, 1))
-    holder = hold(pairing, pairing.normals, (0.0, -1.0), 1.0, None)
+    holder = hold(pairing, pairing.normals, [Drive(translation((0.0, -1.0)), load=1.0)])
     return elastic, pairing, trace, condense(elastic, pairing, trace, trace, basis, holder)
 
 

@@ -15,10 +15,11 @@ from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.contact.condensation import condense
 from thermowear.contact.face import gather_face
 from thermowear.contact.heat import bath_matrix, condense_distortion, condense_heat
-from thermowear.contact.holder import hold
+from thermowear.contact.holder import Drive, hold
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis
 from thermowear.contact.traces import gap_trace, value_trace
+from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks
 from thermowear.reference import slabs
 
@@ -129,7 +130,7 @@ def test_condensed_distortion_equals_the_bodies_own():
         trace,
         trace,
         basis,
-        hold(pairing, pairing.normals, (0, -1), 1.0, None),
+        hold(pairing, pairing.normals, [Drive(translation((0, -1)), load=1.0)]),
         keep_influence=True,
     )
     load = elastic.thermal_load(conducting.space)

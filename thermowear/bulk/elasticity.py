@@ -86,6 +86,11 @@ class Elasticity:
         belongs[nodes[nodes < len(belongs)]] = True
         return belongs
 
+    def nodes(self) -> np.ndarray:
+        """Coordinates of the owned nodes, shape (n_owned / gdim, gdim) [m]."""
+        count, dim = self.space.dofmap.index_map.size_local, self.bodies.mesh.geometry.dim
+        return self.space.tabulate_dof_coordinates()[:count, :dim]
+
     def thermal_load(self, temperature_space: fem.FunctionSpace) -> PETSc.Mat:
         """G: nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K]."""
         mesh = self.bodies.mesh
@@ -105,6 +110,7 @@ def elasticity(
     materials: dict[str, ElasticMaterial],
     clamped: list[str],
     symmetric: tuple[str, ...] = (),
+    rollers: tuple[str, ...] = (),
 ) -> Elasticity:
     """Assemble and factorise.
 
@@ -120,6 +126,8 @@ def elasticity(
         Surfaces held in all directions. Every body needs one.
     symmetric : tuple of str
         Surfaces on a plane of symmetry x = const.: the first displacement vanishes.
+    rollers : tuple of str
+        Surfaces whose second displacement vanishes.
     """
     mesh = bodies.mesh
     space = lagrange_space(mesh, degree, mesh.geometry.dim)
@@ -130,7 +138,7 @@ def elasticity(
     energy = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
     stiffness = assemble_matrix(compiled(model.integral(mesh, energy, section_measure(degree))))
     stiffness.assemble()
-    fixed = _fixed(bodies, model, space, clamped, symmetric)
+    fixed = _fixed(bodies, model, space, clamped, {0: symmetric, 1: rollers})
     factor = Factor(supported(stiffness, fixed))
     return Elasticity(bodies, model, space, stiffness, fixed, factor, lame)
 
@@ -154,16 +162,19 @@ def _lame(bodies: Bodies, model: Model, materials: dict[str, ElasticMaterial]):
     return bodies.per_body(λ), bodies.per_body(μ), bodies.per_body(m)
 
 
-def _fixed(bodies: Bodies, model: Model, space, clamped, symmetric) -> np.ndarray:
-    """Which owned values the supports and the planes or axis of symmetry hold at zero."""
+def _fixed(bodies: Bodies, model: Model, space, clamped, guided) -> np.ndarray:
+    """Which owned values the supports and the planes or axis of symmetry hold at zero.
+
+    Surfaces by the component that they guide.
+    """
     mesh = bodies.mesh
     tdim = mesh.topology.dim
     zero = default_scalar_type(0)
     held = np.zeros(owned(space), dtype=bool)
     for component in range(mesh.geometry.dim):
         facets = [bodies.facets(surface) for surface in clamped]
+        facets += [bodies.facets(surface) for surface in guided.get(component, ())]
         if component == 0:
-            facets += [bodies.facets(surface) for surface in symmetric]
             facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, model.on_axis))
         dofs = fem.locate_dofs_topological(
             space.sub(component), tdim - 1, np.unique(np.concatenate(facets)).astype(np.int32)

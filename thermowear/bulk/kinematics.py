@@ -1,6 +1,7 @@
-"""How a two-dimensional mesh stands for a solid: strain, stress and volume of each model.
+"""How a mesh stands for a solid: strain, stress and volume of each model.
 
-Strains and stresses are always full 3 x 3 tensors in the order (x, y, out of plane), or (r, z, θ).
+Strains and stresses are always full 3 x 3 tensors in the order (x, y, out of plane), (r, z, θ), or
+(x, y, z).
 """
 
 from __future__ import annotations
@@ -19,30 +20,26 @@ class Model(ABC):
     ----------
     name : str
         The value of ``model`` in a case file.
-    press_direction : tuple of float
-        Unit translation of body 1 that its holder leaves free, along the load.
     """
 
     name: str
-    press_direction: tuple[float, float] = (0.0, -1.0)
 
     @abstractmethod
-    def speed(self, points: np.ndarray, motion) -> np.ndarray:
-        """Sliding speed [m/s] at points of shape (n, 2) under the motion of the case."""
-
-    @abstractmethod
-    def slip_direction(self, normals: np.ndarray, motion) -> np.ndarray:
-        """Part within the section of the unit sliding direction of body 1 over body 2.
+    def sliding(
+        self, points: np.ndarray, motion, center: tuple[float, float] | None = None
+    ) -> np.ndarray:
+        """Velocity of body 1 relative to body 2; the last component is across the section.
 
         Parameters
         ----------
-        normals : ndarray, shape (n, 2)
-            Outward unit normals of body 1.
+        points : ndarray, shape (n, 2) [m]
         motion : thermowear.case.schema.Motion
+        center : tuple of float, optional
+            Point of the section about which body 2 turns [m].
 
         Returns
         -------
-        ndarray, shape (n, 2)
+        ndarray, shape (n, 3) [m/s]
         """
 
     @abstractmethod
@@ -109,16 +106,13 @@ class Model(ABC):
 class Axisymmetric(Model):
     """Solids of revolution; coordinates (r, z), displacement (u_r, u_z), no torsion.
 
-    Body 1 lies above body 2 and is pressed down; it turns about the axis.
+    Body 1 turns about the axis.
     """
 
     name = "axisymmetric"
 
-    def speed(self, points, motion):
-        return motion.angular_velocity * points[:, 0]
-
-    def slip_direction(self, normals, motion):
-        return np.zeros_like(normals)  # it slides round the axis, across the section
+    def sliding(self, points, motion, center=None):
+        return np.outer(motion.angular_velocity * points[:, 0], (0.0, 0.0, 1.0))
 
     def integral(self, mesh, density, measure):
         return 2 * math.pi * ufl.SpatialCoordinate(mesh)[0] * density * measure
@@ -143,7 +137,7 @@ class Axisymmetric(Model):
 class PlaneStrain(Model):
     """A long solid cut to a thickness; no strain across it.
 
-    Body 1 lies above body 2 and is pressed down; it slides along x.
+    Body 1 slides along x, or body 2 turns under it about a point of the section.
 
     Parameters
     ----------
@@ -156,12 +150,15 @@ class PlaneStrain(Model):
     def __init__(self, thickness: float):
         self.thickness = thickness
 
-    def speed(self, points, motion):
-        return np.full(len(points), abs(motion.velocity))
-
-    def slip_direction(self, normals, motion):
-        tangents = np.column_stack([-normals[:, 1], normals[:, 0]])
-        return tangents * np.sign(tangents[:, :1] * motion.velocity)
+    def sliding(self, points, motion, center=None):
+        velocity = np.zeros((len(points), 3))
+        if center is None:
+            velocity[:, 0] = motion.velocity
+        else:
+            arms = points - np.asarray(center)
+            velocity[:, 0] = motion.angular_velocity * arms[:, 1]
+            velocity[:, 1] = -motion.angular_velocity * arms[:, 0]
+        return velocity
 
     def integral(self, mesh, density, measure):
         return self.thickness * density * measure
@@ -191,6 +188,34 @@ class PlaneStress(PlaneStrain):
         return ufl.as_tensor([[σ[0, 0], σ[0, 1], 0], [σ[1, 0], σ[1, 1], 0], [0, 0, 0]])
 
 
+class Spatial(Model):
+    """Solids as they are; coordinates (x, y, z).
+
+    Body 1 slides along x, or body 2 turns under it about a vertical axis.
+    """
+
+    name = "3d"
+
+    def sliding(self, points, motion, center=None):
+        velocity = np.zeros((len(points), 3))
+        if center is None:
+            velocity[:, 0] = motion.velocity
+        else:
+            arms = points[:, :2] - np.asarray(center)
+            velocity[:, 0] = motion.angular_velocity * arms[:, 1]
+            velocity[:, 1] = -motion.angular_velocity * arms[:, 0]
+        return velocity
+
+    def integral(self, mesh, density, measure):
+        return density * measure
+
+    def area_factor(self, points):
+        return np.ones(len(points))
+
+    def strain(self, mesh, u):
+        return ufl.sym(ufl.grad(u))
+
+
 def section_model(name: str, thickness: float | None) -> Model:
     """The model of a name.
 
@@ -201,8 +226,9 @@ def section_model(name: str, thickness: float | None) -> Model:
     thickness : float or None
         Of plane models, see `PlaneStrain` [m].
     """
-    if name == Axisymmetric.name:
-        return Axisymmetric()
+    for model in (Axisymmetric, Spatial):
+        if name == model.name:
+            return model()
     assert thickness is not None
     return {model.name: model for model in (PlaneStrain, PlaneStress)}[name](thickness)
 

@@ -84,6 +84,36 @@ class Geometry(Section):
         return ()
 
     @property
+    def rollers(self) -> tuple[str, ...]:
+        """Surfaces that cannot move along y, but freely along x."""
+        return ()
+
+    @property
+    def press_direction(self) -> tuple[float, ...]:
+        """Unit vector along which body 1 is pressed on body 2."""
+        return (0.0, -1.0)
+
+    @property
+    def pivot_point(self) -> tuple[float, ...] | None:
+        """Point about which the holder of body 1 turns, unless the case gives one [m]."""
+        return None
+
+    @property
+    def rotation_center(self) -> tuple[float, float] | None:
+        """Point about which body 2 turns, in the section; None: it moves along x [m]."""
+        return None
+
+    @property
+    def track(self) -> float | None:
+        """Length of the path round body 2 that passes under body 1 [m]."""
+        return None
+
+    @property
+    def sector(self) -> float:
+        """Part of the circumference that an axisymmetric body 1 takes up."""
+        return 1.0
+
+    @property
     def thickness_factor(self) -> float | None:
         """Thickness of plane models that forces are of; twice the given one for half models [m]."""
         return None

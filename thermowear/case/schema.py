@@ -16,7 +16,7 @@ from .checks import check
 from .geometry import AnyGeometry, Pressing
 from .history import History
 from .materials import Body, resolve_like
-from .section import Number, Section, Switch
+from .section import KeyFault, Number, Section, Switch
 from .wear import Wear
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
@@ -37,6 +37,7 @@ def _variant(value: Any) -> Any:
     return value
 
 
+FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
 PressureDegree = Annotated[int | Literal["lobatto"] | None, BeforeValidator(_pressure_degree)]
 Variant = Annotated[Literal[1, 0, -1] | None, BeforeValidator(_variant)]
 
@@ -74,17 +75,58 @@ class Mesh(Section):
         return own.elements or self.elements, own.grading or self.grading
 
 
+class Holder(Section):
+    """How body 1 is held.
+
+    Attributes
+    ----------
+    free : tuple of str
+        Motions it may make under its loads, or is given: ``"z"`` along the press, ``"x"`` (and
+        ``"y"``) across it, ``"rotation"`` in the section, ``"rotation-x"`` and ``"rotation-y"`` in
+        space.
+    pivot : tuple of float or None
+        Point about which it turns, by default that of the geometry, or the origin [m].
+    """
+
+    free: Annotated[tuple[FreeMotion, ...], Field(min_length=1)] = ("z",)
+    pivot: tuple[units.Coordinate, ...] | None = None
+
+    @model_validator(mode="after")
+    def _once(self):
+        if len(set(self.free)) != len(self.free):
+            raise KeyFault("free", "names a motion twice")
+        return self
+
+    @property
+    def turns(self) -> bool:
+        return any(name.startswith("rotation") for name in self.free)
+
+
 class Load(Section):
-    """What presses body 1 on body 2: exactly one of these.
+    """What presses body 1 on body 2.
+
+    Exactly one of force, mean pressure and approach; a holder that only turns may have a moment
+    instead.
 
     Attributes
     ----------
     mean_pressure : float or None
         On the nominal contact area [Pa].
     force : float or None
-        Of the whole ring, or of the thickness [N].
+        Of the whole ring, or of the thickness, along the press [N].
     approach : float or None
-        How far the holder moves from where it stands in the mesh [m].
+        How far the holder moves along the press from where it stands in the mesh [m].
+    lever : float or None
+        Distance along x from the pivot to the line of the force [m].
+    point : tuple of float or None
+        Where the force acts: x, or x and y in space, by default at the pivot [m].
+    moment : float or None
+        About the pivot, in addition [N m]: positive where it presses if the holder only turns,
+        anticlockwise otherwise.
+    moments : tuple of float or None
+        About x and y through the pivot, in space, by the right-hand rule [N m].
+    tangential_force : float or None
+        Along x, for a holder that is free along it [N].
     history : History or None
         What changes, for a fretting analysis.
     """
@@ -92,18 +134,24 @@ class Load(Section):
     mean_pressure: units.Pressure | None = None
     force: units.Force | None = None
     approach: units.Length | None = None
+    lever: units.Coordinate | None = None
+    point: tuple[units.Coordinate, ...] | None = None
+    moment: units.SignedMoment | None = None
+    moments: tuple[units.SignedMoment, units.SignedMoment] | None = None
+    tangential_force: units.SignedForce | None = None
     history: History | None = None
 
 
 class Motion(Section):
-    """Sliding of body 1 over body 2.
+    """Sliding.
 
     Attributes
     ----------
     angular_velocity : float or None
-        About the axis, for axisymmetric models [rad/s].
+        Of body 1 about the axis of an axisymmetric model; of a disk or drum (body 2) about its
+        centre, anticlockwise, in plane models and seen from above in space [rad/s].
     velocity : float or None
-        Along x, for plane models; negative: against it [m/s].
+        Of body 1 over body 2 along x; negative: against it [m/s].
     """
 
     angular_velocity: units.AngularVelocity | None = None
@@ -117,6 +165,8 @@ class Contact(Section):
     ----------
     friction : float
         Coefficient of friction in the direction of sliding.
+    transverse_friction : float
+        Coefficient of friction across it, on faces that are not level (Páczelt and Mróz's mu_d).
     method : str
         ``"condensed"``: the bodies condensed to the interface; ``"penalty"`` and ``"nitsche"`` on
         the full system.
@@ -133,6 +183,7 @@ class Contact(Section):
     """
 
     friction: Annotated[Number, Field(ge=0.0)] = 0.0
+    transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
     method: Literal["condensed", "penalty", "nitsche"] = "condensed"
     pressure_degree: PressureDegree = None
     penalty: units.Foundation | None = None
@@ -169,10 +220,11 @@ class Case(Section):
     """A complete case: what to compute, of which bodies, under which load."""
 
     title: str = ""
-    model: Literal["axisymmetric", "plane-strain", "plane-stress"]
+    model: Literal["axisymmetric", "plane-strain", "plane-stress", "3d"]
     geometry: AnyGeometry
     mesh: Mesh = Mesh()
     bodies: dict[str, Body]
+    holder: Holder = Holder()
     load: Load
     motion: Motion | None = None
     contact: Contact = Contact()

@@ -1,4 +1,4 @@
-"""How body 1 is held: which way it may move as a rigid body, and what pushes it."""
+"""How body 1 is held: which rigid motions it may make, and what drives each of them."""
 
 from __future__ import annotations
 
@@ -6,79 +6,101 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..laws.motions import RigidMotion
 from .pairing import Pairing
 
 
 @dataclass(frozen=True)
-class Holder:
-    """The rigid holder of body 1, which translates along one direction.
+class Drive:
+    """A motion of the holder and what is given along it: either of them.
 
     Attributes
     ----------
-    direction : ndarray, shape (2,)
-        Unit translation along the load.
-    closing : ndarray, shape (n,)
-        R: how much a unit of it closes the gap at the points.
-    carrying : ndarray, shape (n,)
-        T: the part of ``n + mu e`` along it, with which the pressure carries the load.
-    force : float or None
-        Load along the direction [N]; None where the approach is given.
-    approach : float or None
-        Given translation [m].
+    motion : RigidMotion
+    load : float or None
+        Generalised force: force along a translation [N], moment of a rotation [N m].
+    amount : float or None
+        Given motion [m or rad].
     """
 
-    direction: np.ndarray
+    motion: RigidMotion
+    load: float | None = None
+    amount: float | None = None
+
+    def __post_init__(self):
+        if (self.load is None) == (self.amount is None):
+            raise ValueError("holder: give either the load or the motion")
+
+
+@dataclass(frozen=True)
+class Holder:
+    """The rigid holder of body 1.
+
+    Attributes
+    ----------
+    drives : tuple of Drive
+        The motions that it makes, k free ones and those that are given.
+    closing : ndarray, shape (n, n_drives)
+        R of each: how much a unit of it closes the gap at the points.
+    carrying : ndarray, shape (n, n_drives)
+        T of each: generalised force on it per pressure and area.
+    """
+
+    drives: tuple[Drive, ...]
     closing: np.ndarray
     carrying: np.ndarray
-    force: float | None
-    approach: float | None
+
+    @property
+    def motions(self) -> tuple[RigidMotion, ...]:
+        return tuple(drive.motion for drive in self.drives)
+
+    @property
+    def free(self) -> np.ndarray:
+        """Which motions are free, under a load, shape (n_drives,)."""
+        return np.array([drive.amount is None for drive in self.drives], dtype=bool)
 
     @property
     def modes(self) -> np.ndarray:
-        """R of the free motions, shape (n, k); k is 1 under a force and 0 else."""
-        return self.closing[:, None] if self.approach is None else np.zeros((len(self.closing), 0))
+        """R of the free motions, shape (n, k)."""
+        return self.closing[:, self.free]
 
     @property
     def force_modes(self) -> np.ndarray:
         """T of the free motions, shape (n, k)."""
-        return self.carrying[:, None] if self.approach is None else self.modes
+        return self.carrying[:, self.free]
 
     @property
     def load(self) -> np.ndarray:
-        """F along the free motions, shape (k,) [N]."""
-        return np.array([] if self.force is None else [self.force])
+        """F on the free motions, shape (k,) [N or N m]."""
+        return np.array([drive.load for drive in self.drives if drive.load is not None])
 
     @property
     def imposed(self) -> np.ndarray:
-        """How far a given approach closes the gap, shape (n,) [m]."""
-        return self.closing * (self.approach or 0.0)
+        """How far the given motions close the gap, shape (n,) [m]."""
+        return self.closing @ self.amounts(np.zeros(int(self.free.sum())))
 
-    def translation(self, motion: np.ndarray) -> float:
-        """How far the holder stands along its direction, given its free motions [m]."""
-        return float(motion[0]) if self.approach is None else self.approach
+    def amounts(self, free: np.ndarray) -> np.ndarray:
+        """Amounts of all motions from those of the free ones, shape (n_drives,) [m or rad]."""
+        result = np.array([drive.amount or 0.0 for drive in self.drives])
+        result[self.free] = free
+        return result
 
-    def carried(self, pressure: np.ndarray, weights: np.ndarray) -> float:
-        """Force of a pressure along the direction [N]."""
-        return float(weights @ (pressure * self.carrying))
+    def carried(self, pressure: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """Generalised force of a pressure on each motion, shape (n_drives,) [N or N m]."""
+        return self.carrying.T @ (weights * pressure)
 
 
-def hold(
-    pairing: Pairing,
-    pull: np.ndarray,
-    direction: tuple[float, float],
-    force: float | None,
-    approach: float | None,
-) -> Holder:
+def hold(pairing: Pairing, pull: np.ndarray, drives: list[Drive] | tuple[Drive, ...]) -> Holder:
     """Make the holder.
 
     Parameters
     ----------
     pairing : Pairing
-    pull : ndarray, shape (n, 2)
+    pull : ndarray, shape (n, gdim)
         ``n + mu e``, see `pairing`.
-    direction : tuple of float
-    force, approach : float or None
-        Exactly one of them, see `Holder`.
+    drives : sequence of Drive
     """
-    m = np.asarray(direction)
-    return Holder(m, pairing.normals @ m, pull @ m, force, approach)
+    moved = np.array([drive.motion.at(pairing.points) for drive in drives])
+    closing = np.einsum("kni,ni->nk", moved, pairing.normals)
+    carrying = np.einsum("kni,ni->nk", moved, pull)
+    return Holder(tuple(drives), closing, carrying)

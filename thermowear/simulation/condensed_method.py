@@ -68,4 +68,4 @@ class CondensedMethod:
             contact.force_modes,
         )
         pressure = contact.basis @ solution.coefficients
-        return Contact(pressure, self._system.holder.translation(solution.motion), solution)
+        return Contact(pressure, self._system.holder.amounts(solution.motion), solution)

@@ -8,6 +8,7 @@ from dolfinx import fem
 
 from ..bulk.field import as_function
 from ..compat import evaluate
+from ..laws.motions import RigidMotion
 from .result import BodyFields
 from .state import BodyState
 from .system import System
@@ -15,7 +16,7 @@ from .system import System
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
 
 
-def sample(system: System, state: BodyState, translation: np.ndarray) -> BodyFields | None:
+def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields | None:
     """Displacement (holder's motion included), temperature and von Mises stress.
 
     Every rank calls; ranks other than 0 get None. Cells come in the order of the mesh file.
@@ -26,7 +27,7 @@ def sample(system: System, state: BodyState, translation: np.ndarray) -> BodyFie
     centre = grid.mean(axis=0)
     inside = centre + (grid - centre) * (1 - _INSET)
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
-    u = as_function(elastic.space, _with_holder(system, state.displacement, translation), "u")
+    u = as_function(elastic.space, _with_holder(system, state.displacement, motion), "u")
     du = as_function(elastic.space, state.displacement, "u")
     rise, ambient = None, 0.0
     if state.rise is not None and system.thermal is not None:
@@ -52,11 +53,12 @@ def sample(system: System, state: BodyState, translation: np.ndarray) -> BodyFie
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 
-def _with_holder(system: System, displacement: np.ndarray, translation: np.ndarray) -> np.ndarray:
+def _with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -> np.ndarray:
     """Add the rigid motion of the holder to the nodes of body 1."""
     upper = system.elastic.owned_by(system.case.geometry.bodies[0])
-    moved = displacement.reshape(-1, len(translation)).copy()
-    moved[upper] += translation
+    nodes = system.elastic.nodes()
+    moved = displacement.reshape(nodes.shape).copy()
+    moved[upper] += motion.at(nodes[upper])
     return moved.ravel()
 
 

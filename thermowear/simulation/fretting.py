@@ -12,6 +12,7 @@ from ..contact.loads import Loads
 from ..contact.stick_slip import StickSlipState, follow
 from ..contact.tangential import FrictionalContact, condense_tangential
 from ..errors import ComputationError
+from ..laws.motions import translation
 from .interrupt import StopRequest
 from .observer import Observer
 from .outcome import Outcome
@@ -25,7 +26,7 @@ _ACROSS = (1.0, 0.0)
 
 def fretting(system: System, observer: Observer) -> Outcome:
     """Follow the history of loads. What was computed before an error or Ctrl-C is kept."""
-    translations = [system.holder.direction]
+    translations = [np.array(system.case.geometry.press_direction)]
     history = system.case.load.history
     if history is not None and history.tangential:
         translations.append(np.array(_ACROSS))
@@ -60,7 +61,7 @@ def fretting(system: System, observer: Observer) -> Outcome:
         bodies, interface = _at(system, last, translations)
     return Outcome(
         pressure=interface.pressure,
-        translation=last.motion @ np.array(translations),
+        motion=translation(last.motion @ np.array(translations)),
         state=bodies,
         interface=interface,
         extra=_extra(rows),
@@ -144,7 +145,8 @@ def _at(system: System, state: StickSlipState, translations):
     """Bodies and interface in a state."""
     pressure, shear = system.basis @ state.pressure, system.basis @ state.shear[:, 0]
     still = np.zeros((2, len(pressure)))
-    return interface_at(system, pressure, state.motion @ np.array(translations), still, shear)
+    moved = translation(state.motion @ np.array(translations))
+    return interface_at(system, pressure, moved, still, shear)
 
 
 def _extra(rows: list[LoadRow]) -> dict:

@@ -85,8 +85,8 @@ class FullMethod:
         return self._contact.solve(gap, load, slope, nodal_loads, traction, start)
 
     def _result(self, solution: FullSolution) -> Contact:
-        approach = self._system.holder.translation(solution.motion)
-        return Contact(solution.pressure, approach, solution)
+        motion = self._system.holder.amounts(solution.motion)
+        return Contact(solution.pressure, motion, solution)
 
 
 def _full_contact(system: System) -> tuple[FullContact, str | None]:

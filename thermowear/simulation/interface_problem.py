@@ -21,14 +21,14 @@ class Contact:
     Attributes
     ----------
     pressure : ndarray, shape (n,) [Pa]
-    approach : float
-        How far the holder has moved along its direction [m].
+    motion : ndarray, shape (n_drives,)
+        How far the holder has made each of its motions [m or rad].
     memory : object
         What the method that solved it starts from next time.
     """
 
     pressure: np.ndarray
-    approach: float
+    motion: np.ndarray
     memory: Any
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..laws.motions import RigidMotion
 from .result import FrictionHistory, HistoryRow, Interface
 from .state import BodyState
 
@@ -17,8 +18,8 @@ class Outcome:
     Attributes
     ----------
     pressure : ndarray, shape (n,) [Pa]
-    translation : ndarray, shape (2,)
-        How far the holder has moved [m].
+    motion : RigidMotion
+        How far the holder has moved.
     state : BodyState
     interface : Interface
     extra : dict
@@ -31,7 +32,7 @@ class Outcome:
     """
 
     pressure: np.ndarray
-    translation: np.ndarray
+    motion: RigidMotion
     state: BodyState
     interface: Interface
     extra: dict

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..laws.motions import RigidMotion
 from .result import Interface
 from .state import BodyState, body_state
 from .system import System
@@ -12,7 +13,7 @@ from .system import System
 def interface_at(
     system: System,
     pressure: np.ndarray,
-    translation: np.ndarray,
+    motion: RigidMotion,
     worn: np.ndarray,
     shear: np.ndarray | None = None,
 ) -> tuple[BodyState, Interface]:
@@ -22,8 +23,8 @@ def interface_at(
     ----------
     system : System
     pressure : ndarray, shape (n,) [Pa]
-    translation : ndarray, shape (2,)
-        Of the holder [m].
+    motion : RigidMotion
+        Of the holder.
     worn : ndarray, shape (2, n)
         Depth worn off each body [m].
     shear : ndarray, shape (n,), optional
@@ -31,7 +32,8 @@ def interface_at(
     """
     state = body_state(system, pressure, shear)
     lost = system.pairing.gap + worn.sum(axis=0)
-    gap = lost + state.opening - system.pairing.normals @ translation
+    moved = motion.at(system.pairing.points)
+    gap = lost + state.opening - np.einsum("ni,ni->n", system.pairing.normals, moved)
     return state, record(system, pressure, state, gap, lost.max() - lost, worn)
 
 
@@ -51,7 +53,7 @@ def record(system: System, pressure, state: BodyState, gap, shape, worn) -> Inte
     return Interface(
         x=points[:, 0],
         y=points[:, 1],
-        z=np.zeros(len(pressure)),
+        z=points[:, 2] if points.shape[1] == 3 else np.zeros(len(pressure)),
         s=system.pairing.position,
         weight=system.weights,
         pressure=pressure,

@@ -7,6 +7,7 @@ import numpy as np
 from ..case.analyses import Transient
 from ..case.schema import Case
 from ..errors import ComputationError
+from ..laws.motions import combined
 from .fields import sample
 from .fretting import fretting
 from .interface_problem import InterfaceProblem
@@ -18,12 +19,20 @@ from .preparation import interface_problem, prepare
 from .recording import interface_at, record
 from .result import HistoryRow, Interface, Result
 from .state import BodyState, body_state
-from .steady import steady_wear
+from .steady import least_worn, steady_wear
 from .summary import summarise
 from .system import System
 from .transient import Moment, moments
 
 _UNPAIRED = 1e-6
+_VELOCITIES = {
+    "z": "rigid_wear_velocity_m_per_s",
+    "x": "rigid_wear_velocity_x_m_per_s",
+    "y": "rigid_wear_velocity_y_m_per_s",
+    "rotation": "rigid_wear_rotation_rad_per_s",
+    "rotation-x": "rigid_wear_rotation_x_rad_per_s",
+    "rotation-y": "rigid_wear_rotation_y_rad_per_s",
+}
 
 
 def run(
@@ -69,7 +78,7 @@ def run(
             "use contact.positioning = true"
         )
     with phases("fields"):
-        fields = sample(system, outcome.state, outcome.translation)
+        fields = sample(system, outcome.state, outcome.motion)
     summary = summarise(system, outcome)
     return Result(
         outcome.interface,
@@ -106,9 +115,9 @@ def _initial(system: System, observer: Observer) -> Outcome:
     with system.phases("contact"):
         contact = _problem(system, observer).unworn()
     still = np.zeros((2, len(contact.pressure)))
-    translation = contact.approach * system.holder.direction
-    state, interface = interface_at(system, contact.pressure, translation, still)
-    return Outcome(contact.pressure, translation, state, interface, {"steps": 0}, [], {})
+    motion = combined(system.holder.motions, contact.motion)
+    state, interface = interface_at(system, contact.pressure, motion, still)
+    return Outcome(contact.pressure, motion, state, interface, {"steps": 0}, [], {})
 
 
 def _steady(system: System, observer: Observer) -> Outcome:
@@ -117,10 +126,11 @@ def _steady(system: System, observer: Observer) -> Outcome:
         steady = steady_wear(system)
     with system.phases("bodies"):
         state = body_state(system, steady.pressure)
-    shape = state.opening - state.opening.min()
     pressing = steady.pressure > 0
-    # the holder stands where the unworn face would lose just enough material to fit
-    translation = state.opening.max() * system.holder.direction
+    # the holder stands where the unworn faces would lose just enough material to fit
+    amounts = least_worn(system.holder.modes, state.opening, system.weights, pressing)
+    lost = system.holder.modes @ amounts - state.opening
+    shape = lost[pressing].max() - lost
     interface = record(
         system,
         steady.pressure,
@@ -131,17 +141,27 @@ def _steady(system: System, observer: Observer) -> Outcome:
     )
     extra = {
         "steps": 0,
-        "rigid_wear_velocity_m_per_s": float(steady.velocity[0]),
+        **_wear_velocity(system, steady.velocity),
         "wear_dissipation_W": steady.dissipation,
     }
-    return Outcome(steady.pressure, translation, state, interface, extra, [], {})
+    motion = combined(system.holder.motions, amounts)
+    return Outcome(steady.pressure, motion, state, interface, extra, [], {})
+
+
+def _wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:
+    """Rigid-body wear velocities by the motions of the holder [m/s, rad/s]."""
+    found: dict[str, float | None] = {_VELOCITIES["z"]: None}
+    if velocity is not None:
+        names = system.case.holder.free
+        found |= {_VELOCITIES[k]: float(v) for k, v in zip(names, velocity, strict=True)}
+    return found
 
 
 def _transient(system: System, observer: Observer) -> Outcome:
     """Running-in. What was computed before an error or Ctrl-C is kept."""
     settings = system.case.analysis
     assert isinstance(settings, Transient)
-    steady = steady_wear(system) if system.holder.approach is None else None
+    steady = steady_wear(system) if system.holder.free.all() else None
     problem = _problem(system, observer)
     history: list[HistoryRow] = []
     outputs: dict[float, Interface] = {}
@@ -170,11 +190,11 @@ def _transient(system: System, observer: Observer) -> Outcome:
         "steps": len(history) - 1,
         "time_s": last.time,
         "distance_from_steady": None if steady is None else last.distance,
-        "rigid_wear_velocity_m_per_s": None if steady is None else float(steady.velocity[0]),
+        **_wear_velocity(system, None if steady is None else steady.velocity),
     }
     return Outcome(
         pressure=last.state.pressure,
-        translation=last.state.contact.approach * system.holder.direction,
+        motion=combined(system.holder.motions, last.state.contact.motion),
         state=state,
         interface=interface,
         extra=extra,
@@ -211,7 +231,7 @@ def _row(system: System, problem: InterfaceProblem, moment: Moment) -> HistoryRo
         wear_volume_1=float(volumes[0]),
         wear_volume_2=float(volumes[1]),
         max_temperature=problem.hottest(pressure),
-        approach=moment.state.contact.approach,
+        approach=float(moment.state.contact.motion[0]),
         step=moment.step,
         error=moment.error,
     )
@@ -219,6 +239,6 @@ def _row(system: System, problem: InterfaceProblem, moment: Moment) -> HistoryRo
 
 def _moment(system: System, moment: Moment) -> tuple[BodyState, Interface]:
     contact = moment.state.contact
-    translation = contact.approach * system.holder.direction
+    motion = combined(system.holder.motions, contact.motion)
     worn = _by_body(system, moment.state.worn)
-    return interface_at(system, contact.pressure, translation, worn)
+    return interface_at(system, contact.pressure, motion, worn)

@@ -76,23 +76,29 @@ def body_state(system: System, pressure: np.ndarray, shear: np.ndarray | None = 
 
 
 def _force_error(system: System, pressure, shear, displacement, loads) -> float:
-    """How far the supports' reactions are from the load, relative to it.
+    """How far the supports' reactions are from what the holder gives, relative to it.
 
-    The holder must push body 1 with the load, the support must push body 2 back.
+    Along every motion of the holder it must push body 1 with its load, or with what the contact
+    carries where the motion is given, and the support must push body 2 back.
     """
-    holder = system.holder
-    reactions = system.elastic.reactions(displacement, loads).reshape(-1, len(holder.direction))
-    along = reactions @ holder.direction
+    holder, weights, points = system.holder, system.weights, system.pairing.points
+    nodes = system.elastic.nodes()
+    reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
     upper = system.elastic.owned_by(system.case.geometry.bodies[0])
-    held, supported = sum_over_ranks(
-        system.comm, np.array([along[upper].sum(), along[~upper].sum()])
-    )
-    carried = holder.carried(pressure, system.weights)
+    carried = weights * pressure * holder.carrying.T
     if shear is not None:
-        along = tangents(system.pairing.normals)[0] @ holder.direction
-        carried -= float(system.weights @ (shear * along))
-    # the largest of a history may be over
-    load = carried if holder.force is None or shear is not None else holder.force
-    if load == 0.0:
-        return 0.0
-    return float(max(abs(held - load), abs(supported + load)) / load)
+        along = tangents(system.pairing.normals)[0]
+        moved = np.array([motion.at(points) for motion in holder.motions])
+        carried = carried - weights * shear * np.einsum("kni,ni->kn", moved, along)
+    errors = []
+    for k, drive in enumerate(holder.drives):
+        work = (reactions * drive.motion.at(nodes)).sum(axis=1)
+        held, supported = sum_over_ranks(
+            system.comm, np.array([work[upper].sum(), work[~upper].sum()])
+        )
+        found = carried[k].sum()
+        # the largest of a history may be over
+        load = found if drive.load is None or shear is not None else drive.load
+        errors.append(max(abs(held - load), abs(supported + found)))
+    scale = np.abs(carried).sum(axis=1)
+    return float(np.max(np.divide(errors, scale, out=np.zeros(len(scale)), where=scale > 0)))

@@ -6,8 +6,26 @@ import numpy as np
 
 from ..bulk.field import total
 from ..contact.zones import contact_zones
+from .drives import applied, guides, reference_point
 from .outcome import Outcome
 from .system import System
+
+_GUIDES = {
+    "x": "guide_force_N",
+    "y": "guide_force_y_N",
+    "z": "guide_force_z_N",
+    "rotation": "guide_moment_Nm",
+    "rotation-x": "guide_moment_x_Nm",
+    "rotation-y": "guide_moment_y_Nm",
+}
+"""What a guide holds, by the motion that the holder does not make."""
+
+_ROTATIONS = {
+    "rotation-x": "holder_rotation_x_rad",
+    "rotation-y": "holder_rotation_y_rad",
+    "rotation": "holder_rotation_rad",
+}
+"""By the axis of a rotation vector."""
 
 
 def summarise(system: System, outcome: Outcome) -> dict:
@@ -17,6 +35,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
     friction = system.friction * p
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
+    press = np.array(case.geometry.press_direction)
     summary = {
         "title": case.title,
         "analysis": case.analysis.type,
@@ -26,17 +45,17 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "dofs_temperature": _thermal_dofs(system),
         "contact_points": len(w),
         "friction": system.friction,
-        "normal_force_N": system.holder.carried(p, w),
+        "normal_force_N": _normal_force(system, p),
         "friction_force_N": float(w @ friction),
         "friction_torque_Nm": _torque(system, friction),
-        "guide_force_N": _guide_force(system, p),
+        "guide_force_N": None,
         "max_pressure_Pa": float(p.max()),
         "mean_pressure_Pa": float(w @ p / w[worn].sum()) if worn.any() else 0.0,
         "min_pressure_Pa": float(p.min()),
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": float(outcome.translation @ system.holder.direction),
+        "approach_m": float(outcome.motion.at(reference_point(case)) @ press),
         "max_temperature_K": _number(outcome.state.hottest),
         "friction_power_W": float(w @ system.friction_heat(p)),
         "heat_balance_relative_error": _number(outcome.state.heat_error),
@@ -47,26 +66,45 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "wear_volume_2_m3": float(w @ interface.wear_2),
         "wear_coefficient_per": {name: law.per for name, law in case.wear.items()},
     }
-    return summary | outcome.extra
+    return summary | _guide_reactions(system, p) | _rotations(system, outcome) | outcome.extra
+
+
+def _normal_force(system: System, pressure: np.ndarray) -> float:
+    """Force along the press that the pressure and its friction carry [N]."""
+    press = np.array(system.case.geometry.press_direction)
+    return float(system.weights @ (pressure * (system.pull @ press)))
 
 
 def _torque(system: System, friction: np.ndarray) -> float | None:
-    """Friction moment about the axis [N m]; None for plane models."""
-    if system.case.model != "axisymmetric":
+    """Friction moment about the axis that body 1 or 2 turns about [N m]; None without one."""
+    if system.case.model == "axisymmetric":
+        return float(system.weights @ (friction * system.pairing.points[:, 0]))
+    center = system.case.geometry.rotation_center
+    if center is None:
         return None
-    return float(system.weights @ (friction * system.pairing.points[:, 0]))
+    arms = system.pairing.points[:, :2] - np.array(center)
+    return float(system.weights @ (friction * np.linalg.norm(arms, axis=1)))
 
 
-def _guide_force(system: System, pressure: np.ndarray) -> float | None:
-    """Force along x with which the guide keeps body 1 sliding [N]; None for axisymmetric models.
+def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
+    """What guides hold along motions that the holder does not make, on body 1 [N, N m].
 
     Of the whole: what the halves of a symmetric section push apart is in balance.
     """
-    if system.case.model == "axisymmetric":
-        return None
-    if system.case.geometry.symmetry:
-        return 0.0
-    return float(system.weights @ (pressure * system.pull[:, 0]))
+    case, points = system.case, system.pairing.points
+    reactions = {}
+    for name, motion in guides(case).items():
+        if name not in case.holder.free:
+            work = np.einsum("ni,ni->n", motion.at(points), system.pull)
+            reaction = float(system.weights @ (pressure * work)) - applied(case, motion)
+            reactions[_GUIDES[name]] = 0.0 if case.geometry.symmetry else reaction
+    return reactions
+
+
+def _rotations(system: System, outcome: Outcome) -> dict[str, float]:
+    """How far the holder has turned about each axis that it can turn about."""
+    turned = zip(_ROTATIONS.items(), outcome.motion.rotation, strict=True)
+    return {key: float(angle) for (name, key), angle in turned if name in system.case.holder.free}
 
 
 def _thermal_dofs(system: System) -> int:

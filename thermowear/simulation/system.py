@@ -14,7 +14,7 @@ from ..bulk.bodies import Bodies, distribute
 from ..bulk.conduction import Conduction, conduction
 from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
 from ..bulk.field import lagrange_space
-from ..bulk.kinematics import section_model
+from ..bulk.kinematics import Model, section_model
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, condense
 from ..contact.face import gather_face
@@ -28,9 +28,11 @@ from ..contact.heat import (
 from ..contact.holder import Holder, hold
 from ..contact.pairing import Pairing, pair
 from ..contact.pressure import pressure_basis
+from ..contact.sliding import Sliding, sliding
 from ..contact.traces import gap_trace, value_trace, vector_trace
 from ..laws import WearLaw
 from ..parallel import on_root
+from .drives import drives
 from .phases import Phases
 
 
@@ -76,7 +78,7 @@ class System:
     basis : ndarray, shape (n, m)
         Ψ.
     holder : Holder
-    pull : ndarray, shape (n, 2)
+    pull : ndarray, shape (n, gdim)
         ``n + mu e``: the traction on body 1 is minus the pressure times it.
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
@@ -167,13 +169,17 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
     with phases("pair"):
         face_1, face_2 = (gather_face(bodies, surface) for surface in geometry.contact)
         pairing, basis = _points(face_1, face_2, model, degree, case.contact.pressure_degree)
-        pull = pairing.normals.copy()
-        if case.motion is not None:
-            pull += case.contact.friction * model.slip_direction(pairing.normals, case.motion)
+    slides = _sliding(case, model, pairing)
+    pull, speed = pairing.normals, np.zeros(len(pairing.weights))
+    if slides is not None:
+        friction = case.contact.friction, case.contact.transverse_friction
+        pull, speed = slides.pull(pairing.normals, *friction), slides.speed
     with phases("assemble elasticity"):
         materials = {name: _elastic_material(case, name) for name in geometry.bodies}
         clamped = [geometry.held, geometry.fixed]
-        elastic = elasticity(bodies, model, degree, materials, clamped, geometry.symmetry)
+        elastic = elasticity(
+            bodies, model, degree, materials, clamped, geometry.symmetry, geometry.rollers
+        )
     trace = gap_trace(elastic.space, pairing)
     drags = not np.array_equal(pull, pairing.normals)
     return System(
@@ -184,12 +190,21 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
         trace=trace,
         traction=vector_trace(elastic.space, pairing, pull) if drags else trace,
         basis=basis,
-        holder=hold(pairing, pull, model.press_direction, case.force(), case.approach()),
+        holder=hold(pairing, pull, drives(case, pairing)),
         pull=pull,
-        speed=model.speed(pairing.points, case.motion) if case.motion else 0.0 * pairing.weights,
+        speed=speed,
         thermal=_thermal(case, bodies, model, pairing, elastic, basis, phases),
         phases=phases,
     )
+
+
+def _sliding(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
+    """How body 1 slides; None where nothing does."""
+    if case.motion is None:
+        return None
+    geometry = case.geometry
+    velocity = model.sliding(pairing.points, case.motion, geometry.rotation_center)
+    return sliding(velocity, pairing.normals, geometry.press_direction)
 
 
 def _points(face_1, face_2, model, degree: int, pressure_degree) -> tuple[Pairing, np.ndarray]:

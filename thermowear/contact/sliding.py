@@ -1,0 +1,83 @@
+"""How fast and which way body 1 slides over body 2 at the contact points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+_TRANSVERSE = 1e-9
+"""Below this part of a unit the way down the face has no direction: the face is level."""
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Sliding at the contact points; the signs are those of `pairing`.
+
+    Attributes
+    ----------
+    speed : ndarray, shape (n,) [m/s]
+    along : ndarray, shape (n, gdim)
+        e: unit direction in which body 1 slides, as far as it lies in the section.
+    across : ndarray, shape (n, gdim)
+        Unit direction of the face across the sliding in which a body 1 that is pressed on moves
+        down the face; zero where the face is level there.
+    """
+
+    speed: np.ndarray
+    along: np.ndarray
+    across: np.ndarray
+
+    def pull(self, normals: np.ndarray, friction: float, transverse: float) -> np.ndarray:
+        """``n + mu e + mu_d e_2``: the traction on body 1 is minus the pressure times it.
+
+        The transverse part comes from the small velocity of wear across the sliding (Páczelt and
+        Mróz, Int. J. Solids Struct. 44 (2007) 895).
+
+        Parameters
+        ----------
+        normals : ndarray, shape (n, gdim)
+        friction, transverse : float
+            mu and mu_d.
+
+        Returns
+        -------
+        ndarray, shape (n, gdim)
+        """
+        return normals + friction * self.along + transverse * self.across
+
+
+def sliding(velocity: np.ndarray, normals: np.ndarray, press: tuple[float, ...]) -> Sliding:
+    """Take sliding apart.
+
+    Parameters
+    ----------
+    velocity : ndarray, shape (n, 3)
+        Of body 1 relative to body 2 [m/s], see `bulk.kinematics`.
+    normals : ndarray, shape (n, gdim)
+        Outward unit normals of body 1.
+    press : tuple of float
+        Unit vector along which body 1 is pressed on.
+    """
+    gdim = normals.shape[1]
+    n = _spatial(normals)
+    along = _unit(_tangential(velocity, n))
+    down = _tangential(np.broadcast_to(_spatial(np.array([press])), n.shape), n)
+    down = down - np.einsum("ni,ni->n", down, along)[:, None] * along
+    speed = np.linalg.norm(velocity, axis=1)
+    return Sliding(speed, along[:, :gdim], _unit(down)[:, :gdim])
+
+
+def _spatial(vectors: np.ndarray) -> np.ndarray:
+    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
+
+
+def _tangential(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    return vectors - np.einsum("ni,ni->n", vectors, normals)[:, None] * normals
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    """Unit vectors; zero stays zero."""
+    sizes = np.linalg.norm(vectors, axis=1, keepdims=True)
+    scale = _TRANSVERSE * max(1.0, float(sizes.max(initial=0.0)))
+    return np.divide(vectors, sizes, out=np.zeros_like(vectors), where=sizes > scale)

@@ -38,6 +38,7 @@ def _names(case: Case) -> Iterator[Fault]:
     yield from _unknown("bodies", case.bodies, bodies)
     yield from _unknown("wear", case.wear, bodies)
     yield from _unknown("mesh.bodies", case.mesh.bodies, bodies)
+    yield from _unknown("load.surfaces", case.load.surfaces, surfaces)
     for name in bodies:
         if name not in case.bodies:
             yield f"bodies.{name}", "missing; every body of the geometry needs its material"
@@ -105,10 +106,17 @@ def _load(case: Case) -> Iterator[Fault]:
     elif turns_only and load.moment is not None:
         if sum(given) > 0:
             yield "load", "a holder that only turns needs a moment, or a force and its lever"
+    elif not free:
+        if sum(given) > 0 or not load.surfaces:
+            yield "load", "a fixed holder (holder.free = []) needs load.surfaces, and nothing else"
+    elif load.surfaces:
+        yield "load.surfaces", "is for a fixed holder (holder.free = [])"
     elif sum(given) != 1:
         yield "load", "needs exactly one of force, mean_pressure and approach"
     if load.mean_pressure is not None and case.geometry.contact_area() is None:
         yield "load.mean_pressure", "this geometry has no nominal contact area; give the force"
+    if not free and case.analysis.type == "steady":
+        yield "holder.free", "is empty: nothing presses in the end; use a transient analysis"
     if load.approach is not None and case.analysis.type == "steady":
         yield "load.approach", "nothing presses in the end; the steady state needs a force"
     if load.approach is not None and "z" not in free:

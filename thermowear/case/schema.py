@@ -88,7 +88,7 @@ class Holder(Section):
         Point about which it turns, by default that of the geometry, or the origin [m].
     """
 
-    free: Annotated[tuple[FreeMotion, ...], Field(min_length=1)] = ("z",)
+    free: tuple[FreeMotion, ...] = ("z",)
     pivot: tuple[units.Coordinate, ...] | None = None
 
     @model_validator(mode="after")
@@ -106,7 +106,7 @@ class Load(Section):
     """What presses body 1 on body 2.
 
     Exactly one of force, mean pressure and approach; a holder that only turns may have a moment
-    instead.
+    instead, and one that is fixed needs forces on surfaces.
 
     Attributes
     ----------
@@ -127,6 +127,8 @@ class Load(Section):
         About x and y through the pivot, in space, by the right-hand rule [N m].
     tangential_force : float or None
         Along x, for a holder that is free along it [N].
+    surfaces : dict of str to float
+        Forces along the press, spread evenly over surfaces of body 1, whose holder is fixed [N].
     history : History or None
         What changes, for a fretting analysis.
     """
@@ -139,6 +141,7 @@ class Load(Section):
     moment: units.SignedMoment | None = None
     moments: tuple[units.SignedMoment, units.SignedMoment] | None = None
     tangential_force: units.SignedForce | None = None
+    surfaces: dict[str, units.Force] = {}
     history: History | None = None
 
 
@@ -167,6 +170,8 @@ class Contact(Section):
         Coefficient of friction in the direction of sliding.
     transverse_friction : float
         Coefficient of friction across it, on faces that are not level (Páczelt and Mróz's mu_d).
+    compliance : float or None
+        Of a soft layer between the faces: how far a pressure presses it together [m/Pa].
     method : str
         ``"condensed"``: the bodies condensed to the interface; ``"penalty"`` and ``"nitsche"`` on
         the full system.
@@ -184,6 +189,7 @@ class Contact(Section):
 
     friction: Annotated[Number, Field(ge=0.0)] = 0.0
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
+    compliance: units.Compliance | None = None
     method: Literal["condensed", "penalty", "nitsche"] = "condensed"
     pressure_degree: PressureDegree = None
     penalty: units.Foundation | None = None

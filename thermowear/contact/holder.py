@@ -72,7 +72,7 @@ class Holder:
     @property
     def load(self) -> np.ndarray:
         """F on the free motions, shape (k,) [N or N m]."""
-        return np.array([drive.load for drive in self.drives if drive.load is not None])
+        return np.array([drive.load for drive in self.drives if drive.load is not None], dtype=float)
 
     @property
     def imposed(self) -> np.ndarray:
@@ -81,7 +81,7 @@ class Holder:
 
     def amounts(self, free: np.ndarray) -> np.ndarray:
         """Amounts of all motions from those of the free ones, shape (n_drives,) [m or rad]."""
-        result = np.array([drive.amount or 0.0 for drive in self.drives])
+        result = np.array([drive.amount or 0.0 for drive in self.drives], dtype=float)
         result[self.free] = free
         return result
 
@@ -100,7 +100,8 @@ def hold(pairing: Pairing, pull: np.ndarray, drives: list[Drive] | tuple[Drive, 
         ``n + mu e``, see `pairing`.
     drives : sequence of Drive
     """
-    moved = np.array([drive.motion.at(pairing.points) for drive in drives])
+    shape = (len(drives), *pairing.points.shape)
+    moved = np.array([drive.motion.at(pairing.points) for drive in drives]).reshape(shape)
     closing = np.einsum("kni,ni->nk", moved, pairing.normals)
     carrying = np.einsum("kni,ni->nk", moved, pull)
     return Holder(tuple(drives), closing, carrying)

@@ -22,12 +22,13 @@ class CondensedMethod:
     def __init__(self, system: System, heat: FrictionHeat | None):
         self._system = system
         self._contact = system.contact
+        self._dead = system.gap - system.pairing.gap
         self._heat = heat
         self.note: str | None = None
 
     def solve(self, gap, slope, guess: Contact | None, closed) -> Contact:
         contact = self._contact
-        compliance, weak = contact.compliance, contact.weak(gap)
+        compliance, weak = contact.compliance, contact.weak(gap + self._dead)
         if self._heat is not None:
             coupling = self._heat.coupling(closed)
             compliance, weak = compliance + coupling.compliance, weak + coupling.resting
@@ -42,7 +43,8 @@ class CondensedMethod:
         contact = self._contact
         coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
         active = np.ones(len(coefficients), dtype=bool)
-        start = Contact(pressure, 0.0, ContactSolution(coefficients, np.zeros(1), active))
+        still = np.zeros(contact.modes.shape[1])
+        start = Contact(pressure, still, ContactSolution(coefficients, still, active))
         rigid = np.zeros_like(contact.compliance)
         return newton_with_wear(
             lambda worn, slope, last: self._solved(rigid, contact.weak(worn), slope, last),

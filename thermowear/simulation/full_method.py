@@ -40,12 +40,14 @@ class FullMethod:
         self._system = system
         self._heat = heat
         self._contact, self.note = _full_contact(system)
+        still = np.zeros(len(system.elastic.fixed))
+        self._dead = still if system.dead_load is None else system.dead_load
         self._softening = None if heat is None else thermal_traction(system.elastic, system.pairing)
 
     def solve(self, gap, slope, guess: Contact | None, closed) -> Contact:
         start = None if guess is None else guess.memory
         if self._heat is None:
-            return self._result(self._solved(gap, slope, start, None, None))
+            return self._result(self._solved(gap, slope, start, self._dead, None))
         pressure = np.zeros(len(gap)) if guess is None else guess.pressure
         tried: list[np.ndarray] = []
         missed: list[np.ndarray] = []
@@ -78,7 +80,7 @@ class FullMethod:
         faces = heat.state(pressure, closed)
         rise = thermal.conduction.solve(thermal.face.nodal_heat(faces, bath=True))
         traction = -np.asarray(self._softening) * faces.rise[0]
-        return self._solved(gap, slope, start, thermal.forces(rise), traction)
+        return self._solved(gap, slope, start, self._dead + thermal.forces(rise), traction)
 
     def _solved(self, gap, slope, start, nodal_loads, traction) -> FullSolution:
         load = self._system.holder.load

@@ -113,6 +113,7 @@ class InterfaceProblem:
         self._method = method
         self._heat = heat
         self._gap = system.pairing.gap - system.holder.imposed
+        self._softness = system.softness
         self.rates = WearRates(list(system.laws.values()), system.speed)
 
     @property
@@ -171,9 +172,9 @@ class InterfaceProblem:
         ------
         ComputationError
         """
-        gap, rigid = self._gap + worn, np.zeros(len(worn))
+        gap, soft = self._gap + worn, np.full(len(worn), self._softness)
         if guess is None or step == 0.0:
-            guess = self._method.solve(gap, rigid, guess, closed)
+            guess = self._method.solve(gap, soft, guess, closed)
         if step == 0.0:
             return guess
         return self._with_wear(gap, step, guess, closed)
@@ -190,7 +191,9 @@ class InterfaceProblem:
 
     def _with_wear(self, gap, step: float, guess: Contact, closed) -> Contact:
         return newton_with_wear(
-            lambda worn, slope, last: self._method.solve(gap + worn, slope, last, closed),
+            lambda worn, slope, last: self._method.solve(
+                gap + worn, self._softness + slope, last, closed
+            ),
             self.rates,
             step,
             guess,

@@ -33,7 +33,7 @@ def interface_at(
     state = body_state(system, pressure, shear)
     lost = system.pairing.gap + worn.sum(axis=0)
     moved = motion.at(system.pairing.points)
-    gap = lost + state.opening - np.einsum("ni,ni->n", system.pairing.normals, moved)
+    gap = lost + system.softness * pressure + state.opening - np.einsum("ni,ni->n", system.pairing.normals, moved)
     return state, record(system, pressure, state, gap, lost.max() - lost, worn)
 
 

@@ -128,8 +128,9 @@ def _steady(system: System, observer: Observer) -> Outcome:
         state = body_state(system, steady.pressure)
     pressing = steady.pressure > 0
     # the holder stands where the unworn faces would lose just enough material to fit
-    amounts = least_worn(system.holder.modes, state.opening, system.weights, pressing)
-    lost = system.holder.modes @ amounts - state.opening
+    opening = state.opening + system.softness * steady.pressure
+    amounts = least_worn(system.holder.modes, opening, system.weights, pressing)
+    lost = system.holder.modes @ amounts - opening
     shape = lost[pressing].max() - lost
     interface = record(
         system,

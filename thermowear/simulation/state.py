@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..contact.heat import ThermalState
+from ..contact.holder import Drive, hold
 from ..contact.tangential import tangents
 from ..contact.traces import vector_trace
+from ..laws.motions import translation
 from ..parallel import sum_over_ranks
 from .system import System
 
@@ -58,6 +60,8 @@ def body_state(system: System, pressure: np.ndarray, shear: np.ndarray | None = 
         pairing = system.pairing
         along = vector_trace(system.elastic.space, pairing, -tangents(pairing.normals)[0])
         loads = traction = traction + along @ (system.weights * shear)
+    if system.dead_load is not None:
+        loads = traction = traction + system.dead_load
     if system.thermal is not None:
         face, conduction = system.thermal.face, system.thermal.conduction
         generated = system.friction_heat(pressure)
@@ -81,7 +85,9 @@ def _force_error(system: System, pressure, shear, displacement, loads) -> float:
     Along every motion of the holder it must push body 1 with its load, or with what the contact
     carries where the motion is given, and the support must push body 2 back.
     """
-    holder, weights, points = system.holder, system.weights, system.pairing.points
+    drives = system.holder.drives or (Drive(translation(system.press), amount=0.0),)
+    holder = hold(system.pairing, system.pull, drives)
+    weights, points = system.weights, system.pairing.points
     nodes = system.elastic.nodes()
     reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
     upper = system.elastic.owned_by(system.case.geometry.bodies[0])
@@ -90,15 +96,16 @@ def _force_error(system: System, pressure, shear, displacement, loads) -> float:
         along = tangents(system.pairing.normals)[0]
         moved = np.array([motion.at(points) for motion in holder.motions])
         carried = carried - weights * shear * np.einsum("kni,ni->kn", moved, along)
-    errors = []
-    for k, drive in enumerate(holder.drives):
-        work = (reactions * drive.motion.at(nodes)).sum(axis=1)
-        held, supported = sum_over_ranks(
-            system.comm, np.array([work[upper].sum(), work[~upper].sum()])
-        )
-        found = carried[k].sum()
+    dead = np.zeros_like(displacement) if system.dead_load is None else system.dead_load
+    errors, scales = [], []
+    for drive, share in zip(holder.drives, carried, strict=True):
+        moved = drive.motion.at(nodes)
+        work = (reactions * moved).sum(axis=1)
+        parts = work[upper].sum(), work[~upper].sum(), dead @ moved.ravel()
+        held, supported, given = sum_over_ranks(system.comm, np.array(parts))
+        found = share.sum()
         # the largest of a history may be over
         load = found if drive.load is None or shear is not None else drive.load
-        errors.append(max(abs(held - load), abs(supported + found)))
-    scale = np.abs(carried).sum(axis=1)
-    return float(np.max(np.divide(errors, scale, out=np.zeros(len(scale)), where=scale > 0)))
+        errors.append(max(abs(held + given - load), abs(supported + found)))
+        scales.append(np.abs(share).sum() + abs(given))
+    return max(e / s if s > 0 else 0.0 for e, s in zip(errors, scales, strict=True))

@@ -35,7 +35,6 @@ def summarise(system: System, outcome: Outcome) -> dict:
     friction = system.friction * p
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
-    press = np.array(case.geometry.press_direction)
     summary = {
         "title": case.title,
         "analysis": case.analysis.type,
@@ -55,7 +54,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": float(outcome.motion.at(reference_point(case)) @ press),
+        "approach_m": float(outcome.motion.at(reference_point(case)) @ system.press),
         "max_temperature_K": _number(outcome.state.hottest),
         "friction_power_W": float(w @ system.friction_heat(p)),
         "heat_balance_relative_error": _number(outcome.state.heat_error),
@@ -71,8 +70,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
 
 def _normal_force(system: System, pressure: np.ndarray) -> float:
     """Force along the press that the pressure and its friction carry [N]."""
-    press = np.array(system.case.geometry.press_direction)
-    return float(system.weights @ (pressure * (system.pull @ press)))
+    return float(system.weights @ (pressure * (system.pull @ system.press)))
 
 
 def _torque(system: System, friction: np.ndarray) -> float | None:

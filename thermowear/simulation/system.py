@@ -15,6 +15,7 @@ from ..bulk.conduction import Conduction, conduction
 from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
 from ..bulk.field import lagrange_space
 from ..bulk.kinematics import Model, section_model
+from ..bulk.surface_load import surface_load
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, condense
 from ..contact.face import gather_face
@@ -31,7 +32,7 @@ from ..contact.pressure import pressure_basis
 from ..contact.sliding import Sliding, sliding
 from ..contact.traces import gap_trace, value_trace, vector_trace
 from ..laws import WearLaw
-from ..parallel import on_root
+from ..parallel import on_root, sum_over_ranks
 from .drives import drives
 from .phases import Phases
 
@@ -82,6 +83,8 @@ class System:
         ``n + mu e``: the traction on body 1 is minus the pressure times it.
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
+    dead_load : ndarray or None, shape (n_owned,)
+        Nodal forces of loads on surfaces [N].
     thermal : ThermalSystem or None
     phases : Phases
     """
@@ -96,6 +99,7 @@ class System:
     holder: Holder
     pull: np.ndarray
     speed: np.ndarray
+    dead_load: np.ndarray | None
     thermal: ThermalSystem | None
     phases: Phases
 
@@ -106,6 +110,24 @@ class System:
     @property
     def weights(self) -> np.ndarray:
         return self.pairing.weights
+
+    @cached_property
+    def gap(self) -> np.ndarray:
+        """Of the unworn bodies under their dead load alone, at the points, shape (n,) [m]."""
+        if self.dead_load is None:
+            return self.pairing.gap
+        opened = self.trace.T @ self.elastic.solve(self.dead_load)
+        return self.pairing.gap + sum_over_ranks(self.comm, opened)
+
+    @property
+    def press(self) -> np.ndarray:
+        """Unit vector along which body 1 is pressed on, shape (gdim,)."""
+        return np.array(self.case.geometry.press_direction)
+
+    @property
+    def softness(self) -> float:
+        """Compliance of the layer between the faces [m/Pa]."""
+        return self.case.contact.compliance or 0.0
 
     @property
     def friction(self) -> float:
@@ -193,6 +215,7 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
         holder=hold(pairing, pull, drives(case, pairing)),
         pull=pull,
         speed=speed,
+        dead_load=_dead_load(case, elastic),
         thermal=_thermal(case, bodies, model, pairing, elastic, basis, phases),
         phases=phases,
     )
@@ -222,6 +245,15 @@ def _elastic_material(case: Case, body: str) -> ElasticMaterial:
     assert E is not None  # the case has been checked
     assert ν is not None
     return ElasticMaterial(E, ν, α if case.heat is not None and α is not None else 0.0)
+
+
+def _dead_load(case: Case, elastic: Elasticity) -> np.ndarray | None:
+    press = np.array(case.geometry.press_direction)
+    loads = [
+        surface_load(elastic, surface, force * press)
+        for surface, force in case.load.surfaces.items()
+    ]
+    return np.sum(loads, axis=0) if loads else None
 
 
 def _thermal(case, bodies, model, pairing, elastic, basis, phases) -> ThermalSystem | None:

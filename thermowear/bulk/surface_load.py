@@ -1,0 +1,40 @@
+"""Forces spread evenly over named surfaces."""
+
+from __future__ import annotations
+
+from petsc4py import PETSc
+
+import numpy as np
+import ufl
+from dolfinx import fem
+from dolfinx.fem.petsc import assemble_vector
+from mpi4py import MPI
+
+from .compiled import compiled
+from .elasticity import Elasticity
+
+
+def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.ndarray:
+    """Nodal loads of a force on a surface [N], owned rows. Every rank calls.
+
+    Parameters
+    ----------
+    elastic : Elasticity
+    surface : str
+    force : ndarray, shape (gdim,)
+        Of the whole ring, or of the thickness [N].
+    """
+    bodies, mesh = elastic.bodies, elastic.bodies.mesh
+    tag = bodies.surface_tag(surface)
+    measure = ufl.Measure("ds", domain=mesh, subdomain_data=bodies.facet_tags)(tag)
+    one = fem.Constant(mesh, PETSc.ScalarType(1.0))
+    local = fem.assemble_scalar(compiled(elastic.model.integral(mesh, one, measure)))
+    area = mesh.comm.allreduce(local, op=MPI.SUM)
+    traction = fem.Constant(mesh, np.asarray(force, dtype=PETSc.ScalarType) / area)
+    δu = ufl.TestFunction(elastic.space)
+    work = elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
+    vector = assemble_vector(compiled(work))
+    vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
+    result = vector.getArray().copy()
+    vector.destroy()
+    return result

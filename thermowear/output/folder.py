@@ -14,14 +14,14 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from .quantities import FRICTION, HISTORY, INTERFACE, LOADS
+from .quantities import FRICTION, HISTORY, INTERFACE, LOADS, PROFILE
 from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields
 
 _OURS = re.compile(
-    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|loads)\.csv"
+    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|loads|profile)\.csv"
     r"|(interface|friction)(_[-+.0-9e]+)?\.csv"
-    r"|(interface|wear|history|friction|loads|bodies|deformed)\.png"
+    r"|(interface|profile|wear|history|friction|loads|bodies|deformed)\.png"
 )
 
 
@@ -98,8 +98,9 @@ class ResultsFolder:
             write_points(self.path / name_at("friction", time), FRICTION, friction)
 
     def finish(self, result, seconds: dict[str, float]) -> None:
-        """Write interface, fields and summary of a `thermowear.simulation.Result`."""
+        """Write interface, profile, fields and summary of a `thermowear.simulation.Result`."""
         self._points(None, result.interface, result.friction and result.friction.last)
+        write_points(self.path / "profile.csv", PROFILE, result.profile)
         write_fields(self.path / "fields.vtu", result.fields)
         rounded = {name: round(value, 4) for name, value in seconds.items()}
         self._write_json("summary.json", result.summary | {"seconds": rounded})

@@ -59,6 +59,17 @@ INTERFACE = {
     "heat_flux_2": Quantity("heat_flux_2_W_per_m2", "heat flux, body 2", "kW/m²", 1e-3),
 }
 
+PROFILE = {
+    **{name: INTERFACE[name] for name in ("x", "y", "z", "s")},
+    **{f"normal_{axis}": Quantity(f"normal_{axis}", f"normal, {axis}", "1") for axis in "xyz"},
+    "shape": INTERFACE["shape"],
+    "shape_along_press": Quantity("shape_along_press_m", "shape along the press", "µm", 1e6),
+    "wear_rate": Quantity("wear_rate_m_per_s", "normal wear rate", "nm/s", 1e9),
+    "wear_rate_along_press": Quantity(
+        "wear_rate_along_press_m_per_s", "wear rate along the press", "nm/s", 1e9
+    ),
+}
+
 HISTORY = {
     "time": Quantity("time_s", "time", "s"),
     "sliding_distance": Quantity("sliding_distance_m", "sliding distance", "m"),

@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..laws.motions import RigidMotion
-from .result import Interface
+from .result import Interface, Profile
 from .state import BodyState, body_state
 from .system import System
+
+_STEEPEST = 0.05
+"""Least cosine between face and press where a shape along the press is given."""
 
 
 def interface_at(
@@ -33,7 +36,12 @@ def interface_at(
     state = body_state(system, pressure, shear)
     lost = system.pairing.gap + worn.sum(axis=0)
     moved = motion.at(system.pairing.points)
-    gap = lost + system.softness * pressure + state.opening - np.einsum("ni,ni->n", system.pairing.normals, moved)
+    gap = (
+        lost
+        + system.softness * pressure
+        + state.opening
+        - np.einsum("ni,ni->n", system.pairing.normals, moved)
+    )
     return state, record(system, pressure, state, gap, lost.max() - lost, worn)
 
 
@@ -67,4 +75,27 @@ def record(system: System, pressure, state: BodyState, gap, shape, worn) -> Inte
         temperature_2=temperatures[1],
         heat_flux_1=fluxes[0],
         heat_flux_2=fluxes[1],
+    )
+
+
+def profile(system: System, interface: Interface) -> Profile:
+    """The worn shape of an interface, along its normals and along the press."""
+    points, normals = system.pairing.points, np.zeros((len(interface.s), 3))
+    normals[:, : points.shape[1]] = system.pairing.normals
+    along = system.pairing.normals @ system.press
+    along = np.where(along > _STEEPEST, along, np.nan)
+    lost = (interface.shape.max() - interface.shape) / along
+    rate = interface.wear_rate_1 + interface.wear_rate_2
+    return Profile(
+        x=interface.x,
+        y=interface.y,
+        z=interface.z,
+        s=interface.s,
+        normal_x=normals[:, 0],
+        normal_y=normals[:, 1],
+        normal_z=normals[:, 2],
+        shape=interface.shape,
+        shape_along_press=np.nanmax(lost) - lost,
+        wear_rate=rate,
+        wear_rate_along_press=rate / along,
     )

@@ -36,6 +36,27 @@ class Interface:
 
 
 @dataclass(frozen=True)
+class Profile:
+    """The worn shape, one entry a contact point; names and units are those of ``profile.csv``.
+
+    The shape is the height of the unloaded face over its deepest worn point, along the normal and
+    along the press; likewise the wear rates of both bodies together.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    s: np.ndarray
+    normal_x: np.ndarray
+    normal_y: np.ndarray
+    normal_z: np.ndarray
+    shape: np.ndarray
+    shape_along_press: np.ndarray
+    wear_rate: np.ndarray
+    wear_rate_along_press: np.ndarray
+
+
+@dataclass(frozen=True)
 class HistoryRow:
     """A step of a running-in; names and units are those of ``history.csv``."""
 
@@ -134,6 +155,7 @@ class Result:
     ----------
     interface : Interface
         At the end.
+    profile : Profile
     summary : dict
         SI, the unit in the key.
     history : list of HistoryRow
@@ -149,6 +171,7 @@ class Result:
     """
 
     interface: Interface
+    profile: Profile
     summary: dict
     history: list[HistoryRow]
     outputs: dict[float, Interface]

@@ -16,7 +16,7 @@ from .observer import Observer
 from .outcome import Outcome
 from .phases import Phases
 from .preparation import interface_problem, prepare
-from .recording import interface_at, record
+from .recording import interface_at, profile, record
 from .result import HistoryRow, Interface, Result
 from .state import BodyState, body_state
 from .steady import least_worn, steady_wear
@@ -82,6 +82,7 @@ def run(
     summary = summarise(system, outcome)
     return Result(
         outcome.interface,
+        profile(system, outcome.interface),
         summary,
         outcome.history,
         outcome.outputs,

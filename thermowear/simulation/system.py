@@ -185,7 +185,7 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
         If the geometry cannot be meshed or paired.
     """
     degree, geometry = case.mesh.degree, case.geometry
-    model = section_model(case.model, geometry.thickness_factor)
+    model = section_model(case.model, geometry.thickness_factor, geometry.sector)
     with phases("mesh"):
         bodies = distribute(on_root(comm, lambda: case.tagged_mesh(zone)), comm)
     with phases("pair"):
@@ -198,7 +198,7 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
         pull, speed = slides.pull(pairing.normals, *friction), slides.speed
     with phases("assemble elasticity"):
         materials = {name: _elastic_material(case, name) for name in geometry.bodies}
-        clamped = [geometry.held, geometry.fixed]
+        clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
         elastic = elasticity(
             bodies, model, degree, materials, clamped, geometry.symmetry, geometry.rollers
         )
@@ -264,14 +264,30 @@ def _thermal(case, bodies, model, pairing, elastic, basis, phases) -> ThermalSys
         space = lagrange_space(bodies.mesh, case.mesh.degree)
         upper, lower = pairing.sides
         traces = (value_trace(space, upper), value_trace(space, lower))
-        conductivities = {b: case.material(b).conductivity for b in case.geometry.bodies}
+        conductivities, cooling = _round_the_ring(case)
         shift = max(conductivities.values()) / pairing.position[-1]
         given = {name: value - heat.ambient for name, value in heat.temperature.items()}
         bath = bath_matrix(space, traces, pairing.weights, shift)
-        conducting = conduction(bodies, model, space, conductivities, heat.cooling, given, bath)
+        conducting = conduction(bodies, model, space, conductivities, cooling, given, bath)
         load = elastic.thermal_load(space)
     with phases("condense conduction"):
         face = condense_heat(
             conducting, pairing.weights, basis, traces, shift, heat.conductance, heat.partition
         )
     return ThermalSystem(conducting, load, face, heat.ambient)
+
+
+def _round_the_ring(case: Case) -> tuple[dict[str, float], dict[str, float]]:
+    """Conductivities by body and heat transfer by surface, for the modelled sector.
+
+    Under a body 1 that takes up a sector, all of a turning body 2 comes by and is heated: what
+    conducts and cools is the whole ring.
+    """
+    assert case.heat is not None
+    moving, sector = case.geometry.bodies[1], case.geometry.sector
+    conductivities = {b: case.material(b).conductivity or 0.0 for b in case.geometry.bodies}
+    conductivities[moving] /= sector
+    whole = {
+        s: h / sector if s.startswith(f"{moving}_") else h for s, h in case.heat.cooling.items()
+    }
+    return conductivities, whole

@@ -4,7 +4,7 @@ CACHE = $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/thermowear
 RUFF = $(CACHE)/ruff-0.14/bin/ruff
 PYTEST = OMP_NUM_THREADS=1 $(ENV) python3 -m pytest
 
-.PHONY: help demo test verify test-next lint types image meshes clean
+.PHONY: help demo gallery test verify test-next lint types image meshes clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 12
@@ -14,6 +14,9 @@ demo: ## compute the demo cases into results/
 	    $(ENV) python3 -m thermowear run $$case \
 	        -o results/$$(basename $$case .toml) --overwrite || exit; \
 	done
+
+gallery: ## demos/README.md: what each demo case shows, with pictures
+	$(ENV) python3 demos/gallery.py
 
 test: ## the tests but the slow ones
 	$(PYTEST) -n 2 -m "not slow"
@@ -39,7 +42,7 @@ meshes: ## make the meshes in meshes/ anew
 	$(ENV) python3 meshes/regenerate.py
 
 clean: ## remove results and tool caches; the environment stays
-	rm -rf results build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf results demos/out build .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # ruff is not in Debian; pinned, as a new one may ask for new things

@@ -381,6 +381,7 @@ def test_a_run_leaves_its_files(results):
         "summary.json",
         "run.json",
         "interface.csv",
+        "profile.csv",
         "fields.vtu",
         "case.resolved.toml",
     }

@@ -97,6 +97,9 @@ def _parser() -> argparse.ArgumentParser:
 
     plot = _command(commands, "plot", _plot, "draw the pictures of a results folder again")
     plot.add_argument("folder", metavar="DIR", type=Path)
+
+    report = _command(commands, "report", _report, "write report.html of a results folder")
+    report.add_argument("folder", metavar="DIR", type=Path)
     return parser
 
 
@@ -172,6 +175,13 @@ def _plot(chosen) -> int:
         raise CaseError(str(error)) from None
     for problem in problems:
         print(f"note: {problem}", file=sys.stderr)
+    return 0
+
+
+def _report(chosen) -> int:
+    from .output.report import write_report
+
+    print(f"wrote {write_report(chosen.folder)}")
     return 0
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from mpi4py import MPI
 from petsc4py import PETSc
 
 import numpy as np
 import ufl
 from dolfinx import fem
 from dolfinx.fem.petsc import assemble_vector
-from mpi4py import MPI
 
 from .compiled import compiled
 from .elasticity import Elasticity

@@ -1,27 +1,48 @@
 """An annular punch turning about its axis on a plate (half section, r and z).
 
-The contact lies at z = 0; the punch is above, the plate below.
+The punch is above the plate. Their faces coincide: flat at z = 0, or a cone or a torus that passes
+through z = 0 at the mean radius. Beside a face that is not flat the plate goes on level.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Literal
 
+import numpy as np
 from pydantic import model_validator
 
-from ..case.geometry import Geometry
 from ..case.section import KeyFault
-from ..case.units import Length
-from .blocks import Interval, add_grid, graded_face, growing, growing_from_both, smallest
-from .gmsh_session import gmsh_model, tagged_mesh
+from ..case.units import Angle, Length
+from .blocks import growing
+from .face_profiles import Arc, Profile, Straight
+from .stacked import Section, Stacked
 from .tagged import TaggedMesh
 
-_APART = 1e-6  # of the outer radius: an edge of contact nearer to the face's edge is the same
+_STEEPEST = math.radians(80)
+"""Slope of a face up to which cells on it stay well shaped."""
+
+_DEEPEST = 0.9
+"""Part of a body's height that a face may take up."""
 
 
-class AnnularPunch(Geometry):
-    """Sizes of punch and plate [m]."""
+class AnnularPunch(Stacked):
+    """Sizes of punch and plate.
+
+    Attributes
+    ----------
+    inner_radius, outer_radius, plate_radius : float [m]
+    punch_height, plate_height : float
+        At the mean radius, from the face to the level top and bottom [m].
+    face : str
+        ``"flat"``, ``"conical"`` or ``"toroidal"``.
+    cone_angle : float or None
+        From the axis to the face, in the half section: with less than 90° the face rises outwards,
+        with more it falls [rad].
+    torus_radius : float or None
+        Of the face in the half section, an arc that bulges downwards in the middle [m].
+    """
 
     name = "annular-punch"
     models = ("axisymmetric",)
@@ -45,6 +66,9 @@ class AnnularPunch(Geometry):
     punch_height: Length
     plate_radius: Length
     plate_height: Length
+    face: Literal["flat", "conical", "toroidal"] = "flat"
+    cone_angle: Angle | None = None
+    torus_radius: Length | None = None
 
     @model_validator(mode="after")
     def _nested(self):
@@ -61,75 +85,101 @@ class AnnularPunch(Geometry):
             )
         return self
 
+    @model_validator(mode="after")
+    def _shaped(self):
+        keys = {"cone_angle": "conical", "torus_radius": "toroidal"}
+        for key, face in keys.items():
+            if self.face == face and getattr(self, key) is None:
+                raise KeyFault(key, f"missing; a {face} face needs it")
+            if self.face != face and getattr(self, key) is not None:
+                raise KeyFault(key, f'is for face = "{face}"')
+        if self.cone_angle is not None:
+            self._check_angle(math.degrees(self.cone_angle))
+            self._check_rise("cone_angle", "punch_height", "plate_height")
+        if self.torus_radius is not None:
+            least = (self.outer_radius - self.inner_radius) / 2 / math.sin(_STEEPEST)
+            if not self.torus_radius >= least:
+                raise KeyFault(
+                    "torus_radius", f"{self.torus_radius:g} m must be at least {least:.4g} m"
+                )
+            self._check_rise("torus_radius", "punch_height")
+        return self
+
+    def _check_angle(self, degrees: float) -> None:
+        level, steepest = 90.0, math.degrees(_STEEPEST)
+        if not abs(degrees - level) <= steepest * (1 + 1e-12):
+            raise KeyFault(
+                "cone_angle",
+                f"{degrees:g} deg must be from {level - steepest:g} deg to "
+                f"{level + steepest:g} deg (90 deg is flat)",
+            )
+
+    def _check_rise(self, key: str, *heights: str) -> None:
+        rise = abs(float(self.profile.height(np.array(self.outer_radius))))
+        for name in heights:
+            largest = _DEEPEST * getattr(self, name)
+            if not rise < largest:
+                raise KeyFault(
+                    key,
+                    f"puts the edge of the face {rise:.4g} m off its middle; "
+                    f"must be less than {largest:.4g} m, {_DEEPEST:g} of {name}",
+                )
+
     @property
-    def follows_contact(self) -> bool:
-        return True  # heat can part the faces
+    def upper(self) -> Section:
+        return Section(self.inner_radius, self.outer_radius, self.punch_height)
+
+    @property
+    def lower(self) -> Section:
+        return Section(0.0, self.plate_radius, self.plate_height)
+
+    @property
+    def profile(self) -> Profile:
+        """Of both faces."""
+        middle = (self.inner_radius + self.outer_radius) / 2
+        if self.torus_radius is not None:
+            return Arc(middle, self.torus_radius)
+        return Straight(middle, 0.0 if self.cone_angle is None else 1 / math.tan(self.cone_angle))
+
+    @property
+    def cell_order(self) -> int:
+        return self.profile.order
 
     def contact_area(self) -> float:
+        """Seen along the axis, also of a cone or a torus."""
         return math.pi * (self.outer_radius**2 - self.inner_radius**2)
 
+    def _beside(self, sizes, elements, grading):
+        contact, _, largest = sizes
+        _, outside = super()._beside(sizes, elements, grading)
+        # nothing ends at the axis
+        return growing(self.inner_radius, 0.0, contact, grading, largest), outside
+
     def build(self, mesh, zone=None) -> TaggedMesh:
-        with gmsh_model(self.name) as gmsh:
-            punch = self._punch(gmsh.model, zone, *mesh.face("punch"))
-            plate, face = self._plate(gmsh.model, zone, *mesh.face("plate"))
-            gmsh.model.geo.synchronize()
-            parts = {
-                "punch_face": punch.bottom,
-                "punch_top": punch.top,
-                "punch_inside": punch.left,
-                "punch_outside": punch.right,
-                "plate_face": face,
-                "plate_bottom": plate.bottom,
-                "plate_side": plate.right,
-            }
-            gmsh.model.addPhysicalGroup(2, punch.surfaces, name="punch")
-            gmsh.model.addPhysicalGroup(2, plate.surfaces, name="plate")
-            for name in self.surfaces:
-                gmsh.model.addPhysicalGroup(1, parts[name], name=name)
-            gmsh.model.mesh.generate(2)
-            return tagged_mesh(gmsh.model, self.bodies, self.surfaces)
+        flat = super().build(mesh, zone)
+        points = flat.points.copy()
+        for tag, height in enumerate((self.punch_height, -self.plate_height), start=1):
+            cells = flat.cells[flat.cell_tags == tag]
+            nodes, columns = np.unique(cells), np.unique(flat.points[cells[:, :4], 0])
+            points[nodes] = self._bent(flat.points[nodes], columns, height)
+        return replace(flat, points=points)
 
-    def _punch(self, model, zone, elements: int, grading: float):
-        columns = self._face(elements, grading, zone)
-        contact, support, largest = self._sizes(columns, elements)
-        rows = growing_from_both(0.0, self.punch_height, (contact, support), grading, largest)
-        return add_grid(model, columns, rows)
+    def _bent(self, points: np.ndarray, columns: np.ndarray, height: float) -> np.ndarray:
+        """Where points of a body go whose flat face becomes the profile and whose end stays.
 
-    def _plate(self, model, zone, elements: int, grading: float):
-        face = self._face(elements, grading, zone)
-        contact, support, largest = self._sizes(face, elements)
-        inside = growing(self.inner_radius, 0.0, contact, grading, largest)
-        outside = growing_from_both(
-            self.outer_radius, self.plate_radius, (contact, support), grading, largest
-        )
-        rows = growing_from_both(-self.plate_height, 0.0, (support, contact), grading, largest)
-        columns: list[Interval] = inside + face + outside
-        plate = add_grid(model, columns, rows)
-        inner = len(inside)
-        return plate, plate.top[inner : inner + len(face)]
-
-    def _face(self, elements: int, grading: float, zone) -> list[Interval]:
-        """The contact face, graded to its edges, or to those of a contact that ends inside it."""
-        inner, outer = self.inner_radius, self.outer_radius
-        if zone is None:
-            return graded_face(inner, outer, elements, grading)
-        start, end = max(zone[0], inner), min(zone[1], outer)
-        face = graded_face(start, end, elements, grading)
-        size, largest = smallest(face), (end - start) / elements
-        if start - inner > _APART * outer:
-            face = growing_from_both(inner, start, (size, size), grading, largest) + face
-        if outer - end > _APART * outer:
-            face = face + growing_from_both(end, outer, (size, size), grading, largest)
-        return face
-
-    def _sizes(self, face: list[Interval], elements: int) -> tuple[float, float, float]:
-        """Element sizes at the contact edges, at the clamped edges, and elsewhere at most.
-
-        Clamped edges are singular too; being remote they need fewer thin elements.
+        Parameters
+        ----------
+        points : ndarray, shape (n, 2) [m]
+        columns : ndarray
+            Radii at the ends of the body's cells, increasing [m].
+        height : float
+            z of its end [m].
         """
-        contact, largest = smallest(face), self._largest(elements)
-        return contact, (contact * largest) ** 0.5, largest
-
-    def _largest(self, elements: int) -> float:
-        """Largest element away from the contact."""
-        return max(self.outer_radius - self.inner_radius, self.punch_height) * 3.0 / elements
+        limits = self.inner_radius, self.outer_radius
+        r, z = points.T
+        within = np.clip(r, *limits)
+        on_face = self.profile.spaced(within, np.unique(np.clip(columns, *limits)))
+        part = 1 - z / height
+        return np.column_stack(
+            [r + part * (on_face - within), z + part * self.profile.height(on_face)]
+        )

@@ -15,6 +15,7 @@ import tomli_w
 from .. import __version__
 from ..errors import CaseError
 from .quantities import FRICTION, HISTORY, INTERFACE, LOADS, PROFILE
+from .report import is_report
 from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields
 
@@ -57,7 +58,7 @@ class ResultsFolder:
         self._made = not os.path.exists(path)  # unlike Path.exists, no error at odd names
         try:
             path.mkdir(parents=True, exist_ok=True)
-            present = [entry for entry in path.iterdir() if _OURS.fullmatch(entry.name)]
+            present = [entry for entry in path.iterdir() if _is_ours(entry)]
             if any(path.iterdir()) and not overwrite:
                 raise CaseError(
                     f"-o {path}: exists and is not empty; use --overwrite or another folder"
@@ -129,6 +130,11 @@ class ResultsFolder:
         draft = self.path / f".{name}.part"
         draft.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", "utf-8")
         os.replace(draft, self.path / name)
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file is a result of this program; a report is known by what it says in its head."""
+    return bool(_OURS.fullmatch(path.name)) or (path.name == "report.html" and is_report(path))
 
 
 def _versions() -> dict[str, str]:

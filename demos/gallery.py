@@ -1,0 +1,144 @@
+"""The gallery of the demo cases: computes all of them and writes README.md with pictures.
+
+    make gallery                                    # or
+    scripts/env python3 demos/gallery.py [-o DIR]   # results go to DIR/NAME, by default demos/out
+
+What it says of a case is the first paragraph of the comment at the head of its file.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import subprocess
+import sys
+import textwrap
+import tomllib
+from pathlib import Path
+
+from PIL import Image  # matplotlib does not come without it
+
+from thermowear.output.report.figures import figure_text
+
+HERE = Path(__file__).resolve().parent
+CHOICES = (("bodies",), ("wear", "friction", "interface"))  # the first of each that there is
+SIDES = (1100, 1000, 900, 800, 700, 600, 500)  # pixels of the longer side of a picture
+LARGEST = 120_000  # bytes of a picture
+KEYS = {
+    "max_pressure_Pa": "largest pressure",
+    "shape_range_m": "worn shape, highest to lowest",
+    "wear_volume_1_m3": "worn off body 1",
+    "wear_volume_2_m3": "worn off body 2",
+    "max_temperature_K": "highest temperature",
+    "dissipated_energy_J": "energy dissipated",
+}
+HEAD = """# Demo cases
+
+Each picture shows what the command above it computes; `scripts/env COMMAND…` runs a command where
+all packages are. The cases explain their keys: change them. This page is made by `make gallery`.
+"""
+
+
+def main() -> int:
+    """Compute the cases and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("-o", "--output", metavar="DIR", type=Path, default=HERE / "out")
+    results = parser.parse_args().output
+    cases = sorted(HERE.glob("*.toml"))
+    for case in cases:
+        print(f"{case.stem} …", flush=True)
+        code = compute(case, results / case.stem)
+        if code != 0:
+            print(f"error: {case.stem} ended with exit code {code}", file=sys.stderr)
+            return code
+    write_gallery(HERE, cases, results)
+    return 0
+
+
+def compute(case: Path, folder: Path) -> int:
+    """Run a case in a process of its own; its exit code."""
+    command = [sys.executable, "-m", "thermowear", "run", str(case), "-o", str(folder)]
+    return subprocess.run([*command, "--overwrite"], check=False).returncode
+
+
+def write_gallery(place: Path, cases: list[Path], results: Path) -> None:
+    """Write ``README.md`` and ``pictures/`` from the results of the cases.
+
+    Parameters
+    ----------
+    place : Path
+        Where they are written; pictures of earlier galleries are removed.
+    cases : list of Path
+    results : Path
+        Holds a results folder for each case, named like it.
+    """
+    pictures = place / "pictures"
+    pictures.mkdir(exist_ok=True)
+    for old in pictures.glob("*.png"):
+        old.unlink()
+    entries = [_entry(case, results / case.stem, pictures) for case in cases]
+    (place / "README.md").write_text("\n".join([HEAD, *entries]), encoding="utf-8")
+
+
+def leading_text(case_text: str) -> str:
+    """First paragraph of the comment at the head of a case file, as one line.
+
+    It ends where the comment does, or at a line of it that is empty.
+    """
+    words = []
+    for line in case_text.splitlines():
+        text = line.removeprefix("#").strip()
+        if not line.startswith("#") or not text:
+            break
+        words.append(text)
+    return " ".join(words)
+
+
+def figures(summary: dict) -> str:
+    """Key figures of a summary that say something, in one line."""
+    worn = bool(summary["wear_coefficient_per"])
+    found = {key: summary.get(key) for key in KEYS if worn or key != "shape_range_m"}
+    said = [f"{KEYS[key]} {_rounded(figure_text(key, v))}" for key, v in found.items() if v]
+    line = " · ".join(said)
+    return line[:1].upper() + line[1:]
+
+
+def small_png(source: Path) -> bytes:
+    """A picture with fewer pixels, so many that it has `LARGEST` bytes at most.
+
+    Fewer colours would save more, but draw bands into fields.
+    """
+    with Image.open(source) as picture:
+        opaque = picture.convert("RGB")
+    for side in SIDES:
+        opaque.thumbnail((side, side), Image.Resampling.LANCZOS)
+        content = io.BytesIO()
+        opaque.save(content, "PNG", optimize=True)
+        if content.tell() <= LARGEST:
+            break
+    return content.getvalue()
+
+
+def _entry(case: Path, folder: Path, pictures: Path) -> str:
+    """The part of the page for a case; its pictures are put in their place."""
+    text = case.read_text(encoding="utf-8")
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    lines = [f"## {tomllib.loads(text)['title']}", "", *textwrap.wrap(leading_text(text), 100), ""]
+    lines += [f"    python3 -m thermowear run demos/{case.name}", "", figures(summary), ""]
+    for names in CHOICES:
+        drawn = [name for name in names if (folder / f"{name}.png").is_file()]
+        for name in drawn[:1]:
+            (pictures / f"{case.stem}-{name}.png").write_bytes(small_png(folder / f"{name}.png"))
+            lines += [f"![{case.stem}: {name}](pictures/{case.stem}-{name}.png)", ""]
+    return "\n".join(lines)
+
+
+def _rounded(text: str) -> str:
+    """Four digits of a number with its unit."""
+    value, _, unit = text.partition(" ")
+    return f"{float(f'{float(value):.4g}'):.12g} {unit}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,136 @@
+"""The gallery of the demo cases."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import re
+import sys
+from pathlib import Path
+
+import matplotlib.image as mpimg
+import numpy as np
+import pytest
+
+from thermowear.case.starters import starter_text, starters
+
+from ..conftest import DEMOS
+
+
+@pytest.fixture(scope="module")
+def gallery():
+    """The script as a module."""
+    spec = importlib.util.spec_from_file_location("gallery", DEMOS / "gallery.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("name", starters())
+def test_every_starter_has_a_text(name, gallery):
+    """requirement: the comment at the head of a starter says what the case is about."""
+    text = gallery.leading_text(starter_text(name))
+    assert 60 < len(text) < 500
+    assert text[0].isupper()
+    assert text[-1] in ".?!)"
+    assert "#" not in text
+
+
+@pytest.mark.parametrize(
+    ("case", "text"),
+    [
+        ("# One\n#   line.\n\n# not this\n", "One line."),
+        ("# One.\n#\n# not this\ntitle = 'a'\n", "One."),
+        ("# One.\ntitle = 'a' # not this\n", "One."),
+        ("title = 'a'\n# not this\n", ""),
+        ("", ""),
+    ],
+)
+def test_the_text_is_the_first_paragraph_of_the_comment(case, text, gallery):
+    """requirement: up to the first line of the leading comment that is empty."""
+    assert gallery.leading_text(case) == text
+
+
+def test_figures_say_what_there_is(gallery):
+    """requirement: figures of the summary in engineering units, none that is zero or missing."""
+    summary = {
+        "max_pressure_Pa": 174996903.6,
+        "shape_range_m": 3.99444e-05,
+        "wear_volume_1_m3": 1.5607172e-05,
+        "wear_volume_2_m3": 0.0,
+        "max_temperature_K": None,
+        "wear_coefficient_per": {"punch": "pressure"},
+    }
+    worn = "Largest pressure 175 MPa · worn shape, highest to lowest 39.94 µm"
+    assert gallery.figures(summary) == f"{worn} · worn off body 1 15610 mm³"
+    summary |= {"wear_coefficient_per": {}, "wear_volume_1_m3": 0.0, "max_temperature_K": 368.15}
+    assert gallery.figures(summary) == "Largest pressure 175 MPa · highest temperature 95 °C"
+
+
+def noise(path: Path, width: int, height: int) -> None:
+    """A picture that hardly compresses."""
+    x, y = np.meshgrid(np.linspace(0, 255, width), np.linspace(0, 255, height))
+    grain = np.random.default_rng(1).normal(0, 4, (height, width))
+    pixels = np.stack([x, y, 128 + grain], axis=2).clip(0, 255).astype(np.uint8)
+    mpimg.imsave(path, pixels)
+
+
+def test_pictures_become_small(gallery, tmp_path):
+    """requirement: below 120 kB, in proportion, never enlarged; fields without bands."""
+    noise(tmp_path / "large.png", 1600, 800)
+    assert (tmp_path / "large.png").stat().st_size > 500_000
+    content = gallery.small_png(tmp_path / "large.png")
+    assert len(content) <= 120_000
+    (tmp_path / "less.png").write_bytes(content)
+    less = mpimg.imread(tmp_path / "less.png")[..., :3]
+    assert less.shape[1] == pytest.approx(2 * less.shape[0], abs=2)
+    assert len(np.unique(less.reshape(-1, 3), axis=0)) > 1000
+    noise(tmp_path / "little.png", 40, 30)
+    (tmp_path / "same.png").write_bytes(gallery.small_png(tmp_path / "little.png"))
+    assert mpimg.imread(tmp_path / "same.png").shape[:2] == (30, 40)
+
+
+@pytest.fixture
+def two(tmp_path):
+    """Two cases with results, one of them worn over time; a picture that is no more."""
+    files = {
+        "one": ("wear", "interface", "bodies"),
+        "two": ("interface",),
+    }
+    for name, drawn in files.items():
+        (tmp_path / f"{name}.toml").write_text(f"# About {name}.\n\ntitle = 'Case {name}'\n")
+        folder = tmp_path / "results" / name
+        folder.mkdir(parents=True)
+        summary = {"max_pressure_Pa": 5e7, "wear_coefficient_per": {}}
+        (folder / "summary.json").write_text(json.dumps(summary))
+        for picture in drawn:
+            noise(folder / f"{picture}.png", 60, 40)
+    (tmp_path / "pictures").mkdir()
+    (tmp_path / "pictures" / "old-bodies.png").write_bytes(b"")
+    return tmp_path
+
+
+def test_a_page_of_all_cases(two, gallery):
+    """requirement: title, text, command, figures, and pictures that are there."""
+    gallery.write_gallery(two, sorted(two.glob("*.toml")), two / "results")
+    page = (two / "README.md").read_text(encoding="utf-8")
+    assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Case one", "Case two"]
+    for name in ("one", "two"):
+        assert f"\nAbout {name}.\n" in page
+        assert f"\n    python3 -m thermowear run demos/{name}.toml\n" in page
+    assert page.count("\nLargest pressure 50 MPa\n") == 2
+    shown = re.findall(r"\]\((.*)\)", page)
+    assert shown == [f"pictures/{n}.png" for n in ("one-bodies", "one-wear", "two-interface")]
+    assert {f"pictures/{path.name}" for path in (two / "pictures").iterdir()} == set(shown)
+
+
+def test_a_case_that_fails_ends_the_gallery(two, gallery, monkeypatch, capfd):
+    """requirement: nothing is skipped: the exit code of the run, and no page."""
+    monkeypatch.setattr(gallery, "HERE", two)
+    monkeypatch.setattr(sys, "argv", ["gallery.py", "-o", str(two / "results")])
+    assert gallery.main() == 1
+    printed = capfd.readouterr().err
+    assert "error: model: " in printed  # the run's own words
+    assert "error: one ended with exit code 1" in printed
+    assert not (two / "README.md").exists()
+    assert (two / "results" / "two" / "interface.png").exists()

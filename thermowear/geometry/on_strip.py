@@ -1,0 +1,85 @@
+"""What geometries share whose body 1 rubs with a flat face on a strip that moves along x under it.
+
+The contact lies at y = 0, in the middle of the strip.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from ..case.geometry import PlaneGeometry, keyed
+from ..case.section import KeyFault
+from ..case.units import Length
+from .face_ends import growth
+from .keys import Whole
+from .stacked import Section, Stacked
+
+
+class OnStrip(Stacked, PlaneGeometry):
+    """Base: body 1 is a rectangle with sharp edges, body 2 the ``strip``.
+
+    Left and right have names of their own: the strip comes in on one side.
+
+    Attributes
+    ----------
+    strip_length, strip_height : float [m]
+    """
+
+    name: ClassVar[str] = ""
+    models = ("plane-strain", "plane-stress")
+
+    strip_length: Length
+    strip_height: Length
+    half: Whole = False
+
+    @keyed
+    def contact(self) -> tuple[str, str]:
+        return f"{self.bodies[0]}_face", "strip_face"
+
+    @keyed
+    def held(self) -> str:
+        return f"{self.bodies[0]}_top"
+
+    @keyed
+    def fixed(self) -> str:
+        return "strip_bottom"
+
+    @keyed
+    def surfaces(self) -> tuple[str, ...]:
+        upper = (f"{self.bodies[0]}_{part}" for part in ("face", "top", "left", "right"))
+        strip = (f"strip_{part}" for part in ("face", "bottom", "right", "left", "top"))
+        return *upper, *strip
+
+    @property
+    def face_width(self) -> float:
+        return self.upper.right - self.upper.left
+
+    @property
+    def lower(self) -> Section:
+        middle = (self.upper.left + self.upper.right) / 2
+        reach = self.strip_length / 2
+        return Section(middle - reach, middle + reach, self.strip_height)
+
+    @property
+    def track(self) -> float:
+        return self.strip_length
+
+    def _beside(self, sizes, elements, grading):
+        contact, support, largest = sizes
+        # little happens farther away than the strip is high
+        coarse = max(largest, self.strip_height)
+        return super()._beside(
+            (contact, support, coarse), elements, min(grading, 1 / growth(elements))
+        )
+
+    def contact_area(self) -> float:
+        return self.face_width * self.thickness
+
+    def check_strip(self) -> None:
+        """Raise a `KeyFault` where the face is wider than the strip is long."""
+        if not self.face_width < self.strip_length:
+            raise KeyFault(
+                "strip_length",
+                f"{self.strip_length:g} m must be greater than the width of the face "
+                f"{self.face_width:g} m",
+            )

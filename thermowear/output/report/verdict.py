@@ -1,0 +1,57 @@
+"""How a run ended, in one line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from .engineering import number
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A line, and ``good``, ``bad`` or ``unsure``."""
+
+    text: str
+    mark: str
+
+
+def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Verdict:
+    """Read ``run.json`` and the time that a run has come to.
+
+    Parameters
+    ----------
+    run, summary : dict
+        The summary is empty where the run ended without one.
+    """
+    status, why = run.get("status"), run.get("message")
+    reached = f" {_reached(summary)}"
+    if status == "done":
+        return Verdict(f"Finished{_when(run)}.", "good")
+    if status == "failed":
+        return Verdict(f"Stopped: {why or 'no reason was recorded'}.{reached}", "bad")
+    if status == "interrupted":
+        return Verdict(f"Interrupted{_when(run)}.{reached}", "unsure")
+    if status == "running":
+        text = "Still computing when this was written, or ended without a word."
+        return Verdict(f"{text}{reached}", "unsure")
+    return Verdict(f"Ended as: {status}.{reached}", "unsure")
+
+
+def _reached(summary: dict[str, Any]) -> str:
+    if not summary:
+        return "There is no summary."
+    time = summary.get("time_s")
+    if not isinstance(time, int | float):
+        return "The figures are those of what was reached."
+    return f"The figures are those of the state at {number(float(time))} s."
+
+
+def _when(run: dict[str, Any]) -> str:
+    """When it ended, and how long it took."""
+    try:
+        start, end = (datetime.fromisoformat(run[key]) for key in ("started", "finished"))
+        return f" {end:%Y-%m-%d %H:%M} {end.tzname()} after {(end - start).total_seconds():g} s"
+    except (KeyError, TypeError, ValueError):
+        return ""

@@ -1,0 +1,122 @@
+"""Special cases by finite elements: pressures of the closed form, and a running-in that ends there.
+
+A steady state needs no finite elements for its pressure, only for the worn shape. So the check is
+the running-in: contact of the bodies, worn step by step from unworn faces, must end in both.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+
+import numpy as np
+
+from .. import geometry  # noqa: F401  (makes the geometries known)
+from ..case import load
+from ..case.schema import Case
+from ..case.starters import starter_text
+from ..laws.motions import RigidMotion, rotation, translation
+from ..simulation import Result, run
+from .check import Check, compare
+
+PRINCIPLE = "the steady state, directly from the principle of minimum wear dissipation power"
+EDGE = 2e-3
+"""Corners have singular stresses: nearer to an end of a face nothing is compared [m]."""
+
+_TRANSIENT = "analysis={type='transient', until='steady', steady_tolerance=1e-3, tolerance=1e-3}"
+
+
+def running_in(
+    id: str, starter: str, *overrides: str, without: tuple[str, ...] = ()
+) -> Iterator[Check]:
+    """Pressure and worn shape at the end of a running-in from unworn faces.
+
+    Parameters
+    ----------
+    id : str
+        Of the verification case.
+    starter : str
+    *overrides : str
+        ``KEY=VALUE`` each.
+    without : tuple of str
+        Tables to leave out.
+    """
+    case = variant(starter, *overrides, without=without)
+    direct = run(case)
+    reached = run(variant(starter, *overrides, _TRANSIENT, without=without))
+    name = ", ".join((starter, *overrides, *(f"no {table}" for table in without)))
+    inner = away_from_ends(direct)
+    yield compare(
+        id,
+        f"{name}: pressure after running-in less the steady one, root mean square [Pa]",
+        _mean_square(direct, reached.interface.pressure - direct.interface.pressure, inner),
+        0.0,
+        0.01,
+        PRINCIPLE,
+        scale=_mean_square(direct, direct.interface.pressure, inner),
+    )
+    off = _without_motion(case, direct, reached.interface.shape - direct.interface.shape, inner)
+    range_of_shape = np.ptp(direct.interface.shape[inner])
+    worst = float(np.abs(off[inner]).max())
+    yield compare(
+        id,
+        f"{name}: worn shape after running-in less the steady one, where largest [m]",
+        worst,
+        0.0,
+        0.01,
+        PRINCIPLE,
+        scale=range_of_shape,
+    )
+
+
+def variant(starter: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
+    """A starter case with keys changed and tables left out."""
+    tables = tomllib.loads(starter_text(starter))
+    for table in without:
+        tables.pop(table, None)
+    return load(tables, overrides)
+
+
+def away_from_ends(result: Result) -> np.ndarray:
+    """Points that are not at an end of the face, shape (n,)."""
+    interface = result.interface
+    if result.summary["model"] != "3d":
+        s = interface.s
+        return (s > s[0] + EDGE) & (s < s[-1] - EDGE)
+    inner = np.ones(len(interface.x), dtype=bool)
+    for x in (interface.x, interface.y):
+        inner &= (x > x.min() + EDGE) & (x < x.max() - EDGE)
+    return inner
+
+
+def _mean_square(result: Result, values: np.ndarray, inner: np.ndarray) -> float:
+    """Root of the mean square over the area of points."""
+    return float(np.sqrt(np.average(values[inner] ** 2, weights=result.interface.weight[inner])))
+
+
+def _without_motion(
+    case: Case, result: Result, heights: np.ndarray, inner: np.ndarray
+) -> np.ndarray:
+    """Heights less what a constant and rigid motions of the holder make up.
+
+    Shapes are given up to these.
+    """
+    profile = result.profile
+    points = np.column_stack([profile.x, profile.y, profile.z])
+    normals = np.column_stack([profile.normal_x, profile.normal_y, profile.normal_z])
+    press = translation(case.geometry.press_direction)
+    motions = [_MOTIONS[name] or press for name in case.holder.free]
+    closing = [(motion.at(points) * normals).sum(axis=1) for motion in motions]
+    modes = np.column_stack([np.ones(len(points)), *closing])
+    amounts = np.linalg.lstsq(modes[inner], heights[inner], rcond=None)[0]
+    return heights - modes @ amounts
+
+
+_MOTIONS: dict[str, RigidMotion | None] = {
+    "z": None,  # along the press of the geometry
+    "x": translation((1.0, 0.0, 0.0)),
+    "y": translation((0.0, 1.0, 0.0)),
+    "rotation": rotation((0.0, 0.0, 1.0), (0.0, 0.0, 0.0)),
+    "rotation-x": rotation((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    "rotation-y": rotation((0.0, 1.0, 0.0), (0.0, 0.0, 0.0)),
+}

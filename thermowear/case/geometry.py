@@ -61,6 +61,9 @@ class Geometry(Section):
         Contact faces of body 1 and body 2.
     held, fixed : str
         Surface of body 1 on the rigid holder; fixed surface of body 2.
+    initial_shape : str or None
+        Table with the worn shape to start from (``profile.csv`` of an earlier run), relative to the
+        current directory.
     """
 
     name: ClassVar[str]
@@ -72,6 +75,7 @@ class Geometry(Section):
     fixed: ClassVar[str]
 
     type: str
+    initial_shape: str | None = None
 
     def __init_subclass__(cls, **kwargs: Any):
         super().__init_subclass__(**kwargs)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from petsc4py import PETSc
@@ -34,6 +34,7 @@ from ..contact.traces import gap_trace, value_trace, vector_trace
 from ..laws import WearLaw
 from ..parallel import on_root, sum_over_ranks
 from .drives import drives
+from .initial_shape import initial_depth
 from .phases import Phases
 
 
@@ -191,6 +192,9 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
     with phases("pair"):
         face_1, face_2 = (gather_face(bodies, surface) for surface in geometry.contact)
         pairing, basis = _points(face_1, face_2, model, degree, case.contact.pressure_degree)
+    if geometry.initial_shape is not None:
+        depth = initial_depth(comm, geometry.initial_shape, pairing.position)
+        pairing = replace(pairing, gap=pairing.gap + depth)
     slides = _sliding(case, model, pairing)
     pull, speed = pairing.normals, np.zeros(len(pairing.weights))
     if slides is not None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from ...errors import CaseError
 from .curves import draw_history, draw_interface, draw_wear
 from .friction import draw_friction, draw_loads
+from .profile import draw_profile
 
 _TIMEOUT = 180.0  # seconds for the rendering process
 
@@ -34,6 +35,7 @@ def make_pictures(folder: Path) -> list[str]:
     if not (folder / "interface.csv").is_file():
         raise CaseError(f"{folder}: holds no interface.csv; not a results folder of a finished run")
     draw_interface(folder)
+    draw_profile(folder)
     draw_wear(folder)
     draw_history(folder)
     draw_friction(folder)

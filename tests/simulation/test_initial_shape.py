@@ -1,0 +1,68 @@
+"""Runs that start from a worn shape."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from thermowear.errors import CaseError
+from thermowear.output.quantities import PROFILE
+from thermowear.output.tables import write_points
+
+from ..case.starter import RUNNING_IN, solved
+
+COARSE = ("mesh.degree=5", "mesh.elements=8")
+STEADY = "analysis={type='steady'}"
+
+
+@pytest.fixture(scope="module")
+def steady(tmp_path_factory):
+    """The steady state and a file with its shape."""
+    result = solved(RUNNING_IN, None, *COARSE, STEADY)
+    file = tmp_path_factory.mktemp("shape") / "profile.csv"
+    write_points(file, PROFILE, result.profile)
+    return result, file
+
+
+def test_the_steady_shape_needs_no_running_in(steady):
+    """requirement: bodies that begin in the steady shape carry the steady pressure at once."""
+    result, file = steady
+    shaped = f"geometry.initial_shape={str(file)!r}"
+    begun = solved(RUNNING_IN, None, *COARSE, shaped, "analysis={type='initial'}")
+    assert begun.interface.pressure == pytest.approx(result.interface.pressure, rel=1e-2)
+    assert begun.interface.shape == pytest.approx(
+        result.interface.shape, abs=1e-9 * np.ptp(result.interface.shape)
+    )
+
+
+def test_a_shape_from_another_mesh(steady):
+    """requirement: the shape is a curve along the face, whatever mesh it was computed on."""
+    result, file = steady
+    shaped = f"geometry.initial_shape={str(file)!r}"
+    begun = solved(RUNNING_IN, None, "mesh.degree=4", shaped, "analysis={type='initial'}")
+    inner = (begun.interface.s > 2e-3) & (begun.interface.s < 98e-3)
+    exact = np.interp(begun.interface.s, result.interface.s, result.interface.pressure)
+    assert begun.interface.pressure[inner] == pytest.approx(exact[inner], rel=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("rows", "text"),
+    [
+        (None, "cannot be read"),
+        ([["a", "b"], [1, 2], [3, 4]], "no columns s_m and shape_m"),
+        ([["s_m", "shape_m"], [0, 0]], "no columns s_m and shape_m with numbers"),
+        ([["s_m", "shape_m"], [0, 0], [0.1, "much"]], "no numbers"),
+        ([["s_m", "shape_m"], [0, 0], [0.05, 1e-6]], "the contact face from 0 to 0.1 m"),
+    ],
+)
+def test_faults(tmp_path, rows, text):
+    """requirement: one line with the key's path and what is wrong with the file."""
+    file = tmp_path / "shape.csv"
+    if rows is not None:
+        with file.open("w", encoding="utf-8", newline="") as stream:
+            csv.writer(stream).writerows(rows)
+    with pytest.raises(CaseError) as caught:
+        solved(RUNNING_IN, None, *COARSE, f"geometry.initial_shape={str(file)!r}", STEADY)
+    (line,) = caught.value.args
+    assert line.startswith("geometry.initial_shape: ")
+    assert text in line

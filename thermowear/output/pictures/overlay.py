@@ -1,0 +1,70 @@
+"""Several runs in one picture: how a quantity along the contact depends on what was varied."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from .. import tables
+from ..quantities import INTERFACE, PROFILE, Quantity
+from .curves import STYLE, abscissa
+
+_FILES: dict[str, tuple[str, dict[str, Quantity]]] = {
+    **dict.fromkeys(PROFILE, ("profile.csv", PROFILE)),
+    **dict.fromkeys(INTERFACE, ("interface.csv", INTERFACE)),
+}
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One of the panels of a picture.
+
+    Attributes
+    ----------
+    quantity : str
+        A column of ``interface.csv`` or ``profile.csv``, by its name in `quantities`.
+    title : str
+    from_zero : bool
+        Whether the axis begins at zero.
+    """
+
+    quantity: str
+    title: str = ""
+    from_zero: bool = False
+
+
+def draw_overlay(runs: Mapping[str, Path], panels: Sequence[Panel], path: Path) -> None:
+    """Draw the same quantities of several runs.
+
+    Parameters
+    ----------
+    runs : dict of str to Path
+        Results folders by what is said of them in the legend.
+    panels : sequence of Panel
+    path : Path
+        Of the picture.
+    """
+    colors = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(runs)))
+    styles = ("-", "--", "-.", ":")
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(6.4, 2.6 * len(panels)), layout="constrained", dpi=150)
+        axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
+        for axis, panel in zip(axes, panels, strict=True):
+            name, table = _FILES[panel.quantity]
+            for k, (label, folder) in enumerate(runs.items()):
+                data = tables.read(folder / name, table)
+                where, place = abscissa(data)
+                drawn = table[panel.quantity].drawn(data[panel.quantity])
+                axis.plot(place, drawn, styles[k % 4], color=colors[k], label=label)
+            axis.set_ylabel(f"{table[panel.quantity].label}\n[{table[panel.quantity].unit}]")
+            axis.set_title(panel.title, fontsize="medium")
+            if panel.from_zero:
+                axis.set_ylim(bottom=0)
+        axes[0].legend()
+        axes[-1].set_xlabel(where)
+        figure.savefig(path)

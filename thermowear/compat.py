@@ -10,13 +10,7 @@ import inspect
 import numpy as np
 from dolfinx import cpp, fem
 
-try:
-    from dolfinx.io.gmsh import cell_perm_array
-except ImportError:  # dolfinx 0.9
-    from dolfinx.io.gmshio import cell_perm_array
-
 __all__ = [
-    "cell_perm_array",
     "coordinate_element",
     "entities_to_geometry_layout",
     "evaluate",

@@ -10,7 +10,7 @@ from .errors import CaseError, ComputationError
 from .output.console import Progress, Terminal, print_summary
 from .output.folder import ResultsFolder
 from .parallel import on_root
-from .simulation import HistoryRow, Interface, LoadRow, Observer, run
+from .simulation import CycleRow, HistoryRow, Interface, LoadRow, Observer, run
 from .simulation.phases import Phases
 
 
@@ -39,12 +39,15 @@ class _Recorder(Observer):
         if self._progress is not None:
             self._progress.load_step(self._steps, row)
 
+    def cycle(self, row: CycleRow) -> None:
+        self._save(lambda: self._folder.cycle(row))
+
     def note(self, text: str) -> None:
         if self._progress is not None:
             self._progress.note(text)
 
-    def output(self, time: float, interface: Interface, friction=None) -> None:
-        self._save(lambda: self._folder.output(time, interface, friction))
+    def output(self, time: float, interface: Interface, friction=None, track=None) -> None:
+        self._save(lambda: self._folder.output(time, interface, friction, track))
 
     def _save(self, action) -> None:
         on_root(self._comm, lambda: _writing(action))

@@ -12,7 +12,7 @@ from thermowear.case.starters import starter_text
 
 STEADY, RUNNING_IN = "annular-punch", "annular-punch-running-in"
 HERTZ, FRETTING, PUNCH = "cylinder-on-block", "cylinder-stick-slip", "punch-on-block"
-SPHERE = "sphere-on-block"
+SPHERE, RECIPROCATING = "sphere-on-block", "punch-on-strip-reciprocating"
 
 FILE = {
     "type": "file",

@@ -130,7 +130,6 @@ def test_a_slender_beam_bends_as_it_is_supported(position):
         ({"load_position": "299 mm"}, "load_position"),
         ({"load_width": "300 mm"}, "load_position"),
         ({"gap": "-1 um"}, "gap"),
-        ({"half": True}, "half"),
     ],
 )
 def test_sizes_that_do_not_fit(changes, key):

@@ -13,7 +13,6 @@ from thermowear.geometry.cylinder_on_block import CylinderOnBlock
 from thermowear.geometry.export import write_mesh
 from thermowear.geometry.gmsh_session import gmsh_model
 from thermowear.geometry.mesh_file import MeshFile
-from thermowear.geometry.orders import order_of
 
 from ..case.starter import STEADY, tables
 from ..conftest import two_blocks
@@ -100,7 +99,7 @@ def test_meshes_of_gmsh(tmp_path, version, order, triangles, glued):
     """
     mesh = read(gmsh_blocks(tmp_path / "a.msh", version, order, triangles, glued), **GMSH_NAMES)
     assert mesh.cell_type == ("triangle" if triangles else "quadrilateral")
-    assert order_of(mesh) == order
+    assert mesh.order == order
     assert areas(mesh, "punch").sum() == pytest.approx(40e-3 * 20e-3, rel=1e-9)
     assert areas(mesh, "plate").sum() == pytest.approx(40e-3 * 30e-3, rel=1e-9)
     assert scaled_jacobians(mesh).min() > 0.1
@@ -164,7 +163,7 @@ def test_curved_exports_are_read_back(tmp_path, ending):
     keys |= {"contact": list(cylinder.contact), "held": cylinder.held, "fixed": cylinder.fixed}
     keys.setdefault("surfaces", {name: name for name in made.surfaces})
     mesh = read(path, **keys)
-    assert order_of(mesh) == (3 if ending == "msh" else 2)
+    assert mesh.order == (3 if ending == "msh" else 2)
     assert unnamed(mesh) == 0
     for body in made.bodies:
         assert areas(mesh, body).sum() == pytest.approx(areas(made, body).sum(), rel=1e-3)

@@ -70,7 +70,6 @@ def test_pivot():
         ({"strip_length": "99 mm"}, "strip_length"),
         ({"face_start": "-10 mm"}, "face_start"),
         ({"pivot_height": "-1 mm"}, "pivot_height"),
-        ({"half": True}, "half"),
     ],
 )
 def test_sizes_that_do_not_fit(changes, key):

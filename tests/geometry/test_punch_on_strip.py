@@ -95,4 +95,3 @@ def test_sizes_that_do_not_fit():
     requirement: one clear line with the key's path.
     """
     assert fault(punch, strip_length="30 mm")[0] == "strip_length"
-    assert fault(punch, half=True)[0] == "half"

@@ -25,10 +25,9 @@ def cylinder(**changes):
     return CylinderOnBlock(type="cylinder-on-block", **keys)
 
 
-def sphere():
-    return SphereOnBlock(
-        type="sphere-on-block", radius="10 mm", block_radius="20 mm", block_height="20 mm"
-    )
+def sphere(**changes):
+    keys = {"radius": "10 mm", "block_radius": "20 mm", "block_height": "20 mm"} | changes
+    return SphereOnBlock(type="sphere-on-block", **keys)
 
 
 MESHES = [
@@ -230,3 +229,31 @@ def test_a_contact_too_large_for_the_bodies_is_refused(geometry, outer, key):
         geometry.build(Mesh(), (-outer, outer))
     assert len(error.value.faults) == 1
     assert error.value.faults[0].startswith(f"{key}: too small for the contact")
+
+
+@pytest.mark.parametrize(("geometry", "shape"), [(cylinder, (-3e-4, 3e-4)), (sphere, (0.0, 3e-4))])
+def test_a_zone_that_grows_is_meshed_where_it_will_be(geometry, shape):
+    """
+    requirement: geometry.zone replaces the contact expected of the unworn bodies.
+    """
+    light = Pressing(10.0, None, 115.4e9)
+    expected = geometry().expected_zone(light)[1]
+    assert expected < 1e-4
+    wide = geometry(zone="0.3 mm")
+    assert wide.expected_zone(light) == (-3e-4, 3e-4)
+    x = ends(wide.build(Mesh(elements=30, grading=1.0), wide.expected_zone(light)), "block_face")
+    inside = x[(x > shape[0] - 1e-9) & (x < shape[1] + 1e-9)]
+    np.testing.assert_allclose(np.diff(inside), 2e-5, rtol=1e-6)
+    assert (inside[0], inside[-1]) == pytest.approx(shape, abs=1e-12)
+
+
+@pytest.mark.parametrize("geometry", [cylinder, sphere])
+def test_a_zone_smaller_than_the_contact_is_refused(geometry):
+    """
+    requirement: one clear line with the key's path.
+    """
+    small = geometry(zone="0.01 mm")
+    with pytest.raises(CaseError) as error:
+        small.expected_zone(Pressing(100.0, None, 115.4e9))
+    assert len(error.value.faults) == 1
+    assert error.value.faults[0].startswith("geometry.zone: found 1e-05 m; the unworn bodies touch")

@@ -4,10 +4,24 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import fsolve
 
 from thermowear import ComputationError
-from thermowear.laws import WearLaw, steady_pressure
+from thermowear.laws import (
+    InPlace,
+    Share,
+    Track,
+    WearLaw,
+    admissible_changes,
+    contact_patch,
+    rotation,
+    steady_pressure,
+    translation,
+    wear_dissipation,
+)
 from thermowear.reference import annular_punch
+
+from .random_problems import curved_face, flat_face
 
 INNER, OUTER = 0.02, 0.12
 
@@ -137,3 +151,235 @@ def test_points_at_rest_have_no_steady_state():
     down = np.ones((5, 1))
     with pytest.raises(ComputationError, match="do not slide"):
         steady_pressure(weights, down, down, np.ones(1), [WearLaw(1.0)], r * 0)
+
+
+def check_all_conditions(patch, load, laws, steady):
+    """Wear, parting, equilibrium and power, each from its definition."""
+    p, R, T = steady.pressure, patch.normal_modes, patch.force_modes
+    rates = sum(law.rate(p, patch.speed) for law in laws)
+    approach = R @ steady.velocity
+    scale = np.abs(approach).max()
+    touching = p > 0
+    assert np.all(p >= 0)
+    assert touching.any()
+    np.testing.assert_allclose(rates[touching], approach[touching], atol=1e-11 * scale)
+    assert approach[~touching].max(initial=0.0) < 1e-11 * scale
+    moments = np.abs(T * patch.weights[:, None]).T @ p
+    np.testing.assert_allclose((T * patch.weights[:, None]).T @ p, load, atol=1e-10 * moments.max())
+    power = load @ steady.velocity
+    assert steady.dissipation == pytest.approx(
+        power, abs=1e-9 * np.abs(load) @ np.abs(steady.velocity)
+    )
+
+
+@pytest.mark.parametrize("problem", [flat_face, curved_face])
+@pytest.mark.parametrize("eccentric", [0.0, 3.0, 8.0])
+def test_random_admissible_problems(problem, eccentric):
+    """requirement: convergent from a fixed start for random admissible problems.
+
+    One to three motions about pivots anywhere, one or two bodies with exponents from 0.3 to 4,
+    friction up to 0.4 in any direction, faces that part by up to nine tenths.
+    """
+    rng = np.random.default_rng(int(100 + eccentric))
+    parted = []
+    for _ in range(150):
+        patch, load, laws = problem(rng, friction=0.4, eccentric=eccentric)
+        steady = patch.steady(load, laws)
+        check_all_conditions(patch, load, laws, steady)
+        parted.append(np.mean(steady.pressure == 0))
+    if eccentric == 8:
+        assert np.quantile(parted, 0.9) > 0.6
+        assert np.mean(np.array(parted) > 0) > 0.3
+
+
+def test_friction_and_tilt_against_another_solver():
+    """requirement: equilibrium with ``n + mu e``, kinematics with n alone."""
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        patch, load, laws = curved_face(rng, friction=0.3, eccentric=0.5)
+        steady = patch.steady(load, laws)
+        if len(laws) == 2 or np.any(steady.pressure == 0):
+            continue
+        R, T, factor = patch.normal_modes, patch.force_modes, laws[0].factor(patch.speed)
+        scale = np.abs(steady.velocity)
+
+        def imbalance(x, R=R, T=T, patch=patch, law=laws[0], factor=factor, load=load, s=scale):
+            p = np.maximum(R @ (x * s) / factor, 0.0) ** (1 / law.pressure_exponent)
+            return (T.T @ (patch.weights * p) - load) / np.abs(load)
+
+        found = fsolve(imbalance, steady.velocity / scale * 1.05, xtol=1e-13)
+        np.testing.assert_allclose(found * scale, steady.velocity, rtol=1e-8)
+
+
+def symmetric_arc(friction, b=2.0, sense=1):
+    x, w = np.polynomial.legendre.leggauss(60)
+    α = 0.5 * x
+    outward = np.column_stack([np.sin(α), np.cos(α)])
+    patch = contact_patch(
+        0.02 * outward, 0.5 * w * 0.02 * 0.01, -outward, [translation((0, -1))], 0.3,
+        friction, sense * np.column_stack([np.cos(α), -np.sin(α)]),
+    )  # fmt: skip
+    return α, patch, patch.steady([1000.0], [WearLaw(1e-19, b)])
+
+
+@pytest.mark.parametrize("b", [0.5, 1.0, 3.0])
+def test_friction_drops_out_of_the_symmetric_arc(b):
+    """requirement: p independent of mu to 1e-10; the guide bears mu F, its sign with the sense."""
+    α, _, without = symmetric_arc(0.0, b)
+    for friction in (0.1, 0.3, 0.9):
+        for sense in (1, -1):
+            _, patch, steady = symmetric_arc(friction, b, sense)
+            np.testing.assert_allclose(steady.pressure, without.pressure, rtol=1e-10)
+            force = patch.force(steady.pressure)
+            assert force[0] == pytest.approx(sense * friction * 1000, rel=1e-10)
+            assert force[1] == pytest.approx(-1000, rel=1e-10)
+    np.testing.assert_allclose(
+        without.pressure, without.pressure.max() * (np.cos(α) / np.cos(α).max()) ** (1 / b)
+    )
+
+
+def test_friction_moves_the_pressure_of_a_tilting_block():
+    """requirement: friction enters through the moment ``mu h F``, with the sign of the sense."""
+    x, w = np.polynomial.legendre.leggauss(40)
+    z, h, mu, force, length = 0.05 * x, 0.03, 0.4, 1e3, 0.1
+    for sense in (1, -1):
+        patch = contact_patch(
+            np.column_stack([np.full(40, h), 0 * z, z]), 0.05 * w * 0.01, (1, 0, 0),
+            [translation((1, 0, 0)), rotation((0, 1, 0), (0, 0, 0))], 1.0, mu, (0, 0, -sense),
+        )  # fmt: skip
+        steady = patch.steady([force, 0.0], [WearLaw(1e-13)])
+        moment = -sense * mu * h * force
+        exact = force / (0.01 * length) + 12 * moment * z / (0.01 * length**3)
+        np.testing.assert_allclose(steady.pressure, exact, rtol=1e-11)
+
+
+def test_pivots_and_units_do_not_matter():
+    """requirement: the same body held at another pivot has the same pressure."""
+    rng = np.random.default_rng(8)
+    patch, load, laws = curved_face(rng, friction=0.2, eccentric=3.0, motions=3)
+    steady = patch.steady(load, laws)
+    arm = np.array([0.3, -5.0, patch.motions[1].pivot[2]])
+    moved = [
+        translation(1e3 * m.translation) if np.any(m.translation) else rotation(m.rotation, arm)
+        for m in patch.motions
+    ]
+    other = contact_patch(
+        patch.points, patch.weights, patch.normals, moved, patch.speed, 1.0,
+        patch.traction - patch.normals,
+    )  # fmt: skip
+    load = other.force_modes.T @ (patch.weights * steady.pressure)
+    found = other.steady(load, laws).pressure
+    np.testing.assert_allclose(found, steady.pressure, atol=1e-9 * found.max())
+
+
+def test_probes_bear_nothing():
+    """requirement: points without area are solved for and change nothing."""
+    rng = np.random.default_rng(9)
+    patch, load, laws = curved_face(rng, friction=0.3, eccentric=6.0, motions=2)
+    without = patch.part(np.arange(len(patch.weights)) % 3 > 0)
+    load = without.force_modes.T @ (without.weights * 1e6)
+    alone = without.steady(load, laws)
+    weights = np.where(np.arange(len(patch.weights)) % 3 > 0, patch.weights, 0.0)
+    steady = steady_pressure(
+        weights, patch.normal_modes, patch.force_modes, load, laws, patch.speed
+    )
+    np.testing.assert_allclose(steady.velocity, alone.velocity, rtol=1e-10)
+    rates = sum(steady.rates)
+    np.testing.assert_allclose(rates, np.maximum(steady.approach, 0), atol=1e-11 * rates.max())
+
+
+def test_different_exponents_minimise_what_the_docstring_says():
+    """requirement: with b1 ≠ b2 the kinematics holds, not the minimum of D_w itself."""
+    r, weights, steady = solve_ring([WearLaw(5e-14, 1.0), WearLaw(2e-21, 2.0, 0.5)])
+    down = np.ones((len(r), 1))
+    laws = [WearLaw(5e-14 / 2, 1.0), WearLaw(2e-21 / 3, 2.0, 0.5)]  # each over b + 1
+    weighted = wear_dissipation(weights, laws, 10 * r)
+    plain = wear_dissipation(weights, [WearLaw(5e-14), WearLaw(2e-21, 2.0, 0.5)], 10 * r)
+    changes = admissible_changes(
+        np.random.default_rng(1), 1000, weights, down, steady.pressure, (1e-4, 0.5)
+    )
+    pressures = steady.pressure + changes
+    assert np.all(weighted(pressures) > weighted(steady.pressure))
+    assert np.any(plain(pressures) < plain(steady.pressure))
+
+
+def test_a_share_of_the_wear():
+    """requirement: under a pad of angle θ the disk wears θ/2π of what it would in place."""
+    laws = [WearLaw(5e-14), WearLaw(8e-21, 2.0)]
+    r, weights = ring()
+    down, load = np.ones((len(r), 1)), np.array([4e6])
+    shared = steady_pressure(
+        weights, down, down, load, laws, 10 * r, spread=[InPlace(), Share(0.1)]
+    )
+    tenth = steady_pressure(weights, down, down, load, [laws[0], WearLaw(8e-22, 2.0)], 10 * r)
+    np.testing.assert_allclose(shared.pressure, tenth.pressure, rtol=1e-11)
+    np.testing.assert_allclose(shared.rates[1], tenth.rates[1], rtol=1e-11)
+
+
+def block_on_strip(tilting):
+    x, w = np.polynomial.legendre.leggauss(30)
+    z, length = 0.1 + 0.05 * x, 0.05 * w
+    motions = [rotation((0, 1, 0), (0, 0, 0))]
+    if tilting:
+        motions.append(translation((1, 0, 0)))
+    patch = contact_patch(
+        np.column_stack([np.full(30, 0.04), 0 * z, z]), length * 0.01, (1, 0, 0), motions, 1.0,
+        0.3, (0, 0, -1),
+    )  # fmt: skip
+    return z, patch, Track(length / 2.0)
+
+
+@pytest.mark.parametrize("tilting", [False, True])
+@pytest.mark.parametrize(
+    ("b_1", "b_2", "κ_2"), [(1.0, 1.0, 4e-12), (2.0, 0.5, 4e-12), (0.5, 3.0, 1e-13)]
+)
+def test_wear_that_is_spread_over_a_track(tilting, b_1, b_2, κ_2):
+    """requirement: the strip wears everywhere at ``1/L ∫ Z p^b ds``; both rates add up to V·n."""
+    z, patch, track = block_on_strip(tilting)
+    laws = [WearLaw(1e-13 * 1e6 ** (1 - b_1), b_1), WearLaw(κ_2 * 1e6 ** (1 - b_2), b_2)]
+    load = patch.force_modes.T @ (patch.weights * 1e6 * (z / 0.1) ** 2)
+    steady = patch.steady(load, laws, [InPlace(), track])
+    p = steady.pressure
+    mean = track.row @ laws[1].rate(p, patch.speed)
+    np.testing.assert_allclose(steady.rates[1], mean, rtol=1e-12)
+    assert mean > 0.05 * steady.approach.max()
+    touching = p > 0
+    total = laws[0].rate(p, patch.speed) + mean
+    scale = steady.approach.max()
+    np.testing.assert_allclose(total[touching], steady.approach[touching], atol=1e-12 * scale)
+    assert np.all(steady.approach[~touching] <= mean + 1e-12 * scale)
+    np.testing.assert_allclose(
+        patch.force_modes.T @ (patch.weights * p), load, atol=1e-11 * np.abs(load).max()
+    )
+    assert steady.dissipation == pytest.approx(load @ steady.velocity, rel=1e-10)
+
+
+def test_a_track_does_not_shape_what_only_descends():
+    """requirement: a uniform rate of the strip adds to the descent and leaves the pressure."""
+    z, patch, track = block_on_strip(tilting=True)
+    laws = [WearLaw(1e-13), WearLaw(4e-12)]
+    load = patch.force_modes.T @ (patch.weights * 1e6 * (z / 0.1))
+    both = patch.steady(load, laws, [InPlace(), track])
+    alone = patch.steady(load, laws[:1])
+    np.testing.assert_allclose(both.pressure, alone.pressure, rtol=1e-10)
+    assert both.velocity[1] == pytest.approx(alone.velocity[1] + both.rates[1][0], rel=1e-10)
+
+
+def test_wear_of_tracks_only_leaves_the_pressure_open():
+    """requirement: what does not determine a pressure is said, not made up."""
+    z, patch, track = block_on_strip(tilting=False)
+    with pytest.raises(ComputationError, match="spread over a track"):
+        patch.steady([10.0], [WearLaw(1e-13)], [track])
+
+
+@pytest.mark.parametrize(
+    "extra",
+    [translation((0, 0, 1)), rotation((1, 0, 0), (0, 0, 0.1)), translation((2, 0, 0.3))],
+)
+def test_motions_that_do_not_press_are_refused(extra):
+    """requirement: a free direction that nothing resists has no steady state, and says so."""
+    _, patch, _ = block_on_strip(tilting=True)
+    motions = [*patch.motions, extra]
+    other = contact_patch(patch.points, patch.weights, patch.normals, motions, 1.0, 0.3, (0, 0, -1))
+    with pytest.raises(ComputationError, match="free motion"):
+        other.steady([10.0, 100.0, 30.0], [WearLaw(1e-13)])

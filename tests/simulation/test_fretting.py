@@ -288,6 +288,7 @@ def test_full_sliding_from_the_command_line(tmp_path, capsys):
         "case.resolved.toml",
         "fields.vtu",
         "interface.csv",
+        "profile.csv",
         "interface_0.2.csv",
         "friction.csv",
         "friction_0.2.csv",

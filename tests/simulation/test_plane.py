@@ -8,7 +8,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.geometry.export import write_mesh
-from thermowear.geometry.orders import order_of, turned
+from thermowear.geometry.orders import turned
 
 from ..case.starter import FILE, HERTZ, PUNCH, solved, tables
 
@@ -146,7 +146,7 @@ def mirrored(mesh):
     """The whole of a mesh of x >= 0, without its surfaces on the axis."""
     n, axis = len(mesh.points), np.abs(mesh.points[:, 0]) < 1e-12
     other = np.where(axis, np.arange(n), n + np.arange(n))
-    kind, order = mesh.cell_type, order_of(mesh)
+    kind, order = mesh.cell_type, mesh.order
     outside = np.array(["axis" not in mesh.surfaces[tag - 1] for tag in mesh.facet_tags])
     facets, tags = mesh.facets[outside], mesh.facet_tags[outside]
     return replace(

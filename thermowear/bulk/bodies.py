@@ -10,13 +10,6 @@ import dolfinx
 import numpy as np
 from dolfinx import fem, io
 
-from ..compat import cell_perm_array
-
-_CELLS = {
-    "quadrilateral": dolfinx.mesh.CellType.quadrilateral,
-    "triangle": dolfinx.mesh.CellType.triangle,
-}
-
 
 @dataclass(frozen=True)
 class Bodies:
@@ -73,24 +66,23 @@ def distribute(tagged, comm) -> Bodies:
         if comm.rank
         else (
             tagged.cell_type,
+            tagged.facet_type,
+            tagged.order,
             tagged.points.shape[1],
-            tagged.cells.shape[1],
-            tagged.facets.shape[1],
             tagged.bodies,
             tagged.surfaces,
         )
     )
-    kind, gdim, cell_nodes, facet_nodes, names, surfaces = head
-    cell_type = _CELLS[kind]
+    kind, facet_kind, order, gdim, names, surfaces = head
+    cell_nodes, facet_nodes = _nodes(kind, order), _nodes(facet_kind, order)
     if comm.rank == 0:
-        from_gmsh = cell_perm_array(cell_type, cell_nodes)
-        cells, points, cell_tags = tagged.cells[:, from_gmsh], tagged.points, tagged.cell_tags
-        facets, facet_tags = tagged.facets, tagged.facet_tags
+        cells = tagged.cells[:, _matched(cell_nodes, tagged.node_places(kind))]
+        facets = tagged.facets[:, _matched(facet_nodes, tagged.node_places(facet_kind))]
+        points, cell_tags, facet_tags = tagged.points, tagged.cell_tags, tagged.facet_tags
     else:
-        cells, points = np.empty((0, cell_nodes), dtype=np.int64), np.empty((0, gdim))
-        facets = np.empty((0, facet_nodes), dtype=np.int64)
+        cells, points = np.empty((0, len(cell_nodes)), dtype=np.int64), np.empty((0, gdim))
+        facets = np.empty((0, len(facet_nodes)), dtype=np.int64)
         cell_tags, facet_tags = np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32)
-    order = facet_nodes - 1
     element = basix.ufl.element(
         "Lagrange", kind, order, shape=(gdim,), lagrange_variant=basix.LagrangeVariant.equispaced
     )
@@ -103,6 +95,18 @@ def distribute(tagged, comm) -> Bodies:
         names=names,
         surfaces=surfaces,
     )
+
+
+def _nodes(kind: str, order: int) -> np.ndarray:
+    """Places of a cell's nodes in the order of dolfinx, shape (n_nodes, dim)."""
+    variant = basix.LagrangeVariant.equispaced
+    element = basix.create_element(basix.ElementFamily.P, basix.CellType[kind], order, variant)
+    return np.asarray(element.points)
+
+
+def _matched(wanted: np.ndarray, listed: np.ndarray) -> np.ndarray:
+    """Where each wanted place is listed."""
+    return np.array([np.abs(listed - place).sum(axis=1).argmin() for place in wanted])
 
 
 def _tags(mesh, dim: int, entities: np.ndarray, values: np.ndarray):

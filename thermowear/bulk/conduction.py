@@ -118,7 +118,7 @@ def conduction(
     rise, δrise = ufl.TrialFunction(space), ufl.TestFunction(space)
     k = bodies.per_body(conductivities)
     flow = k * ufl.inner(ufl.grad(rise), ufl.grad(δrise))
-    measure = section_measure(space.ufl_element().degree)
+    measure = section_measure(mesh, space.ufl_element().degree)
     conductivity = assemble_matrix(compiled(model.integral(mesh, flow, measure)))
     conductivity.assemble()
     cooled = conductivity.duplicate()
@@ -134,7 +134,8 @@ def conduction(
     matrix.axpy(1.0, exchange, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     first = matrix.getOwnershipRange()[0]
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
-    return Conduction(space, conductivity, cooled, fixed, Factor(matrix), values, lifted)
+    factor = Factor(matrix, dim=mesh.topology.dim)
+    return Conduction(space, conductivity, cooled, fixed, factor, values, lifted)
 
 
 def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):

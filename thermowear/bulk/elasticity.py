@@ -78,9 +78,10 @@ class Elasticity:
         self.stiffness.mult(x, y)
         return np.where(self.fixed, y.getArray() - loads, 0.0)
 
-    def owned_by(self, body: str) -> np.ndarray:
-        """Which owned nodes belong to a body, shape (n_owned / gdim,)."""
-        cells = self.bodies.cell_tags.find(self.bodies.body_tag(body))
+    def owned_by(self, *parts: str) -> np.ndarray:
+        """Which owned nodes belong to parts of bodies, shape (n_owned / gdim,)."""
+        tags = self.bodies.cell_tags
+        cells = np.concatenate([tags.find(self.bodies.body_tag(part)) for part in parts])
         nodes = np.unique(self.space.dofmap.list[cells])
         belongs = np.zeros(self.space.dofmap.index_map.size_local, dtype=bool)
         belongs[nodes[nodes < len(belongs)]] = True
@@ -96,7 +97,7 @@ class Elasticity:
         mesh = self.bodies.mesh
         rise, δu = ufl.TrialFunction(temperature_space), ufl.TestFunction(self.space)
         ε = self.model.strain(mesh, δu)
-        measure = section_measure(temperature_space.ufl_element().degree)
+        measure = section_measure(mesh, temperature_space.ufl_element().degree)
         form = self.model.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
         matrix = assemble_matrix(compiled(form))
         matrix.assemble()
@@ -136,10 +137,11 @@ def elasticity(
     λ, μ, _ = lame
     ε, δε = model.strain(mesh, u), model.strain(mesh, δu)
     energy = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
-    stiffness = assemble_matrix(compiled(model.integral(mesh, energy, section_measure(degree))))
+    form = model.integral(mesh, energy, section_measure(mesh, degree))
+    stiffness = assemble_matrix(compiled(form))
     stiffness.assemble()
     fixed = _fixed(bodies, model, space, clamped, {0: symmetric, 1: rollers})
-    factor = Factor(supported(stiffness, fixed))
+    factor = Factor(supported(stiffness, fixed), dim=mesh.topology.dim)
     return Elasticity(bodies, model, space, stiffness, fixed, factor, lame)
 
 

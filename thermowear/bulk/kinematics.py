@@ -12,9 +12,11 @@ from abc import ABC, abstractmethod
 import numpy as np
 import ufl
 
+from ..compat import coordinate_element
+
 
 class Model(ABC):
-    """What distinguishes one two-dimensional model from another.
+    """What distinguishes one model from another.
 
     Attributes
     ----------
@@ -28,14 +30,14 @@ class Model(ABC):
     def sliding(
         self, points: np.ndarray, motion, center: tuple[float, float] | None = None
     ) -> np.ndarray:
-        """Velocity of body 1 relative to body 2; the last component is across the section.
+        """Velocity of body 1 relative to body 2; the last component is across a section.
 
         Parameters
         ----------
-        points : ndarray, shape (n, 2) [m]
+        points : ndarray, shape (n, gdim) [m]
         motion : thermowear.case.schema.Motion
         center : tuple of float, optional
-            Point of the section about which body 2 turns [m].
+            x and y of the point, or of the vertical axis, about which body 2 turns [m].
 
         Returns
         -------
@@ -48,7 +50,7 @@ class Model(ABC):
 
     @abstractmethod
     def area_factor(self, points: np.ndarray) -> np.ndarray:
-        """Factor from length in the section to area, at points of shape (n, 2) [m]."""
+        """Factor from facets of the mesh to area, at points of shape (n, gdim) [m, or 1 in 3D]."""
 
     @abstractmethod
     def strain(self, mesh, u):
@@ -107,18 +109,30 @@ class Axisymmetric(Model):
     """Solids of revolution; coordinates (r, z), displacement (u_r, u_z), no torsion.
 
     Body 1 turns about the axis.
+
+    Parameters
+    ----------
+    sector : float
+        Part of the circumference that the solid takes up: forces are of it.
     """
 
     name = "axisymmetric"
 
+    def __init__(self, sector: float = 1.0):
+        self.sector = sector
+
     def sliding(self, points, motion, center=None):
-        return np.outer(motion.angular_velocity * points[:, 0], (0.0, 0.0, 1.0))
+        if motion.velocity is not None:  # across the axis, in no direction of the section
+            speed = np.full(len(points), motion.velocity)
+        else:
+            speed = motion.angular_velocity * points[:, 0]
+        return np.outer(speed, (0.0, 0.0, 1.0))
 
     def integral(self, mesh, density, measure):
-        return 2 * math.pi * ufl.SpatialCoordinate(mesh)[0] * density * measure
+        return 2 * math.pi * self.sector * ufl.SpatialCoordinate(mesh)[0] * density * measure
 
     def area_factor(self, points):
-        return 2 * math.pi * points[:, 0]
+        return 2 * math.pi * self.sector * points[:, 0]
 
     def strain(self, mesh, u):
         r = ufl.SpatialCoordinate(mesh)[0]
@@ -151,14 +165,7 @@ class PlaneStrain(Model):
         self.thickness = thickness
 
     def sliding(self, points, motion, center=None):
-        velocity = np.zeros((len(points), 3))
-        if center is None:
-            velocity[:, 0] = motion.velocity
-        else:
-            arms = points - np.asarray(center)
-            velocity[:, 0] = motion.angular_velocity * arms[:, 1]
-            velocity[:, 1] = -motion.angular_velocity * arms[:, 0]
-        return velocity
+        return _along_or_round(points, motion, center)
 
     def integral(self, mesh, density, measure):
         return self.thickness * density * measure
@@ -197,14 +204,7 @@ class Spatial(Model):
     name = "3d"
 
     def sliding(self, points, motion, center=None):
-        velocity = np.zeros((len(points), 3))
-        if center is None:
-            velocity[:, 0] = motion.velocity
-        else:
-            arms = points[:, :2] - np.asarray(center)
-            velocity[:, 0] = motion.angular_velocity * arms[:, 1]
-            velocity[:, 1] = -motion.angular_velocity * arms[:, 0]
-        return velocity
+        return _along_or_round(points, motion, center)
 
     def integral(self, mesh, density, measure):
         return density * measure
@@ -216,7 +216,19 @@ class Spatial(Model):
         return ufl.sym(ufl.grad(u))
 
 
-def section_model(name: str, thickness: float | None) -> Model:
+def _along_or_round(points: np.ndarray, motion, center) -> np.ndarray:
+    """Velocity of body 1 along x, or over a body 2 that turns anticlockwise from x to y."""
+    velocity = np.zeros((len(points), 3))
+    if center is None:
+        velocity[:, 0] = motion.velocity
+    else:
+        arms = points[:, :2] - np.asarray(center)
+        velocity[:, 0] = motion.angular_velocity * arms[:, 1]
+        velocity[:, 1] = -motion.angular_velocity * arms[:, 0]
+    return velocity
+
+
+def section_model(name: str, thickness: float | None, sector: float = 1.0) -> Model:
     """The model of a name.
 
     Parameters
@@ -225,17 +237,23 @@ def section_model(name: str, thickness: float | None) -> Model:
         The value of ``model`` in a case file.
     thickness : float or None
         Of plane models, see `PlaneStrain` [m].
+    sector : float
+        Of axisymmetric models, see `Axisymmetric`.
     """
-    for model in (Axisymmetric, Spatial):
-        if name == model.name:
-            return model()
+    if name == Axisymmetric.name:
+        return Axisymmetric(sector)
+    if name == Spatial.name:
+        return Spatial()
     assert thickness is not None
     return {model.name: model for model in (PlaneStrain, PlaneStress)}[name](thickness)
 
 
-def section_measure(degree: int):
-    """Integration over cells, exact for products of two fields of a degree on straight cells.
+def section_measure(mesh, degree: int):
+    """Integration over cells, exact for products of two gradients on straight cells.
 
     Stated because the automatic choice differs between releases and takes 1/r for a polynomial.
+    Straight hexahedra need no more than one point a direction above the degree, the only ones for
+    which it matters.
     """
-    return ufl.dx(metadata={"quadrature_degree": 2 * degree + 2})
+    straight = mesh.topology.dim == 3 and coordinate_element(mesh).degree == 1
+    return ufl.dx(metadata={"quadrature_degree": 2 * degree + (1 if straight else 2)})

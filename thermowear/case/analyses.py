@@ -30,22 +30,21 @@ def _all_different(output_times: tuple[float, ...]) -> None:
         raise KeyFault("output_times", f"{twice[0]} s is there twice (to six digits)")
 
 
-class Transient(Section):
-    """Running-in.
+class Timed(Section):
+    """Base of analyses that follow wear in time by steps of their own choice.
 
     Attributes
     ----------
     end_time : float or None
         [s]
     until : str or None
-        ``"steady"``: stop when the pressure is within `steady_tolerance` of the steady one.
+        ``"steady"``: stop when the steady state is reached within `steady_tolerance`.
     output_times : tuple of float
         Times that get an interface file of their own [s].
     tolerance : float
-        Allowed error of one step, relative to the mean pressure and to the wear of the step.
+        Allowed error of one step, relative to the largest pressure and to the largest depth worn.
     """
 
-    type: Literal["transient"]
     end_time: units.Time | None = None
     until: Literal["steady"] | None = None
     steady_tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 1e-3
@@ -54,9 +53,7 @@ class Transient(Section):
     max_steps: Annotated[int, Field(ge=1, strict=True)] = 10_000
 
     @model_validator(mode="after")
-    def _ends(self):
-        if self.end_time is None and self.until is None:
-            raise KeyFault("end_time", 'missing; needs end_time = "…" or until = "steady"')
+    def _outputs(self):
         _all_different(self.output_times)
         if self.end_time is not None:
             late = [t for t in self.output_times if t > self.end_time]
@@ -64,6 +61,47 @@ class Transient(Section):
                 raise KeyFault(
                     "output_times", f"{late[0]:g} s lies after end_time {self.end_time:g} s"
                 )
+        return self
+
+
+class Transient(Timed):
+    """Running-in; steady is the pressure within `steady_tolerance` of the largest steady one."""
+
+    type: Literal["transient"]
+
+    @model_validator(mode="after")
+    def _ends(self):
+        if self.end_time is None and self.until is None:
+            raise KeyFault("end_time", 'missing; needs end_time = "…" or until = "steady"')
+        return self
+
+
+class Reciprocating(Timed):
+    """Wear of a body 1 that slides to and fro, and of what it rubs along, averaged over cycles.
+
+    Steady are wear rates that vary along each of the worn faces by less than `steady_tolerance` of
+    their mean (root mean square).
+
+    Attributes
+    ----------
+    cycles : float or None
+        How many of them, instead of an end time.
+    positions : int
+        Places of body 1 in which contact is solved, between the ends of the stroke.
+    """
+
+    type: Literal["reciprocating"]
+    cycles: Annotated[Number, Field(gt=0.0)] | None = None
+    positions: Annotated[int, Field(ge=2, le=200, strict=True)] = 12
+    steady_tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.05
+    tolerance: Annotated[Number, Field(ge=1e-9, le=0.1)] = 1e-3
+
+    @model_validator(mode="after")
+    def _ends(self):
+        if self.end_time is not None and self.cycles is not None:
+            raise KeyFault("cycles", "only one of end_time and cycles can be given")
+        if self.end_time is None and self.cycles is None and self.until is None:
+            raise KeyFault("end_time", 'missing; needs end_time, cycles or until = "steady"')
         return self
 
 
@@ -76,11 +114,17 @@ class Fretting(Section):
         From each corner of the history to the next.
     output_times : tuple of float
         Times that get files of their own [s].
+    cycles : int
+        How often the cycle of the history goes on, see `History.cycle_start`.
+    jump : int
+        How many of them each computed cycle stands for: so many times it wears.
     """
 
     type: Literal["fretting"]
     increments: Annotated[int, Field(ge=1, strict=True)] = 20
     output_times: tuple[units.Instant, ...] = ()
+    cycles: Annotated[int, Field(ge=1, strict=True)] = 1
+    jump: Annotated[int, Field(ge=1, strict=True)] = 1
 
     @model_validator(mode="after")
     def _outputs(self):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import CaseError
 from .materials import resolve_like
+from .oscillation import fretting, reciprocating
 
 if TYPE_CHECKING:
     from .schema import Case
@@ -35,7 +36,7 @@ def check(case: Case) -> None:
 def _names(case: Case) -> Iterator[Fault]:
     """Bodies and surfaces must be those of the geometry."""
     bodies, surfaces = case.geometry.bodies, case.geometry.surfaces
-    yield from _unknown("bodies", case.bodies, bodies)
+    yield from _unknown("bodies", case.bodies, case.geometry.parts)
     yield from _unknown("wear", case.wear, bodies)
     yield from _unknown("mesh.bodies", case.mesh.bodies, bodies)
     yield from _unknown("load.surfaces", case.load.surfaces, surfaces)
@@ -64,7 +65,7 @@ def _materials(case: Case) -> Iterator[Fault]:
         why = " because the case has a [heat] table"
         needed |= {"conductivity": why, "expansion": why}
     for name, body in case.bodies.items():
-        if name not in case.geometry.bodies:
+        if name not in case.geometry.parts:
             continue
         if body.like is not None:
             for key in sorted(body.model_fields_set - {"like"}):
@@ -137,6 +138,14 @@ def _load(case: Case) -> Iterator[Fault]:
 def _motion(case: Case) -> Iterator[Fault]:
     if case.motion is None or case.model not in case.geometry.models:
         return
+    if case.analysis.type == "reciprocating":  # see `oscillation`
+        return
+    for key in ("amplitude", "frequency"):
+        if getattr(case.motion, key) is not None:
+            yield f"motion.{key}", f"is for a reciprocating analysis, not for {case.analysis.type}"
+    across = case.geometry.slides_across and case.motion.velocity is not None
+    if across and case.motion.angular_velocity is None:
+        return  # the speed along which it slides is all it needs
     turns = case.model == "axisymmetric" or case.geometry.rotation_center is not None
     needed, other = "angular_velocity", "velocity"
     if not turns:
@@ -153,12 +162,11 @@ def _motion(case: Case) -> Iterator[Fault]:
 
 
 def _sliding(case: Case) -> Iterator[Fault]:
-    if case.analysis.type == "fretting":
-        return
-    wears = case.analysis.type in ("steady", "transient")
+    wears = case.analysis.type in ("steady", "transient", "reciprocating")
     if wears and not case.wear:
         yield "wear", f"missing; a {case.analysis.type} analysis needs the wear law of a body"
-    if (wears or case.heat is not None) and case.motion is None:
+    slides = case.analysis.type != "fretting" and (wears or case.heat is not None)
+    if slides and case.motion is None:
         yield "motion", "missing; wear and friction heat need sliding"
     if case.contact.friction == 0.0:
         if case.heat is not None:
@@ -171,33 +179,22 @@ def _sliding(case: Case) -> Iterator[Fault]:
                 )
 
 
-def _fretting(case: Case) -> Iterator[Fault]:
-    history = case.load.history
-    if case.analysis.type != "fretting":
-        if history is not None:
-            yield "load.history", f"is for a fretting analysis, not for {case.analysis.type}"
-        return
-    if history is None:
-        yield "load.history", "missing; a fretting analysis follows a history of loads"
-    elif history.tangential and case.model == "axisymmetric":
-        yield "load.history", "an axisymmetric body has no tangential motion"
-    elif history.tangential and case.geometry.symmetry:
-        yield "geometry.half", "tangential loads are not symmetric; mesh the whole section"
-    else:
-        late = [t for t in case.analysis.output_times if not _within(t, history.time)]
-        if late:
-            yield "analysis.output_times", f"{late[0]:g} s lies outside load.history.time"
-    if case.contact.method != "condensed":
-        yield "contact.method", f"{case.contact.method!r} does not know sticking; use condensed"
-    for table in ("heat", "motion"):
-        if getattr(case, table) is not None:
-            yield table, "is not for a fretting analysis"
-    if case.wear:
-        yield "wear", "is not for a fretting analysis"
-
-
-def _within(time: float, times: tuple[float, ...]) -> bool:
-    return times[0] <= time <= times[-1]
+def _spread(case: Case) -> Iterator[Fault]:
+    moving = case.geometry.bodies[1]
+    for name, law in case.wear.items():
+        if law.spread == "in-place":
+            continue
+        if name != moving:
+            yield f"wear.{name}.spread", f"only {moving} passes under the other body"
+        elif case.geometry.track is None and case.geometry.sector == 1.0:
+            yield f"wear.{name}.spread", f"all of {moving} is in the contact all the time"
+        elif case.analysis.type in ("fretting", "reciprocating"):
+            yield f"wear.{name}.spread", f"nothing passes by in a {case.analysis.type} analysis"
+        elif case.analysis.type == "steady" and len(case.wear) == 1 and case.geometry.sector == 1.0:
+            yield (
+                f"wear.{name}.spread",
+                "wear along a track alone evens nothing out: no steady state",
+            )
 
 
 def _heat(case: Case) -> Iterator[Fault]:
@@ -231,9 +228,25 @@ def _method(case: Case) -> Iterator[Fault]:
             yield f"contact.{key}", f'is for method = "{method}"'
 
 
+def _in_space(case: Case) -> Iterator[Fault]:
+    if case.model != "3d":
+        return
+    if case.contact.method != "condensed":
+        yield "contact.method", f"{case.contact.method!r} is for sections; use condensed in 3d"
+    if case.contact.transverse_friction > 0 or case.contact.pressure_degree == "lobatto":
+        key = "transverse_friction" if case.contact.transverse_friction > 0 else "pressure_degree"
+        yield f"contact.{key}", "is for sections, not for 3d"
+    if case.geometry.initial_shape is not None:
+        yield "geometry.initial_shape", "is a curve along a section; not for 3d"
+    if case.analysis.type not in ("initial", "steady", "transient"):
+        yield "analysis.type", f"{case.analysis.type!r} is for sections, not for 3d"
+
+
 def _positioning(case: Case) -> Iterator[Fault]:
     if case.contact.positioning and not case.geometry.follows_contact:
         yield "contact.positioning", f"the mesh of {case.geometry.type!r} cannot be moved"
+    elif case.contact.positioning and getattr(case.geometry, "zone", None) is not None:
+        yield "contact.positioning", "moves the mesh to the unworn contact; leave out geometry.zone"
 
 
 def _symmetry(case: Case) -> Iterator[Fault]:
@@ -249,11 +262,14 @@ _CHECKS = (
     _holder,
     _load,
     _motion,
+    reciprocating,
     _sliding,
-    _fretting,
+    _spread,
+    fretting,
     _heat,
     _degrees,
     _method,
+    _in_space,
     _positioning,
     _symmetry,
 )

@@ -61,6 +61,8 @@ class Geometry(Section):
         Contact faces of body 1 and body 2.
     held, fixed : str
         Surface of body 1 on the rigid holder; fixed surface of body 2.
+    slides_across : bool
+        Whether an axisymmetric body 1 may slide across its axis, as a ball does on a flat.
     initial_shape : str or None
         Table with the worn shape to start from (``profile.csv`` of an earlier run), relative to the
         current directory.
@@ -73,6 +75,8 @@ class Geometry(Section):
     contact: ClassVar[tuple[str, str]]
     held: ClassVar[str]
     fixed: ClassVar[str]
+
+    slides_across: ClassVar[bool] = False
 
     type: str
     initial_shape: str | None = None
@@ -116,6 +120,20 @@ class Geometry(Section):
     def sector(self) -> float:
         """Part of the circumference that an axisymmetric body 1 takes up."""
         return 1.0
+
+    @property
+    def zones(self) -> dict[str, str]:
+        """Parts of bodies that may have a material of their own, and the body of each."""
+        return {}
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Everything that has a material: the bodies, then the zones."""
+        return *self.bodies, *self.zones
+
+    def parts_of(self, body: str) -> tuple[str, ...]:
+        """A body, and its zones."""
+        return body, *(zone for zone, owner in self.zones.items() if owner == body)
 
     @property
     def thickness_factor(self) -> float | None:
@@ -162,13 +180,28 @@ class PlaneGeometry(Geometry):
     ----------
     thickness : float
         Forces are of this thickness [m].
+    """
+
+    name: ClassVar[str] = ""
+
+    thickness: Length = 1e-3
+
+    @property
+    def thickness_factor(self) -> float | None:
+        return self.thickness
+
+
+class HalvableGeometry(PlaneGeometry):
+    """Base of plane geometries that are symmetric, or may be.
+
+    Attributes
+    ----------
     half : bool
         Mesh only x >= 0 of bodies and loads that are symmetric about x = 0.
     """
 
     name: ClassVar[str] = ""
 
-    thickness: Length = 1e-3
     half: Switch = False
 
     @property

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from ..errors import CaseError
 from . import units
-from .analyses import Fretting, Initial, Steady, Transient
+from .analyses import Fretting, Initial, Reciprocating, Steady, Transient
 from .checks import check
 from .geometry import AnyGeometry, Pressing
 from .history import History
@@ -155,10 +155,21 @@ class Motion(Section):
         centre, anticlockwise, in plane models and seen from above in space [rad/s].
     velocity : float or None
         Of body 1 over body 2 along x; negative: against it [m/s].
+    amplitude, frequency : float or None
+        Body 1 slides to and fro, ``x = amplitude sin(2 π frequency t)`` [m, Hz].
     """
 
     angular_velocity: units.AngularVelocity | None = None
     velocity: units.Velocity | None = None
+    amplitude: units.Length | None = None
+    frequency: units.Frequency | None = None
+
+    @property
+    def one_way(self) -> Motion:
+        """The same, with the mean speed of sliding to and fro as a velocity along +x."""
+        if self.amplitude is None or self.frequency is None:
+            return self
+        return self.model_copy(update={"velocity": 4 * self.amplitude * self.frequency})
 
 
 class Contact(Section):
@@ -236,7 +247,9 @@ class Case(Section):
     contact: Contact = Contact()
     wear: dict[str, Wear] = {}
     heat: Heat | None = None
-    analysis: Annotated[Initial | Steady | Transient | Fretting, Field(discriminator="type")]
+    analysis: Annotated[
+        Initial | Steady | Transient | Fretting | Reciprocating, Field(discriminator="type")
+    ]
 
     @model_validator(mode="after")
     def _consistent(self):
@@ -286,9 +299,10 @@ class Case(Section):
             raise CaseError("geometry: x is the radius of an axisymmetric mesh, found x < 0")
         return mesh
 
-    def material(self, body: str) -> Body:
-        """The material of a body, ``like`` followed to its end."""
-        return self.bodies[resolve_like(self.bodies, body)]
+    def material(self, part: str) -> Body:
+        """The material of a body, ``like`` followed to its end; a zone may have its body's."""
+        given = part if part in self.bodies else self.geometry.zones[part]
+        return self.bodies[resolve_like(self.bodies, given)]
 
 
 def as_plain(case: Case) -> dict[str, Any]:

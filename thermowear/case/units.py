@@ -20,6 +20,7 @@ _BOUNDS = {
     "ge": (operator.ge, "at least"),
     "ne": (operator.ne, "other than"),
 }
+_ANGLES = ("radian", "turn", "revolution", "degree")
 
 
 @lru_cache(maxsize=1)
@@ -88,6 +89,8 @@ def _to_si(unit: str, example: str, bounds: dict[str, float], text: Any) -> floa
         )
     if unit == "rad/s" and "hertz" in str(value.units):
         raise ValueError(f'found "{text}", which counts turns; write turn/s, or rad/s')
+    if unit == "Hz" and any(angle in str(value.units) for angle in _ANGLES):
+        raise ValueError(f'found "{text}", which measures angles; write Hz, or 1/s')
     number = float(value.to(unit).magnitude)
     if not math.isfinite(number):
         raise ValueError(f'found "{text}"; the number must be finite in {unit} too')
@@ -118,6 +121,7 @@ def quantity(unit: str, example: str, **bounds: float):
 
 
 Length = quantity("m", "20 mm", gt=0)
+Distance = quantity("m", "0.05 mm", ge=0)
 Radius = quantity("m", "0.5 mm", ge=0)
 Angle = quantity("rad", "30 deg")
 Coordinate = quantity("m", "-5 mm")
@@ -134,6 +138,7 @@ Instant = quantity("s", "1 s", ge=0)
 Time = quantity("s", "100 s", gt=0)
 AngularVelocity = quantity("rad/s", "10 rad/s", ne=0)
 Velocity = quantity("m/s", "50 mm/s", ne=0)
+Frequency = quantity("Hz", "1 Hz", gt=0)
 Conductivity = quantity("W/m/K", "50 W/(m K)", gt=0)
 Expansion = quantity("1/K", "1.2e-5 1/K", ge=0)
 Density = quantity("kg/m^3", "7800 kg/m^3", gt=0)

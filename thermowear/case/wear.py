@@ -42,12 +42,16 @@ class Wear(Section):
         ``"friction-stress"``: it multiplies ``(mu p)^b v^a``; ``"pressure"``: ``p^b v^a``.
     pressure_exponent, velocity_exponent : float
         b and a.
+    spread : str
+        ``"in-place"``: the body wears where it is pressed; ``"track"``: a body 2 that passes under
+        body 1 wears evenly along its whole track.
     """
 
     coefficient: Coefficient
     per: Literal["friction-stress", "pressure"] = "friction-stress"
     pressure_exponent: Annotated[Number, Field(ge=0.1, le=10.0)] = 1.0
     velocity_exponent: Annotated[Number, Field(ge=0.0, le=10.0)] = 1.0
+    spread: Literal["in-place", "track"] = "in-place"
 
     @model_validator(mode="after")
     def _unit_fits(self):

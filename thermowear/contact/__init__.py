@@ -5,11 +5,13 @@ from .condensation import CondensedContact, condense
 from .face import Face, gather_face
 from .full_system import FullContact, FullSolution
 from .heat import InterfaceHeat, ThermalState, condense_distortion, condense_heat
-from .holder import Holder, hold
+from .holder import Drive, Holder, hold
 from .loads import Loads
 from .pairing import Pairing, pair
 from .pressure import pressure_basis
+from .sliding import Sliding, sliding
 from .stick_slip import StickSlipState, advance, follow
+from .surface import Surface
 from .tangential import FrictionalContact, condense_tangential
 from .traces import gap_trace, value_trace, vector_trace
 from .traction import normal_traction
@@ -18,6 +20,7 @@ from .zones import contact_zones
 __all__ = [
     "CondensedContact",
     "ContactSolution",
+    "Drive",
     "Face",
     "FrictionalContact",
     "FullContact",
@@ -26,7 +29,9 @@ __all__ = [
     "InterfaceHeat",
     "Loads",
     "Pairing",
+    "Sliding",
     "StickSlipState",
+    "Surface",
     "ThermalState",
     "advance",
     "condense",
@@ -41,6 +46,7 @@ __all__ = [
     "normal_traction",
     "pair",
     "pressure_basis",
+    "sliding",
     "solve_contact",
     "value_trace",
     "vector_trace",

@@ -12,8 +12,8 @@ from ..parallel import sum_over_ranks
 from .holder import Holder
 from .pairing import Pairing
 
-_COLUMNS = 32
-"""Solved together: the displacements of all at once would not fit the caches, or the memory."""
+_COLUMNS = {2: 32, 3: 128}
+"""Solved together, by dimension: more at once would not fit the caches, or the memory."""
 
 
 @dataclass(frozen=True)
@@ -80,8 +80,9 @@ def condense(
     loads = trace @ sp.csr_matrix(weighted)
     pulls = loads if traction is trace else traction @ sp.csr_matrix(weighted)
     rows, kept, loads = [], [], loads.tocsc()
-    for start in range(0, weighted.shape[1], _COLUMNS):
-        displacements = elastic.solve(loads[:, start : start + _COLUMNS].tocsr())
+    width = _COLUMNS[elastic.bodies.mesh.geometry.dim]
+    for start in range(0, weighted.shape[1], width):
+        displacements = elastic.solve(loads[:, start : start + width].tocsr())
         rows.append((pulls.T @ displacements).T)
         if keep_influence:
             kept.append(displacements)

@@ -1,17 +1,22 @@
-"""A contact face of one body, gathered from all ranks as a chain of curved facets.
+"""A contact face of a plane body, gathered from all ranks as a chain of curved facets.
 
-Every rank holds the same chain, so that pairing needs no further communication.
+Every rank holds the same chain, so that pairing needs no further communication. A face in space is
+a `surface`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ..bulk.bodies import Bodies
 from ..compat import entities_to_geometry_layout, geometry_dofmap
 from ..errors import CaseError
+from .facets import lagrange, lagrange_slopes, owned_facets
+from .quadrature import lobatto
+from .surface import Surface, gather_surface
 
 
 @dataclass(frozen=True)
@@ -39,11 +44,11 @@ class Face:
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, 2) [m]."""
-        return np.einsum("nk,nki->ni", _lagrange(self.nodes.shape[1] - 1, t), self.nodes[facet])
+        return np.einsum("nk,nki->ni", lagrange(self.nodes.shape[1] - 1, t), self.nodes[facet])
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along t, shape (n, 2) [m]."""
-        slopes = _lagrange_slopes(self.nodes.shape[1] - 1, t)
+        slopes = lagrange_slopes(self.nodes.shape[1] - 1, t)
         return np.einsum("nk,nki->ni", slopes, self.nodes[facet])
 
     def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
@@ -52,9 +57,48 @@ class Face:
         normal = np.column_stack([tangent[:, 1], -tangent[:, 0]]) * self.outward[facet, None]
         return normal / np.linalg.norm(normal, axis=1, keepdims=True)
 
+    def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Length per parameter, shape (n,) [m]."""
+        return np.linalg.norm(self.tangents(facet, t), axis=1)
 
-def gather_face(bodies: Bodies, surface: str) -> Face:
+    def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Length along the face from its first end, shape (n,) [m]."""
+        start = np.concatenate([[0.0], np.cumsum(self.sizes)])
+        return start[facet] + self._length_within(facet, t)
+
+    def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Parameters in the cell's own direction of the facet, shape (n, 1)."""
+        return np.where(self.reversed[facet], 1 - t, t)[:, None]
+
+    @cached_property
+    def sizes(self) -> np.ndarray:
+        """Lengths of the facets, shape (n_facets,) [m]."""
+        every = np.arange(len(self.nodes))
+        return self._length_within(every, np.ones(len(every)))
+
+    @property
+    def extent(self) -> float:
+        """Size of the face [m]."""
+        return float(np.ptp(self.nodes.reshape(-1, 2), axis=0).max())
+
+    def numbers(self, degree: int) -> np.ndarray:
+        """Numbers of continuous polynomials' coefficients, shape (n_facets, degree + 1)."""
+        return np.arange(len(self.nodes))[:, None] * degree + np.arange(degree + 1)
+
+    def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Length of each facet from its start to t [m]."""
+        x, w = lobatto(self.nodes.shape[1] + 4)
+        at = (t[:, None] * x).ravel()
+        return t * (self.stretch(np.repeat(facet, len(x)), at).reshape(-1, len(x)) @ w)
+
+
+def gather_face(bodies: Bodies, surface: str) -> Face | Surface:
     """Collect a surface's facets from all ranks and put them in order; every rank calls."""
+    gather = gather_surface if bodies.mesh.topology.dim == 3 else _gather_chain
+    return gather(bodies, surface)
+
+
+def _gather_chain(bodies: Bodies, surface: str) -> Face:
     mesh = bodies.mesh
     local = _local_facets(bodies, surface)
     parts = mesh.comm.allgather(local)
@@ -75,17 +119,8 @@ def gather_face(bodies: Bodies, surface: str) -> Face:
 def _local_facets(bodies: Bodies, surface: str):
     """Facets of the surface whose cell this rank owns."""
     mesh = bodies.mesh
-    tdim, fdim = mesh.topology.dim, mesh.topology.dim - 1
-    to_cells = mesh.topology.connectivity(fdim, tdim)
-    to_facets = mesh.topology.connectivity(tdim, fdim)
-    facets = bodies.facets(surface)
-    cells = np.array([to_cells.links(f)[0] for f in facets], dtype=np.int32)
-    mine = cells < mesh.topology.index_map(tdim).size_local
-    facets, cells = facets[mine], cells[mine]
-    local = np.array(
-        [np.flatnonzero(to_facets.links(c) == f)[0] for c, f in zip(cells, facets, strict=True)],
-        dtype=np.int32,
-    )
+    fdim = mesh.topology.dim - 1
+    cells, local = owned_facets(bodies, surface)
     layout = np.array(entities_to_geometry_layout(mesh, fdim))
     of_cells = geometry_dofmap(mesh)[cells]
     x = mesh.geometry.x[:, :2]
@@ -120,25 +155,3 @@ def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarra
         if not following:
             return np.array(order), flip
         facet = following[0]
-
-
-def _lagrange(order: int, t: np.ndarray) -> np.ndarray:
-    """Lagrange polynomials with equally spaced nodes on [0, 1], shape (n, order + 1)."""
-    knots = np.linspace(0.0, 1.0, order + 1)
-    values = np.ones((len(t), order + 1))
-    for i in range(order + 1):
-        for j in np.delete(np.arange(order + 1), i):
-            values[:, i] *= (t - knots[j]) / (knots[i] - knots[j])
-    return values
-
-
-def _lagrange_slopes(order: int, t: np.ndarray) -> np.ndarray:
-    """Their derivatives, shape (n, order + 1)."""
-    knots = np.linspace(0.0, 1.0, order + 1)
-    slopes = np.zeros((len(t), order + 1))
-    for i in range(order + 1):
-        others = np.delete(np.arange(order + 1), i)
-        for k in others:
-            factors = [(t - knots[j]) / (knots[i] - knots[j]) for j in others if j != k]
-            slopes[:, i] += np.prod(factors, axis=0) / (knots[i] - knots[k])
-    return slopes

@@ -72,7 +72,8 @@ class Holder:
     @property
     def load(self) -> np.ndarray:
         """F on the free motions, shape (k,) [N or N m]."""
-        return np.array([drive.load for drive in self.drives if drive.load is not None], dtype=float)
+        given = [drive.load for drive in self.drives if drive.load is not None]
+        return np.array(given, dtype=float)
 
     @property
     def imposed(self) -> np.ndarray:

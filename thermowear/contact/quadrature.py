@@ -1,4 +1,4 @@
-"""Gauss-Lobatto rules on [0, 1]: both ends are points of the rule."""
+"""Quadrature rules on [0, 1] and on the unit square."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from numpy.polynomial import legendre
 
 @lru_cache(maxsize=32)
 def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights of the n-point rule, exact to degree ``2 n - 3``.
+    """Points and weights of the n-point Gauss-Lobatto rule, exact to degree ``2 n - 3``.
 
-    The inner points are the roots of the derivative of the Legendre polynomial of degree n - 1
-    (Abramowitz and Stegun, 25.4.32).
+    Both ends are points of the rule. The inner points are the roots of the derivative of the
+    Legendre polynomial of degree n - 1 (Abramowitz and Stegun, 25.4.32).
     """
     if n < 2:
         raise ValueError("a Gauss-Lobatto rule has at least two points")
@@ -23,3 +23,15 @@ def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
     x = np.concatenate([[-1.0], inner, [1.0]])
     w = 2.0 / (n * (n - 1) * legendre.legval(x, coefficients) ** 2)
     return (x + 1) / 2, w / 2
+
+
+def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights of the n-point Gauss-Legendre rule, exact to degree ``2 n - 1``."""
+    x, w = legendre.leggauss(n)
+    return (x + 1) / 2, w / 2
+
+
+def square(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A rule in both directions: points of shape (n², 2), weights (n²,)."""
+    s, t = np.meshgrid(x, x, indexing="ij")
+    return np.column_stack([s.ravel(), t.ravel()]), np.outer(w, w).ravel()

@@ -1,13 +1,14 @@
 """Stick and slip under loads that change: Coulomb friction by increments.
 
-Friction remembers where the faces stuck, so that a state follows from the state before it. Nothing
-depends on the rate: a load history is a polygon, given by its corners. Signs: see `tangential`.
+Friction remembers where the faces stuck, so that a state follows from the state before it. Friction
+does not depend on the rate: a load history is a polygon, given by its corners. Wear: see
+`slip_wear`; signs: see `tangential`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
@@ -16,14 +17,12 @@ from ..errors import ComputationError
 from .complementarity import solve_contact
 from .coulomb import CoulombProblem, CoulombSolution
 from .coulomb_solver import solve_directly, solve_patiently
+from .full_sliding import FullSliding, refuse_sliding
 from .loads import Loads
+from .slip_wear import SlipWear, implicitly
 from .tangential import FrictionalContact
 
 _HALVINGS = 6
-
-
-class FullSliding(ComputationError):
-    """The given tangential force is more than friction carries."""
 
 
 class Status(IntEnum):
@@ -56,6 +55,8 @@ class StickSlipState:
         Energy ``-∫ t ds`` lost at the points so far [J/m²]. Its integral is exactly that of the
         conditions in the mean, where each coefficient's share is never negative; values at single
         points of sticking zones scatter about zero as the slip there does.
+    worn : ndarray, shape (n_wearing, m)
+        Coefficients of the depths worn off so far [m].
     iterations : int
         Of Newton's method in the last increment.
     """
@@ -68,17 +69,18 @@ class StickSlipState:
     status: np.ndarray
     point_slip: np.ndarray
     dissipated: np.ndarray
+    worn: np.ndarray
     iterations: int = 0
 
 
-def unloaded(contact: FrictionalContact) -> StickSlipState:
-    """The state before any load."""
+def unloaded(contact: FrictionalContact, wearing: int = 0) -> StickSlipState:
+    """The state before any load, of bodies of which so many wear."""
     (n, m), k = contact.basis.shape, contact.modes.shape[1]
     t = len(contact.response) - 1
     still, free = np.zeros(k), np.full(m, Status.OPEN)
-    coefficients, points = np.zeros((m, t)), np.zeros((n, t))
+    coefficients, points, worn = np.zeros((m, t)), np.zeros((n, t)), np.zeros((wearing, m))
     return StickSlipState(
-        np.zeros(m), coefficients, coefficients, still, still, free, points, np.zeros(n)
+        np.zeros(m), coefficients, coefficients, still, still, free, points, np.zeros(n), worn
     )
 
 
@@ -93,7 +95,7 @@ def advance(
     friction: float | np.ndarray,
     state: StickSlipState,
     loads: Loads,
-    gap: np.ndarray | None = None,
+    wear: SlipWear | None = None,
 ) -> StickSlipState:
     """The state after one increment, at the end of which the conditions hold.
 
@@ -106,8 +108,8 @@ def advance(
         Before.
     loads : Loads
         At the end.
-    gap : ndarray, shape (n,), optional
-        Of the unloaded bodies at the end, with wear; by default unworn [m].
+    wear : SlipWear, optional
+        What the bodies lose in the increment, by default nothing.
 
     Raises
     ------
@@ -119,22 +121,48 @@ def advance(
     given = loads.motions
     if len(given) != len(state.motion):
         raise ValueError(f"loads: the holder has {len(state.motion)} motions, not {len(given)}")
+    friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
+    mean = contact.weighted.T @ contact.basis  # of functions, from their coefficients
+    slid = _slid(state, loads)
+    worn = state.worn.sum(axis=0) if wear is None else wear.seen(state.worn, slid)
+
+    def solve(guess: StickSlipState, lost: np.ndarray, slope: np.ndarray) -> StickSlipState:
+        """Contact of bodies that lose depths ``lost + slope λ``."""
+        gap = contact.weighted.T @ contact.gap + mean @ (worn + lost)
+        compliance = contact.compliance.copy()
+        compliance[: len(slope), : len(slope)] += mean @ slope
+        return _solved(contact, friction, state, guess.pressure > 0, loads, compliance, gap)
+
+    nothing = np.zeros_like(mean)
+    after = solve(state, nothing[0], nothing)
+    if wear is None:
+        return after
+    after, depths = implicitly(solve, wear, slid, state, after, mean.sum(axis=1))
+    lost = wear.repeats * (after.dissipated - state.dissipated)
+    return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
+
+
+def _slid(state: StickSlipState, loads: Loads) -> float:
+    """How far the holder has moved across the press: at the end, or so far if that is open [m]."""
+    if len(state.motion) < 2:
+        return 0.0
+    given = loads.motions[1]
+    return float(state.motion[1] if np.isnan(given) else given)
+
+
+def _solved(contact, friction, state, closed, loads: Loads, compliance, gap) -> StickSlipState:
+    """The state after one increment of bodies with an elastic and local compliance."""
+    given = loads.motions
     free = np.isnan(given)
     fixed = np.where(free, 0.0, given)
-    unworn = contact.gap if gap is None else gap
-    start = contact.stack(contact.weighted.T @ unworn, -state.slip) - contact.modes @ fixed
-    problem = CoulombProblem(
-        contact.compliance,
-        start,
-        contact.modes[:, free],
-        loads.forces[free],
-        np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure)),
-    )
-    closed = _expected(problem, state, bool(free[0]))
+    start = contact.stack(gap, -state.slip) - contact.modes @ fixed
+    modes = contact.modes[:, free]
+    problem = CoulombProblem(compliance, start, modes, loads.forces[free], friction)
+    closed = _expected(problem, closed, bool(free[0]))
     solution = solve_directly(problem, closed)
     if solution is None:
         if len(free) > 1 and free[1]:
-            _refuse_sliding(problem, bool(free[0]))
+            refuse_sliding(problem, bool(free[0]))
         solution = solve_patiently(problem, closed)
     return _after(contact, state, solution, free, fixed)
 
@@ -149,7 +177,8 @@ def _after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipS
     traction = contact.basis @ solution.shear
     lost = -(traction * (point_slip - state.point_slip)).sum(axis=1)
     closed = np.where(solution.sticking, Status.STICK, Status.SLIP)
-    return StickSlipState(
+    return replace(
+        state,
         pressure=solution.pressure,
         shear=solution.shear,
         slip=slip,
@@ -162,42 +191,13 @@ def _after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipS
     )
 
 
-def _expected(problem: CoulombProblem, state: StickSlipState, pressed: bool) -> np.ndarray:
+def _expected(problem: CoulombProblem, closed: np.ndarray, pressed: bool) -> np.ndarray:
     """Coefficients that will probably press: those that do, at first those without friction."""
-    if np.any(state.pressure > 0):
-        return state.pressure > 0
-    m, k = len(state.pressure), int(pressed)
+    if np.any(closed):
+        return closed
+    m, k = len(closed), int(pressed)
     modes, force = problem.modes[:m, :k], problem.force[:k]
     return solve_contact(problem.compliance[:m, :m], problem.offset[:m], modes, force).active
-
-
-def _refuse_sliding(problem: CoulombProblem, pressed: bool) -> None:
-    """Raise where all of the contact sliding carries less than the tangential force.
-
-    Sliding makes the shear a multiple of the pressure, which then solves a problem of contact.
-    """
-    m, k = len(problem.friction), int(pressed)
-    asked = problem.force[k]
-    across = problem.modes[m : 2 * m, k] * np.sign(asked)
-    drag = problem.friction * np.sign(across)  # τ = drag λ holds back
-    compliance = problem.compliance[:m, :m] + problem.compliance[:m, m : 2 * m] * drag
-    modes = problem.modes[:m, :k]
-    carrying = modes + drag[:, None] * problem.modes[m : 2 * m, :k]
-    sliding = solve_contact(
-        compliance, problem.offset[:m], modes, problem.force[:k], force_modes=carrying
-    )
-    λ = sliding.coefficients
-    if not np.any(λ > 0):
-        raise ComputationError(
-            "contact: the bodies do not touch, so that nothing balances a tangential force; give a "
-            "tangential displacement, or press"
-        )
-    most = problem.modes[:m, k] @ λ + problem.modes[m : 2 * m, k] @ (drag * λ)
-    if abs(asked) >= (1 - 1e-9) * abs(most):
-        raise FullSliding(
-            f"contact: body 1 slides; friction carries {abs(most):.6g} N, and the tangential force "
-            f"is {abs(asked):.6g} N. Give a smaller force, or a tangential displacement"
-        )
 
 
 def follow(
@@ -206,6 +206,7 @@ def follow(
     corners: Iterable[Loads],
     increments: int,
     state: StickSlipState | None = None,
+    wear: SlipWear | None = None,
 ) -> Iterator[StickSlipState]:
     """Follow a polygon of loads from a state, by default the unloaded one.
 
@@ -219,6 +220,9 @@ def follow(
         motion, force may give way to translation and back.
     increments : int
         Between two corners; halved where no solution is found.
+    state : StickSlipState, optional
+    wear : SlipWear, optional
+        Of each increment, see `advance`.
 
     Yields
     ------
@@ -235,19 +239,19 @@ def follow(
         origin = state
         for step in range(1, increments + 1):
             loads = corner.after(origin.force, origin.motion, step / increments)
-            state = _halving(contact, friction, state, loads, _HALVINGS)
+            state = _halving(contact, friction, state, loads, wear, _HALVINGS)
             yield state
 
 
-def _halving(contact, friction, state, loads: Loads, halvings: int) -> StickSlipState:
+def _halving(contact, friction, state, loads: Loads, wear, halvings: int) -> StickSlipState:
     """Advance in one step, or in two halves where that fails."""
     try:
-        return advance(contact, friction, state, loads)
+        return advance(contact, friction, state, loads, wear)
     except FullSliding:
         raise
     except ComputationError:
         if halvings == 0:
             raise
-    half = loads.after(state.force, state.motion, 0.5)
-    middle = _halving(contact, friction, state, half, halvings - 1)
-    return _halving(contact, friction, middle, loads, halvings - 1)
+    half, wear = loads.after(state.force, state.motion, 0.5), wear and wear.halved()
+    middle = _halving(contact, friction, state, half, wear, halvings - 1)
+    return _halving(contact, friction, middle, loads, wear, halvings - 1)

@@ -41,9 +41,9 @@ def vector_trace(
     Parameters
     ----------
     space : dolfinx.fem.FunctionSpace
-        Of vectors in the section.
+        Of vectors.
     pairing : Pairing
-    directions : ndarray, shape (n_points, 2)
+    directions : ndarray, shape (n_points, gdim)
         e at each point; not necessarily a unit vector (the traction of a sliding contact).
     """
     result = sp.csr_matrix((owned(space), len(pairing.weights)))
@@ -84,13 +84,13 @@ def reference_points(side: Side, chosen: np.ndarray, cell_type) -> np.ndarray:
     """Reference coordinates of points on facets of their cells."""
     import basix
 
-    corners = np.asarray(basix.geometry(cell_type))
-    ends = np.array(basix.topology(cell_type)[-2])
+    corners, facets = np.asarray(basix.geometry(cell_type)), np.array(basix.topology(cell_type)[-2])
     facet = side.facet[chosen]
-    t = np.where(side.face.reversed[facet], 1 - side.t[chosen], side.t[chosen])[:, None]
-    first, last = ends[side.face.local_facet[facet]].T
-    a, b = corners[first], corners[last]
-    return (1 - t) * a + t * b
+    first, *others = np.moveaxis(corners[facets[side.face.local_facet[facet]]], 1, 0)
+    reference = first.copy()
+    for t, other in zip(side.face.in_cell(facet, side.t[chosen]).T, others, strict=False):
+        reference += t[:, None] * (other - first)
+    return reference
 
 
 def gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:

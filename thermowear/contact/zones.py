@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .pairing import Pairing
+from .surface import Surface
 
 _NOTHING = 1e-9  # of the largest pressure
 _OUTER = 0.8  # part of half a zone that its edge is found from
@@ -13,7 +14,7 @@ _LEFT_OUT = 2  # elements next to the edge
 
 
 def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, float]]:
-    """Ranges of the position s along the face where it presses, in order [m].
+    """Ranges of the position s along the face where it presses, in order [m]; none on a surface.
 
     Where smooth faces part, the pressure vanishes as the root of the distance to the edge times an
     analytic function (Johnson, Contact Mechanics, 1985, ch. 4). So its square is fitted by a
@@ -25,6 +26,8 @@ def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, f
     pairing : Pairing
     pressure : ndarray, shape (n,) [Pa]
     """
+    if isinstance(pairing.sides[0].face, Surface):
+        return []
     pressing = pressure > _NOTHING * pressure.max(initial=0.0)
     change = np.flatnonzero(np.diff(pressing.astype(int), prepend=0, append=0))
     zones = []

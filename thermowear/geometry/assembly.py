@@ -9,7 +9,8 @@ import numpy as np
 
 from ..errors import CaseError
 from .file_contents import Block, Contents
-from .orders import CORNERS, boundary, compact, turned
+from .nodes import CORNERS
+from .orders import boundary, compact, turned
 from .tagged import TaggedMesh
 
 _TYPES = {corners: name for name, corners in CORNERS.items()}

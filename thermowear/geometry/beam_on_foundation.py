@@ -12,8 +12,7 @@ from pydantic import model_validator
 
 from ..case.geometry import PlaneGeometry
 from ..case.section import KeyFault
-from ..case.units import Length
-from .keys import Distance, Whole
+from ..case.units import Distance, Length
 from .on_block import near, within
 from .quads import Body, Sheet, grid, mesh_body, tagged_bodies
 from .tagged import TaggedMesh
@@ -61,7 +60,6 @@ class BeamOnFoundation(PlaneGeometry):
     load_width: Length
     gap: Distance
     foundation_height: Length
-    half: Whole = False
 
     @model_validator(mode="after")
     def _fits(self):

@@ -21,11 +21,9 @@ class CylinderOnBlock(RoundOnBlock, PlaneOnBlock):
 
     type: Literal["cylinder-on-block"]
 
-    def expected_zone(self, pressing: Pressing) -> tuple[float, float]:
+    def unworn_half_width(self, pressing: Pressing) -> float:
         if pressing.force is not None:  # Hertz
             line_load = pressing.force / self.thickness
-            a = math.sqrt(4 * line_load * self.radius / (math.pi * pressing.modulus))
-        else:
-            assert pressing.approach is not None
-            a = 0.7 * math.sqrt(self.radius * pressing.approach)
-        return -a, a
+            return math.sqrt(4 * line_load * self.radius / (math.pi * pressing.modulus))
+        assert pressing.approach is not None
+        return 0.7 * math.sqrt(self.radius * pressing.approach)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import CaseError
-from .orders import order_of, quadratic
+from .nodes import FACETS
+from .orders import compact, quadratic
 from .tagged import TaggedMesh
 
 _MESHIO_CELLS = {
@@ -17,8 +19,18 @@ _MESHIO_CELLS = {
     ("triangle", 3): "triangle",
     ("triangle", 6): "triangle6",
     ("triangle", 10): "triangle10",
+    ("hexahedron", 8): "hexahedron",
+    ("hexahedron", 20): "hexahedron20",
+    ("hexahedron", 27): "hexahedron27",
+    ("hexahedron", 64): "hexahedron64",
+    ("interval", 2): "line",
+    ("interval", 3): "line3",
+    ("interval", 4): "line4",
+    ("quadrilateral", 8): "quad8",
 }
-_MESHIO_FACETS = {2: "line", 3: "line3", 4: "line4"}
+_QUADRATIC_HEXAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
+_QUADRATIC_HEXAHEDRON += [22, 23, 21, 24, 20, 25, 26]
+"""Where gmsh lists the nodes that meshio, as VTK, wants in this order."""
 _FORMATS = {".msh": "gmsh22", ".vtu": "vtu", ".xdmf": "xdmf", ".inp": "abaqus"}
 
 
@@ -41,11 +53,16 @@ def write_mesh(mesh: TaggedMesh, path: Path) -> None:
     import meshio
 
     check_ending(path)
-    if path.suffix != ".msh" and order_of(mesh) > 2:
+    if path.suffix != ".msh" and mesh.order > 2:
         mesh = quadratic(mesh)
+    if mesh.cells.shape[1] == len(_QUADRATIC_HEXAHEDRON):
+        mesh = replace(mesh, cells=mesh.cells[:, _QUADRATIC_HEXAHEDRON])
+        if path.suffix == ".inp":  # knows no nodes within facets
+            mesh = compact(replace(mesh, cells=mesh.cells[:, :20], facets=mesh.facets[:, :8]))
+    kinds = mesh.cell_type, FACETS[mesh.cell_type]
     cells = [
-        (_MESHIO_CELLS[mesh.cell_type, mesh.cells.shape[1]], mesh.cells),
-        (_MESHIO_FACETS[mesh.facets.shape[1]], mesh.facets),
+        (_MESHIO_CELLS[kind, nodes.shape[1]], nodes)
+        for kind, nodes in zip(kinds, (mesh.cells, mesh.facets), strict=True)
     ]
     n = len(mesh.bodies)
     # one numbering for both dimensions, so that a tag names one thing in every format
@@ -56,7 +73,8 @@ def write_mesh(mesh: TaggedMesh, path: Path) -> None:
         result.cell_sets = _sets(mesh)
     elif path.suffix == ".msh":
         result.cell_data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
-        dims = [2] * n + [1] * len(mesh.surfaces)
+        dim = mesh.points.shape[1]
+        dims = [dim] * n + [dim - 1] * len(mesh.surfaces)
         names = (*mesh.bodies, *mesh.surfaces)
         result.field_data = {
             name: np.array([tag, dim])

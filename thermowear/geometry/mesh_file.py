@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_serializer, model_validator
 
-from ..case.geometry import PlaneGeometry, keyed
+from ..case.geometry import HalvableGeometry, keyed
 from ..case.section import KeyFault
 from ..case.units import Area, Length
 from .assembly import Named, assemble
@@ -25,7 +25,7 @@ _KEYS = {
 """Attributes whose keys have the names of what every geometry answers."""
 
 
-class MeshFile(PlaneGeometry):
+class MeshFile(HalvableGeometry):
     """Which file, and what is what in it.
 
     The file names bodies and surfaces by physical groups (gmsh), sets (Abaqus), families (MED) or

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..case.geometry import Geometry, PlaneGeometry, keyed
+from ..case.geometry import Geometry, HalvableGeometry, keyed
 from ..case.units import Length
 from ..errors import CaseError
 from .face_ends import face_ends, growth, row_ratio
@@ -145,7 +145,7 @@ class OnBlock(Geometry):
         }
 
 
-class PlaneOnBlock(OnBlock, PlaneGeometry):
+class PlaneOnBlock(OnBlock, HalvableGeometry):
     """Base of those for plane models.
 
     Attributes

@@ -11,7 +11,6 @@ from ..case.geometry import PlaneGeometry, keyed
 from ..case.section import KeyFault
 from ..case.units import Length
 from .face_ends import growth
-from .keys import Whole
 from .stacked import Section, Stacked
 
 
@@ -30,7 +29,6 @@ class OnStrip(Stacked, PlaneGeometry):
 
     strip_length: Length
     strip_height: Length
-    half: Whole = False
 
     @keyed
     def contact(self) -> tuple[str, str]:
@@ -77,9 +75,10 @@ class OnStrip(Stacked, PlaneGeometry):
 
     def check_strip(self) -> None:
         """Raise a `KeyFault` where the face is wider than the strip is long."""
-        if not self.face_width < self.strip_length:
+        start, end = self.lower_face
+        if not end - start < self.strip_length:
             raise KeyFault(
                 "strip_length",
                 f"{self.strip_length:g} m must be greater than the width of the face "
-                f"{self.face_width:g} m",
+                f"{end - start:g} m",
             )

@@ -11,8 +11,7 @@ from typing import Literal
 from pydantic import model_validator
 
 from ..case.section import KeyFault
-from ..case.units import Length
-from .keys import Distance
+from ..case.units import Distance, Length
 from .on_strip import OnStrip
 from .stacked import Section
 

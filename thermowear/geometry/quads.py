@@ -8,11 +8,12 @@ boundary lie on it exactly and the inner ones follow the map.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from .orders import boundary, reference_nodes
+from .nodes import reference_nodes
+from .orders import boundary
 from .tagged import TaggedMesh
 
 
@@ -26,28 +27,34 @@ class Sheet:
         In order round each cell, either way round.
     place : callable
         From parameters to coordinates, both of shape (..., 2) [m].
+    zone : str
+        Part of the body with a material of its own; empty for the body itself.
     """
 
     corners: np.ndarray
     place: Callable[[np.ndarray], np.ndarray]
+    zone: str = ""
 
 
 @dataclass(frozen=True)
 class Body:
-    """A meshed body.
+    """A meshed body, of quadrilaterals in the plane or of hexahedra in space.
 
     Attributes
     ----------
-    points : ndarray, shape (n_points, 2) [m]
-    cells : ndarray of int64, shape (n_cells, (order + 1)²)
+    points : ndarray, shape (n_points, gdim) [m]
+    cells : ndarray of int64, shape (n_cells, (order + 1)**gdim)
         In gmsh's order of nodes.
-    edges : ndarray of int64, shape (n_edges, order + 1)
+    facets : ndarray of int64, shape (n_facets, (order + 1)**(gdim - 1))
         Of the boundary, in gmsh's order of nodes.
+    zones : dict of str to ndarray of int
+        Cells of its zones.
     """
 
     points: np.ndarray
     cells: np.ndarray
-    edges: np.ndarray
+    facets: np.ndarray
+    zones: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def grid(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -94,7 +101,9 @@ def mesh_body(sheets: list[Sheet], order: int) -> Body:
     """Cells of all sheets, joined where their nodes coincide."""
     nodes = np.concatenate([_nodes(sheet, order) for sheet in sheets])
     points, cells = _joined(nodes)
-    return Body(points, cells, boundary("quadrilateral", order, cells))
+    zone = np.repeat([sheet.zone for sheet in sheets], [len(sheet.corners) for sheet in sheets])
+    zones = {str(name): np.flatnonzero(zone == name) for name in np.unique(zone) if name}
+    return Body(points, cells, boundary("quadrilateral", order, cells), zones)
 
 
 def tagged_bodies(
@@ -108,30 +117,33 @@ def tagged_bodies(
         Body 1 first.
     surfaces : dict of str to callable
         Body and surface in one name, ``body_surface``. From the coordinates of the nodes of
-        edges, shape (n_edges, order + 1, 2), to whether each edge lies on the surface; an edge
-        belongs to the first surface of its body that claims it.
+        boundary facets, shape (n_facets, nodes, gdim), to whether each facet lies on the surface;
+        a facet belongs to the first surface of its body that claims it.
     """
+    names = [*bodies, *(zone for body in bodies.values() for zone in body.zones)]
     shift, points, cells, cell_tags, facets, facet_tags = 0, [], [], [], [], []
     for tag, (name, body) in enumerate(bodies.items(), start=1):
-        places = body.points[body.edges]
-        marks = np.zeros(len(body.edges), dtype=np.int32)
+        places = body.points[body.facets]
+        marks = np.zeros(len(body.facets), dtype=np.int32)
         for mark, (surface, claims) in enumerate(surfaces.items(), start=1):
             if surface.startswith(f"{name}_"):
                 marks[(marks == 0) & claims(places)] = mark
         points.append(body.points)
         cells.append(body.cells + shift)
         cell_tags.append(np.full(len(body.cells), tag, dtype=np.int32))
-        facets.append(body.edges[marks > 0] + shift)
+        for zone, members in body.zones.items():
+            cell_tags[-1][members] = names.index(zone) + 1
+        facets.append(body.facets[marks > 0] + shift)
         facet_tags.append(marks[marks > 0])
         shift += len(body.points)
     return TaggedMesh(
         points=np.concatenate(points),
-        cell_type="quadrilateral",
+        cell_type="quadrilateral" if points[0].shape[1] == 2 else "hexahedron",
         cells=np.concatenate(cells),
         cell_tags=np.concatenate(cell_tags),
         facets=np.concatenate(facets),
         facet_tags=np.concatenate(facet_tags),
-        bodies=tuple(bodies),
+        bodies=tuple(names),
         surfaces=tuple(surfaces),
     )
 

@@ -10,7 +10,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from ..case.geometry import Pressing
 from ..case.units import Length
+from ..errors import CaseError
 from .face_ends import face_ends, growth, row_ratio
 from .on_block import ORDER, OnBlock, near, within
 from .outlines import Disc, ringed_body
@@ -23,11 +25,30 @@ class RoundOnBlock(OnBlock):
     Attributes
     ----------
     radius : float [m]
+    zone : float or None
+        Half-width (radius) of the contact that the mesh is made for, by default the expected one
+        of the unworn bodies: more where it grows by wear [m].
     """
 
     name: ClassVar[str] = ""
 
     radius: Length
+    zone: Length | None = None
+
+    def unworn_half_width(self, pressing: Pressing) -> float:
+        """Half-width (radius) of the contact of the unworn bodies, about [m]."""
+        raise NotImplementedError
+
+    def expected_zone(self, pressing):
+        expected = self.unworn_half_width(pressing)
+        if self.zone is None:
+            return -expected, expected
+        if self.zone < expected:
+            raise CaseError(
+                f"geometry.zone: found {self.zone:g} m; the unworn bodies touch "
+                f"up to x = {expected:.3g} m already"
+            )
+        return -self.zone, self.zone
 
     def upper_limits(self):
         return {"radius": self.radius / 2}

@@ -6,7 +6,7 @@ They touch at the origin; the sphere is above. Its lower half is meshed.
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import ClassVar, Literal
 
 from ..case.geometry import Pressing
 from ..case.units import Length
@@ -25,6 +25,7 @@ class SphereOnBlock(RoundOnBlock):
     models = ("axisymmetric",)
     bodies = ("sphere", "block")
     block_key = "block_radius"
+    slides_across: ClassVar[bool] = True
 
     type: Literal["sphere-on-block"]
     block_radius: Length
@@ -33,10 +34,8 @@ class SphereOnBlock(RoundOnBlock):
     def block_reach(self) -> float:
         return self.block_radius
 
-    def expected_zone(self, pressing: Pressing) -> tuple[float, float]:
+    def unworn_half_width(self, pressing: Pressing) -> float:
         if pressing.force is not None:  # Hertz
-            a = (3 * pressing.force * self.radius / (4 * pressing.modulus)) ** (1 / 3)
-        else:
-            assert pressing.approach is not None
-            a = math.sqrt(self.radius * pressing.approach)
-        return -a, a
+            return (3 * pressing.force * self.radius / (4 * pressing.modulus)) ** (1 / 3)
+        assert pressing.approach is not None
+        return math.sqrt(self.radius * pressing.approach)

@@ -55,6 +55,11 @@ class Stacked(Geometry):
         raise NotImplementedError
 
     @property
+    def lower_face(self) -> tuple[float, float]:
+        """Ends of the face of body 2 [m]."""
+        return self.upper.left, self.upper.right
+
+    @property
     def follows_contact(self) -> bool:
         return True  # heat can part the faces, and friction tilt body 1
 
@@ -81,7 +86,7 @@ class Stacked(Geometry):
 
     def _lower(self, model, zone, elements: int, grading: float):
         """Body 2 in gmsh, the curves of its contact face, and those beside it."""
-        face = self._face(elements, grading, zone)
+        face = self._lower_face(elements, grading, zone)
         contact, support, largest = self._sizes(face, elements)
         before, after = self._beside((contact, support, largest), elements, grading)
         rows = growing_from_both(-self.lower.height, 0.0, (support, contact), grading, largest)
@@ -92,11 +97,15 @@ class Stacked(Geometry):
     def _beside(self, sizes: tuple[float, float, float], elements: int, grading: float) -> Beside:
         """How body 2 is divided on the left and on the right of the face, see `_sizes`."""
         contact, support, largest = sizes
-        left, right = self.lower.left, self.lower.right
+        (left, right), (start, end) = (self.lower.left, self.lower.right), self.lower_face
         return (
-            growing_from_both(left, self.upper.left, (support, contact), grading, largest),
-            growing_from_both(self.upper.right, right, (contact, support), grading, largest),
+            growing_from_both(left, start, (support, contact), grading, largest),
+            growing_from_both(end, right, (contact, support), grading, largest),
         )
+
+    def _lower_face(self, elements: int, grading: float, zone) -> list[Interval]:
+        """How the face of body 2 is divided."""
+        return self._face(elements, grading, zone)
 
     def _face(self, elements: int, grading: float, zone) -> list[Interval]:
         return divided_face(self.upper.left, self.upper.right, elements, grading, zone)

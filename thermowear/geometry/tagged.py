@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+
+from .nodes import FACETS, reference_nodes
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,7 @@ class TaggedMesh:
     ----------
     points : ndarray, shape (n_points, gdim) [m]
     cell_type : str
-        ``"quadrilateral"`` or ``"triangle"``; the type of all cells.
+        ``"quadrilateral"``, ``"triangle"`` or ``"hexahedron"``; the type of all cells.
     cells : ndarray of int64, shape (n_cells, nodes_per_cell)
         Of any order: curved cells have nodes between their corners.
     cell_tags : ndarray of int32, shape (n_cells,)
@@ -26,7 +29,8 @@ class TaggedMesh:
         Named boundary facets only.
     facet_tags : ndarray of int32, shape (n_facets,)
     bodies : tuple of str
-        Names of the bodies; body 1 (held) first.
+        Names of the bodies, body 1 (held) first, then those of zones within bodies that have a
+        material of their own: their cells are not among those of the body.
     surfaces : tuple of str
         Names of the surfaces.
     """
@@ -39,3 +43,18 @@ class TaggedMesh:
     facet_tags: np.ndarray
     bodies: tuple[str, ...]
     surfaces: tuple[str, ...]
+
+    @property
+    def facet_type(self) -> str:
+        """``"interval"`` or ``"quadrilateral"``."""
+        return FACETS[self.cell_type]
+
+    @property
+    def order(self) -> int:
+        """Geometric order of the cells."""
+        nodes = self.facets.shape[1]
+        return (math.isqrt(nodes) if self.facet_type == "quadrilateral" else nodes) - 1
+
+    def node_places(self, kind: str) -> np.ndarray:
+        """Places of the listed nodes on a cell or facet of unit sides, shape (n_nodes, dim)."""
+        return reference_nodes(kind, self.order)

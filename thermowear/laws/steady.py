@@ -1,19 +1,28 @@
 """The steady state of wear from the principle of minimum wear dissipation power (q = 1).
 
-Stationarity of ``D_w = ∫ p Σ w'_i dS`` under equilibrium gives ``Σ Z_i p^b_i = V·n``: the normal
-wear rate equals the normal component of the rigid-body wear velocity, and ``p = 0`` where that is
-negative (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895). Friction enters through
-equilibrium only.
+In the steady state the worn faces move as rigid bodies do: the normal wear rate equals the normal
+component of the rigid-body wear velocity, ``Σ Z_i p^b_i = V·n``, and ``p = 0`` where that is
+negative. Where both bodies wear with the same b this is what makes ``D_w = ∫ p·Σ w'_i dS``
+stationary under equilibrium (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895; `minimum`
+finds it that way). With ``b_1 ≠ b_2`` the derivative of D_w has terms ``(b_i + 1) Z_i p^b_i``, of
+different weight, while the bodies still wear as they approach: the pressure is then that of the
+kinematics, which minimises ``Σ ∫ p·w'_i/(b_i + 1) dS``. Friction enters through equilibrium only.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import ComputationError
+from .locking import why_no_steady_state
+from .primal_dual import PowerSum, solve
+from .spreading import InPlace, Spreading
 from .wear import WearLaw
+
+_DEPENDENT = 1e-10  # relative: motions nearer than this to each other press the faces the same way
 
 
 @dataclass(frozen=True)
@@ -28,13 +37,17 @@ class SteadyWear:
     velocity : ndarray, shape (k,)
         Rigid-body wear velocity along each free direction [m/s or rad/s].
     dissipation : float
-        Wear dissipation power D_w [W].
+        Wear dissipation power D_w [W]; equals load times velocity.
+    approach : ndarray, shape (n,)
+        Normal component of the rigid-body wear velocity ``V·n`` [m/s]; where there is pressure, the
+        sum of the rates.
     """
 
     pressure: np.ndarray
     rates: tuple[np.ndarray, ...]
     velocity: np.ndarray
     dissipation: float
+    approach: np.ndarray
 
 
 def steady_pressure(
@@ -42,25 +55,29 @@ def steady_pressure(
     normal_modes: np.ndarray,
     force_modes: np.ndarray,
     load: np.ndarray,
-    laws: list[WearLaw],
+    laws: Sequence[WearLaw],
     speed: np.ndarray,
+    spread: Sequence[Spreading] | None = None,
 ) -> SteadyWear:
     """Solve the principle for pressure and rigid-body wear velocity.
 
     Parameters
     ----------
     weights : ndarray, shape (n,)
-        Areas of the contact points [m²].
+        Areas of the contact points [m²]; points without area are solved for and bear nothing.
     normal_modes : ndarray, shape (n, k)
-        Normal component of each unit rigid motion at the points.
+        Normal component of each unit rigid motion at the points, R.
     force_modes : ndarray, shape (n, k)
-        The same for ``n ± mu e_1``, which carries the pressure and its friction in equilibrium.
+        T, the same for ``n + mu e_1 + mu_d e_2``, which carries the pressure and its friction in
+        equilibrium.
     load : ndarray, shape (k,)
         Force or moment along each free direction [N or N m].
-    laws : list of WearLaw
+    laws : sequence of WearLaw
         Of the wearing bodies, one or two.
     speed : ndarray, shape (n,)
         Sliding speed [m/s].
+    spread : sequence of Spreading, optional
+        Where the wear of each body goes; by default each wears in place.
 
     Returns
     -------
@@ -68,74 +85,58 @@ def steady_pressure(
 
     Raises
     ------
+    SelfLocking
+        If friction carries the load whatever the pressure.
+    NotCarried
+        If the load opens the contact.
     ComputationError
-        If points do not slide, or no admissible pressure carries the load.
+        If points do not slide, nothing wears in place, or a motion presses nothing.
     """
+    spread = spread if spread is not None else [InPlace()] * len(laws)
     if not np.all(speed > 0):
         raise ComputationError("no steady state: some contact points do not slide")
-    factors = [law.factor(speed) for law in laws]
-    exponents = [law.pressure_exponent for law in laws]
-    weighted = force_modes * weights[:, None]
-
-    def imbalance(velocity):
-        pressure, slope = _pressure_at(normal_modes @ velocity, factors, exponents)
-        return (weighted.T @ pressure - load) / scale, weighted.T @ (slope[:, None] * normal_modes)
-
-    scale = np.maximum(np.abs(load), 1e-3 * np.abs(load).max())
-    mean = np.linalg.lstsq(weighted.T, load, rcond=None)[0]
-    mean = np.full(len(weights), max(float(np.average(mean, weights=weights)), 0.0))
-    uniform = sum(z * mean**b for z, b in zip(factors, exponents, strict=True))
-    velocity = np.linalg.lstsq(normal_modes, uniform, rcond=None)[0]
-    velocity = _newton(imbalance, velocity, scale)
-    pressure, _ = _pressure_at(normal_modes @ velocity, factors, exponents)
-    rates = tuple(law.rate(pressure, speed) for law in laws)
-    dissipation = float(weights @ (pressure * (force_modes @ velocity)))
-    return SteadyWear(pressure, rates, velocity, dissipation)
-
-
-def _pressure_at(rate: np.ndarray, factors, exponents) -> tuple[np.ndarray, np.ndarray]:
-    """Invert ``Σ Z_i p^b_i = rate`` point by point; pressure and its derivative by the rate.
-
-    In the logarithms of pressure and rate the sum is convex and rises with slopes between the
-    smallest and largest b, so Newton's method converges from any start.
-    """
-    pressure, slope = np.zeros_like(rate), np.zeros_like(rate)
-    pressing = rate > 0
-    goal = np.log(rate[pressing])
-    logs = [np.log(z[pressing]) for z in factors]
-    x = np.min([(goal - z) / b for z, b in zip(logs, exponents, strict=True)], axis=0)
-    for _ in range(100):
-        terms = np.array([z + b * x for z, b in zip(logs, exponents, strict=True)])
-        total = np.logaddexp.reduce(terms, axis=0)
-        steepness = np.einsum("i,in->n", exponents, np.exp(terms - total))
-        step = (goal - total) / steepness
-        x += step
-        if np.all(np.abs(step) < 1e-14 * np.maximum(np.abs(x), 1.0)):
-            break
-    pressure[pressing] = np.exp(x)
-    slope[pressing] = np.exp(x - goal) / steepness
-    return pressure, slope
-
-
-def _newton(imbalance, velocity: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Damped Newton iteration on the rigid-body wear velocity."""
-    residual, jacobian = imbalance(velocity)
-    for _ in range(200):
-        norm = np.linalg.norm(residual)
-        if norm < 1e-13:
-            return velocity
-        step = np.linalg.lstsq(jacobian / scale[:, None], -residual, rcond=None)[0]
-        for damping in 0.5 ** np.arange(40):
-            trial, trial_jacobian = imbalance(velocity + damping * step)
-            if np.linalg.norm(trial) < (1 - 1e-4 * damping) * norm:
-                break
-        else:
-            if norm < 1e-10:
-                return velocity
-            break
-        velocity = velocity + damping * step
-        residual, jacobian = trial, trial_jacobian
-    raise ComputationError(
-        "no steady state: no rigid-body wear velocity carries the load "
-        f"(relative imbalance {np.linalg.norm(residual):.1e})"
+    if not any(way.share > 0 for way in spread):
+        raise ComputationError(
+            "no steady pressure: all wear is spread over a track, which takes any pressure"
+        )
+    _check_motions(weights, normal_modes)
+    found = solve(
+        weights,
+        normal_modes,
+        force_modes,
+        load,
+        local=_power_sum(laws, speed, [way.share for way in spread]),
+        spread=_power_sum(laws, speed, [0.0 if way.row is None else way.row for way in spread]),
     )
+    if found is None or not found.regular:
+        raise why_no_steady_state(weights, normal_modes, force_modes, load)
+    rates = tuple(
+        way.rate(law.rate(found.pressure, speed)) for law, way in zip(laws, spread, strict=True)
+    )
+    return SteadyWear(
+        found.pressure,
+        rates,
+        found.velocity,
+        dissipation=float(weights @ (found.pressure * (force_modes @ found.velocity))),
+        approach=normal_modes @ found.velocity,
+    )
+
+
+def _power_sum(laws: Sequence[WearLaw], speed: np.ndarray, portions) -> PowerSum:
+    """The part of the bodies' rates ``Z p^b`` that goes one way."""
+    factors = [portion * law.factor(speed) for portion, law in zip(portions, laws, strict=True)]
+    return PowerSum(np.array(factors), np.array([law.pressure_exponent for law in laws]))
+
+
+def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:
+    """Each free motion of the holder must press the faces in a way of its own."""
+    modes = np.sqrt(weights)[:, None] * normal_modes
+    lengths = np.linalg.norm(modes, axis=0)
+    if (
+        lengths.min() <= _DEPENDENT * np.linalg.norm(np.sqrt(weights)) * np.abs(normal_modes).max()
+        or np.linalg.svd(modes / lengths, compute_uv=False)[-1] < _DEPENDENT
+    ):
+        raise ComputationError(
+            "no steady state: a free motion of the holder does not press the faces, or presses "
+            "them as another one does; a guide must take its load"
+        )

@@ -133,9 +133,12 @@ def _highlights(summary: dict):
     if summary.get("dissipated_energy_J") is not None:
         yield "tangential force", f"{summary['tangential_force_N']:.6g} N"
         yield "energy dissipated", f"{summary['dissipated_energy_J'] * 1e3:.5g} mJ"
-    if summary["analysis"] == "transient":
+    if "time_s" in summary:
         yield "time, steps", f"{summary['time_s']:.6g} s, {summary['steps']}"
-        volumes = (summary["wear_volume_1_m3"], summary["wear_volume_2_m3"])
+    if summary.get("cycles"):
+        yield "cycles", f"{summary['cycles']:.6g}"
+    volumes = (summary["wear_volume_1_m3"], summary["wear_volume_2_m3"])
+    if max(volumes) > 0:
         yield "worn volume, body 1 and 2", " and ".join(f"{v * 1e9:.5g} mm³" for v in volumes)
-        if summary["distance_from_steady"] is not None:
-            yield "distance from steady", f"{summary['distance_from_steady']:.2e}"
+    if summary.get("distance_from_steady") is not None:
+        yield "distance from steady", f"{summary['distance_from_steady']:.2e}"

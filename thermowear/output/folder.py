@@ -14,15 +14,15 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from .quantities import FRICTION, HISTORY, INTERFACE, LOADS, PROFILE
+from .quantities import CYCLES, FRICTION, HISTORY, INTERFACE, LOADS, PROFILE, TRACK
 from .report import is_report
 from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields
 
 _OURS = re.compile(
-    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|loads|profile)\.csv"
-    r"|(interface|friction)(_[-+.0-9e]+)?\.csv"
-    r"|(interface|profile|wear|history|friction|loads|bodies|deformed)\.png"
+    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|loads|cycles|profile)\.csv"
+    r"|(interface|friction|track)(_[-+.0-9e]+)?\.csv"
+    r"|(interface|profile|wear|history|friction|loads|cycles|track|bodies|deformed)\.png"
 )
 
 
@@ -54,7 +54,7 @@ class ResultsFolder:
             "ranks": ranks,
             "versions": _versions(),
         }
-        self._rows: RowWriter | None = None
+        self._rows: dict[str, RowWriter] = {}
         self._made = not os.path.exists(path)  # unlike Path.exists, no error at odd names
         try:
             path.mkdir(parents=True, exist_ok=True)
@@ -84,23 +84,29 @@ class ResultsFolder:
         """Append an increment of a fretting analysis."""
         self._add(row, "loads.csv", LOADS)
 
+    def cycle(self, row) -> None:
+        """Append a cycle of a fretting analysis."""
+        self._add(row, "cycles.csv", CYCLES)
+
     def _add(self, row, name: str, table: dict) -> None:
-        if self._rows is None:
-            self._rows = RowWriter(self.path / name, table)
-        self._rows.add(row)
+        if name not in self._rows:
+            self._rows[name] = RowWriter(self.path / name, table)
+        self._rows[name].add(row)
 
-    def output(self, time: float, interface, friction=None) -> None:
-        """Write the interface at an output time, and how it sticks and slips."""
-        self._points(time, interface, friction)
+    def output(self, time: float, interface, friction=None, track=None) -> None:
+        """Write the interface at an output time, how it sticks and slips, and a worn track."""
+        self._points(time, interface, friction, track)
 
-    def _points(self, time: float | None, interface, friction) -> None:
-        write_points(self.path / name_at("interface", time), INTERFACE, interface)
-        if friction is not None:
-            write_points(self.path / name_at("friction", time), FRICTION, friction)
+    def _points(self, time: float | None, interface, friction, track) -> None:
+        tables = {"interface": INTERFACE, "friction": FRICTION, "track": TRACK}
+        for (name, table), points in zip(tables.items(), (interface, friction, track), strict=True):
+            if points is not None:
+                write_points(self.path / name_at(name, time), table, points)
 
     def finish(self, result, seconds: dict[str, float]) -> None:
         """Write interface, profile, fields and summary of a `thermowear.simulation.Result`."""
-        self._points(None, result.interface, result.friction and result.friction.last)
+        friction, track = (more and more.last for more in (result.friction, result.track))
+        self._points(None, result.interface, friction, track)
         write_points(self.path / "profile.csv", PROFILE, result.profile)
         write_fields(self.path / "fields.vtu", result.fields)
         rounded = {name: round(value, 4) for name, value in seconds.items()}

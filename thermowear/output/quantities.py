@@ -108,4 +108,21 @@ LOADS = {
     "stick_area": Quantity("stick_area_m2", "area that sticks", "mm²", 1e6),
     "dissipated": Quantity("dissipated_J", "energy dissipated", "mJ", 1e3),
     "iterations": Quantity("iterations", "Newton iterations", "1"),
+    "cycle": Quantity("cycle", "cycle", "1"),
+    "wear_volume_1": HISTORY["wear_volume_1"],
+    "wear_volume_2": HISTORY["wear_volume_2"],
+}
+
+TRACK = {name: INTERFACE[name] for name in ("x", "wear_2", "wear_rate_2")}
+
+CYCLES = {
+    "cycle": LOADS["cycle"],
+    "time": LOADS["time"],
+    "wear_volume_1": LOADS["wear_volume_1"],
+    "wear_volume_2": LOADS["wear_volume_2"],
+    "dissipated": LOADS["dissipated"],
+    "max_wear_1": Quantity("max_wear_1_m", "largest wear depth, body 1", "µm", 1e6),
+    "max_wear_2": Quantity("max_wear_2_m", "largest wear depth, body 2", "µm", 1e6),
+    "contact_area": LOADS["contact_area"],
+    "max_pressure": LOADS["max_pressure"],
 }

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-_CELLS = {3: "triangle", 4: "quad"}
+_CELLS = {3: "triangle", 4: "quad", 8: "hexahedron"}
 
 
 def write_fields(path: Path, fields) -> None:
-    """Write the fields as small triangles or quadrilaterals, discontinuous between cells.
+    """Write the fields on small linear cells, discontinuous between the cells of the mesh.
 
     Parameters
     ----------

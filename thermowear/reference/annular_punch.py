@@ -7,9 +7,10 @@ with other meshes and other pressure spaces; the data stands in `DATA`.
 
 from __future__ import annotations
 
-from math import log, pi
+from math import cos, log, pi, sin
 
 import numpy as np
+from scipy.integrate import quad
 
 DATA = {
     "inner_radius": 0.02,
@@ -30,6 +31,15 @@ DATA = {
 """SI; both bodies of one material, cooled to ambient at the punch's top and the plate's bottom."""
 
 
+STEADY_PRESSURE = {
+    0.5: (2.0, "390677", ("976.694", "244.173", "79.730", "27.130"), "2.4547e8"),
+    1.0: (1.0, "7000", ("350", "175", "100", "58.3333"), "3.07876e8"),
+    2.0: (0.5, "857.08", ("191.649", "135.516", "102.441", "78.240"), "3.35939e8"),
+}
+"""Flat ring under a mean pressure of 100 MPa, a = 1: by b, the n and c of ``p = c r^-n`` [MPa, mm],
+p at 20, 40, 70 and 120 mm [MPa], and the torque over mu [N mm]."""
+
+
 def steady_pressure(r, force: float, inner: float, outer: float, b: float, a: float = 1.0):
     """Steady pressure ``p = (F/I) r^(-a/b)``, ``I = 2 π ∫ r^(1 - a/b) dr``, on a flat face.
 
@@ -46,9 +56,73 @@ def steady_pressure(r, force: float, inner: float, outer: float, b: float, a: fl
     -------
     ndarray [Pa]
     """
-    power = 2.0 - a / b
-    integral = log(outer / inner) if power == 0 else (outer**power - inner**power) / power
+    integral = _power_integral(2.0 - a / b, inner, outer)
     return force / (2 * pi * integral) * np.asarray(r, dtype=float) ** (-a / b)
+
+
+def conical_pressure(
+    r, force: float, inner: float, outer: float, α: float, transverse: float, b: float, a: float
+) -> np.ndarray:
+    """Steady pressure on a cone, ``(F/I) r^(-a/b) sin^(1/b) α`` [Pa].
+
+    ``I = 2 π ∫ r^(1 - a/b) sin^(1/b) α (sin α + mu_d cos α) ds``, ``dr = sin α ds``; friction round
+    the axis does not enter.
+
+    Parameters
+    ----------
+    r : array_like [m]
+    force, inner, outer, b, a
+        As of `steady_pressure`.
+    α : float
+        Between the face's normal and the radius; π/2 is flat [rad].
+    transverse : float
+        mu_d, friction against the wear velocity along the face.
+    """
+    flat = steady_pressure(r, force, inner, outer, b, a)
+    return flat / (1 + transverse * cos(α) / sin(α))
+
+
+def toroidal_pressure(
+    α,
+    force: float,
+    centre: float,
+    rounding: float,
+    start: float,
+    end: float,
+    transverse: float,
+    b: float,
+    a: float,
+) -> np.ndarray:
+    """The same on a torus, ``r = r_c + ρ cos α``, ``ds = ρ dα`` [Pa].
+
+    Parameters
+    ----------
+    α : array_like [rad]
+    force : float
+    centre, rounding : float
+        ``r_c`` and ρ [m].
+    start, end : float
+        Of α on the face, within 0 and π/2.
+    transverse, b, a
+        As of `conical_pressure`.
+    """
+
+    def shape(α: float) -> float:
+        return (centre + rounding * cos(α)) ** (-a / b) * sin(α) ** (1 / b)
+
+    def integrand(α: float) -> float:
+        radius = centre + rounding * cos(α)
+        return shape(α) * (sin(α) + transverse * cos(α)) * 2 * pi * radius * rounding
+
+    integral = quad(integrand, start, end, epsabs=0.0, epsrel=1e-13)[0]
+    return force / integral * np.array([shape(angle) for angle in np.atleast_1d(α)])
+
+
+def torque(force: float, inner: float, outer: float, friction: float, b: float, a: float) -> float:
+    """``mu ∫ p r dS`` on a flat face [N m]."""
+    arm, area = 3.0 - a / b, 2.0 - a / b
+    mean = _power_integral(arm, inner, outer) / _power_integral(area, inner, outer)
+    return friction * force * mean
 
 
 def friction_power(
@@ -56,6 +130,11 @@ def friction_power(
 ) -> float:
     """Friction power ``mu F ω (ri + ro)/2`` in the steady state for a = b [W]."""
     return friction * force * speed * (inner + outer) / 2
+
+
+def _power_integral(power: float, low: float, high: float) -> float:
+    """``∫ r^(power - 1) dr``."""
+    return log(high / low) if power == 0 else (high**power - low**power) / power
 
 
 RADII = np.array([20, 25, 40, 70, 100, 115, 120]) * 1e-3

@@ -1,16 +1,27 @@
 """The analyses: initial contact, steady state, running-in, fretting."""
 
 from .observer import Observer
-from .result import BodyFields, FrictionInterface, HistoryRow, Interface, LoadRow, Result
+from .result import (
+    BodyFields,
+    CycleRow,
+    FrictionInterface,
+    HistoryRow,
+    Interface,
+    LoadRow,
+    Result,
+    WornTrack,
+)
 from .run import run
 
 __all__ = [
     "BodyFields",
+    "CycleRow",
     "FrictionInterface",
     "HistoryRow",
     "Interface",
     "LoadRow",
     "Observer",
     "Result",
+    "WornTrack",
     "run",
 ]

@@ -40,7 +40,7 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
     body = np.zeros(len(cells), dtype=np.int64)
     tags = system.bodies.cell_tags
     local = tags.indices < len(cells)
-    body[tags.indices[local]] = tags.values[local]
+    body[tags.indices[local]] = _body_of_tag(system)[tags.values[local]]
     original = mesh.topology.original_cell_index[: len(cells)]
     parts = mesh.comm.gather((original, body, *values), root=0)
     if parts is None:
@@ -53,9 +53,17 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 
+def _body_of_tag(system: System) -> np.ndarray:
+    """Number of the body, from 1, by the tag of its cells and of those of its zones."""
+    geometry = system.case.geometry
+    owners = [geometry.zones.get(part, part) for part in system.bodies.names]
+    return np.array([0, *(geometry.bodies.index(owner) + 1 for owner in owners)])
+
+
 def _with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -> np.ndarray:
     """Add the rigid motion of the holder to the nodes of body 1."""
-    upper = system.elastic.owned_by(system.case.geometry.bodies[0])
+    geometry = system.case.geometry
+    upper = system.elastic.owned_by(*geometry.parts_of(geometry.bodies[0]))
     nodes = system.elastic.nodes()
     moved = displacement.reshape(nodes.shape).copy()
     moved[upper] += motion.at(nodes[upper])
@@ -75,6 +83,15 @@ def _square(n: int) -> tuple[np.ndarray, np.ndarray]:
     return points, corner[:, None] + np.array([0, 1, n + 2, n + 1])
 
 
+def _cube(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of an (n + 1)³ grid on the reference cube, and its small hexahedra."""
+    square, pieces = _square(n)
+    points = np.array([(x, y, z) for z in np.linspace(0.0, 1.0, n + 1) for x, y in square])
+    layer = len(square)
+    layers = [pieces + k * layer for k in range(n)]
+    return points, np.concatenate([np.hstack([low, low + layer]) for low in layers])
+
+
 def _triangle(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Points of a regular grid on the reference triangle, and its small triangles."""
     x = np.linspace(0.0, 1.0, n + 1)
@@ -89,4 +106,4 @@ def _below(n: int) -> list[tuple[int, int]]:
     return [(j, i) for j in range(n) for i in range(n - j)]
 
 
-_GRIDS = {"quadrilateral": _square, "triangle": _triangle}
+_GRIDS = {"quadrilateral": _square, "triangle": _triangle, "hexahedron": _cube}

@@ -8,6 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..errors import ComputationError
+from ..laws import WearLaw
+from ..laws.spreading import Spreading
 from .friction_heat import FrictionHeat
 from .system import System
 
@@ -84,19 +86,28 @@ class WearRates:
     ----------
     laws : list of WearLaw
         Of the wearing bodies.
+    spreads : list of Spreading
+        Of the same bodies.
     speed : ndarray, shape (n,) [m/s]
     """
 
-    laws: list
+    laws: list[WearLaw]
+    spreads: list[Spreading]
     speed: np.ndarray
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates, shape (n_wearing, n) [m/s]."""
-        return np.array([law.rate(pressure, self.speed) for law in self.laws])
+        local = [law.rate(pressure, self.speed) for law in self.laws]
+        return np.array([s.rate(rate) for s, rate in zip(self.spreads, local, strict=True)])
 
     def slope(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivative of their sum by the pressure, shape (n,) [m/s/Pa]."""
-        return np.sum([law.slope(pressure, self.speed) for law in self.laws], axis=0)
+        """Derivative of their sum by the pressure on the spot, shape (n,) [m/s/Pa].
+
+        What a track has in common hardly changes with the pressures: their sum is the load.
+        """
+        slopes = [law.slope(pressure, self.speed) for law in self.laws]
+        parts = [s.share * slope for s, slope in zip(self.spreads, slopes, strict=True)]
+        return np.sum(parts, axis=0)
 
 
 class InterfaceProblem:
@@ -114,7 +125,8 @@ class InterfaceProblem:
         self._heat = heat
         self._gap = system.pairing.gap - system.holder.imposed
         self._softness = system.softness
-        self.rates = WearRates(list(system.laws.values()), system.speed)
+        laws, spreads = list(system.laws.values()), list(system.spreads.values())
+        self.rates = WearRates(laws, spreads, system.speed)
 
     @property
     def note(self) -> str | None:
@@ -188,6 +200,12 @@ class InterfaceProblem:
             The steady pressure point by point [Pa].
         """
         return self._method.steady(pressure, self.rates)
+
+    def distance(self, pressure: np.ndarray, steady: np.ndarray | None) -> float:
+        """Largest difference to a steady pressure, relative to the largest of that; NaN without."""
+        if steady is None:
+            return float("nan")
+        return float(np.abs(pressure - steady).max() / steady.max())
 
     def _with_wear(self, gap, step: float, guess: Contact, closed) -> Contact:
         return newton_with_wear(

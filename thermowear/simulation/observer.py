@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .result import FrictionInterface, HistoryRow, Interface, LoadRow
+from .result import CycleRow, FrictionInterface, HistoryRow, Interface, LoadRow, WornTrack
 
 
 class Observer:
@@ -17,10 +17,17 @@ class Observer:
     def load_step(self, row: LoadRow) -> None:
         """An increment of a fretting analysis was accepted."""
 
+    def cycle(self, row: CycleRow) -> None:
+        """A cycle of a fretting analysis has ended."""
+
     def note(self, text: str) -> None:
         """Something the user should know."""
 
     def output(
-        self, time: float, interface: Interface, friction: FrictionInterface | None = None
+        self,
+        time: float,
+        interface: Interface,
+        friction: FrictionInterface | None = None,
+        track: WornTrack | None = None,
     ) -> None:
         """An output time was reached."""

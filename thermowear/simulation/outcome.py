@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..laws.motions import RigidMotion
-from .result import FrictionHistory, HistoryRow, Interface
+from .result import FrictionHistory, HistoryRow, Interface, TrackHistory
 from .state import BodyState
 
 
@@ -28,6 +28,8 @@ class Outcome:
     outputs : dict of float to Interface
     friction : FrictionHistory or None
         Of a fretting analysis.
+    track : TrackHistory or None
+        Of a reciprocating analysis.
     stopped : BaseException or None
     """
 
@@ -39,4 +41,5 @@ class Outcome:
     history: list[HistoryRow]
     outputs: dict[float, Interface]
     friction: FrictionHistory | None = None
+    track: TrackHistory | None = None
     stopped: BaseException | None = None

@@ -19,6 +19,7 @@ def interface_at(
     motion: RigidMotion,
     worn: np.ndarray,
     shear: np.ndarray | None = None,
+    rates: np.ndarray | None = None,
 ) -> tuple[BodyState, Interface]:
     """Solve the bodies and record the interface. Every rank calls.
 
@@ -32,6 +33,8 @@ def interface_at(
         Depth worn off each body [m].
     shear : ndarray, shape (n,), optional
         See `body_state` [Pa].
+    rates : ndarray, shape (2, n), optional
+        See `record` [m/s].
     """
     state = body_state(system, pressure, shear)
     lost = system.pairing.gap + worn.sum(axis=0)
@@ -42,16 +45,17 @@ def interface_at(
         + state.opening
         - np.einsum("ni,ni->n", system.pairing.normals, moved)
     )
-    return state, record(system, pressure, state, gap, lost.max() - lost, worn)
+    return state, record(system, pressure, state, gap, lost.max() - lost, worn, rates)
 
 
-def record(system: System, pressure, state: BodyState, gap, shape, worn) -> Interface:
-    """The interface as it is written out; arrays of shape (n,), `worn` of (2, n)."""
+def record(system: System, pressure, state: BodyState, gap, shape, worn, rates=None) -> Interface:
+    """The interface as it is written out; arrays of shape (n,), `worn` of (2, n).
+
+    Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
+    """
     points = system.pairing.points
     nothing = np.full(len(pressure), np.nan)
-    rates = np.zeros((2, len(pressure)))
-    for index, law in system.laws.items():
-        rates[index] = law.rate(pressure, system.speed)
+    rates = _local_rates(system, pressure) if rates is None else rates
     temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
     fluxes = temperatures
     if state.thermal is not None and system.thermal is not None:
@@ -76,6 +80,13 @@ def record(system: System, pressure, state: BodyState, gap, shape, worn) -> Inte
         heat_flux_1=fluxes[0],
         heat_flux_2=fluxes[1],
     )
+
+
+def _local_rates(system: System, pressure: np.ndarray) -> np.ndarray:
+    rates = np.zeros((2, len(pressure)))
+    for index, law in system.laws.items():
+        rates[index] = system.spreads[index].rate(law.rate(pressure, system.speed))
+    return rates
 
 
 def profile(system: System, interface: Interface) -> Profile:

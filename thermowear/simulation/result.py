@@ -104,6 +104,27 @@ class LoadRow:
     stick_area: float
     dissipated: float
     iterations: int
+    cycle: int
+    wear_volume_1: float
+    wear_volume_2: float
+
+
+@dataclass(frozen=True)
+class CycleRow:
+    """A cycle of a history of loads at its end; names and units are those of ``cycles.csv``.
+
+    Area and largest pressure are those of the whole cycle.
+    """
+
+    cycle: int
+    time: float
+    wear_volume_1: float
+    wear_volume_2: float
+    dissipated: float
+    max_wear_1: float
+    max_wear_2: float
+    contact_area: float
+    max_pressure: float
 
 
 @dataclass(frozen=True)
@@ -113,14 +134,41 @@ class FrictionHistory:
     Attributes
     ----------
     rows : list of LoadRow
+    cycles : list of CycleRow
+        Those that were computed.
     last : FrictionInterface
     outputs : dict of float to FrictionInterface
         At the output times.
     """
 
     rows: list[LoadRow]
+    cycles: list[CycleRow]
     last: FrictionInterface
     outputs: dict[float, FrictionInterface]
+
+
+@dataclass(frozen=True)
+class WornTrack:
+    """What body 2 loses where body 1 slides to and fro; names and units as in ``track.csv``."""
+
+    x: np.ndarray
+    wear_2: np.ndarray
+    wear_rate_2: np.ndarray
+
+
+@dataclass(frozen=True)
+class TrackHistory:
+    """What a reciprocating analysis finds beside the interface.
+
+    Attributes
+    ----------
+    last : WornTrack
+    outputs : dict of float to WornTrack
+        At the output times.
+    """
+
+    last: WornTrack
+    outputs: dict[float, WornTrack]
 
 
 @dataclass(frozen=True)
@@ -166,6 +214,8 @@ class Result:
         On rank 0.
     friction : FrictionHistory or None
         Of a fretting analysis.
+    track : TrackHistory or None
+        Of a reciprocating analysis.
     stopped : Exception or None
         What ended the run before its time.
     """
@@ -177,4 +227,5 @@ class Result:
     outputs: dict[float, Interface]
     fields: BodyFields | None
     friction: FrictionHistory | None = None
+    track: TrackHistory | None = None
     stopped: BaseException | None = None

@@ -7,15 +7,18 @@ import numpy as np
 from ..case.analyses import Transient
 from ..case.schema import Case
 from ..errors import ComputationError
+from ..laws import SteadyWear
 from ..laws.motions import combined
+from .drives import reference_point
 from .fields import sample
 from .fretting import fretting
+from .guarded import go_through
 from .interface_problem import InterfaceProblem
-from .interrupt import StopRequest
 from .observer import Observer
 from .outcome import Outcome
 from .phases import Phases
 from .preparation import interface_problem, prepare
+from .reciprocating import reciprocating
 from .recording import interface_at, profile, record
 from .result import HistoryRow, Interface, Result
 from .state import BodyState, body_state
@@ -67,15 +70,16 @@ def run(
     phases = phases or Phases(observer.phase)
     system = prepare(case, comm, phases)
     if system.pairing.unpaired > _UNPAIRED:
+        percent = 100 * system.pairing.unpaired
         observer.note(
-            f"{system.pairing.unpaired:.2%} of the contact face of body 1 has nothing opposite and "
+            f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
             "stays out of the contact"
         )
     outcome = _ANALYSES[case.analysis.type](system, observer)
     if _outgrown(system, outcome.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
-            "use contact.positioning = true"
+            "use contact.positioning = true, or a wider geometry.zone"
         )
     with phases("fields"):
         fields = sample(system, outcome.state, outcome.motion)
@@ -88,19 +92,25 @@ def run(
         outcome.outputs,
         fields,
         outcome.friction,
+        outcome.track,
         outcome.stopped,
     )
 
 
-def _outgrown(system: System, pressure: np.ndarray) -> bool:
-    """Whether it presses at an end of the face that should lie beyond the contact."""
+def _beyond(system: System) -> tuple[bool, bool]:
+    """Whether the first and the last end of the face lie beyond where it was meshed to touch."""
     case, x = system.case, system.pairing.points[:, 0]
     zone = case.geometry.expected_zone(case.pressing())
     if zone is None:
-        return False
+        return False, False
     margin = 1e-6 * (zone[1] - zone[0])
-    ends = ((0, x[0] < zone[0] - margin), (-1, x[-1] > zone[1] + margin))
-    return any(beyond and pressure[end] > 0 for end, beyond in ends)
+    return bool(x[0] < zone[0] - margin), bool(x[-1] > zone[1] + margin)
+
+
+def _outgrown(system: System, pressure: np.ndarray) -> bool:
+    """Whether it presses at an end of the face that should lie beyond the contact."""
+    ends = zip(_beyond(system), (0, -1), strict=True)
+    return any(beyond and pressure[end] > 0 for beyond, end in ends)
 
 
 def _problem(system: System, observer: Observer) -> InterfaceProblem:
@@ -150,6 +160,23 @@ def _steady(system: System, observer: Observer) -> Outcome:
     return Outcome(steady.pressure, motion, state, interface, extra, [], {})
 
 
+def _principle(system: System, settings: Transient) -> SteadyWear | None:
+    """The steady state that a running-in tends to; None where there is none.
+
+    There is none where nothing presses in the end, where the contact grows, or where the principle
+    has no solution.
+    """
+    free, grows = system.holder.free, any(_beyond(system))
+    if not (len(free) and free.all()) or (grows and settings.until is None):
+        return None
+    try:
+        return steady_wear(system)
+    except ComputationError:
+        if settings.until == "steady":
+            raise
+        return None
+
+
 def _wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:
     """Rigid-body wear velocities by the motions of the holder [m/s, rad/s]."""
     found: dict[str, float | None] = {_VELOCITIES["z"]: None}
@@ -163,29 +190,21 @@ def _transient(system: System, observer: Observer) -> Outcome:
     """Running-in. What was computed before an error or Ctrl-C is kept."""
     settings = system.case.analysis
     assert isinstance(settings, Transient)
-    steady = steady_wear(system) if system.holder.free.all() else None
+    steady = _principle(system, settings)
     problem = _problem(system, observer)
     history: list[HistoryRow] = []
     outputs: dict[float, Interface] = {}
-    last: Moment | None = None
-    stopped: BaseException | None = None
-    with system.phases("time stepping"), StopRequest() as stop:
-        try:
-            for moment in moments(problem, settings, None if steady is None else steady.pressure):
-                last = moment
-                history.append(_row(system, problem, moment))
-                observer.step(history[-1], moment.distance)
-                if moment.is_output:
-                    with system.phases("output"):
-                        outputs[moment.time] = _moment(system, moment)[1]
-                        observer.output(moment.time, outputs[moment.time])
-                if stop.agreed(system.comm):
-                    stopped = KeyboardInterrupt()
-                    break
-        except ComputationError as reason:
-            stopped = reason
-    if last is None:
-        raise stopped or ComputationError("transient: no step was made")
+
+    def keep(moment: Moment) -> None:
+        history.append(_row(system, problem, moment))
+        observer.step(history[-1], moment.distance)
+        if moment.is_output:
+            with system.phases("output"):
+                outputs[moment.time] = _moment(system, moment)[1]
+                observer.output(moment.time, outputs[moment.time])
+
+    passing = moments(problem, settings, None if steady is None else steady.pressure)
+    last, stopped = go_through(system, "time stepping", passing, keep)
     with system.phases("bodies"):
         state, interface = _moment(system, last)
     extra = {
@@ -211,6 +230,7 @@ _ANALYSES = {
     "steady": _steady,
     "transient": _transient,
     "fretting": fretting,
+    "reciprocating": reciprocating,
 }
 
 
@@ -223,7 +243,7 @@ def _by_body(system: System, worn: np.ndarray) -> np.ndarray:
 
 def _row(system: System, problem: InterfaceProblem, moment: Moment) -> HistoryRow:
     pressure = moment.state.pressure
-    volumes = _by_body(system, moment.state.worn) @ system.weights
+    volumes = system.worn_volumes(_by_body(system, moment.state.worn))
     mean_speed = float(np.average(system.speed, weights=system.weights))
     return HistoryRow(
         time=moment.time,
@@ -233,10 +253,16 @@ def _row(system: System, problem: InterfaceProblem, moment: Moment) -> HistoryRo
         wear_volume_1=float(volumes[0]),
         wear_volume_2=float(volumes[1]),
         max_temperature=problem.hottest(pressure),
-        approach=float(moment.state.contact.motion[0]),
+        approach=_approach(system, moment),
         step=moment.step,
         error=moment.error,
     )
+
+
+def _approach(system: System, moment: Moment) -> float:
+    """How far the holder has moved along the press, at its pivot [m]."""
+    moved = combined(system.holder.motions, moment.state.contact.motion)
+    return float(moved.at(reference_point(system.case)) @ system.press)
 
 
 def _moment(system: System, moment: Moment) -> tuple[BodyState, Interface]:

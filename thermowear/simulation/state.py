@@ -90,7 +90,8 @@ def _force_error(system: System, pressure, shear, displacement, loads) -> float:
     weights, points = system.weights, system.pairing.points
     nodes = system.elastic.nodes()
     reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
-    upper = system.elastic.owned_by(system.case.geometry.bodies[0])
+    geometry = system.case.geometry
+    upper = system.elastic.owned_by(*geometry.parts_of(geometry.bodies[0]))
     carried = weights * pressure * holder.carrying.T
     if shear is not None:
         along = tangents(system.pairing.normals)[0]

@@ -18,6 +18,7 @@ def steady_wear(system: System) -> SteadyWear:
         load=system.holder.load,
         laws=list(system.laws.values()),
         speed=system.speed,
+        spread=list(system.spreads.values()),
     )
 
 

@@ -35,6 +35,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
     friction = system.friction * p
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
+    volumes = system.worn_volumes(np.array([interface.wear_1, interface.wear_2]))
     summary = {
         "title": case.title,
         "analysis": case.analysis.type,
@@ -61,8 +62,8 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "equilibrium_relative_error": outcome.state.force_error,
         "rigid_wear_velocity_m_per_s": None,
         "wear_dissipation_W": float(w @ (p * rates)),
-        "wear_volume_1_m3": float(w @ interface.wear_1),
-        "wear_volume_2_m3": float(w @ interface.wear_2),
+        "wear_volume_1_m3": float(volumes[0]),
+        "wear_volume_2_m3": float(volumes[1]),
         "wear_coefficient_per": {name: law.per for name, law in case.wear.items()},
     }
     return summary | _guide_reactions(system, p) | _rotations(system, outcome) | outcome.extra
@@ -75,9 +76,10 @@ def _normal_force(system: System, pressure: np.ndarray) -> float:
 
 def _torque(system: System, friction: np.ndarray) -> float | None:
     """Friction moment about the axis that body 1 or 2 turns about [N m]; None without one."""
-    if system.case.model == "axisymmetric":
+    case, motion = system.case, system.case.motion
+    if case.model == "axisymmetric" and (motion is None or motion.velocity is None):
         return float(system.weights @ (friction * system.pairing.points[:, 0]))
-    center = system.case.geometry.rotation_center
+    center = case.geometry.rotation_center
     if center is None:
         return None
     arms = system.pairing.points[:, :2] - np.array(center)

@@ -32,6 +32,7 @@ from ..contact.pressure import pressure_basis
 from ..contact.sliding import Sliding, sliding
 from ..contact.traces import gap_trace, value_trace, vector_trace
 from ..laws import WearLaw
+from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
 from ..parallel import on_root, sum_over_ranks
 from .drives import drives
 from .initial_shape import initial_depth
@@ -150,6 +151,27 @@ class System:
         return laws
 
     @cached_property
+    def spreads(self) -> dict[int, Spreading]:
+        """Where the wear of each wearing body goes, by its index."""
+        return {index: self._spread(index) for index in self.laws}
+
+    def _spread(self, index: int) -> Spreading:
+        geometry = self.case.geometry
+        if self.case.wear[geometry.bodies[index]].spread == "in-place":
+            return InPlace()
+        if geometry.track is None:
+            return Share(geometry.sector)
+        assert geometry.thickness_factor is not None  # tracks are those of plane models
+        return Track(self.weights / geometry.thickness_factor / geometry.track)
+
+    def worn_volumes(self, worn: np.ndarray) -> np.ndarray:
+        """Volumes lost by the bodies, all of their tracks, from depths (2, n), shape (2,) [m³]."""
+        volumes = worn @ self.weights
+        for index, spread in self.spreads.items():
+            volumes[index] /= coverage(spread)
+        return volumes
+
+    @cached_property
     def contact(self) -> CondensedContact:
         """Elasticity condensed to the pressure space."""
         with self.phases("condense elasticity"):
@@ -190,18 +212,15 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
     with phases("mesh"):
         bodies = distribute(on_root(comm, lambda: case.tagged_mesh(zone)), comm)
     with phases("pair"):
-        face_1, face_2 = (gather_face(bodies, surface) for surface in geometry.contact)
-        pairing, basis = _points(face_1, face_2, model, degree, case.contact.pressure_degree)
-    if geometry.initial_shape is not None:
-        depth = initial_depth(comm, geometry.initial_shape, pairing.position)
-        pairing = replace(pairing, gap=pairing.gap + depth)
+        faces = [gather_face(bodies, surface) for surface in geometry.contact]
+        pairing, basis = contact_points(case, comm, model, *faces)
     slides = _sliding(case, model, pairing)
     pull, speed = pairing.normals, np.zeros(len(pairing.weights))
     if slides is not None:
         friction = case.contact.friction, case.contact.transverse_friction
         pull, speed = slides.pull(pairing.normals, *friction), slides.speed
     with phases("assemble elasticity"):
-        materials = {name: _elastic_material(case, name) for name in geometry.bodies}
+        materials = {name: _elastic_material(case, name) for name in geometry.parts}
         clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
         elastic = elasticity(
             bodies, model, degree, materials, clamped, geometry.symmetry, geometry.rollers
@@ -230,17 +249,23 @@ def _sliding(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
     if case.motion is None:
         return None
     geometry = case.geometry
-    velocity = model.sliding(pairing.points, case.motion, geometry.rotation_center)
+    velocity = model.sliding(pairing.points, case.motion.one_way, geometry.rotation_center)
     return sliding(velocity, pairing.normals, geometry.press_direction)
 
 
-def _points(face_1, face_2, model, degree: int, pressure_degree) -> tuple[Pairing, np.ndarray]:
-    """Contact points and pressure space."""
+def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pairing, np.ndarray]:
+    """Contact points, with the shape that body 1 starts from, and pressure space Ψ."""
+    degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree
     if pressure_degree == "lobatto":  # point by point, at the nodes of body 1's facets
         pairing = pair(face_1, face_2, model, degree + 1, refine=False)
-        return pairing, np.eye(len(pairing.weights))
-    pairing = pair(face_1, face_2, model, degree + 2)
-    return pairing, pressure_basis(pairing, pressure_degree or max(degree - 1, 1))
+        basis = np.eye(len(pairing.weights))
+    else:
+        pairing = pair(face_1, face_2, model, degree + 2)
+        basis = pressure_basis(pairing, pressure_degree or max(degree - 1, 1))
+    if case.geometry.initial_shape is not None:
+        depth = initial_depth(comm, case.geometry.initial_shape, pairing.position)
+        pairing = replace(pairing, gap=pairing.gap + depth)
+    return pairing, basis
 
 
 def _elastic_material(case: Case, body: str) -> ElasticMaterial:
@@ -269,7 +294,7 @@ def _thermal(case, bodies, model, pairing, elastic, basis, phases) -> ThermalSys
         upper, lower = pairing.sides
         traces = (value_trace(space, upper), value_trace(space, lower))
         conductivities, cooling = _round_the_ring(case)
-        shift = max(conductivities.values()) / pairing.position[-1]
+        shift = max(conductivities.values()) / pairing.extent
         given = {name: value - heat.ambient for name, value in heat.temperature.items()}
         bath = bath_matrix(space, traces, pairing.weights, shift)
         conducting = conduction(bodies, model, space, conductivities, cooling, given, bath)
@@ -289,7 +314,7 @@ def _round_the_ring(case: Case) -> tuple[dict[str, float], dict[str, float]]:
     """
     assert case.heat is not None
     moving, sector = case.geometry.bodies[1], case.geometry.sector
-    conductivities = {b: case.material(b).conductivity or 0.0 for b in case.geometry.bodies}
+    conductivities = {b: case.material(b).conductivity or 0.0 for b in case.geometry.parts}
     conductivities[moving] /= sector
     whole = {
         s: h / sector if s.startswith(f"{moving}_") else h for s, h in case.heat.cooling.items()

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..case.analyses import Transient
+from ..case.analyses import Timed
 from ..errors import ComputationError
-from .interface_problem import Contact, InterfaceProblem
-from .wear_step import WornContact, advance_with_error, next_step
+from .interface_problem import Contact
+from .wear_step import WearProblem, WornContact, advance_with_error, next_step
 
 _SMALLEST = 1e-12  # of the time that has passed
 
@@ -29,8 +29,7 @@ class Moment:
     is_output : bool
         Whether this is one of the output times.
     distance : float
-        Largest difference to the steady pressure, relative to the largest steady pressure; NaN
-        without one.
+        From the steady state, see `WearProblem`; NaN without one.
     """
 
     time: float
@@ -41,14 +40,12 @@ class Moment:
     distance: float
 
 
-def moments(
-    problem: InterfaceProblem, settings: Transient, steady: np.ndarray | None
-) -> Iterator[Moment]:
+def moments(problem: WearProblem, settings: Timed, steady: np.ndarray | None) -> Iterator[Moment]:
     """The moments of a running-in, from the unworn contact on.
 
     Parameters
     ----------
-    problem : InterfaceProblem
+    problem : WearProblem
     settings : Transient
     steady : ndarray or None, shape (n,)
         Steady pressure from the principle [Pa]; None without one (a given approach).
@@ -62,7 +59,7 @@ def moments(
     rates = problem.rates(contact.pressure)
     state = WornContact(np.zeros_like(rates), contact)
     steady = None if steady is None else problem.steady(steady)
-    distance = _distance(state.pressure, steady)
+    distance = problem.distance(state.pressure, steady)
     time, step = 0.0, _first_step(problem, contact, rates)
     targets = _targets(settings)
     yield Moment(0.0, 0.0, state, 0.0, False, distance)
@@ -75,7 +72,7 @@ def moments(
         step = time_left if hits else min(planned, max(time_left / 2, 0.1 * planned))
         state, step, error, hits, following = _accept(problem, state, step, hits, time, settings)
         time = targets[0] if hits else time + step
-        distance = _distance(state.pressure, steady)
+        distance = problem.distance(state.pressure, steady)
         reached = targets.pop(0) if hits else None
         yield Moment(time, step, state, error, reached in settings.output_times, distance)
         step = max(following, planned) if hits else following
@@ -102,22 +99,17 @@ def _accept(problem, state, step, hits, time, settings):
     raise ComputationError(f"transient: no step is small enough at {time:g} s{trouble}")
 
 
-def _targets(settings: Transient) -> list[float]:
+def _targets(settings: Timed) -> list[float]:
     """Times that must be hit exactly, in order; the last one ends the run."""
     end = np.inf if settings.end_time is None else settings.end_time
     return sorted({*settings.output_times, end})
 
 
-def _is_steady(settings: Transient, distance: float) -> bool:
+def _is_steady(settings: Timed, distance: float) -> bool:
     return settings.until == "steady" and distance <= settings.steady_tolerance
 
 
-def _distance(pressure: np.ndarray, steady: np.ndarray | None) -> float:
-    if steady is None:
-        return float("nan")
-    return float(np.abs(pressure - steady).max() / steady.max())
-
-
-def _first_step(problem: InterfaceProblem, contact: Contact, rates: np.ndarray) -> float:
+def _first_step(problem: WearProblem, contact: Contact, rates: np.ndarray) -> float:
     """A step in which wear is small against the elastic deflection of the bodies."""
-    return 1e-3 * problem.deflection(contact) / float(rates.sum(axis=0).max())
+    fastest = float(rates.sum(axis=0).max())
+    return 1e-3 * problem.deflection(contact) / fastest if fastest > 0.0 else np.inf

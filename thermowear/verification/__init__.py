@@ -2,7 +2,10 @@
 
 from . import (
     annular_punch,
+    beam_shakedown,
     flat_punch,
+    growing_cylinder,
+    growing_sphere,
     hertz_line,
     hertz_sphere,
     methods_agree,
@@ -23,6 +26,9 @@ CASES: dict[str, Checks] = {
         flat_punch,
         methods_agree,
         mindlin,
+        growing_cylinder,
+        growing_sphere,
+        beam_shakedown,
     )
 }
 """Verification cases by id; each yields its checks."""

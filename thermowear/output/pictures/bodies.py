@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from .. import tables
 from ..quantities import INTERFACE
+from .solids import color_limits, draw_solids
 
 _DEFORMED_PART = 0.06  # of the bodies' size: how far the largest displacement is drawn
 _PIXELS = 1400  # of the longer side of a rendered picture
@@ -33,12 +34,26 @@ def draw_bodies(folder: Path) -> None:
     if "temperature_K" in grid.point_data:
         grid["temperature [°C]"] = grid["temperature_K"] - 273.15
         fields.insert(0, ("temperature [°C]", "inferno"))
-    _draw(folder / "bodies.png", grid, fields, "", _contact(folder))
+    in_space = pyvista.CellType.HEXAHEDRON in grid.celltypes
+    if in_space:
+        draw_solids(folder / "bodies.png", grid, fields, "", _middle(folder))
+    else:
+        _draw(folder / "bodies.png", grid, fields, "", _contact(folder))
     largest = float(np.linalg.norm(grid["displacement_m"], axis=1).max()) * 1e3
     size = float(np.ptp(grid.points, axis=0).max())
     factor = _round(_DEFORMED_PART * size / largest) if largest > 0 else 1.0
     grid.points = grid.points + factor * 1e3 * grid["displacement_m"]
-    _draw(folder / "deformed.png", grid, fields, f"displacements magnified {factor:g} times")
+    note = f"displacements magnified {factor:g} times"
+    if in_space:
+        draw_solids(folder / "deformed.png", grid, fields, note, _middle(folder))
+    else:
+        _draw(folder / "deformed.png", grid, fields, note)
+
+
+def _middle(folder: Path) -> float:
+    """Where along y the middle of the contact face is [mm]."""
+    y = tables.read(folder / "interface.csv", INTERFACE)["y"] * 1e3
+    return float((y.min() + y.max()) / 2)
 
 
 def _contact(folder: Path) -> Extent | None:
@@ -83,7 +98,7 @@ def _panel(figure, axis, grid, name: str, colors: str, extent: Extent) -> None:
     """A window on a field with its own range of colours."""
     x, y = grid.points[:, 0], grid.points[:, 1]
     inside = (x >= extent[0]) & (x <= extent[1]) & (y >= extent[2]) & (y <= extent[3])
-    limits = _limits(grid[name][inside])
+    limits = color_limits(grid[name][inside])
     picture = _render(grid, name, colors, limits, extent)
     axis.imshow(picture, extent=extent, interpolation="antialiased")
     scale = axis.imshow([limits], cmap=colors, extent=extent, visible=False)
@@ -125,12 +140,6 @@ def _render(grid, name: str, colors: str, limits, extent: Extent) -> np.ndarray:
     picture = plotter.screenshot(None, return_img=True)
     plotter.close()
     return picture
-
-
-def _limits(values: np.ndarray) -> tuple[float, float]:
-    """Colour range without the few samples beside singular edges."""
-    low, high = float(values.min()), float(np.percentile(values, 99.5))
-    return (low, high) if high > low else (low - 0.5, low + 0.5)
 
 
 def _round(value: float) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import tables
-from ..quantities import HISTORY, INTERFACE, Quantity
+from ..quantities import HISTORY, INTERFACE, LOADS, Quantity
 
 STYLE = {
     "font.size": 10,
@@ -20,7 +20,7 @@ STYLE = {
     "lines.linewidth": 1.6,
     "legend.frameon": False,
 }
-_BODIES = ("tab:blue", "tab:orange")
+BODIES = ("tab:blue", "tab:orange")
 
 
 def draw_interface(folder: Path) -> None:
@@ -35,7 +35,7 @@ def draw_interface(folder: Path) -> None:
         axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         place = abscissa(data)
         for axis, names in zip(axes, panels, strict=True):
-            for name, color, line in zip(names, _BODIES, ("-", "--"), strict=False):
+            for name, color, line in zip(names, BODIES, ("-", "--"), strict=False):
                 drawn = INTERFACE[name].drawn(data[name])
                 axis.plot(place[1], drawn, line, color=color, label=f"body {name[-1]}")
             if len(names) > 1:
@@ -50,10 +50,15 @@ def draw_interface(folder: Path) -> None:
 
 def draw_wear(folder: Path) -> None:
     """``wear.png``: worn depth along the contact at the output times and at the end."""
-    if not (folder / "history.csv").is_file():
+    steps = {"history.csv": HISTORY, "loads.csv": LOADS}
+    ends = [
+        float(tables.read(folder / name, table)["time"][-1])
+        for name, table in steps.items()
+        if (folder / name).is_file()
+    ]
+    if not ends:
         return
-    end = float(tables.read(folder / "history.csv", HISTORY)["time"][-1])
-    files = {end: folder / "interface.csv"}
+    files = {ends[0]: folder / "interface.csv"}
     for path in folder.glob("interface_*.csv"):
         files[float(path.stem.removeprefix("interface_"))] = path
     states = {time: tables.read(path, INTERFACE) for time, path in sorted(files.items())}
@@ -93,7 +98,7 @@ def draw_history(folder: Path) -> None:
         upper.semilogx(time[1:], pressure[1:], color="tab:red")
         upper.set_ylabel(HISTORY["max_pressure"].axis)
         upper.set_xlabel(f"{HISTORY['time'].axis}, logarithmic")
-        for name, color in zip(("wear_volume_1", "wear_volume_2"), _BODIES, strict=True):
+        for name, color in zip(("wear_volume_1", "wear_volume_2"), BODIES, strict=True):
             if data[name][-1] > 0:
                 drawn = HISTORY[name].drawn(data[name])
                 lower.plot(time, drawn, color=color, label=f"body {name[-1]}")

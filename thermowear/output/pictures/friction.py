@@ -1,4 +1,4 @@
-"""Sticking and slipping: tractions along the contact, and the loop of force and displacement."""
+"""Sticking, slipping and its wear: along the contact, over a load history, over its cycles."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import tables
-from ..quantities import FRICTION, LOADS
-from .curves import STYLE, abscissa
+from ..quantities import CYCLES, FRICTION, LOADS
+from .curves import BODIES, STYLE, abscissa
 
 
 def draw_friction(folder: Path) -> None:
@@ -60,6 +60,29 @@ def draw_loads(folder: Path) -> None:
         lower.set_xlabel(LOADS["time"].axis)
         lower.set_ylabel(LOADS["dissipated"].axis)
         figure.savefig(folder / "loads.png")
+
+
+def draw_cycles(folder: Path) -> None:
+    """``cycles.png``: largest wear depth and worn volume of both bodies over the cycles."""
+    if not (folder / "cycles.csv").is_file():
+        return
+    data = tables.read(folder / "cycles.csv", CYCLES)
+    worn = [body for body in (1, 2) if data[f"wear_volume_{body}"].max(initial=0.0) > 0]
+    if not worn or len(data["cycle"]) < 2:
+        return
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(6.4, 5.0), layout="constrained", dpi=150)
+        axes = figure.subplots(2, sharex=True)
+        for axis, name in zip(axes, ("max_wear", "wear_volume"), strict=True):
+            for body in worn:
+                drawn = CYCLES[f"{name}_{body}"].drawn(data[f"{name}_{body}"])
+                axis.plot(data["cycle"], drawn, color=BODIES[body - 1], label=f"body {body}")
+            axis.set_ylim(bottom=0)
+        axes[0].set_ylabel(f"largest wear depth [{CYCLES['max_wear_1'].unit}]")
+        axes[1].set_ylabel(f"worn volume [{CYCLES['wear_volume_1'].unit}]")
+        axes[0].legend()
+        axes[1].set_xlabel("cycles")
+        figure.savefig(folder / "cycles.png")
 
 
 def _time(path: Path) -> float:

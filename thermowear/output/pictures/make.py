@@ -10,8 +10,10 @@ from pathlib import Path
 
 from ...errors import CaseError
 from .curves import draw_history, draw_interface, draw_wear
-from .friction import draw_friction, draw_loads
+from .friction import draw_cycles, draw_friction, draw_loads
+from .maps import draw_interface_maps, draw_wear_maps, is_surface
 from .profile import draw_profile
+from .track import draw_track
 
 _TIMEOUT = 180.0  # seconds for the rendering process
 
@@ -34,12 +36,18 @@ def make_pictures(folder: Path) -> list[str]:
     """
     if not (folder / "interface.csv").is_file():
         raise CaseError(f"{folder}: holds no interface.csv; not a results folder of a finished run")
-    draw_interface(folder)
-    draw_profile(folder)
-    draw_wear(folder)
+    if is_surface(folder):
+        draw_interface_maps(folder)
+        draw_wear_maps(folder)
+    else:
+        draw_interface(folder)
+        draw_profile(folder)
+        draw_wear(folder)
     draw_history(folder)
     draw_friction(folder)
     draw_loads(folder)
+    draw_cycles(folder)
+    draw_track(folder)
     if not (folder / "fields.vtu").is_file():
         return [f"{folder}: no fields.vtu, so no pictures of the bodies"]
     reason = _render(folder)

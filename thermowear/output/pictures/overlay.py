@@ -19,6 +19,10 @@ _FILES: dict[str, tuple[str, dict[str, Quantity]]] = {
     **dict.fromkeys(INTERFACE, ("interface.csv", INTERFACE)),
 }
 
+_SINGULAR, _MOST = 3.0, 0.9
+"""A peak is cut off where it is so many times higher than what most points have: singular corners
+of unworn faces would leave nothing to see of the rest."""
+
 
 @dataclass(frozen=True)
 class Panel:
@@ -56,11 +60,16 @@ def draw_overlay(runs: Mapping[str, Path], panels: Sequence[Panel], path: Path) 
         axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         for axis, panel in zip(axes, panels, strict=True):
             name, table = _FILES[panel.quantity]
+            highest = []
             for k, (label, folder) in enumerate(runs.items()):
                 data = tables.read(folder / name, table)
                 where, place = abscissa(data)
                 drawn = table[panel.quantity].drawn(data[panel.quantity])
                 axis.plot(place, drawn, styles[k % 4], color=colors[k], label=label)
+                highest.append((np.nanmax(drawn), np.nanquantile(drawn, _MOST)))
+            peak, usual = np.max(highest, axis=0)
+            if usual > 0 and peak > _SINGULAR * usual:
+                axis.set_ylim(top=1.5 * usual)
             axis.set_ylabel(f"{table[panel.quantity].label}\n[{table[panel.quantity].unit}]")
             axis.set_title(panel.title, fontsize="medium")
             if panel.from_zero:

@@ -26,7 +26,7 @@ def draw_profile(folder: Path) -> None:
         return
     data = tables.read(folder / "profile.csv", PROFILE)
     pairs = [pair for pair in _PAIRS if _differ(*(data[name] for name in pair[:2]))]
-    if not pairs:
+    if not pairs or not np.any(data["wear_rate"] > 0):
         return
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 2.6 * len(pairs)), layout="constrained", dpi=150)

@@ -1,0 +1,287 @@
+"""Faces in space: facets, contact points, pressure space and trace operators."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from dolfinx import fem
+
+from thermowear import CaseError
+from thermowear.bulk.field import lagrange_space, owned
+from thermowear.bulk.kinematics import Spatial
+from thermowear.contact.clipping import opposite
+from thermowear.contact.pairing import pair
+from thermowear.contact.pressure import pressure_basis
+from thermowear.contact.projection import project
+from thermowear.contact.traces import gap_trace, value_trace
+from thermowear.contact.zones import contact_zones
+from thermowear.parallel import sum_over_ranks
+
+from .solids import COMM, SIZE, bent, gathered, skewed, straight, turned
+from .solids import two_solids as solids
+
+OTHER = ((3, 2, 2), (4, 3, 2))
+
+
+def raised(p):
+    """A face that is no longer level."""
+    x, y, z = np.moveaxis(p, -1, 0)
+    return np.stack([x, y, z + 3e-3 * np.cos(60 * x) * np.cos(40 * y)], axis=-1)
+
+
+def faces(divisions=OTHER, order=1, maps=(straight, straight)):
+    return gathered(solids(divisions, order, maps))[1]
+
+
+def moved(face, by):
+    """The face of a body that has been shifted."""
+    return replace(face, nodes=face.nodes + np.array(by))
+
+
+@pytest.mark.parametrize(("place", "order"), [(straight, 1), (bent, 2), (bent, 3), (turned, 3)])
+def test_facets(place, order):
+    """requirement: outward normals, areas, shared corners, the order of the mesh file."""
+    upper, lower = faces(OTHER, order, (place, place))
+    area = SIZE[0] * SIZE[1] if place is not turned else np.pi / 4 * (0.09**2 - 0.05**2)
+    for face, count, normal in ((upper, (3, 2), -1.0), (lower, (4, 3), 1.0)):
+        every = np.arange(len(face.nodes))
+        assert len(every) == count[0] * count[1]
+        t = np.random.default_rng(0).uniform(size=(len(every), 2))
+        np.testing.assert_allclose(face.normals(every, t), [[0, 0, normal]] * len(every), atol=1e-9)
+        assert face.sizes.sum() == pytest.approx(area, rel=2e-4 if place is turned else 1e-12)
+        places = face.nodes[:, [0, 0, -1, -1], [0, -1, 0, -1]].reshape(-1, 3)
+        numbers = face.corners.reshape(-1)
+        assert len(np.unique(numbers)) == (count[0] + 1) * (count[1] + 1)
+        for number in numbers:
+            assert np.ptp(places[numbers == number], axis=0).max() < 1e-12
+
+
+def test_tangents_are_derivatives():
+    upper, _ = faces(OTHER, 2, (raised, raised))
+    rng = np.random.default_rng(1)
+    facet, t = np.arange(6), rng.uniform(0.1, 0.9, (6, 2))
+    for k in (0, 1):
+        step = 1e-6 * np.eye(2)[k]
+        slope = (upper.points(facet, t + step) - upper.points(facet, t - step)) / 2e-6
+        np.testing.assert_allclose(upper.tangents(facet, t)[:, k], slope, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("divisions", "maps"),
+    [
+        (((3, 2, 2), (3, 2, 2)), (straight, straight)),
+        (OTHER, (straight, straight)),
+        (((4, 3, 2), (2, 5, 2)), (skewed, skewed)),
+        (((3, 3, 2), (3, 3, 2)), (bent, bent)),
+        (OTHER, (straight, bent)),
+        (((5, 4, 2), (2, 2, 2)), (bent, straight)),
+    ],
+)
+def test_weights_integrate_over_the_face(divisions, maps):
+    """requirement: areas; polynomials in space, across the facets of both sides."""
+    pairing = pair(*faces(divisions, 1, maps), Spatial(), 6)
+    (x, y, _), w = pairing.points.T, pairing.weights
+    a, b = SIZE
+    if maps[0] is skewed:
+        assert w.sum() == pytest.approx(0.94 * a * b, rel=1e-12)
+    else:
+        assert w.sum() == pytest.approx(a * b, rel=1e-12)
+        assert w @ (x**2 * y**3) == pytest.approx(a**3 / 3 * b**4 / 4, rel=1e-11)
+    assert w.min() > 0
+    assert pairing.unpaired < 1e-12
+    np.testing.assert_allclose(pairing.gap, 0.0, atol=1e-15)
+    for side in pairing.sides:
+        np.testing.assert_allclose(side.face.points(side.facet, side.t), pairing.points, atol=1e-12)
+        assert side.t.min() >= 0
+        assert side.t.max() <= 1
+
+
+def test_matching_faces_have_the_nodes_of_one_rule():
+    """requirement: points that facets share are one; the rim has points."""
+    pairing = pair(*faces(((3, 2, 2), (3, 2, 2))), Spatial(), 4)
+    assert len(pairing.weights) == (3 * 3 + 1) * (3 * 2 + 1)
+    assert pairing.points[:, :2].min() == 0.0
+    assert pairing.points[:, 0].max() == SIZE[0]
+
+
+@pytest.mark.parametrize("axes", [(0, 1, 2), (1, 0, 2)])
+def test_parts_are_where_both_facets_are(axes):
+    """requirement: a turned square opposite to one leaves a regular octagon, whichever way each
+    facet runs.
+    """
+    upper, lower = faces(((1, 1, 1), (1, 1, 1)))
+    square = np.array([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]], dtype=float)
+    upper = replace(upper, nodes=square[None])
+    middle, angle = np.array([0.5, 0.5, 0.0]), np.pi / 4
+    turn = np.array(
+        [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]]
+    )
+    lower = replace(lower, nodes=((square.transpose(axes) - middle) @ turn.T + middle)[None])
+    if upper.middle_normals[0] @ lower.middle_normals[0] > 0:
+        lower = replace(lower, outward=-lower.outward)
+    facet, corners = opposite(upper, lower)
+    assert set(facet) == {0}
+    side = np.sqrt(2) - 1
+    following = np.roll(corners, -1, axis=1)
+    areas = (corners[..., 0] * following[..., 1] - corners[..., 1] * following[..., 0]).sum(1) / 2
+    assert areas.min() > 0
+    assert areas.sum() == pytest.approx(2 * (1 + np.sqrt(2)) * side**2, rel=1e-12)
+    pairing = pair(upper, lower, Spatial(), 4)
+    assert pairing.weights.sum() == pytest.approx(areas.sum(), rel=1e-12)
+    assert pairing.unpaired == pytest.approx(1 - areas.sum(), rel=1e-12)
+
+
+@pytest.mark.parametrize("distance", [1e-4, -2e-5])
+def test_initial_gap_is_open_where_positive(distance):
+    """requirement: the sign of the gap, g0 = (x2 - x1)·n."""
+    upper, lower = faces()
+    pairing = pair(upper, moved(lower, [0.0, 0.0, -distance]), Spatial(), 4)
+    np.testing.assert_allclose(pairing.gap, distance, rtol=1e-9)
+
+
+def test_points_without_a_partner_are_outside_the_contact():
+    """requirement: where body 2 ends, contact ends, exactly there."""
+    upper, lower = faces()
+    pairing = pair(upper, moved(lower, [0.013, 0.004, 0.0]), Spatial(), 5)
+    left = (SIZE[0] - 0.013) * (SIZE[1] - 0.004)
+    np.testing.assert_allclose(pairing.points[:, :2].min(axis=0), [0.013, 0.004], atol=1e-12)
+    assert pairing.weights.sum() == pytest.approx(left, rel=1e-9)
+    assert pairing.unpaired == pytest.approx(1 - left / (SIZE[0] * SIZE[1]), rel=1e-9)
+
+
+@pytest.mark.parametrize("refine", [True, False])
+def test_faces_that_do_not_meet_are_reported(refine):
+    upper, lower = faces()
+    with pytest.raises(CaseError, match="opposite"):
+        pair(upper, moved(lower, [1.0, 0.0, 0.0]), Spatial(), 4, refine)
+
+
+def test_faces_that_look_away_do_not_meet():
+    upper, lower = faces()
+    with pytest.raises(CaseError, match="opposite"):
+        pair(upper, replace(lower, outward=-lower.outward), Spatial(), 4)
+
+
+def test_points_of_whole_facets():
+    """requirement: point by point, at the nodes of one rule on each facet of body 1."""
+    pairing = pair(*faces(), Spatial(), 3, refine=False)
+    assert len(pairing.weights) == 7 * 5
+    assert pairing.weights.sum() == pytest.approx(SIZE[0] * SIZE[1])
+
+
+def test_projection_on_a_curved_face():
+    """requirement: closest points; the offset is along the normal, beyond the rim it is not."""
+    _, lower = faces(((3, 2, 2), (5, 4, 2)), 3, (raised, raised))
+    rng = np.random.default_rng(2)
+    facet, t = rng.integers(20, size=60), rng.uniform(0.05, 0.95, (60, 2))
+    on = lower.points(facet, t)
+    points = on + 2e-3 * lower.normals(facet, t)
+    found, at, offset = project(lower, points)
+    np.testing.assert_allclose(lower.points(found, at), on, atol=1e-10)
+    np.testing.assert_allclose(offset, on - points, atol=1e-10)
+    beyond = np.array([[-1e-3, 0.01, 0.003], [0.05, 0.04, 0.0]])
+    found, at, offset = project(lower, beyond)
+    rim = lower.points(found, at)
+    np.testing.assert_allclose(rim[0, 0], 0.0, atol=1e-12)
+    np.testing.assert_allclose(rim[1, :2], SIZE, atol=1e-12)
+
+
+@pytest.mark.parametrize(("place", "order"), [(skewed, 1), (bent, 2)])
+def test_the_closest_point_of_a_rim(place, order):
+    """requirement: beside the face it lies on the rim, nearer than any other point of it."""
+    _, lower = faces(((3, 2, 2), (3, 2, 2)), order, (place, place))
+    middle = lower.nodes.mean(axis=(0, 1, 2))
+    angles = np.linspace(0, 2 * np.pi, 40)
+    points = middle + 0.05 * np.column_stack([np.cos(angles), np.sin(angles), 0.1 + 0 * angles])
+    _, _, offset = project(lower, points)
+    steps = np.linspace(0, 1, 201)
+    s, t = (v.ravel() for v in np.meshgrid(steps, steps))
+    facet = np.repeat(np.arange(len(lower.nodes)), len(s))
+    every = lower.points(facet, np.tile(np.column_stack([s, t]), (len(lower.nodes), 1)))
+    distance = np.array([np.linalg.norm(every - p, axis=1).min() for p in points])
+    found = np.linalg.norm(offset, axis=1)
+    assert np.all(found <= distance * (1 + 1e-12))
+    np.testing.assert_allclose(found, distance, rtol=1e-4)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 4])
+@pytest.mark.parametrize(
+    ("divisions", "maps"), [(OTHER, (straight, straight)), (((3, 2, 2),) * 2, (bent, bent))]
+)
+def test_pressure_basis(divisions, maps, degree):
+    """requirement: Ψ >= 0, sums to one, continuous, complete to its degree."""
+    pairing = pair(*faces(divisions, 1, maps), Spatial(), degree + 2)
+    basis = pressure_basis(pairing, degree)
+    assert basis.min() >= 0.0
+    np.testing.assert_allclose(basis.sum(axis=1), 1.0, rtol=1e-13)
+    assert basis.shape[1] == (3 * degree + 1) * (2 * degree + 1)
+    x, y, _ = pairing.points.T / SIZE[0]
+    field = (x - 2 * y) ** degree
+    if maps[0] is straight:
+        field = field + (x * y) ** degree
+    best = np.linalg.lstsq(basis, field, rcond=None)[0]
+    np.testing.assert_allclose(basis @ best, field, atol=1e-11)
+
+
+def test_pressure_is_continuous_whichever_way_facets_run():
+    """requirement: edges are shared with their orientation."""
+    upper, lower = faces(((3, 2, 2), (3, 2, 2)))
+    flipped = upper.nodes.copy(), upper.corners.copy()
+    for facet, turns in ((1, 1), (2, 2), (4, 3)):
+        flipped[0][facet] = np.rot90(upper.nodes[facet], turns)
+        flipped[1][facet] = np.rot90(upper.corners[facet], turns)
+    mixed = replace(upper, nodes=flipped[0], corners=flipped[1])
+    plain, turned_ = (pair(f, lower, Spatial(), 6) for f in (upper, mixed))
+    order = [np.lexsort(np.round(p.points[:, :2], 9).T) for p in (plain, turned_)]
+    spaces = [pressure_basis(p, 4)[k] for p, k in zip((plain, turned_), order, strict=True)]
+    both = np.hstack(spaces)
+    assert np.linalg.matrix_rank(both, tol=1e-9) == spaces[0].shape[1]
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4])
+@pytest.mark.parametrize(
+    ("divisions", "order", "maps"),
+    [
+        (OTHER, 1, (straight, straight)),
+        (OTHER, 1, (straight, bent)),
+        (((3, 2, 2),) * 2, 2, (bent, bent)),
+    ],
+)
+def test_traces(divisions, order, maps, degree):
+    """requirement: E evaluates fields at the points; B = (u2 - u1)·n, open positive."""
+    degree = max(degree, order)
+    bodies, (upper, lower) = gathered(solids(divisions, order, maps))
+    pairing = pair(upper, lower, Spatial(), degree + 2)
+    scalar, vector = lagrange_space(bodies.mesh, degree), lagrange_space(bodies.mesh, degree, 3)
+    power = degree // order  # in the cells' own parameters the degree is higher
+
+    def field(x):
+        return (30 * x[0] - 50 * x[1] + 20 * x[2]) ** power
+
+    values, u = fem.Function(scalar), fem.Function(vector)
+    values.interpolate(field)
+    u.interpolate(lambda x: np.stack([7 + 0 * x[0], x[1], field(x)]))
+    expected = field(pairing.points.T)
+    for side in pairing.sides:
+        found = value_trace(scalar, side).T @ values.x.array[: owned(scalar)]
+        np.testing.assert_allclose(sum_over_ranks(COMM, found), expected, atol=1e-11)
+    trace = gap_trace(vector, pairing).T
+    assert np.abs(sum_over_ranks(COMM, trace @ u.x.array[: owned(vector)])).max() < 1e-10
+    lifted = elevated(bodies, vector)
+    np.testing.assert_allclose(sum_over_ranks(COMM, trace @ lifted), 1e-3, rtol=1e-11)
+
+
+def elevated(bodies, space):
+    """Body 1 lifted by 1 mm: the gap opens by 1 mm."""
+    cells = bodies.cell_tags.find(bodies.body_tag("upper"))
+    nodes = np.unique(space.dofmap.list[cells])
+    values = np.zeros(owned(space))
+    values[3 * nodes[nodes < len(values) // 3] + 2] = 1e-3
+    return values
+
+
+def test_a_surface_has_no_zones():
+    pairing = pair(*faces(), Spatial(), 4)
+    assert contact_zones(pairing, np.ones(len(pairing.weights))) == []
+    assert np.isnan(pairing.position).all()
+    assert pairing.extent == pytest.approx(SIZE[0])

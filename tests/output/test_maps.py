@@ -1,0 +1,88 @@
+"""Pictures of contact in space: maps of the face, and the bodies cut open."""
+
+import matplotlib.image as mpimg
+import meshio
+import numpy as np
+import pytest
+import tomli_w
+
+from thermowear.cli import main
+from thermowear.output.pictures.maps import triangulated
+
+from ..simulation.space import BRAKE, PUNCH, changed
+
+
+def areas(triangles):
+    """Area of each triangle that is drawn."""
+    shown = triangles.get_masked_triangles()
+    x, y = triangles.x[shown], triangles.y[shown]
+    return 0.5 * (
+        (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
+    )
+
+
+def grid(columns, rows):
+    x, y = np.meshgrid(columns, rows, indexing="ij")
+    return x.ravel(), y.ravel()
+
+
+GRADED = np.array([0.0, 1e-3, 1e-2, 0.1, 0.5, 0.9, 0.99, 0.999, 1.0])
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+def test_a_graded_rectangle_is_filled(turn):
+    """requirement: thin cells at the rim are not taken for bays."""
+    x, y = grid(60 * GRADED, 80 * GRADED)
+    triangles = triangulated(
+        x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)
+    )
+    assert areas(triangles).sum() == pytest.approx(60 * 80, rel=1e-6)
+
+
+@pytest.mark.parametrize("angle", [30, 60, 120, 150])
+def test_the_bay_of_a_sector_is_left_out(angle):
+    """requirement: nothing is drawn where the face is not."""
+    angles = np.radians(angle) * (GRADED - 0.5)
+    fine = np.unique(np.concatenate([angles, np.linspace(angles[0], angles[-1], 25)]))
+    r, φ = grid(np.array([80.0, 80.2, 85.0, 100.0, 115.0, 119.8, 120.0]), fine)
+    found = areas(triangulated(r * np.cos(φ), r * np.sin(φ))).sum()
+    assert found == pytest.approx(np.radians(angle) / 2 * (120**2 - 80**2), rel=5e-3)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    """Results of a running-in and of a steady run, with their pictures."""
+    base = tmp_path_factory.mktemp("space")
+    ending = {"type": "transient", "end_time": "1000 s"}
+    cases = {
+        "punch": changed(PUNCH, {"analysis": ending, "wear.block": {"coefficient": "1e-7 1/MPa"}}),
+        "brake": BRAKE,
+    }
+    for name, tables in cases.items():
+        file = base / f"{name}.toml"
+        file.write_text(tomli_w.dumps(tables), encoding="utf-8")
+        assert main(["run", str(file), "-o", str(base / name)]) == 0
+    return base
+
+
+def test_every_picture_shows_something(folders):
+    """requirement: R1 in space."""
+    expected = {
+        "punch": {"interface", "wear", "history", "bodies", "deformed"},
+        "brake": {"interface", "bodies", "deformed"},
+    }
+    for name, pictures in expected.items():
+        assert {path.stem for path in (folders / name).glob("*.png")} == pictures
+        for path in (folders / name).glob("*.png"):
+            image = mpimg.imread(path)[..., :3]
+            assert min(image.shape[:2]) > 400, path
+            coloured = (image.max(axis=2) - image.min(axis=2)) > 0.1
+            assert coloured.mean() > (0.003 if path.stem == "history" else 0.05), path
+
+
+def test_the_fields_are_volumes(folders):
+    """requirement: hexahedra for ParaView."""
+    mesh = meshio.read(folders / "punch" / "fields.vtu")
+    assert {block.type for block in mesh.cells} == {"hexahedron"}
+    assert np.ptp(mesh.points, axis=0) == pytest.approx([0.12, 0.14, 0.11])
+    assert mesh.point_data["displacement_m"].shape[1] == 3

@@ -1,0 +1,69 @@
+"""Contacts that grow by wear, beyond their verification cases."""
+
+import numpy as np
+import pytest
+
+from thermowear.reference.growing_contact import growing_line
+from thermowear.verification.hertz import MODULUS
+
+from ..case.starter import solved
+
+CYLINDER, SPHERE = "cylinder-on-block-growing", "sphere-on-block-growing"
+COARSE = {"mesh.elements": 40, "analysis.output_times": []}
+
+
+def test_a_ball_slides_with_one_speed():
+    """requirement: motion.velocity of a sphere: all points alike, no torque about the axis."""
+    result = solved(SPHERE, COARSE | {"analysis.end_time": "2 s", "contact.friction": 0.2})
+    i = result.interface
+    assert result.history[-1].sliding_distance == pytest.approx(0.1, rel=1e-12)
+    pressing = i.pressure > 0
+    np.testing.assert_allclose(i.wear_rate_1[pressing], 1.33e-13 * 0.05 * i.pressure[pressing])
+    assert result.summary["friction_torque_Nm"] is None
+    assert result.summary["normal_force_N"] == pytest.approx(10.385, rel=1e-9)
+
+
+def test_a_ball_that_spins_wears_about_its_axis():
+    """requirement: v = ω r needs no steady state; p ~ 1/r, a³ = a0³ + 3 k ω F R t/(2 π)."""
+    turning = {"motion": {"angular_velocity": "1 rad/s"}, "analysis.end_time": "1e4 s"}
+    result = solved(SPHERE, COARSE | turning, "mesh.elements=80")
+    i = result.interface
+    a = np.sqrt(3 * (i.weight * i.wear_1) @ i.x**2 / (i.weight @ i.wear_1))
+    grown = 3 * 1.33e-13 * 10.385 * 50e-3 * 1e4 / (2 * np.pi)
+    assert a == pytest.approx((0.15e-3**3 + grown) ** (1 / 3), rel=1e-2)
+    middle = (i.x > 0.3 * a) & (i.x < 0.8 * a)
+    np.testing.assert_allclose(i.pressure[middle] * i.x[middle] * 2 * np.pi * a, 10.385, rtol=0.02)
+
+
+def test_a_contact_that_outgrows_its_mesh_is_told():
+    """requirement: what was meshed for a smaller contact is said to be outgrown."""
+    import thermowear as tw
+    from thermowear.simulation.observer import Observer
+
+    from ..case.starter import tables
+
+    class Notes(Observer):
+        def __init__(self):
+            self.found = []
+
+        def note(self, text):
+            self.found.append(text)
+
+    for zone, outgrown in (("0.06 mm", True), ("0.3 mm", False)):
+        notes = Notes()
+        case = tw.load(tables(CYLINDER, COARSE | {"geometry.zone": zone}))
+        tw.run(case, observer=notes)
+        assert any("end of the contact face" in note for note in notes.found) is outgrown
+
+
+def test_finer_meshes_grow_alike():
+    """requirement: half-width and depth do not depend on the elements that the edge passes."""
+    law = growing_line(20e3, 10e-3, MODULUS, 1e-14)
+    end = f"analysis.end_time={float(law.distance(4 * law.start)) / 0.05!r} s"
+
+    def grown(elements):
+        i = solved(CYLINDER, COARSE, end, f"mesh.elements={elements}").interface
+        spread = np.sqrt(5 * (i.weight * i.wear_2) @ i.x**2 / (i.weight @ i.wear_2))
+        return np.array([spread, i.wear_2[0]])
+
+    np.testing.assert_allclose(grown(40), grown(80), rtol=5e-3)

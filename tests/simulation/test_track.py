@@ -1,0 +1,65 @@
+"""Wear of a body that passes by, spread over its track."""
+
+import numpy as np
+import pytest
+
+from ..case.starter import GONE, solved
+
+STRIP, PADS = "punch-on-strip", "disk-brake"
+COARSE = ("mesh.degree=4", "mesh.elements=8")
+BOTH = ("wear.strip.coefficient=3e-7 1/MPa", "wear.punch.coefficient=1e-7 1/MPa")
+TRACK = ("wear.strip.spread=track",)
+
+
+def cold(name, *overrides):
+    return solved(name, {"heat": GONE}, *COARSE, *overrides)
+
+
+def test_a_strip_wears_evenly_along_its_track():
+    """requirement: the steady rates are the punch's own and the mean over the strip's length."""
+    result = cold(STRIP, *BOTH, *TRACK)
+    pressure, speed, friction = 4e3 / 400e-6, 3e-3, 0.3
+    punch, strip = 1e-13 * friction * pressure * speed, 3e-13 * friction * pressure * speed
+    part = 40.0 / 160.0
+    assert result.interface.wear_rate_1 == pytest.approx(punch, rel=1e-9)
+    assert result.interface.wear_rate_2 == pytest.approx(part * strip, rel=1e-9)
+    velocity = result.summary["rigid_wear_velocity_m_per_s"]
+    assert velocity == pytest.approx(punch + part * strip, rel=1e-9)
+
+
+def test_what_the_track_loses():
+    """requirement: Archard's volume, whichever way it is spread."""
+    end = "analysis={type='transient', end_time='1000 s'}"
+    in_place, spread = (cold(STRIP, *BOTH, *more, end).summary for more in ((), TRACK))
+    slid = 3e-3 * 1000.0
+    for summary in (in_place, spread):
+        assert summary["wear_volume_1_m3"] == pytest.approx(1e-13 * 0.3 * 4e3 * slid, rel=1e-6)
+        assert summary["wear_volume_2_m3"] == pytest.approx(3e-13 * 0.3 * 4e3 * slid, rel=1e-6)
+
+
+def test_running_in_with_a_track_ends_in_the_steady_state():
+    """requirement: transient and principle agree; b differs, so the mean is no constant."""
+    law = (
+        "wear.strip.pressure_exponent=2.0",
+        "wear.strip.coefficient=3e-7 1/MPa^2",
+        "wear.punch.coefficient=1e-7 1/MPa",
+        "holder={free=['z','rotation'],pivot=['0 mm','10 mm']}",
+        "load.point=['-2 mm']",
+    )
+    end = "analysis={type='transient', until='steady', steady_tolerance=1e-3}"
+    direct, reached = cold(STRIP, *law, *TRACK), cold(STRIP, *law, *TRACK, end)
+    assert np.ptp(direct.interface.pressure) > 0.2 * direct.interface.pressure.max()
+    assert reached.interface.pressure == pytest.approx(
+        direct.interface.pressure, abs=2e-3 * direct.interface.pressure.max()
+    )
+    assert np.ptp(reached.interface.wear_2) < 1e-12 * reached.interface.wear_2.max()
+
+
+def test_pads_take_up_a_sector_of_their_disk():
+    """requirement: a disk under pads of 60 degrees wears for a sixth of the time."""
+    both = ("wear.disk.coefficient=1e-7 1/MPa", "wear.disk.spread=track")
+    result = cold(PADS, *both)
+    assert result.interface.wear_rate_2 == pytest.approx(result.interface.wear_rate_1 / 6)
+    end = "analysis={type='transient', end_time='1e5 s'}"
+    worn = cold(PADS, *both, end).summary
+    assert worn["wear_volume_2_m3"] == pytest.approx(worn["wear_volume_1_m3"], rel=1e-9)

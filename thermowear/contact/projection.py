@@ -1,0 +1,133 @@
+"""Closest points of a contact face."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .face import Face
+from .surface import Surface
+
+_STEPS = 30
+_SETTLED = 1e-13
+_TRIALS = 4
+"""Facets in space that are tried for each point: the nearest ones, as if they were flat."""
+_AT_ONCE = 1_000_000
+"""Pairs of points and facets that are looked at together."""
+
+
+def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Closest points of a face.
+
+    Parameters
+    ----------
+    face : Face or Surface
+    points : ndarray, shape (n, gdim) [m]
+
+    Returns
+    -------
+    facet : ndarray, shape (n,)
+    t : ndarray, shape (n,) or (n, 2)
+    offset : ndarray, shape (n, gdim)
+        From each point to its projection [m].
+    """
+    facet, t = _on_surface(face, points) if isinstance(face, Surface) else _on_chain(face, points)
+    return facet, t, face.points(facet, t) - points
+
+
+def beside(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
+    """How far points lie beside their closest points: more than 0 beyond the face's edge [m]."""
+    tangents = face.tangents(facet, t).reshape(len(facet), -1, offset.shape[1])
+    across = np.linalg.qr(np.moveaxis(tangents, 1, 2))[0]
+    return np.linalg.norm(np.einsum("nik,ni->nk", across, offset), axis=1)
+
+
+def _on_chain(face: Face, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Facet and parameter of the closest points."""
+    a, b = face.nodes[:, 0], face.nodes[:, -1]
+    chord = b - a
+    along = np.einsum("nfi,fi->nf", points[:, None] - a, chord) / (chord**2).sum(axis=1)
+    along = np.clip(along, 0.0, 1.0)
+    distance = np.linalg.norm(a + along[..., None] * chord - points[:, None], axis=2)
+    nearest = distance.argmin(axis=1)
+    # the nearest chord may belong to a neighbour of the nearest curved facet
+    facets = [np.clip(nearest + k, 0, len(a) - 1) for k in (0, -1, 1)]
+    trials = [(facet, _along(face, points, facet)) for facet in facets]
+    return _best(face, points, trials)
+
+
+def _best(face, points: np.ndarray, trials: list[tuple[np.ndarray, np.ndarray]]):
+    """The trial with the smallest distance, point by point."""
+    far = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
+    best, every = np.argmin(far, axis=0), np.arange(len(points))
+    facet, t = (np.array([trial[k] for trial in trials])[best, every] for k in (0, 1))
+    return facet, t
+
+
+def _along(face: Face, points: np.ndarray, facet: np.ndarray) -> np.ndarray:
+    """Closest points of given facets by Newton's method from the chord."""
+    start, end = face.nodes[facet, 0], face.nodes[facet, -1]
+    chord = end - start
+    t = ((points - start) * chord).sum(axis=1) / (chord**2).sum(axis=1)
+    t = np.clip(t, 0.0, 1.0)
+    for _ in range(0 if face.nodes.shape[1] == 2 else 20):
+        offset, tangent = face.points(facet, t) - points, face.tangents(facet, t)
+        step = (offset * tangent).sum(axis=1) / (tangent**2).sum(axis=1)
+        t = np.clip(t - step, 0.0, 1.0)
+    return t
+
+
+def _on_surface(face: Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    chunk = max(1, _AT_ONCE // len(face.nodes))
+    parts = [_in_chunk(face, points[i : i + chunk]) for i in range(0, len(points), chunk)]
+    facet, t = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
+    return facet, t
+
+
+def _in_chunk(face: Surface, points: np.ndarray):
+    flat = face.flattened
+    t = np.clip(flat.parameters(points), 0.0, 1.0)
+    distance = np.linalg.norm(flat.points(t) - points[:, None], axis=2)
+    count = min(_TRIALS, distance.shape[1])
+    facets = np.argpartition(distance, count - 1, axis=1)[:, :count]
+    facets = np.sort(facets, axis=1)
+    starts = np.take_along_axis(t, facets[:, :, None], axis=1)
+    trials = [
+        (facets[:, k], within(face, points, facets[:, k], starts[:, k], bounds=(0.0, 1.0)))
+        for k in range(count)
+    ]
+    return _best(face, points, trials)
+
+
+def within(
+    face: Surface,
+    points: np.ndarray,
+    facet: np.ndarray,
+    start: np.ndarray,
+    bounds: tuple[float, float],
+) -> np.ndarray:
+    """Parameters of the closest points of given facets, by Gauss and Newton's method.
+
+    Parameters
+    ----------
+    face : Surface
+    points : ndarray, shape (n, 3) [m]
+    facet : ndarray of int, shape (n,)
+    start : ndarray, shape (n, 2)
+        Parameters to start from.
+    bounds : tuple of float
+        Of both parameters; at a bound that a step would cross, only the other one moves.
+    """
+    t, moving = start.copy(), np.arange(len(start))
+    for _ in range(_STEPS):
+        now, on = t[moving], facet[moving]
+        offset, tangents = face.points(on, now) - points[moving], face.tangents(on, now)
+        slope = np.einsum("nki,ni->nk", tangents, offset)
+        held = ((now <= bounds[0]) & (slope > 0)) | ((now >= bounds[1]) & (slope < 0))
+        tangents = np.where(held[:, :, None], 0.0, tangents)
+        matrix = np.einsum("nki,nli->nkl", tangents, tangents) + held[:, :, None] * np.eye(2)
+        step = np.linalg.solve(matrix, np.where(held, 0.0, slope)[:, :, None])[:, :, 0]
+        t[moving] = np.clip(now - step, *bounds)
+        moving = moving[np.abs(t[moving] - now).max(axis=1) > _SETTLED]
+        if not len(moving):
+            break
+    return t

@@ -1,0 +1,117 @@
+"""Quadrature on the common refinement of two contact faces.
+
+The facets of body 1 are cut where facets of body 2 end, so that everything that is smooth between
+the ends of elements is integrated accurately, whether the faces match or not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .clipping import opposite
+from .face import Face
+from .projection import beside, project
+from .quadrature import gauss, lobatto, square
+from .surface import Surface
+
+_BESIDE = 1e-9
+"""Of the face's size: points that lie further beside body 2 have nothing opposite."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """Points on the facets of body 1 that have body 2 opposite.
+
+    Attributes
+    ----------
+    facet : ndarray of int, shape (n,)
+    t : ndarray, shape (n,) or (n, 2)
+        Parameters.
+    weight : ndarray, shape (n,)
+        Length or area in parameters: those of a facet that is all opposite sum to one.
+    """
+
+    facet: np.ndarray
+    t: np.ndarray
+    weight: np.ndarray
+
+
+def rule(face_1: Face | Surface, face_2: Face | Surface, order: int, refine: bool) -> Rule:
+    """Points and weights; parameters as in `pairing.pair`."""
+    if isinstance(face_1, Surface):
+        assert isinstance(face_2, Surface)
+        return _on_parts(face_1, face_2, order) if refine else _on_facets(face_1, face_2, order)
+    assert isinstance(face_2, Face)
+    return _on_pieces(face_1, face_2, order, refine)
+
+
+def _on_pieces(face_1: Face, face_2: Face, order: int, refine: bool) -> Rule:
+    """A Gauss-Lobatto rule on each piece of the facets of a chain."""
+    whole = [np.array([0.0, 1.0])] * len(face_1.nodes)
+    cuts = _cuts(face_1, face_2) if refine else whole
+    x, w = lobatto(order)
+    start = np.concatenate([c[:-1] for c in cuts])
+    size = np.concatenate([np.diff(c) for c in cuts])
+    facet = np.repeat(np.arange(len(cuts)), [len(c) - 1 for c in cuts])
+    t = (start[:, None] + size[:, None] * x).ravel()
+    pieces = Rule(np.repeat(facet, order), t, (size[:, None] * w).ravel())
+    # whole pieces: the end of one outside the contact is a point of the next one inside
+    inner = np.arange(1, order - 1) if order > 2 else np.arange(order)
+    return _facing(face_1, face_2, pieces, order, inner)
+
+
+def _cuts(face_1: Face, face_2: Face) -> list[np.ndarray]:
+    """Parameters at which each facet of body 1 is cut, its own ends included."""
+    ends = np.concatenate([face_2.nodes[:, 0], face_2.nodes[-1:, -1]])
+    facet, t, _ = project(face_1, ends)
+    cuts = []
+    for f in range(len(face_1.nodes)):
+        inner = np.sort(t[facet == f])
+        inner = inner[(inner > 1e-9) & (inner < 1 - 1e-9)]
+        if len(inner):
+            inner = inner[np.concatenate([[True], np.diff(inner) > 1e-9])]
+        cuts.append(np.concatenate([[0.0], inner, [1.0]]))
+    return cuts
+
+
+def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
+    """Rules on the parts of facets that are opposite: Gauss-Lobatto's, in triangles Gauss's."""
+    facet, corners = opposite(face_1, face_2)
+    triangular = np.all(corners[:, 2] == corners[:, 3], axis=1)
+    parts = []
+    for chosen, line in ((~triangular, lobatto(order)), (triangular, gauss(order))):
+        places, weights = square(*line)
+        s, t = places.T
+        shape = np.stack([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t])
+        along = np.stack([t - 1, 1 - t, t, -t])
+        across = np.stack([s - 1, -s, s, 1 - s])
+        at, u, v = (
+            np.einsum("cq,pci->pqi", values, corners[chosen]) for values in (shape, along, across)
+        )
+        area = weights * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+        parts.append((np.repeat(facet[chosen], len(weights)), at.reshape(-1, 2), area.ravel()))
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    counting = columns[2] > 0.0
+    by_facet = np.argsort(columns[0][counting], kind="stable")
+    return Rule(*(column[counting][by_facet] for column in columns))
+
+
+def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
+    """A Gauss-Lobatto rule on each whole facet."""
+    places, weights = square(*lobatto(order))
+    count = len(face_1.nodes)
+    facet = np.repeat(np.arange(count), len(weights))
+    whole = Rule(facet, np.tile(places, (count, 1)), np.tile(weights, count))
+    within = np.flatnonzero(np.all((places > 0) & (places < 1), axis=1))
+    inner = within if len(within) else np.arange(len(weights))
+    return _facing(face_1, face_2, whole, len(weights), inner)
+
+
+def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray) -> Rule:
+    """Those pieces, of so many points each, whose inner points have body 2 opposite."""
+    points = face_1.points(pieces.facet, pieces.t)
+    off = beside(face_2, *project(face_2, points)).reshape(-1, count)[:, inner]
+    kept = np.repeat(off.max(axis=1) <= _BESIDE * face_1.extent, count)
+    return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])

@@ -1,0 +1,202 @@
+"""Wear by local slip: where the faces rub each wearing body loses depth, by its own wear law.
+
+The depth worn off has coefficients ω in the basis of pressure and shear. In an increment the bodies
+lose, coefficient by coefficient, by the pressure and by the slip in the mean of each function,
+
+    κ λ^b |Δs|^a Δt^(1-a),      Δs = Ψᵀ w Δs(x) / Ψᵀ w 1.
+
+Slip at single points scatters about zero where it sticks; in the mean it vanishes exactly, and so
+does wear. Where it slips, the shear is ``mu λ``, coefficient by coefficient: for ``a = b = 1`` the
+volume worn off is exactly ``κ/mu`` times the energy dissipated.
+
+Coefficients are counted along the face of body 2. The worn profile of body 1 slides along with it:
+at a slip s, ``W1(x - s)`` lies at x. Between the functions it is interpolated linearly, by a matrix
+L; what is lost there goes back to ω by its adjoint, so that no volume is lost on the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import ComputationError
+from ..laws.wear import WearLaw
+from .pairing import Pairing
+from .tangential import tangents
+
+if TYPE_CHECKING:
+    from .stick_slip import StickSlipState
+
+_PASSES = 40
+_SETTLED = 1e-6  # of the depth worn off in the increment
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Where a wearing body has its worn profile.
+
+    Attributes
+    ----------
+    places : ndarray, shape (m,)
+        Of the basis functions, along e (see `tangential`) [m].
+    areas : ndarray, shape (m,)
+        Of the basis functions [m²].
+    moves : bool
+        Whether it is that of body 1, which slides along.
+    """
+
+    places: np.ndarray
+    areas: np.ndarray
+    moves: bool
+
+    def seen(self, slip: float) -> np.ndarray:
+        """L: coefficients at the contact, of the profile's own, at a slip [m], shape (m, m)."""
+        m = len(self.places)
+        if not self.moves or slip == 0.0:
+            return np.eye(m)
+        order = np.argsort(self.places)
+        places, at = self.places[order], self.places - slip
+        upper = np.clip(np.searchsorted(places, at), 1, m - 1)
+        part = (at - places[upper - 1]) / (places[upper] - places[upper - 1])
+        part = np.clip(part, 0.0, 1.0)
+        result, rows = np.zeros((m, m)), np.arange(m)
+        result[rows, order[upper - 1]], result[rows, order[upper]] = 1 - part, part
+        return result
+
+    def lost(self, slip: float) -> np.ndarray:
+        """The profile's own coefficients, of what is lost at the contact, shape (m, m)."""
+        return self.seen(slip).T * self.areas / self.areas[:, None]
+
+
+def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> Profile:
+    """The worn profile of a body (0 is body 1) in the basis of the pressure.
+
+    Parameters
+    ----------
+    pairing : Pairing
+        Of plane bodies.
+    weighted : ndarray, shape (n, m)
+        ``diag(w) Ψ``.
+    body : int
+    """
+    along = np.gradient(pairing.points, pairing.position, axis=0)
+    sense = np.sign(np.einsum("ni,ni->", along, tangents(pairing.normals)[0]))
+    areas = weighted.sum(axis=0)
+    return Profile(sense * (pairing.position @ weighted) / areas, areas, body == 0)
+
+
+@dataclass(frozen=True)
+class SlipWear:
+    """Wear of the bodies in one increment of a history of loads.
+
+    Attributes
+    ----------
+    laws : tuple of WearLaw
+        Of the wearing bodies.
+    profiles : tuple of Profile
+        Of the same bodies.
+    duration : float
+        Of the increment; nothing wears in none [s].
+    repeats : int
+        How many such increments it stands for, one a cycle.
+    """
+
+    laws: tuple[WearLaw, ...]
+    profiles: tuple[Profile, ...]
+    duration: float
+    repeats: int = 1
+
+    def seen(self, worn: np.ndarray, slid: float) -> np.ndarray:
+        """Depth at the contact of profiles worn so far, shape (n_wearing, m) to (m,) [m]."""
+        depth = np.zeros(worn.shape[1])
+        for own, profile in zip(worn, self.profiles, strict=True):
+            depth += profile.seen(slid) @ own
+        return depth
+
+    def depths(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
+        """What the bodies lose at the contact, shape (n_wearing, m) [m].
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (m,)
+            λ at the end of the increment [Pa].
+        slip : ndarray, shape (m,)
+            Amount of slip of the increment, in the mean of each function [m].
+        """
+        return self._each(pressure, slip, WearLaw.rate)
+
+    def slopes(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
+        """Their derivatives by the pressure, shape (n_wearing, m) [m/Pa]."""
+        return self._each(pressure, slip, WearLaw.slope)
+
+    def _each(self, pressure, slip, of_law) -> np.ndarray:
+        if self.duration == 0.0:
+            return np.zeros((len(self.laws), len(pressure)))
+        speed, time = slip / self.duration, self.repeats * self.duration
+        values = [time * of_law(law, pressure, speed) for law in self.laws]
+        return np.reshape(values, (-1, len(pressure)))
+
+    def halved(self) -> SlipWear:
+        """Of half the increment."""
+        return SlipWear(self.laws, self.profiles, self.duration / 2, self.repeats)
+
+
+def implicitly(
+    solve: Callable[[StickSlipState, np.ndarray, np.ndarray], StickSlipState],
+    wear: SlipWear,
+    slid: float,
+    before: StickSlipState,
+    unworn: StickSlipState,
+    areas: np.ndarray,
+) -> tuple[StickSlipState, np.ndarray]:
+    """The end of an increment and the depths worn off in it, which the pressure there decides.
+
+    However much is worn off, that is stable. Each pass is Newton's method for the pressure and
+    takes the slip from the pass before.
+
+    Parameters
+    ----------
+    solve : callable
+        The end for a guess, and coefficients of the depth at the contact: what is worn off at no
+        pressure, shape (m,), and its slope by the pressure, shape (m, m).
+    wear : SlipWear
+    slid : float
+        How far body 1 has slid, see `Profile` [m].
+    before, unworn : StickSlipState
+        Begin of the increment, and its end without wear.
+    areas : ndarray, shape (m,)
+        Of the basis functions [m²].
+
+    Returns
+    -------
+    StickSlipState
+    depths : ndarray, shape (n_wearing, m)
+        Coefficients of the bodies' own profiles [m].
+
+    Raises
+    ------
+    ComputationError
+        If slip and wear do not settle.
+    """
+    m = len(areas)
+    kept = np.reshape([profile.lost(slid) for profile in wear.profiles], (-1, m, m))
+    seen = np.reshape([profile.seen(slid) for profile in wear.profiles], (-1, m, m))
+    opens = seen @ kept
+    after, expected = unworn, np.zeros(m)
+    for _ in range(_PASSES):
+        slip = np.linalg.norm(after.slip - before.slip, axis=1) / areas
+        depths = wear.depths(after.pressure, slip)
+        opened = np.einsum("bmn,bn->m", opens, depths)
+        if np.abs(opened - expected).max() <= _SETTLED * opened.max():
+            return after, np.einsum("bmn,bn->bm", kept, depths)
+        slope = np.einsum("bmn,bn->mn", opens, wear.slopes(after.pressure, slip))
+        start = opened - slope @ after.pressure
+        after = solve(after, start, slope)
+        expected = start + slope @ after.pressure
+    raise ComputationError(
+        "contact: slip and wear of an increment do not settle; take smaller increments, or let "
+        "each computed cycle stand for fewer (analysis.jump)"
+    )

@@ -1,0 +1,109 @@
+"""A brake shoe with its lining that turns about a pivot and presses on the inside of a drum.
+
+The drum's centre is the origin (section across its axis).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Literal
+
+from pydantic import model_validator
+
+from ..case.section import KeyFault
+from ..case.units import Coordinate, Length
+from .arc_contact import degrees
+from .inside_ring import InsideRing
+from .polar import Division
+from .quads import Sheet
+
+_LONGEST = math.radians(170.0)
+
+
+class DrumBrake(InsideRing):
+    """Sizes of shoe and drum.
+
+    Attributes
+    ----------
+    drum_radius, drum_thickness : float
+        Radius of the drum inside, where the lining touches, and its radial thickness [m].
+    lining_thickness, shoe_thickness : float
+        Radial [m].
+    pivot : tuple of float
+        Point about which the shoe turns [m].
+    """
+
+    name = "drum-brake"
+    bodies = ("shoe", "drum")
+    held = "shoe_inside"
+    fixed = "drum_rim"
+    rest = "drum_inside"
+
+    type: Literal["drum-brake"]
+    drum_radius: Length
+    drum_thickness: Length
+    lining_thickness: Length
+    shoe_thickness: Length
+    pivot: tuple[Coordinate, Coordinate]
+
+    @model_validator(mode="after")
+    def _fits(self):
+        if not self.arc_end - self.arc_start <= _LONGEST:
+            raise KeyFault(
+                "arc_end", f"the lining must be at most {degrees(_LONGEST)} of the drum long"
+            )
+        if not self.held_radius > 0:
+            raise KeyFault(
+                "shoe_thickness",
+                f"{self.shoe_thickness:g} m and the lining must be thinner together than "
+                f"drum_radius {self.drum_radius:g} m",
+            )
+        self._check_pivot()
+        return self
+
+    def _check_pivot(self) -> None:
+        if not math.hypot(*self.pivot) < self.drum_radius:
+            raise KeyFault("pivot", "must lie inside the drum")
+        at_start, at_end = (self.normal_arm(angle) for angle in self.arc)
+        if not min(at_start, at_end) > 0 and not max(at_start, at_end) < 0:
+            raise KeyFault(
+                "pivot",
+                "must lie in a direction from the centre that meets the lining neither forwards "
+                "nor backwards: turning would press one part of the shoe and lift the other",
+            )
+
+    def normal_arm(self, angle: float) -> float:
+        """Outward motion of the shoe's face per anticlockwise turn about the pivot [m/rad]."""
+        x, y = self.pivot
+        return y * math.sin(angle) - x * math.cos(angle)
+
+    @property
+    def pivot_point(self) -> tuple[float, float]:
+        return self.pivot
+
+    @property
+    def press_direction(self) -> tuple[float, float]:
+        """Outwards in the middle of the lining."""
+        middle = (self.arc_start + self.arc_end) / 2
+        return math.sin(middle), math.cos(middle)
+
+    @property
+    def radius(self) -> float:
+        return self.drum_radius
+
+    @property
+    def far_radius(self) -> float:
+        return self.drum_radius + self.drum_thickness
+
+    @property
+    def zones(self) -> dict[str, str]:
+        return {"lining": "shoe"}
+
+    @property
+    def layers(self) -> tuple[float, ...]:
+        return self.lining_thickness, self.shoe_thickness
+
+    def upper_sheets(self, division: Division) -> list[Sheet]:
+        lining, shoe = super().upper_sheets(division)
+        return [replace(lining, zone="lining"), shoe]

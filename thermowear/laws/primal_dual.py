@@ -1,0 +1,251 @@
+"""The generic Newton method behind the principle: pressures that press where bodies approach.
+
+Wanted are a pressure p and multipliers V (rigid-body wear velocities) with::
+
+    p >= 0,   s = h(p) + S - R V >= 0,   p s = 0        h(p) = Σ_i g_i p^e_i
+    Tᵀ w p = F,   S = Σ_points Σ_i a_i p^e_i
+
+where s is the rate at which the faces part and S the wear that is spread over a track. Where
+``T = R`` and S = 0 these are the conditions of a convex minimum; friction (``T ≠ R``) makes them
+unsymmetric. p and s are unknowns of their own and stay positive on the way, so that exponents far
+from 1 and points at the edge of the contact cost no accuracy: Mehrotra's predictor-corrector method
+(SIAM J. Optim. 2 (1992) 575; Nocedal and Wright, Numerical Optimization, 2006, section 14.2), whose
+steps are Newton steps on all conditions, damped so that nothing becomes negative. It starts from
+uniform pressure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+STEPS = 200
+FLOOR = 1e-2  # of the largest pressure: where to start at points that part without friction
+TO_THE_BOUNDARY = 0.9995  # of the way to where a pressure or a rate of parting becomes zero
+CENTRED, SHORT = 0.3, 0.1  # products p s against their mean; a step that is hardly one
+GROWTH = 10.0  # of the largest rate in a step: large exponents would overshoot without end
+LOST = 1e-60  # products p s that vanish with the conditions unmet: there is no solution
+EXACT, ENOUGH = 1e-13, 1e-10  # relative errors: where to stop, and what is accepted
+
+
+@dataclass(frozen=True)
+class PowerSum:
+    """``Σ_i g_i p^e_i`` point by point.
+
+    Attributes
+    ----------
+    factors : ndarray, shape (m, n)
+    exponents : ndarray, shape (m,)
+    """
+
+    factors: np.ndarray
+    exponents: np.ndarray
+
+    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Value and derivative at positive pressures, shape (n,) each."""
+        terms = self.factors * pressure ** self.exponents[:, None]
+        return terms.sum(axis=0), self.exponents @ terms / pressure
+
+    def scaled(self, pressure: np.ndarray, value: float) -> PowerSum:
+        """The same in units of a pressure at each point and of a value."""
+        return PowerSum(self.factors * pressure ** self.exponents[:, None] / value, self.exponents)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What the method ends at.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (n,)
+    velocity : ndarray, shape (k,)
+        V.
+    spread : float
+        S.
+    regular : bool
+        Whether a larger load is met by larger wear: a positive determinant, as without friction.
+    """
+
+    pressure: np.ndarray
+    velocity: np.ndarray
+    spread: float
+    regular: bool
+
+
+def solve(
+    weights: np.ndarray,
+    normal_modes: np.ndarray,
+    force_modes: np.ndarray,
+    load: np.ndarray,
+    local: PowerSum,
+    spread: PowerSum | None = None,
+) -> Solution | None:
+    """Pressure and multipliers; None where the method finds none.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (n,)
+        Areas; a point without area is a probe, which is solved for and bears nothing.
+    normal_modes, force_modes : ndarray, shape (n, k)
+        R and T; the columns of R are independent.
+    load : ndarray, shape (k,)
+        F, not zero.
+    local, spread : PowerSum
+        h and the summands of S.
+    """
+    share = weights / weights.sum()
+    # motions orthonormal over the face: neither pivots nor units of rotations matter
+    _, triangle = np.linalg.qr(np.sqrt(share)[:, None] * normal_modes)
+    basis = np.linalg.inv(triangle)
+    conditions = _Conditions(
+        normal_modes @ basis,
+        share[:, None] * (force_modes @ basis),
+        basis.T @ load / weights.sum(),
+        local,
+        spread or PowerSum(np.zeros((1, len(weights))), np.ones(1)),
+    )
+    force = np.linalg.norm(conditions.goal)
+    found = _solve_from(conditions, np.full(len(weights), force))
+    if found is None or not found.regular:
+        bare = replace(conditions, carried=share[:, None] * conditions.approach)
+        without = _solve_from(bare, np.full(len(weights), force))
+        if without is not None:  # near self-locking: few starts lead there
+            start = np.maximum(without.pressure, FLOOR * without.pressure.max())
+            start *= force / np.linalg.norm(conditions.carried.T @ start)
+            found = _solve_from(conditions, start) or found
+    return found and replace(found, velocity=basis @ found.velocity)
+
+
+@dataclass(frozen=True)
+class _Conditions:
+    """The problem, with areas in parts of the whole.
+
+    Attributes
+    ----------
+    approach, carried : ndarray, shape (n, k)
+        R, and T with the weights.
+    goal : ndarray, shape (k,)
+    local, spread : PowerSum
+    """
+
+    approach: np.ndarray
+    carried: np.ndarray
+    goal: np.ndarray
+    local: PowerSum
+    spread: PowerSum
+
+    def scaled(self, pressure: np.ndarray, rate: float) -> _Conditions:
+        """The same in units of a pressure at each point and of a rate."""
+        return _Conditions(
+            self.approach,
+            pressure[:, None] * self.carried / np.linalg.norm(self.goal),
+            self.goal / np.linalg.norm(self.goal),
+            self.local.scaled(pressure, rate),
+            self.spread.scaled(pressure, rate),
+        )
+
+    def rate(self, multipliers: np.ndarray) -> np.ndarray:
+        """``R V - S`` at the points, from the multipliers ``(V, S)``."""
+        return self.approach @ multipliers[:-1] - multipliers[-1]
+
+
+class _Linearised:
+    """The conditions and their derivatives at positive pressures and rates of parting."""
+
+    def __init__(self, conditions: _Conditions, pressure, parting, multipliers):
+        worn, slope = conditions.local.at(pressure)
+        passed, passed_slope = conditions.spread.at(pressure)
+        rate = conditions.rate(multipliers)
+        k = len(conditions.goal)
+        self.pressure, self.parting = pressure, parting
+        self.worn = worn
+        self.misfit = worn - rate - parting
+        self.balance = np.append(
+            conditions.carried.T @ pressure - conditions.goal, multipliers[-1] - passed.sum()
+        )
+        self.modes = np.column_stack([conditions.approach, np.full(len(rate), -1.0)])
+        self.borne = np.column_stack([conditions.carried, -passed_slope])
+        self.compliance = 1 / (slope + parting / pressure)
+        self.tangent = self.borne.T @ (self.compliance[:, None] * self.modes)
+        self.tangent[k, k] += 1.0
+        self.rate_scale = np.abs(rate).max()
+
+    def error(self) -> float:
+        """Largest violation of any condition, relative."""
+        apart = np.minimum(self.pressure / self.pressure.max(), self.parting / self.rate_scale)
+        rates = np.abs(np.append(self.misfit, self.balance[-1])) / self.rate_scale
+        return float(np.max([np.abs(self.balance[:-1]).max(), rates.max(), apart.max()]))
+
+    def step(self, product: np.ndarray):
+        """Newton step to where the product p s has changed by `product`: of V and S, p, s."""
+        drive = product / self.pressure - self.misfit
+        right = -self.balance - self.borne.T @ (self.compliance * drive)
+        multipliers = np.linalg.lstsq(self.tangent, right, rcond=None)[0]
+        pressure = self.compliance * (self.modes @ multipliers + drive)
+        parting = (product - self.parting * pressure) / self.pressure
+        return multipliers, pressure, parting
+
+
+def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
+    """The solution from a positive pressure on, with motions as the conditions have them."""
+    worn = conditions.local.at(start)[0]
+    unit = float(worn.mean() + conditions.spread.at(start)[0].sum())
+    found = _iterate(conditions.scaled(start, unit))
+    if found is None:
+        return None
+    pressure, multipliers, regular = found
+    return Solution(start * pressure, unit * multipliers[:-1], unit * multipliers[-1], regular)
+
+
+@np.errstate(all="ignore")  # where there is no solution the numbers run out of range
+def _iterate(conditions: _Conditions) -> tuple[np.ndarray, np.ndarray, bool] | None:
+    """Pressure, multipliers ``(V, S)`` and regularity, from pressure 1 on."""
+    pressure = np.ones(len(conditions.approach))
+    multipliers = np.append(conditions.goal, 0.0)
+    parting = conditions.local.at(pressure)[0] - conditions.rate(multipliers)
+    parting = np.maximum(parting, 1.0)
+    for _ in range(STEPS):
+        newton = _Linearised(conditions, pressure, parting, multipliers)
+        error = newton.error()
+        lost = not pressure @ parting > LOST or not np.isfinite(error + newton.tangent.sum())
+        if error < EXACT or lost:
+            break
+        d, dp, ds = _predicted_and_corrected(newton)
+        reach = _reach((pressure, dp), (parting, ds))
+        most = GROWTH * max(newton.worn.max(), newton.rate_scale)
+        while conditions.local.at(pressure + reach * dp)[0].max() > most:
+            reach /= 2
+        multipliers = multipliers + reach * d
+        pressure = pressure + reach * dp
+        parting = parting + reach * ds
+    if not error < ENOUGH:
+        return None
+    touching = pressure / pressure.max() > parting / newton.rate_scale
+    return np.where(touching, pressure, 0.0), multipliers, bool(np.linalg.det(newton.tangent) > 0)
+
+
+def _predicted_and_corrected(newton: _Linearised):
+    """A Newton step with the curvature of ``p s`` taken into account.
+
+    The products p s are aimed at a common value, so small as a first step that aims at zero
+    promises, but not so small that they vanish before the rates fit.
+    """
+    pressure, parting = newton.pressure, newton.parting
+    product = pressure * parting
+    mean = np.mean(product)
+    _, dp, ds = newton.step(-product)
+    reach = _reach((pressure, dp), (parting, ds))
+    ahead = np.mean((pressure + reach * dp) * (parting + reach * ds))
+    unfit = np.mean(pressure * np.abs(newton.misfit))
+    centre = max((ahead / mean) ** 3 * mean, min(CENTRED * mean, unfit / 10))
+    step = newton.step(centre - product - dp * ds)
+    if _reach((pressure, step[1]), (parting, step[2])) < SHORT:
+        step = newton.step(CENTRED * mean - product)  # the correction leads astray
+    return step
+
+
+def _reach(*positive: tuple[np.ndarray, np.ndarray]) -> float:
+    """How much of the steps can be taken while all values stay positive."""
+    falls = [(-step[step < 0] / value[step < 0]).max(initial=0.0) for value, step in positive]
+    return min(1.0, TO_THE_BOUNDARY / max(*falls, 1e-300))

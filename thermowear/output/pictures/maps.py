@@ -1,0 +1,111 @@
+"""Maps of a contact face in space, seen from above, by matplotlib."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.tri import Triangulation
+
+from .. import tables
+from ..quantities import HISTORY, INTERFACE, Quantity
+from .curves import STYLE
+
+_COLORS = {"pressure": "viridis", "temperature": "inferno", "shape": "cividis", "wear": "magma_r"}
+_LONGER = 4.6  # inches of the face's longer side
+_LINES = 8
+_FLAT = 1e-12  # m
+_FLATTEST = 100.0  # degrees: a triangle at the rim that is flatter fills a bay of the face
+
+
+def is_surface(folder: Path) -> bool:
+    """Whether the contact points of a results folder have no order along a line."""
+    return bool(np.isnan(tables.read(folder / "interface.csv", INTERFACE)["s"]).all())
+
+
+def draw_interface_maps(folder: Path) -> None:
+    """``interface.png``: pressure, temperatures and shape over the face."""
+    data = tables.read(folder / "interface.csv", INTERFACE)
+    names = ["pressure"]
+    if np.isfinite(data["temperature_1"]).all():
+        names += ["temperature_1", "temperature_2"]
+    if np.ptp(data["shape"]) > _FLAT:  # flat faces that have not worn have nothing to show
+        names.append("shape")
+    _draw(folder / "interface.png", data, names)
+
+
+def draw_wear_maps(folder: Path) -> None:
+    """``wear.png``: depth worn off each body at the end of a running-in."""
+    if not (folder / "history.csv").is_file():
+        return
+    data = tables.read(folder / "interface.csv", INTERFACE)
+    names = [name for name in ("wear_1", "wear_2") if data[name].max() > 0]
+    if not names:
+        return
+    end = tables.read(folder / "history.csv", HISTORY)["time"][-1]
+    _draw(folder / "wear.png", data, names, f"worn after {end:.4g} s")
+
+
+def _draw(path: Path, data: dict[str, np.ndarray], names: list[str], title: str = "") -> None:
+    """A map of each quantity, two in a row."""
+    x, y = (INTERFACE[axis].drawn(data[axis]) for axis in "xy")
+    triangles = triangulated(x, y)
+    columns = min(2, len(names))
+    rows = -(-len(names) // columns)
+    tall = np.clip(np.ptp(y) / np.ptp(x), 0.3, 2.5)
+    width, height = _LONGER / max(1.0, tall) + 2.2, _LONGER * min(1.0, tall) + 0.8
+    with mpl.rc_context(STYLE | {"axes.grid": False}):
+        size = (width * columns, height * rows + (0.3 if title else 0.0))
+        layout = ConstrainedLayoutEngine(wspace=0.06, hspace=0.06)
+        figure = Figure(figsize=size, layout=layout, dpi=150)
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axis, name in zip(axes, names, strict=False):
+            drawn, colors = INTERFACE[name].drawn(data[name]), _COLORS[name.split("_")[0]]
+            _map(figure, axis, triangles, INTERFACE[name], drawn, colors)
+        for axis in axes[len(names) :]:
+            axis.set_visible(False)
+        if title:
+            figure.suptitle(title, fontsize=11)
+        figure.savefig(path, bbox_inches="tight")
+
+
+def _map(figure, axis, triangles: Triangulation, quantity: Quantity, drawn, colors: str) -> None:
+    """Colours, with lines of equal value where they differ."""
+    colored = axis.tripcolor(triangles, drawn, shading="gouraud", cmap=colors)
+    figure.colorbar(colored, ax=axis, label=quantity.axis, shrink=0.9)
+    if np.ptp(drawn) > 1e-6 * np.abs(drawn).max():
+        lines = axis.tricontour(triangles, drawn, _LINES, colors="black", linewidths=0.6)
+        axis.clabel(lines, fontsize=8)
+    axis.set_aspect("equal")
+    axis.set_xlabel(INTERFACE["x"].axis)
+    axis.set_ylabel(INTERFACE["y"].axis)
+
+
+def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
+    """Triangles between points that leave out what lies in the bays of their outline.
+
+    Delaunay's triangles fill the hull. Between the points of a grid those at the rim have an angle
+    of 90° opposite to it; a triangle that fills a bay spans it and is much flatter.
+    """
+    result = Triangulation(x, y)
+    corners = np.stack([x, y], axis=1)[result.triangles]
+    neighbors, hidden = result.neighbors.copy(), np.zeros(len(corners), dtype=bool)
+    # side k of a triangle goes from corner k to the next; the remaining corner is opposite
+    to_first, to_second = (corners - np.roll(corners, shift, axis=1) for shift in (1, -1))
+    opposite = np.roll(_angles(-to_second, -to_first), -2, axis=1)
+    while True:
+        flat = ~hidden & np.any((neighbors == -1) & (opposite > _FLATTEST), axis=1)
+        if not flat.any():
+            result.set_mask(hidden)
+            return result
+        hidden |= flat
+        neighbors[np.isin(neighbors, np.flatnonzero(flat))] = -1
+
+
+def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Angles between vectors [degrees]."""
+    cosine = (a * b).sum(axis=-1) / np.linalg.norm(a, axis=-1) / np.linalg.norm(b, axis=-1)
+    return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))

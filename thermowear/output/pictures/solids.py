@@ -1,0 +1,93 @@
+"""Bodies in space, cut in the middle of the contact so that their inside shows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyvista
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+_PIXELS = (1400, 1100)
+_FROM = (0.55, -1.0, 0.6)  # where the camera is, as seen from the bodies
+_APART = 1e-6  # of the bodies' size
+_BEHIND = 1e-3
+_EDGE = 40.0  # degrees between faces that meet at a drawn edge
+
+
+def draw_solids(path, grid, fields: list[tuple[str, str]], note: str, y: float) -> None:
+    """One panel a field, side by side.
+
+    Parameters
+    ----------
+    path : Path
+    grid : pyvista.UnstructuredGrid
+        Of volume cells, with the fields [mm].
+    fields : list of tuple of str
+        Names and colour maps.
+    note : str
+        Title, may be empty.
+    y : float
+        What lies before it is cut off [mm].
+    """
+    cut = _cut(grid, y)
+    values = {name: np.concatenate([part[name] for part in cut]) for name, _ in fields}
+    height = 5.2 * _PIXELS[1] / _PIXELS[0] + 0.5
+    figure = Figure(figsize=(6.2 * len(fields), height), layout="constrained", dpi=150)
+    for axis, (name, colors) in zip(
+        figure.subplots(1, len(fields), squeeze=False)[0], fields, strict=True
+    ):
+        limits = color_limits(values[name])
+        axis.imshow(_render(cut, name, colors, limits), interpolation="antialiased")
+        scale = ScalarMappable(Normalize(*limits), colors)
+        over = np.nanmax(values[name]) > limits[1] * (1 + 1e-9)
+        figure.colorbar(scale, ax=axis, label=name, shrink=0.8, extend="max" if over else "neither")
+        axis.set_axis_off()
+    figure.suptitle("; ".join(filter(None, [note, f"cut at y = {y:.4g} mm"])), fontsize=11)
+    figure.savefig(path, bbox_inches="tight")
+
+
+def color_limits(values: np.ndarray) -> tuple[float, float]:
+    """Colour range without the few samples beside singular edges."""
+    low, high = float(values.min()), float(np.percentile(values, 99.5))
+    return (low, high) if high > low else (low - 0.5, low + 0.5)
+
+
+def _cut(grid, y: float) -> list:
+    """Surfaces of what lies behind a plane across y, of body 2 and of body 1.
+
+    Body 1 is set a little further back: what has been worn off it does not show.
+    """
+    size = float(np.ptp(grid.points, axis=0).max())
+    surfaces = []
+    for body in (2, 1):
+        part = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == body))
+        # the samples of neighbouring cells coincide: what lies between them is no surface
+        whole = part.clean(tolerance=_APART * size)
+        surface = whole.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, y, 0.0)).extract_surface()
+        surface.points[:, 1] += (2 - body) * _BEHIND * size
+        surfaces.append(surface)
+    return surfaces
+
+
+def _render(surfaces: list, name: str, colors: str, limits) -> np.ndarray:
+    """Picture of surfaces and their edges."""
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(_PIXELS))
+    plotter.set_background("white")  # type: ignore[arg-type]
+    for surface in surfaces:
+        plotter.add_mesh(
+            surface, scalars=name, cmap=colors, clim=limits, show_scalar_bar=False, ambient=0.5
+        )
+        edges = surface.extract_feature_edges(
+            feature_angle=_EDGE, boundary_edges=False, non_manifold_edges=False
+        )
+        if edges.n_points:
+            plotter.add_mesh(edges, color="black", line_width=2, lighting=False)
+    plotter.enable_parallel_projection()  # type: ignore[call-arg]
+    plotter.camera_position = [np.array(_FROM), np.zeros(3), (0.0, 0.0, 1.0)]
+    plotter.add_axes(line_width=4)  # type: ignore[call-arg]
+    plotter.reset_camera()  # type: ignore[call-arg]
+    plotter.camera.zoom(1.1)
+    picture = plotter.screenshot(None, return_img=True)
+    plotter.close()
+    return picture

@@ -1,0 +1,94 @@
+"""A pad on a turning disk (special case 9).
+
+The pad covers ``ri < r < ro`` and an angle θ, symmetric about the x axis; the disk turns at ω, so
+that ``v = ω r``. Pressed straight, ``p = (F/I) r^(-a/b)`` with ``I = θ ∫ r^(1 - a/b) dr``; where it
+may tilt, ``p^b v^a`` is linear in x and y (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895).
+For a = b the straight pad has ``p = p_a ri/r``, the uniform wear of machine design.
+"""
+
+from __future__ import annotations
+
+from math import log, sin
+
+import numpy as np
+
+
+def steady_pressure(
+    r, force: float, inner: float, outer: float, angle: float, b: float, a: float
+) -> np.ndarray:
+    """Pressure of a pad that is pressed straight [Pa].
+
+    Parameters
+    ----------
+    r : array_like [m]
+    force : float [N]
+    inner, outer : float [m]
+    angle : float
+        θ [rad].
+    b, a : float
+    """
+    integral = angle * _power_integral(1 - a / b, inner, outer)
+    return force / integral * np.asarray(r, dtype=float) ** (-a / b)
+
+
+def uniform_wear_force(largest: float, inner: float, outer: float, angle: float) -> float:
+    """For a = b: ``F = θ p_a ri (ro - ri)``, with p_a the pressure at the inner edge [N]."""
+    return angle * largest * inner * (outer - inner)
+
+
+def uniform_wear_torque(force: float, friction: float, inner: float, outer: float) -> float:
+    """For a = b: ``mu F (ri + ro)/2`` [N m]."""
+    return friction * force * (inner + outer) / 2
+
+
+def tilted_pressure(
+    x,
+    y,
+    force: float,
+    centre: tuple[float, float],
+    inner: float,
+    outer: float,
+    angle: float,
+    a: float,
+    lift: float = 0.0,
+) -> np.ndarray:
+    """Pressure of a pad that may tilt, for b = 1 and full contact [Pa].
+
+    ``p = (A + B x + C y) r^-a``, with A, B, C from the three equations of equilibrium, whose
+    integrals over r and over the angle are closed.
+
+    Parameters
+    ----------
+    x, y : array_like [m]
+    force : float [N]
+    centre : tuple of float
+        Where the load acts [m].
+    inner, outer, angle
+        Of the pad.
+    a : float
+    lift : float
+        ``mu h``, friction times the height of the joint over the face, for a disk that turns
+        towards falling angles φ [m]: moments are ``∫ p (x + mu h sin φ) dS`` and
+        ``∫ p (y - mu h cos φ) dS``.
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    half = angle / 2
+    c0, c1, c2, s2 = angle, 2 * sin(half), half + sin(angle) / 2, half - sin(angle) / 2
+    r1, r2, r3 = (_power_integral(power - a, inner, outer) for power in (1, 2, 3))
+    # columns: A, B x, C y; rows: force and both moments
+    system = np.array(
+        [
+            [r1 * c0, r2 * c1, 0.0],
+            [r2 * c1, r3 * c2, lift * r2 * s2],
+            [-lift * r1 * c1, -lift * r2 * c2, r3 * s2],
+        ]
+    )
+    A, B, C = np.linalg.solve(system, force * np.array([1.0, *centre]))
+    return (A + B * x + C * y) * np.hypot(x, y) ** -a
+
+
+def _power_integral(power: float, low: float, high: float) -> float:
+    """``∫ r^power dr``."""
+    if power == -1:
+        return log(high / low)
+    return (high ** (power + 1) - low ** (power + 1)) / (power + 1)

@@ -1,0 +1,206 @@
+"""Contact and wear of a body that slides to and fro, averaged over its cycles.
+
+A cycle wears little, so that depths stay the same during one of them. Body 1 loses W1 at its own
+points x, body 2 loses W2 at its points ξ. At each position X_j the contact is that of the gap
+
+    g0 + W1(x) + W2(x + X_j) + C_j p_j - R d_j,
+
+and the rates, means over the cycle with shares c_j, are those of the local speeds v_j::
+
+    W1'(x) = Σ_j c_j κ1 p_j(x)^b |v_j|^a,      W2'(ξ) = Σ_j c_j κ2 p_j(ξ - X_j)^b |v_j|^a
+
+W1 has coefficients in the basis of the pressure, like the wear of fretting; W2 see `contact.track`.
+
+What is known of the end. Pressures that last need ``W1'(x) + W2'(x + X) = V(X)`` wherever the faces
+touch, V being the rate of the approach of a holder that does not turn. Along x that says
+``W1''(x) = -W2''(x + X)`` for all X, so that both slopes are one constant and its negative: none,
+where one half of the stroke is like the other. Both rates are uniform then, whatever the pressures
+are, and for ``a = b = 1`` the load fixes them: with the mean speed v, the half-width h and the
+thickness t of body 1, and the amplitude A, ``W1' = κ1 F v / (2 h t)`` and
+``W2' = κ2 F v / (2 (h + A) t)``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..contact.complementarity import solve_contact
+from ..contact.coupled import CoupledSolution, solve_coupled
+from ..contact.track import Track, track
+from ..errors import ComputationError
+from .interface_problem import Contact
+from .stroke import Position, condensed, spreading
+from .system import System
+
+_NEWTON_STEPS = 40
+_SETTLED = 1e-11  # of the largest local rate
+
+
+@dataclass(frozen=True)
+class CycleContact:
+    """The contacts of a cycle, all positions together.
+
+    Attributes
+    ----------
+    max_pressure : float
+        Anywhere [Pa].
+    contact_area : float
+        Mean [m²].
+    motion : ndarray, shape (n_drives,)
+        Of the holder, mean [m or rad].
+    """
+
+    max_pressure: float
+    contact_area: float
+    motion: np.ndarray
+
+
+class ReciprocatingProblem:
+    """The bodies in all positions, and the depths that they lose.
+
+    Depths stand in one row, the coefficients of body 1 before the nodes of body 2, N together.
+    Pressures have a row a position, shape (J, m).
+
+    Parameters
+    ----------
+    system : System
+    stroke : list of Position
+
+    Attributes
+    ----------
+    track : Track
+        Grid of the depths of body 2.
+    areas : tuple of ndarray, shape (m,) and (n_nodes,)
+        That the depths of body 1 and of body 2 stand for [m²].
+    """
+
+    track: Track
+    areas: tuple[np.ndarray, np.ndarray]
+
+    def __init__(self, system: System, stroke: list[Position]):
+        factor = system.case.geometry.thickness_factor
+        assert factor is not None  # plane models have one
+        self._systems = [position.system for position in stroke]
+        self._holder = system.holder
+        self._laws = system.laws
+        self._speeds = np.array([[position.speed] for position in stroke])
+        pairings = [there.pairing for there in self._systems]
+        lengths = [position.length for position in stroke]
+        spacing = system.pairing.position[-1] / system.basis.shape[1]  # of the pressures
+        self.track = track(pairings, lengths, spacing, factor)
+        self._contacts = condensed(stroke, self.track)
+        self._shares = np.array([position.share for position in stroke])
+        self.areas = system.contact.weighted.sum(axis=0), self.track.areas
+        self._spread = spreading(self._contacts, self.track, self._shares)[list(system.laws)]
+
+    def split(self, depths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coefficients of body 1, shape (m,), and values at the nodes of body 2."""
+        m = self._contacts.gap.shape[1]
+        return depths[0, :m], depths[0, m:]
+
+    def unworn(self) -> Contact:
+        """Contact of the unworn faces in all positions."""
+        all_of = self._contacts
+        each = zip(all_of.compliance, all_of.gap, all_of.modes, all_of.force_modes, strict=True)
+        found = [
+            solve_contact(compliance, gap, modes, all_of.load, force_modes=force_modes)
+            for compliance, gap, modes, force_modes in each
+        ]
+        λ, motion, active = (
+            np.array([getattr(solution, name) for solution in found])
+            for name in ("coefficients", "motion", "active")
+        )
+        nothing = np.zeros(all_of.seen.shape[2])
+        return self._contact(CoupledSolution(λ, motion, active, nothing))
+
+    def rates(self, pressure: np.ndarray) -> np.ndarray:
+        """Wear rates of all depths, means over the cycle, shape (1, N) [m/s].
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (J, m)
+            Coefficients [Pa].
+        """
+        return np.einsum("bjnm,bjm->n", self._spread, self._local(pressure))[None]
+
+    def of_cycle(self, contact: Contact) -> CycleContact:
+        """What the contacts of a cycle are together."""
+        at_points = [
+            system.basis @ λ for system, λ in zip(self._systems, contact.pressure, strict=True)
+        ]
+        areas = [
+            system.weights[p > 0].sum() for system, p in zip(self._systems, at_points, strict=True)
+        ]
+        return CycleContact(
+            max_pressure=float(max(p.max() for p in at_points)),
+            contact_area=float(self._shares @ areas),
+            motion=self._shares @ contact.motion,
+        )
+
+    def deflection(self, contact: Contact) -> float:
+        """Largest change of the gap by the bodies' deformation [m]."""
+        opened = np.einsum("jmn,jn->jm", self._contacts.compliance, contact.pressure)
+        return float((opened / self.areas[0]).max())
+
+    def steady(self, pressure: np.ndarray) -> np.ndarray:
+        """Nothing to be made of the pressures of the principle: they do not move to and fro."""
+        return pressure
+
+    def distance(self, pressure: np.ndarray, steady: np.ndarray | None) -> float:
+        """How uneven the wear rates are, which are uniform along both faces in the end.
+
+        The larger of their root mean square deviations, relative to their means.
+        """
+        parts = zip(self.split(self.rates(pressure)), self.areas, strict=True)
+        return max(_unevenness(rate, area) for rate, area in parts if rate.any())
+
+    def solve(self, worn: np.ndarray, step: float, guess: Contact, closed: np.ndarray) -> Contact:
+        """Contact at the end of an implicit step of wear, by Newton's method for the wear laws.
+
+        Parameters
+        ----------
+        worn : ndarray, shape (N,)
+            Depths before the step [m].
+        step : float
+            [s]
+        guess : Contact
+        closed : ndarray
+            Not used, as nothing exchanges heat.
+
+        Raises
+        ------
+        ComputationError
+        """
+        for _ in range(_NEWTON_STEPS):
+            pressure = guess.pressure
+            rates, slopes = self._local(pressure), self._slopes(pressure)
+            before = np.einsum("bjnm,bjm->n", self._spread, rates - slopes * pressure)
+            gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slopes)
+            solution = solve_coupled(
+                self._contacts, worn + step * before, gains, guess.memory.active
+            )
+            guess = self._contact(solution)
+            exact = self._local(guess.pressure)
+            linear = rates + slopes * (guess.pressure - pressure)
+            if np.abs(exact - linear).max() <= _SETTLED * exact.max():
+                return guess
+        raise ComputationError("contact: Newton's method for the implicit step of wear failed")
+
+    def _contact(self, solution: CoupledSolution) -> Contact:
+        motion = np.array([self._holder.amounts(d) for d in solution.motion])
+        return Contact(np.maximum(solution.coefficients, 0.0), motion, solution)
+
+    def _local(self, pressure: np.ndarray) -> np.ndarray:
+        """Rates of the wearing bodies where they touch, shape (n_wearing, J, m) [m/s]."""
+        return np.array([law.rate(pressure, self._speeds) for law in self._laws.values()])
+
+    def _slopes(self, pressure: np.ndarray) -> np.ndarray:
+        """Their derivatives by the pressure [m/s/Pa]."""
+        return np.array([law.slope(pressure, self._speeds) for law in self._laws.values()])
+
+
+def _unevenness(rate: np.ndarray, area: np.ndarray) -> float:
+    mean = np.average(rate, weights=area)
+    return float(np.sqrt(np.average((rate / mean - 1) ** 2, weights=area)))

@@ -1,0 +1,288 @@
+"""The special cases of Páczelt and Mróz as contact patches, built from their geometry.
+
+Nothing here knows a formula for a pressure: points, normals, directions of sliding and the free
+motions of the holder are all that the principle is given. Faces are integrated by Gauss's rule;
+places of interest are added as points without area.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ...laws import ContactPatch, SteadyWear, WearLaw, contact_patch, rotation, translation
+
+DOWN = (0.0, 0.0, -1.0)
+POINTS = 40
+
+
+@dataclass(frozen=True)
+class SpecialCase:
+    """A patch with what loads and what wears it.
+
+    Attributes
+    ----------
+    patch : ContactPatch
+    load : ndarray, shape (k,)
+        Along each motion [N or N m].
+    laws : tuple of WearLaw
+    """
+
+    patch: ContactPatch
+    load: np.ndarray
+    laws: tuple[WearLaw, ...]
+
+    def steady(self) -> SteadyWear:
+        """The steady state, by the generic solver."""
+        return self.patch.steady(self.load, self.laws)
+
+    def pressure(self, probes: int) -> np.ndarray:
+        """Steady pressure at the last points, the probes [Pa]."""
+        return self.steady().pressure[-probes:]
+
+
+def wear_law(b: float, a: float = 1.0) -> WearLaw:
+    """A wear law with rates of an ordinary size for pressures of some MPa."""
+    return WearLaw(1e-13 * 1e6 ** (1 - b), b, a)
+
+
+def along(
+    start: float, end: float, probes: Sequence[float] | np.ndarray = (), split: Sequence[float] = ()
+) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points and weights on an interval, by parts, and probes with weight 0."""
+    x, w = np.polynomial.legendre.leggauss(POINTS)
+    parts = list(pairwise([start, *split, end]))
+    points = [(low + high) / 2 + (high - low) / 2 * x for low, high in parts]
+    weights = [(high - low) / 2 * w for low, high in parts]
+    return np.concatenate([*points, probes]), np.concatenate([*weights, np.zeros(len(probes))])
+
+
+def punch(b: float, force: float, length: float, width: float, speed: float) -> SpecialCase:
+    """Case 1: a flat punch that only descends."""
+    x, w = along(0.0, length)
+    points = np.column_stack([x, 0 * x, 0 * x])
+    patch = contact_patch(points, w * width, DOWN, [translation(DOWN)], speed)
+    return SpecialCase(patch, np.array([force]), (wear_law(b),))
+
+
+def tilting_punch(b: float, probes: Sequence[float] = ()) -> SpecialCase:
+    """Case 2: 60 x 80 mm, 10 kN at (25, 40) mm, moments about the corner."""
+    length, width, force, speed = 0.06, 0.08, 10e3, 5e-3
+    x, w = along(0.0, length, probes)
+    y, v = along(0.0, width)
+    points = np.array([(p, q, 0.0) for q in y for p in x])
+    corner = (0.0, 0.0, 0.0)
+    motions = [translation(DOWN), rotation((-1, 0, 0), corner), rotation((0, 1, 0), corner)]
+    patch = contact_patch(points, np.outer(v, w).ravel(), DOWN, motions, speed)
+    return SpecialCase(patch, np.array([force, 0.04 * force, 0.025 * force]), (wear_law(b),))
+
+
+def block_on_disk(
+    b: float,
+    ends: tuple[float, float],
+    force: float,
+    radius: float,
+    width: float,
+    friction: float,
+    sense: int,
+    probes: Sequence[float] = (),
+) -> SpecialCase:
+    """Case 3: a block above a disk; in the sense +1 the disk turns anticlockwise."""
+    α, w = along(*ends, probes)
+    outward = np.column_stack([np.sin(α), np.cos(α)])  # of the disk
+    clockwise = np.column_stack([np.cos(α), -np.sin(α)])
+    patch = contact_patch(
+        radius * outward,
+        w * radius * width,
+        -outward,
+        [translation((0.0, -1.0))],
+        speed=0.3,
+        friction=friction,
+        sliding=sense * clockwise,
+    )
+    return SpecialCase(patch, np.array([force]), (wear_law(b),))
+
+
+def ring_segment(
+    b: float,
+    ends: tuple[float, float],
+    force: float,
+    radius: float,
+    width: float,
+    friction: float,
+    sense: int,
+    probes: Sequence[float] = (),
+) -> SpecialCase:
+    """Case 4: a segment pressed up from inside a ring; at +1 the ring turns clockwise."""
+    α, w = along(*ends, probes)
+    outward = np.column_stack([np.sin(α), np.cos(α)])
+    anticlockwise = np.column_stack([-np.cos(α), np.sin(α)])
+    patch = contact_patch(
+        radius * outward,
+        w * radius * width,
+        outward,
+        [translation((0.0, 1.0))],
+        speed=0.3,
+        friction=friction,
+        sliding=sense * anticlockwise,
+    )
+    return SpecialCase(patch, np.array([force]), (wear_law(b),))
+
+
+def brake_block(
+    b: float,
+    sense: int,
+    moment: float,
+    inner: float,
+    outer: float,
+    offset: float,
+    width: float,
+    friction: float,
+    probes: Sequence[float] = (),
+) -> SpecialCase:
+    """Case 5: a block on a lever about the origin; at +1 the strip moves away from the pivot."""
+    z, w = along(inner, outer, probes)
+    patch = contact_patch(
+        np.column_stack([np.full_like(z, offset), 0 * z, z]),
+        w * width,
+        (1.0, 0.0, 0.0),
+        [rotation((0.0, 1.0, 0.0), (0.0, 0.0, 0.0))],
+        speed=2.0,
+        friction=friction,
+        sliding=(0.0, 0.0, -sense),
+    )
+    return SpecialCase(patch, np.array([moment]), (wear_law(b),))
+
+
+def tilting_block(
+    b: float,
+    sense: int,
+    force: float,
+    moment: float,
+    ends: tuple[float, float],
+    joint: float,
+    height: float,
+    width: float,
+    friction: float,
+    split: Sequence[float] = (),
+) -> SpecialCase:
+    """Case 6: a block that moves along x and turns about a joint at ``z = joint``.
+
+    The joint stands at `height` behind the face; `split` are ends of the contact, where the rule is
+    interrupted.
+    """
+    z, w = along(*ends, split=split)
+    patch = contact_patch(
+        np.column_stack([np.full_like(z, height), 0 * z, z]),
+        w * width,
+        (1.0, 0.0, 0.0),
+        [translation((1.0, 0.0, 0.0)), rotation((0.0, 1.0, 0.0), (0.0, 0.0, joint))],
+        speed=2.0,
+        friction=friction,
+        sliding=(0.0, 0.0, -sense),
+    )
+    return SpecialCase(patch, np.array([force, moment]), (wear_law(b),))
+
+
+def drum_brake(
+    b: float,
+    sense: int,
+    moment: float,
+    radius: float,
+    pivot_distance: float,
+    width: float,
+    ends: tuple[float, float],
+    friction: float,
+    probes: Sequence[float] = (),
+) -> SpecialCase:
+    """Case 7: a shoe inside a drum; trailing at +1, where the drum turns anticlockwise."""
+    θ, w = along(*ends, probes)
+    outward = np.column_stack([np.cos(θ), np.sin(θ)])
+    clockwise = np.column_stack([np.sin(θ), -np.cos(θ)])
+    patch = contact_patch(
+        radius * outward,
+        w * radius * width,
+        outward,
+        [rotation((0.0, 0.0, -1.0), (pivot_distance, 0.0))],
+        speed=3.0,
+        friction=friction,
+        sliding=sense * clockwise,
+    )
+    return SpecialCase(patch, np.array([moment]), (wear_law(b),))
+
+
+def annular_punch(
+    b: float,
+    a: float,
+    force: float,
+    radius: np.ndarray,
+    area: np.ndarray,
+    angle: np.ndarray | float = np.pi / 2,
+    friction: float = 0.0,
+    transverse_friction: float = 0.0,
+) -> SpecialCase:
+    """Case 8: a ring that turns on its axis, on a face with any meridian.
+
+    Parameters
+    ----------
+    b, a, force
+    radius, area : ndarray, shape (n,)
+        Of the points, and the face around the axis that they stand for.
+    angle : float or ndarray
+        α between the face's normal and the radius.
+    friction, transverse_friction : float
+        Round the axis, and along the meridian.
+    """
+    α = np.broadcast_to(angle, radius.shape)
+    zero = np.zeros_like(radius)
+    patch = contact_patch(
+        np.column_stack([radius, zero, zero]),
+        area,
+        np.column_stack([np.cos(α), zero, -np.sin(α)]),
+        [translation(DOWN)],
+        speed=10.0 * radius,
+        friction=friction,
+        sliding=(0.0, 1.0, 0.0),
+        transverse_friction=transverse_friction,
+        transverse=np.column_stack([-np.sin(α), zero, -np.cos(α)]),
+    )
+    return SpecialCase(patch, np.array([force]), (wear_law(b, a),))
+
+
+def disk_brake(
+    b: float,
+    a: float,
+    force: float,
+    radii: tuple[float, float],
+    angle: float,
+    centre: tuple[float, float] | None = None,
+    friction: float = 0.0,
+    height: float = 0.0,
+) -> SpecialCase:
+    """Case 9: a pad on a disk that turns clockwise; it may tilt where a centre of load is given.
+
+    The joint about which it tilts stands at `height` over the centre of the disk.
+    """
+    r, w = along(*radii)
+    φ, v = along(-angle / 2, angle / 2)
+    area = np.outer(v, w * r).ravel()
+    r, φ = np.tile(r, len(φ)), np.repeat(φ, len(r))
+    zero = np.zeros_like(r)
+    motions, load = [translation(DOWN)], [force]
+    if centre is not None:
+        joint = (0.0, 0.0, height)
+        motions += [rotation((-1.0, 0.0, 0.0), joint), rotation((0.0, 1.0, 0.0), joint)]
+        load += [force * centre[1], force * centre[0]]
+    patch = contact_patch(
+        np.column_stack([r * np.cos(φ), r * np.sin(φ), zero]),
+        area,
+        DOWN,
+        motions,
+        speed=10.0 * r,
+        friction=friction,
+        sliding=np.column_stack([-np.sin(φ), np.cos(φ), zero]),
+    )
+    return SpecialCase(patch, np.array(load), (wear_law(b, a),))

@@ -1,0 +1,40 @@
+"""Rows of checks that the cases have in common."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..check import Check, compare
+from .patches import SpecialCase
+
+CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, closed form"
+TABLE = "closed form, tabulated"
+EXPONENTS = (0.5, 1.0, 2.0)
+MPA = 1e6
+_ROUNDED = 1 + 1e-9  # of half a unit: what lies in the middle between two printed numbers
+
+
+def printed(id: str, quantity: str, computed: float, text: str) -> Check:
+    """A number against one in print, to half a unit of its last digit."""
+    mantissa, _, power = text.partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    half_unit = 0.5 * 10.0 ** (int(power or 0) - decimals)
+    known = float(text)
+    return compare(id, quantity, computed, known, half_unit / abs(known) * _ROUNDED, TABLE)
+
+
+def worst(id: str, quantity: str, computed, exact, allowed: float = 1e-9) -> Check:
+    """Values at points against a formula, where they differ most, relative to the largest."""
+    computed, exact = np.broadcast_arrays(computed, exact)
+    at = int(np.abs(computed - exact).argmax())
+    scale = float(np.abs(exact).max())
+    quantity = f"{quantity}, where it differs most"
+    return compare(id, quantity, computed[at], exact[at], allowed, CLOSED_FORM, scale)
+
+
+def dissipation(id: str, case: SpecialCase, name: str) -> Check:
+    """``D_w = ∫ p·w' dS`` against the power of the load, ``F·V``."""
+    steady = case.steady()
+    quantity = f"wear dissipation power{name} [W]"
+    power = float(case.load @ steady.velocity)
+    return compare(id, quantity, steady.dissipation, power, 1e-9, "D_w = F·V")

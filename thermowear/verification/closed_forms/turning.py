@@ -1,0 +1,101 @@
+"""Faces whose speed grows with the radius: an annular punch (case 8), a disk brake (case 9)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...reference import annular_punch as ring
+from ...reference import disk_brake as pad
+from ..check import Check, compare
+from . import patches as cases
+from .rows import CLOSED_FORM, MPA, dissipation, printed, worst
+
+
+def case_8() -> Iterator[Check]:
+    """A ring that turns on a plate, on flat, conical and toroidal faces."""
+    inner, outer = 0.02, 0.12
+    force = 100e6 * np.pi * (outer**2 - inner**2)
+    places = np.array([0.02, 0.04, 0.07, 0.12])
+    for b, (power, constant, pressures, torque) in ring.STEADY_PRESSURE.items():
+        r, w = cases.along(inner, outer, probes=places)
+        case = cases.annular_punch(b, 1.0, force, r, 2 * np.pi * r * w, friction=0.25)
+        steady, name = case.steady(), f", b = {b:g}"
+        found = steady.pressure[-len(places) :] / MPA
+        product = found[0] * (1e3 * places[0]) ** power
+        yield printed("case-8", f"p r^{power:g}{name} [MPa mm^{power:g}]", product, constant)
+        for place, p, known in zip(places, found, pressures, strict=True):
+            yield printed("case-8", f"pressure at r = {1e3 * place:g} mm{name} [MPa]", p, known)
+        turned = case.patch.moment(steady.pressure, (0.0, 0.0, 0.0))[2] / 0.25
+        yield printed("case-8", f"torque over mu{name} [N mm]", 1e3 * turned, torque)
+        exact = ring.torque(force, inner, outer, 1.0, b, 1.0)
+        yield compare("case-8", f"torque over mu{name} [N m]", turned, exact, 1e-9, CLOSED_FORM)
+        yield dissipation("case-8", case, name)
+    yield from _cones()
+    yield from _tori()
+
+
+def _cones() -> Iterator[Check]:
+    rng = np.random.default_rng(8)
+    for _ in range(4):
+        b, a, α, mu, mu_d = rng.uniform((0.3, 0.5, 0.5, 0.0, 0.0), (4.0, 2.0, np.pi / 2, 0.5, 0.5))
+        inner, span, force = rng.uniform((0.01, 0.02, 1e3), (0.05, 0.1, 1e6))
+        r, w = cases.along(inner, inner + span)
+        area = 2 * np.pi * r * w / np.sin(α)
+        case = cases.annular_punch(b, a, force, r, area, α, mu, mu_d)
+        steady, name = case.steady(), f", cone, b = {b:.3g}, a = {a:.3g}, mu_d = {mu_d:.3g}"
+        exact = ring.conical_pressure(r, force, inner, inner + span, α, mu_d, b, a)
+        yield worst("case-8", f"pressure{name} [Pa]", steady.pressure, exact)
+        vertical = case.laws[0].rate(exact, case.patch.speed) / np.sin(α)
+        yield worst("case-8", f"vertical wear rate{name} [m/s]", steady.velocity[0], vertical)
+        yield dissipation("case-8", case, name)
+
+
+def _tori() -> Iterator[Check]:
+    rng = np.random.default_rng(18)
+    for _ in range(4):
+        b, a, mu, mu_d = rng.uniform((0.3, 0.5, 0.0, 0.0), (4.0, 2.0, 0.5, 0.5))
+        centre, rounding, force = rng.uniform((0.05, 0.005, 1e3), (0.1, 0.04, 1e5))
+        start, end = rng.uniform((0.3, 1.2), (0.8, np.pi / 2))
+        α, w = cases.along(start, end)
+        r = centre + rounding * np.cos(α)
+        case = cases.annular_punch(b, a, force, r, 2 * np.pi * r * rounding * w, α, mu, mu_d)
+        name = f", torus, b = {b:.3g}, a = {a:.3g}, mu_d = {mu_d:.3g}"
+        exact = ring.toroidal_pressure(α, force, centre, rounding, start, end, mu_d, b, a)
+        yield worst("case-8", f"pressure{name} [Pa]", case.steady().pressure, exact)
+        yield dissipation("case-8", case, name)
+
+
+def case_9() -> Iterator[Check]:
+    """A pad on a disk, pressed straight or free to tilt."""
+    rng = np.random.default_rng(9)
+    for same in (True, True, False, False):
+        b, a, angle, force = rng.uniform((0.3, 0.5, 0.3, 100), (3.0, 2.0, 2.0, 1e4))
+        a = b if same else a
+        inner, span, friction = rng.uniform((0.05, 0.03, 0.1), (0.1, 0.08, 0.5))
+        radii = (inner, inner + span)
+        case = cases.disk_brake(b, a, force, radii, angle, friction=friction)
+        steady, name = case.steady(), f", b = {b:.3g}, a = {a:.3g}"
+        r = np.hypot(case.patch.points[:, 0], case.patch.points[:, 1])
+        exact = pad.steady_pressure(r, force, *radii, angle, b, a)
+        yield worst("case-9", f"pressure{name} [Pa]", steady.pressure, exact)
+        yield dissipation("case-9", case, name)
+        if same:
+            largest = float(np.mean(steady.pressure * r / inner))
+            carried = pad.uniform_wear_force(largest, *radii, angle)
+            quantity = f"force θ p_a ri (ro - ri){name} [N]"
+            yield compare("case-9", quantity, force, carried, 1e-9, CLOSED_FORM)
+            torque = case.patch.moment(steady.pressure, (0.0, 0.0, 0.0))[2]
+            known = pad.uniform_wear_torque(force, friction, *radii)
+            yield compare("case-9", f"torque{name} [N m]", torque, known, 1e-9, CLOSED_FORM)
+    for height in (0.0, 0.01, 0.02):
+        a, angle, force, friction = rng.uniform((0.5, 0.8, 100, 0.1), (2.0, 1.5, 1e4, 0.5))
+        lift = friction * height
+        centre = (rng.uniform(0.074, 0.078), rng.uniform(-0.002, 0.002) - lift)
+        case = cases.disk_brake(1.0, a, force, (0.06, 0.1), angle, centre, friction, height)
+        name = f", tilting, a = {a:.3g}, mu = {friction:.3g}, height {1e3 * height:g} mm"
+        x, y = case.patch.points[:, 0], case.patch.points[:, 1]
+        exact = pad.tilted_pressure(x, y, force, centre, 0.06, 0.1, angle, a, lift)
+        yield worst("case-9", f"pressure{name} [Pa]", case.steady().pressure, exact)
+        yield dissipation("case-9", case, name)

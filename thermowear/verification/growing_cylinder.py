@@ -1,0 +1,41 @@
+"""A cylinder on a block whose contact grows by wear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..reference.growing_contact import growing_line
+from .check import Check
+from .growing import Growth, grown
+from .hertz import MODULUS
+
+ID = "growing-cylinder"
+STARTER = "cylinder-on-block-growing"
+FORCE, THICKNESS, RADIUS = 20.0, 1e-3, 10e-3
+COEFFICIENT = 1e-14
+MESH = ("mesh.elements=60",)
+
+BOTH = ('wear.cylinder={coefficient="5e-9 1/MPa", per="pressure"}',)
+SQUARE = ('wear={cylinder={coefficient="1e-10 1/MPa^2", per="pressure", pressure_exponent=2}}',)
+
+
+def checks() -> Iterator[Check]:
+    """The block wears, both wear, and the cylinder wears with the square of the pressure."""
+    growth = run("", 1.0, COEFFICIENT, (3, 4, 5, 6))
+    yield from growth.checks()
+    yield from growth.volumes(COEFFICIENT * FORCE)
+    both = run(", both wear", 1.0, 1.5 * COEFFICIENT, (3, 4), *BOTH)
+    yield from both.checks()
+    yield from both.volumes(1.5 * COEFFICIENT * FORCE)
+    yield from run(", cylinder wears, b = 2", 2.0, 1e-22, (3, 4, 5), *SQUARE).checks()
+
+
+def run(
+    note: str, exponent: float, coefficient: float, multiples: tuple[float, ...], *overrides: str
+) -> Growth:
+    """Up to multiples of the first half-width, by the closed form of rigid bodies."""
+    law = growing_line(FORCE / THICKNESS, RADIUS, MODULUS, coefficient, exponent)
+    distances = law.distance(law.start * np.array(multiples))
+    return Growth(ID, note, law, 5, grown(STARTER, distances, *MESH, *overrides))

@@ -1,0 +1,45 @@
+"""A sphere on a block whose contact grows by wear: a pin-on-disc test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..reference.growing_contact import growing_point
+from .check import Check, compare
+from .growing import RIGID, Growth, grown, worn_half_width
+from .hertz import MODULUS
+
+ID = "growing-sphere"
+STARTER = "sphere-on-block-growing"
+FORCE, RADIUS = 10.385, 50e-3
+COEFFICIENT = 1.33e-13
+MOMENT = 3
+MESH = ("mesh.elements=60",)
+
+SQUARE = ('wear={block={coefficient="1.33e-9 1/MPa^2", per="pressure", pressure_exponent=2}}',)
+PUBLISHED = {0.32: 2.7426, 0.64: 3.2543}
+"""Radius over that of Hertz's contact, by sliding distance [m]."""
+
+
+def checks() -> Iterator[Check]:
+    """The sphere wears; the block wears with the square of the pressure."""
+    growth = run("", 1.0, COEFFICIENT, (3, 4, 5, 6))
+    yield from growth.checks()
+    yield from growth.volumes(COEFFICIENT * FORCE)
+    yield from run(", block wears, b = 2", 2.0, 1.33e-21, (3, 5), *SQUARE).checks()
+    published = grown(STARTER, tuple(PUBLISHED), *MESH)
+    for (distance, ratio), state in zip(PUBLISHED.items(), published.values(), strict=True):
+        found = worn_half_width(state, MOMENT) / growth.law.start
+        quantity = f"radius over a0 after {distance:g} m [1]"
+        yield compare(ID, quantity, found, ratio, 1e-2, RIGID)
+
+
+def run(
+    note: str, exponent: float, coefficient: float, multiples: tuple[float, ...], *overrides: str
+) -> Growth:
+    """Up to multiples of the first radius, by the closed form of rigid bodies."""
+    law = growing_point(FORCE, RADIUS, MODULUS, coefficient, exponent)
+    distances = law.distance(law.start * np.array(multiples))
+    return Growth(ID, note, law, MOMENT, grown(STARTER, distances, *MESH, *overrides))

@@ -15,9 +15,11 @@ import subprocess
 import sys
 import textwrap
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 
 from PIL import Image  # matplotlib does not come without it
+from slides import SLIDES, Slide, draw_slide
 
 from thermowear.output.report.figures import figure_text
 
@@ -39,6 +41,11 @@ Each picture shows what the command above it computes; `scripts/env COMMAND…` 
 all packages are. The cases explain their keys: change them. This page is made by `make gallery`.
 """
 
+COMPARISONS = """# One thing varied
+
+Runs of the cases above with some keys changed; `slides.py` says which.
+"""
+
 
 def main() -> int:
     """Compute the cases and write the page."""
@@ -52,7 +59,10 @@ def main() -> int:
         if code != 0:
             print(f"error: {case.stem} ended with exit code {code}", file=sys.stderr)
             return code
-    write_gallery(HERE, cases, results)
+    for slide in SLIDES:
+        print(f"{slide.name} …", flush=True)
+        draw_slide(slide, results, results / f"{slide.name}.png")
+    write_gallery(HERE, cases, results, SLIDES)
     return 0
 
 
@@ -62,7 +72,9 @@ def compute(case: Path, folder: Path) -> int:
     return subprocess.run([*command, "--overwrite"], check=False).returncode
 
 
-def write_gallery(place: Path, cases: list[Path], results: Path) -> None:
+def write_gallery(
+    place: Path, cases: list[Path], results: Path, slides: Sequence[Slide] = ()
+) -> None:
     """Write ``README.md`` and ``pictures/`` from the results of the cases.
 
     Parameters
@@ -71,13 +83,20 @@ def write_gallery(place: Path, cases: list[Path], results: Path) -> None:
         Where they are written; pictures of earlier galleries are removed.
     cases : list of Path
     results : Path
-        Holds a results folder for each case, named like it.
+        Holds a results folder for each case, named like it, and a picture for each slide.
+    slides : sequence of Slide
     """
     pictures = place / "pictures"
     pictures.mkdir(exist_ok=True)
     for old in pictures.glob("*.png"):
         old.unlink()
     entries = [_entry(case, results / case.stem, pictures) for case in cases]
+    if slides:
+        entries.append(COMPARISONS)
+    for slide in slides:
+        (pictures / f"{slide.name}.png").write_bytes(small_png(results / f"{slide.name}.png"))
+        lines = [f"## {slide.title}", "", *textwrap.wrap(slide.text, 100), ""]
+        entries.append("\n".join([*lines, f"![{slide.title}](pictures/{slide.name}.png)", ""]))
     (place / "README.md").write_text("\n".join([HEAD, *entries]), encoding="utf-8")
 
 

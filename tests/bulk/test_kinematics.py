@@ -12,7 +12,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, section_model
-from thermowear.case.schema import Motion
+from thermowear.case.driving import Motion
 from thermowear.contact.sliding import sliding
 
 from ..conftest import two_blocks

@@ -9,7 +9,7 @@ from dolfinx import fem
 
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial, section_model
-from thermowear.case.schema import Motion
+from thermowear.case.driving import Motion
 from thermowear.contact.sliding import sliding
 from thermowear.parallel import sum_over_ranks
 

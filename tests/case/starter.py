@@ -13,6 +13,7 @@ from thermowear.case.starters import starter_text
 STEADY, RUNNING_IN = "annular-punch", "annular-punch-running-in"
 HERTZ, FRETTING, PUNCH = "cylinder-on-block", "cylinder-stick-slip", "punch-on-block"
 SPHERE, RECIPROCATING = "sphere-on-block", "punch-on-strip-reciprocating"
+TUBE = "tube-in-support"
 
 FILE = {
     "type": "file",

@@ -20,9 +20,11 @@ from ..conftest import DEMOS
 @pytest.fixture(scope="module")
 def gallery():
     """The script as a module."""
+    sys.path.insert(0, str(DEMOS))  # as for a script: its neighbours can be imported
     spec = importlib.util.spec_from_file_location("gallery", DEMOS / "gallery.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
+    sys.path.remove(str(DEMOS))
     return module
 
 

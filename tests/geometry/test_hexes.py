@@ -113,18 +113,19 @@ def test_exports(order, ending, tmp_path):
 @pytest.mark.parametrize("order", GMSH)
 def test_vtk_sees_the_same_cells(order, tmp_path):
     """requirement: nodes within edges, facets and cells are written in VTK's order."""
-    import vtk
+    from vtkmodules.vtkCommonCore import mutable
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
     mesh, path = tagged_ring(order), tmp_path / "mesh.vtu"
     write_mesh(mesh, path)
-    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     reader.Update()
     grid, place = reader.GetOutput(), [0.3, 0.45, 0.8]
     values = shape_functions("hexahedron", order, np.array([place]))[0]
     for number, cell in enumerate(mesh.cells):
         x, weights = [0.0] * 3, [0.0] * 64
-        grid.GetCell(number).EvaluateLocation(vtk.mutable(0), place, x, weights)
+        grid.GetCell(number).EvaluateLocation(mutable(0), place, x, weights)
         np.testing.assert_allclose(
             x, values @ mesh.points[cell], atol=2e-3 if order == 3 else 1e-12
         )

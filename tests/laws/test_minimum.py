@@ -144,6 +144,30 @@ def test_multipliers_are_the_price_of_the_load():
         assert slope == pytest.approx(found.multipliers[i], rel=1e-5)
 
 
+def test_inclinations_are_those_of_the_minimum_or_it_is_refused():
+    """requirement: χ agrees with the multipliers; where no direction does, that is said."""
+    rng = np.random.default_rng(41)
+    found, refused = 0, 0
+    for _ in range(10):
+        patch, load, laws = curved_face(rng, friction=0.5, eccentric=2.0, motions=3)
+        laws = laws[:1]
+        R, T, q = patch.normal_modes, patch.force_modes, 6.0
+        try:
+            least = least_wear_dissipation(patch.weights, R, T, load, laws, patch.speed, q)
+        except ComputationError:
+            refused += 1
+            continue
+        opposed, approach = T @ least.multipliers, R @ least.multipliers
+        part = patch.part((opposed > 0) & (approach > 0))
+        factor = (opposed / approach)[(opposed > 0) & (approach > 0)]
+        given = wear_dissipation(part.weights, laws, part.speed, q, factor)
+        again = minimise(given, part.force_modes, load).multipliers
+        np.testing.assert_allclose(again, least.multipliers, rtol=1e-6)
+        found += 1
+    assert found > 0
+    assert refused > 0
+
+
 def test_lowest_of_several_stationary_pressures():
     """requirement: W of two bodies with b < 1 is not convex; the lowest is found.
 

@@ -83,3 +83,16 @@ def test_no_solution_is_none_and_quiet(recwarn):
     for load in ([1.0, 1.2], [-1.0, 0.0], [0.0, 1.0]):
         assert solve(np.ones(21), modes, modes, np.array(load), local) is None
     assert not recwarn.list
+
+
+def test_far_pivots():
+    """requirement: turns about an axis a million lengths away, hardly a shift apart."""
+    rng = np.random.default_rng(9)
+    x, weights = rng.uniform(-1, 1, 60), rng.uniform(0.5, 1, 60)
+    pressure = 1e6 * np.maximum(0.2 + x, 0.0) ** 2
+    local = PowerSum(np.full((1, 60), 1e-16), np.array([0.5]))
+    near, far = (
+        solve(weights, modes, modes, modes.T @ (weights * pressure), local)
+        for modes in (np.column_stack([np.ones(60), away + x]) for away in (0.0, 1e6))
+    )
+    np.testing.assert_allclose(far.pressure, near.pressure, atol=1e-7 * near.pressure.max())

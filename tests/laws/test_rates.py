@@ -2,7 +2,15 @@
 
 import numpy as np
 
-from thermowear.laws import WearLaw, contact_patch, translation, wear_vectors
+from thermowear.laws import (
+    InPlace,
+    Track,
+    WearLaw,
+    contact_patch,
+    rotation,
+    translation,
+    wear_vectors,
+)
 
 from .random_problems import curved_face
 
@@ -60,3 +68,20 @@ def test_dissipation_is_traction_times_wear():
         total = sum(wear_vectors(patch, steady).rates)
         power = patch.weights @ (steady.pressure * np.sum(patch.traction * total, axis=1))
         np.testing.assert_allclose(steady.dissipation, power, rtol=1e-8)
+
+
+def test_where_the_faces_part_a_track_wears_along_its_normal():
+    """requirement: a strip wears all over its track, also where nothing touches it."""
+    z = np.linspace(-0.05, 0.05, 41)
+    patch = contact_patch(
+        np.column_stack([np.full(41, 0.03), 0 * z, z]), np.full(41, 1e-5), (1, 0, 0),
+        [translation((1, 0, 0)), rotation((0, 1, 0), (0, 0, 0))], 1.0,
+    )  # fmt: skip
+    laws, track = [WearLaw(1e-13), WearLaw(1e-13)], Track(np.full(41, 1e-3))
+    steady = patch.steady([1e3, 30.0], laws, [InPlace(), track])
+    vectors = wear_vectors(patch, steady)
+    away = steady.approach <= 0
+    assert away.any()
+    assert steady.rates[1][0] > 0
+    np.testing.assert_allclose(vectors.rates[1][away], steady.rates[1][away, None] * [1, 0, 0])
+    np.testing.assert_allclose(vectors.tangential[1][away], 0.0)

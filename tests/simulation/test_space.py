@@ -6,6 +6,7 @@ import tomli_w
 
 import thermowear as tw
 
+from ..case.starter import solved
 from ..test_parallel import summaries
 from .space import BRAKE, PUNCH, changed
 
@@ -146,3 +147,29 @@ def test_two_ranks_give_the_serial_numbers(tmp_path):
         if isinstance(value, float) and not key.endswith("relative_error"):
             near = 1e-8 * abs(serial["normal_force_N"] if key.endswith("_N") else value)
             assert parallel[key] == pytest.approx(value, rel=1e-8, abs=max(near, 1e-18)), key
+
+
+HOT = (
+    "bodies.punch.conductivity=50 W/(m K)",
+    "bodies.punch.expansion=1.2e-5 1/K",
+    "contact.friction=0.2",
+    "motion.velocity=0.5 mm/s",
+    "heat={conductance='1e5 W/(m^2 K)', ambient='20 degC', cooling={punch_top='2000 W/(m^2 K)',"
+    " block_bottom='2000 W/(m^2 K)'}}",
+)
+
+
+@pytest.mark.parametrize(
+    "analysis", ["{type='steady'}", "{type='transient', until='steady'}"], ids=["steady", "worn"]
+)
+def test_heat_in_space(analysis):
+    """requirement: heat balances; it changes the worn shape and not the steady pressure."""
+    coarse = ("mesh.degree=2", "mesh.elements=4", f"analysis={analysis}")
+    hot = solved("rectangular-punch", None, *coarse, *HOT)
+    assert hot.stopped is None
+    summary = hot.summary
+    assert summary["heat_balance_relative_error"] < 1e-9
+    assert summary["friction_power_W"] == pytest.approx(0.2 * 1e4 * 0.5e-3, rel=1e-9)
+    assert 293.2 < summary["max_temperature_K"] < 294.0
+    # friction tilts it further: mu F acts in the face, about the pivot at its middle
+    assert summary["max_pressure_Pa"] == pytest.approx(3.125e6, rel=3e-3)

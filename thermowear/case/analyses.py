@@ -79,8 +79,8 @@ class Transient(Timed):
 class Reciprocating(Timed):
     """Wear of a body 1 that slides to and fro, and of what it rubs along, averaged over cycles.
 
-    Steady are wear rates that vary along each of the worn faces by less than `steady_tolerance` of
-    their mean (root mean square).
+    Steady are wear rates that differ from their mean along each of the worn faces by less than
+    `steady_tolerance` of it, in the mean.
 
     Attributes
     ----------

@@ -5,9 +5,9 @@ For each position j find λ_j, the rigid motion d_j of the holder, and for all o
     r_j = A_j λ_j + g_j + S_j y - R_j d_j >= 0,   λ_j >= 0,   λ_j·r_j = 0,   T_jᵀ λ_j = F,
     y = y_0 + Σ_j G_j λ_j.
 
-An implicit step of wear has this form. Stacked it is one contact problem like that of
-`complementarity`, with full coupling; but for given active sets it falls apart into small ones and
-a system for y.
+An implicit step of wear has this form. For given active sets it falls apart into small problems and
+a system for y, which is fast. Stacked it is one large contact problem like that of
+`complementarity`, with full coupling, which is always solved.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
-from ..errors import ComputationError
+from .complementarity import solve_contact
 
 _TOLERANCE = 1e-9
 
@@ -68,7 +69,7 @@ class CoupledSolution:
 def solve_coupled(
     contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
 ) -> CoupledSolution:
-    """Solve by a primal-dual active set on all contacts at once.
+    """Solve by a primal-dual active set on all contacts at once, stacked where that fails.
 
     Parameters
     ----------
@@ -83,23 +84,48 @@ def solve_coupled(
     Raises
     ------
     ComputationError
-        If the active sets run in circles.
+        If there is no solution.
     """
-    met = set()
+    met, expected = set(), active
     while active.tobytes() not in met:
         met.add(active.tobytes())
         solution = _with_active(contacts, start, gains, active)
+        if solution is None:
+            break
         following = _pressing(contacts, solution)
         if np.array_equal(following, active):
             return solution
         active = following
-    raise ComputationError("contact: no pressures satisfy the contact conditions in all positions")
+    return _stacked(contacts, start, gains, expected)
+
+
+def _stacked(
+    contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
+) -> CoupledSolution:
+    """The solution of all contacts as one."""
+    count, m, k = contacts.modes.shape
+    seen = contacts.seen.reshape(count * m, -1)
+    compliance = block_diag(*contacts.compliance)
+    compliance = compliance + seen @ gains.transpose(1, 0, 2).reshape(len(start), -1)
+    solution = solve_contact(
+        compliance,
+        contacts.gap.ravel() + seen @ start,
+        block_diag(*contacts.modes),
+        np.tile(contacts.load, count),
+        active.ravel(),
+        block_diag(*contacts.force_modes),
+    )
+    λ = solution.coefficients.reshape(count, m)
+    depths = start + np.einsum("jnm,jm->n", gains, λ)
+    return CoupledSolution(λ, solution.motion.reshape(count, k), λ > 0, depths)
 
 
 def _with_active(
     contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
-) -> CoupledSolution:
-    """The linear problem with closed contact at the active coefficients."""
+) -> CoupledSolution | None:
+    """The linear problem with closed contact at the active coefficients, none where singular."""
+    if np.any(active.sum(axis=1) < len(contacts.load)):
+        return None
     free, by_depth = _eliminated(contacts, active)
     m = active.shape[1]
     spread = np.eye(len(start)) - np.einsum("jnm,jmk->nk", gains, by_depth[:, :m])
@@ -124,10 +150,7 @@ def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> tuple[np.ndarr
     right[:, :m, 0] = -contacts.gap * pressed
     right[:, m:, 0] = -contacts.load / stretch
     right[:, :m, 1:] = -contacts.seen * pressed[..., None]
-    try:
-        unknowns = np.linalg.solve(matrix, right)
-    except np.linalg.LinAlgError:
-        raise ComputationError("contact: a position cannot carry the load") from None
+    unknowns = np.linalg.solve(matrix, right)
     unknowns[:, :m] *= pressed[..., None]
     unknowns[:, m:] /= stretch
     return unknowns[..., 0], unknowns[..., 1:]

@@ -187,7 +187,7 @@ def implicitly(
     opens = seen @ kept
     after, expected = unworn, np.zeros(m)
     for _ in range(_PASSES):
-        slip = np.linalg.norm(after.slip - before.slip, axis=1) / areas
+        slip = after.slides * np.linalg.norm(after.slip - before.slip, axis=1) / areas
         depths = wear.depths(after.pressure, slip)
         opened = np.einsum("bmn,bn->m", opens, depths)
         if np.abs(opened - expected).max() <= _SETTLED * opened.max():

@@ -72,6 +72,11 @@ class StickSlipState:
     worn: np.ndarray
     iterations: int = 0
 
+    @property
+    def slides(self) -> np.ndarray:
+        """Which coefficients slipped in the last increment, shape (m,)."""
+        return self.status == Status.SLIP
+
 
 def unloaded(contact: FrictionalContact, wearing: int = 0) -> StickSlipState:
     """The state before any load, of bodies of which so many wear."""

@@ -29,6 +29,7 @@ from .wear import WearLaw
 _SEARCH = 16  # intervals in which the ratio of κ is looked for
 _SETTLED = 1e-13
 _ENOUGH = 1e-9
+_TURNS = 120  # of the direction, each a minimisation
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,9 @@ def least_wear_dissipation(
 
     steady = steady_pressure(weights, normal_modes, force_modes, load, laws, speed)
     start = scale * steady.velocity
-    direction = root(turned, start / np.linalg.norm(start), options={"xtol": _SETTLED}).x
+    direction = root(
+        turned, start / np.linalg.norm(start), options={"xtol": _SETTLED, "maxfev": _TURNS}
+    ).x
     if not np.linalg.norm(turned(direction)) < _ENOUGH:
         raise ComputationError(
             "no minimum found: the direction of the rigid-body wear velocity does not settle"

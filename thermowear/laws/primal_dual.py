@@ -90,7 +90,7 @@ def solve(
     normal_modes, force_modes : ndarray, shape (n, k)
         R and T; the columns of R are independent.
     load : ndarray, shape (k,)
-        F, not zero.
+        F; nothing to solve where it is zero.
     local, spread : PowerSum
         h and the summands of S.
     """
@@ -106,6 +106,8 @@ def solve(
         spread or PowerSum(np.zeros((1, len(weights))), np.ones(1)),
     )
     force = np.linalg.norm(conditions.goal)
+    if force == 0:
+        return None
     found = _solve_from(conditions, np.full(len(weights), force))
     if found is None or not found.regular:
         bare = replace(conditions, carried=share[:, None] * conditions.approach)

@@ -90,11 +90,13 @@ def steady_pressure(
     NotCarried
         If the load opens the contact.
     ComputationError
-        If points do not slide, nothing wears in place, or a motion presses nothing.
+        If points do not slide, nothing wears where it is pressed, or a motion presses nothing.
     """
     spread = spread if spread is not None else [InPlace()] * len(laws)
     if not np.all(speed > 0):
         raise ComputationError("no steady state: some contact points do not slide")
+    if not laws:
+        raise ComputationError("no steady state: no body wears")
     if not any(way.share > 0 for way in spread):
         raise ComputationError(
             "no steady pressure: all wear is spread over a track, which takes any pressure"

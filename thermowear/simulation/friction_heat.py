@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..contact.heat import HeatExchange, ThermalState
-from .system import System, ThermalSystem
+from .system import System
+from .thermal_system import ThermalSystem
 
 
 @dataclass(frozen=True)

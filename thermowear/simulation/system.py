@@ -5,65 +5,29 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from petsc4py import PETSc
-
 import numpy as np
 import scipy.sparse as sp
 
 from ..bulk.bodies import Bodies, distribute
-from ..bulk.conduction import Conduction, conduction
 from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
-from ..bulk.field import lagrange_space
 from ..bulk.kinematics import Model, section_model
 from ..bulk.surface_load import surface_load
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, condense
 from ..contact.face import gather_face
-from ..contact.heat import (
-    InterfaceHeat,
-    ThermalDistortion,
-    bath_matrix,
-    condense_distortion,
-    condense_heat,
-)
+from ..contact.heat import ThermalDistortion, condense_distortion
 from ..contact.holder import Holder, hold
 from ..contact.pairing import Pairing, pair
 from ..contact.pressure import pressure_basis
 from ..contact.sliding import Sliding, sliding
-from ..contact.traces import gap_trace, value_trace, vector_trace
+from ..contact.traces import gap_trace, vector_trace
 from ..laws import WearLaw
 from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
 from ..parallel import on_root, sum_over_ranks
 from .drives import drives
 from .initial_shape import initial_depth
 from .phases import Phases
-
-
-@dataclass(frozen=True)
-class ThermalSystem:
-    """The conducting bodies and their share in the interface.
-
-    Attributes
-    ----------
-    conduction : Conduction
-    load : petsc4py.PETSc.Mat
-        G: nodal forces per nodal rise [N/K].
-    face : InterfaceHeat
-    ambient : float
-        [K]
-    """
-
-    conduction: Conduction
-    load: PETSc.Mat
-    face: InterfaceHeat
-    ambient: float
-
-    def forces(self, rise: np.ndarray) -> np.ndarray:
-        """Nodal forces of a temperature rise, owned rows [N]."""
-        right, result = self.load.createVecs()
-        right.setArray(rise)
-        self.load.mult(right, result)
-        return result.getArray().copy()
+from .thermal_system import ThermalSystem, thermal_system
 
 
 @dataclass(frozen=True)
@@ -239,7 +203,7 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
         pull=pull,
         speed=speed,
         dead_load=_dead_load(case, elastic),
-        thermal=_thermal(case, bodies, model, pairing, elastic, basis, phases),
+        thermal=thermal_system(case, bodies, model, pairing, elastic, basis, phases),
         phases=phases,
     )
 
@@ -283,40 +247,3 @@ def _dead_load(case: Case, elastic: Elasticity) -> np.ndarray | None:
         for surface, force in case.load.surfaces.items()
     ]
     return np.sum(loads, axis=0) if loads else None
-
-
-def _thermal(case, bodies, model, pairing, elastic, basis, phases) -> ThermalSystem | None:
-    heat = case.heat
-    if heat is None:
-        return None
-    with phases("assemble conduction"):
-        space = lagrange_space(bodies.mesh, case.mesh.degree)
-        upper, lower = pairing.sides
-        traces = (value_trace(space, upper), value_trace(space, lower))
-        conductivities, cooling = _round_the_ring(case)
-        shift = max(conductivities.values()) / pairing.extent
-        given = {name: value - heat.ambient for name, value in heat.temperature.items()}
-        bath = bath_matrix(space, traces, pairing.weights, shift)
-        conducting = conduction(bodies, model, space, conductivities, cooling, given, bath)
-        load = elastic.thermal_load(space)
-    with phases("condense conduction"):
-        face = condense_heat(
-            conducting, pairing.weights, basis, traces, shift, heat.conductance, heat.partition
-        )
-    return ThermalSystem(conducting, load, face, heat.ambient)
-
-
-def _round_the_ring(case: Case) -> tuple[dict[str, float], dict[str, float]]:
-    """Conductivities by body and heat transfer by surface, for the modelled sector.
-
-    Under a body 1 that takes up a sector, all of a turning body 2 comes by and is heated: what
-    conducts and cools is the whole ring.
-    """
-    assert case.heat is not None
-    moving, sector = case.geometry.bodies[1], case.geometry.sector
-    conductivities = {b: case.material(b).conductivity or 0.0 for b in case.geometry.parts}
-    conductivities[moving] /= sector
-    whole = {
-        s: h / sector if s.startswith(f"{moving}_") else h for s, h in case.heat.cooling.items()
-    }
-    return conductivities, whole

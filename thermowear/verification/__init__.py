@@ -4,18 +4,23 @@ from . import (
     annular_punch,
     beam_shakedown,
     flat_punch,
+    fretting_wear,
+    fuel_fretting,
     growing_cylinder,
     growing_sphere,
     hertz_line,
     hertz_sphere,
     methods_agree,
     mindlin,
+    minimality,
     patch,
+    reciprocating,
     running_in,
+    special_cases,
 )
 from .check import Check, Checks, compare
 
-CASES: dict[str, Checks] = {
+CASES: dict[str, Checks] = special_cases.CHECKS | {
     case.ID: case.checks
     for case in (
         annular_punch,
@@ -29,6 +34,10 @@ CASES: dict[str, Checks] = {
         growing_cylinder,
         growing_sphere,
         beam_shakedown,
+        fretting_wear,
+        fuel_fretting,
+        reciprocating,
+        minimality,
     )
 }
 """Verification cases by id; each yields its checks."""

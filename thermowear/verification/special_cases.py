@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from .check import Check, Checks
 from .closed_forms import CLOSED_FORMS
 from .finite_elements import running_in
+from .ring_story import story
 
 _RUNS: dict[str, tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...]] = {
     "case-1": (
@@ -54,6 +55,8 @@ def _checks_of(id: str) -> Checks:
         yield from CLOSED_FORMS[id]()
         for starter, overrides, without in _RUNS[id]:
             yield from running_in(id, starter, *overrides, without=without)
+        if id == "case-8":
+            yield from story(id)
 
     return checks
 

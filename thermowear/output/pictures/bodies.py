@@ -20,6 +20,7 @@ _DEFORMED_PART = 0.06  # of the bodies' size: how far the largest displacement i
 _PIXELS = 1400  # of the longer side of a rendered picture
 _BEHIND = 1e-3  # of the bodies' size: how far body 1 is set back
 _SMALL = 0.15  # of the bodies' size: contacts smaller than that get panels of their own
+_FLAT = 0.35  # height over width: windows lower than that have their scale of colours below
 _AROUND = 3.0  # sizes of the contact that such a panel shows
 
 Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]
@@ -82,7 +83,8 @@ def _draw(path: Path, grid, fields: list[tuple[str, str]], note: str, contact=No
     beside = len(fields) == 1
     rows, columns = (1, len(windows)) if beside else (len(windows), len(fields))
     tall = max(shapes) if beside else sum(shapes)
-    size = (5.2 * columns, 3.45 * tall + 0.7 * rows + (0.3 if note else 0.0))
+    flat_rows = sum(shape < _FLAT for shape in shapes)
+    size = (5.2 * columns, 3.45 * tall + 0.7 * (rows + flat_rows) + (0.3 if note else 0.0))
     figure = Figure(figsize=size, layout="constrained", dpi=150)
     ratios = None if beside else shapes
     panels = figure.subplots(rows, columns, squeeze=False, height_ratios=ratios)
@@ -105,7 +107,15 @@ def _panel(figure, axis, grid, name: str, colors: str, extent: Extent) -> None:
     axis.set_xlim(extent[:2])
     axis.set_ylim(extent[2:])
     over = np.nanmax(grid[name][inside]) > limits[1] * (1 + 1e-9)
-    figure.colorbar(scale, ax=axis, label=name, shrink=0.8, extend="max" if over else "neither")
+    flat = extent[3] - extent[2] < _FLAT * (extent[1] - extent[0])
+    figure.colorbar(
+        scale,
+        ax=axis,
+        label=name,
+        shrink=0.8,
+        extend="max" if over else "neither",
+        location="bottom" if flat else "right",
+    )
     axis.set_xlabel("x [mm]")
     axis.set_ylabel("y [mm]")
     axis.spines[["top", "right"]].set_visible(False)

@@ -49,7 +49,7 @@ def draw_interface(folder: Path) -> None:
 
 
 def draw_wear(folder: Path) -> None:
-    """``wear.png``: worn depth along the contact at the output times and at the end."""
+    """``wear.png``: pressure and worn depth along the contact at output times and at the end."""
     steps = {"history.csv": HISTORY, "loads.csv": LOADS}
     ends = [
         float(tables.read(folder / name, table)["time"][-1])
@@ -68,16 +68,18 @@ def draw_wear(folder: Path) -> None:
         return
     colors = mpl.colormaps["viridis"](np.linspace(0.9, 0.0, len(states)))
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 3.6 * len(bodies)), layout="constrained", dpi=150)
-        axes = figure.subplots(len(bodies), sharex=True, squeeze=False)[:, 0]
-        for axis, name in zip(axes, bodies, strict=True):
+        panels = ["pressure", *bodies] if len(states) > 1 else bodies
+        figure = Figure(figsize=(6.4, 3.0 * len(panels)), layout="constrained", dpi=150)
+        axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
+        for axis, name in zip(axes, panels, strict=True):
             for (time, data), color in zip(states.items(), colors, strict=True):
                 label, place = abscissa(data)
                 axis.plot(
                     place, INTERFACE[name].drawn(data[name]), color=color, label=f"{time:.4g} s"
                 )
             axis.set_ylabel(INTERFACE[name].axis)
-            axis.invert_yaxis()
+            if name != "pressure":
+                axis.invert_yaxis()
         axes[0].legend(title="time", loc="center left", bbox_to_anchor=(1.0, 0.5))
         axes[-1].set_xlabel(label)
         figure.savefig(folder / "wear.png")

@@ -17,20 +17,22 @@ def case_3() -> Iterator[Check]:
     """A block above a disk that turns either way."""
     data = (arc.FORCE, arc.RADIUS, arc.WIDTH)
     for b, peak in arc.SYMMETRIC.items():
+        without = cases.block_on_disk(b, (-0.5, 0.5), *data, 0.0, 1, probes=(0.0,)).steady()
         for friction, sense in ((0.0, 1), (arc.FRICTION, 1), (arc.FRICTION, -1), (0.9, 1)):
             case = cases.block_on_disk(b, (-0.5, 0.5), *data, friction, sense, probes=(0.0,))
             steady, name = case.steady(), f", b = {b:g}, mu = {sense * friction:g}"
-            top = steady.pressure[-1] / MPA
-            yield printed("case-3", f"largest pressure{name} [MPa]", top, peak)
-            if b == 1:
-                exact = arc.symmetric_peak(*data, 0.5) / MPA
-                yield compare(
-                    "case-3", f"largest pressure{name} [MPa]", top, exact, 1e-10, CLOSED_FORM
-                )
+            quantity = f"largest pressure{name} [MPa]"
+            yield printed("case-3", quantity, steady.pressure[-1] / MPA, peak)
+            quantity = f"pressure against that without friction{name} [Pa]"
+            yield worst("case-3", quantity, steady.pressure, without.pressure, 1e-10)
             guide = case.patch.force(steady.pressure)[0]
             exact = sense * friction * arc.FORCE
             quantity = f"force of the guide{name} [N]"
             yield compare("case-3", quantity, guide, exact, 1e-10, CLOSED_FORM, scale=arc.FORCE)
+        if b == 1:
+            exact = arc.symmetric_peak(*data, 0.5)
+            quantity = "largest pressure, formula of b = 1 [Pa]"
+            yield compare("case-3", quantity, without.pressure[-1], exact, 1e-10, CLOSED_FORM)
     for sense, peak in arc.ASYMMETRIC.items():
         case = cases.block_on_disk(1.0, (-0.2, 0.7), *data, arc.FRICTION, sense, probes=(0.0,))
         quantity = f"largest pressure, asymmetric, sense {sense:+d} [MPa]"

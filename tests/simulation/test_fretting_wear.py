@@ -1,0 +1,224 @@
+"""Wear in fretting, from the case to the results."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+import tomli_w
+
+import thermowear as tw
+from thermowear.cli import main
+from thermowear.simulation import Observer
+
+from ..case.starter import FRETTING, TUBE, solved, tables
+
+SMALL = ("mesh.degree=2", "mesh.elements=16", "analysis.increments=4")
+BOTH = {
+    "wear.cylinder": {"coefficient": "1e-8 1/MPa", "per": "pressure"},
+    "wear.block": {"coefficient": "1e-7 1/MPa"},  # per friction stress: k = 6e-8
+}
+K = 1e-14, 0.6e-13
+FRICTION, FORCE = 0.6, 120.0
+
+
+def moved(amplitude="10 um", **more):
+    """A cycle of displacement, beyond the limit of friction."""
+    places = ["0 um", amplitude, "0 um", f"-{amplitude}", "0 um"]
+    history = {"time": [f"{t} s" for t in range(5)], "tangential_displacement": places}
+    return BOTH | {"load.history": history, "analysis.output_times": []} | more
+
+
+@pytest.fixture(scope="module")
+def sticking():
+    """The starter, which does not slide, with wear and five cycles that stand for many."""
+    changes = BOTH | {"analysis.cycles": 10**5, "analysis.jump": 20000, "analysis.output_times": []}
+    return solved(FRETTING, changes, *SMALL)
+
+
+@pytest.fixture(scope="module")
+def sliding():
+    return solved(FRETTING, moved(), *SMALL, "analysis.cycles=60", "analysis.jump=20")
+
+
+@pytest.mark.parametrize("name", ["sticking", "sliding"])
+def test_volumes_are_those_of_the_energy(name, request):
+    """requirement: V = k/mu E for both bodies, at every increment; all tables agree."""
+    result = request.getfixturevalue(name)
+    i, rows, cycles = result.interface, result.friction.rows, result.friction.cycles
+    for body, k in enumerate(K, start=1):
+        volumes = np.array([getattr(row, f"wear_volume_{body}") for row in rows])
+        lost = np.array([row.dissipated for row in rows])
+        np.testing.assert_allclose(volumes, k / FRICTION * lost, rtol=1e-9, atol=1e-9 * volumes[-1])
+        assert np.all(np.diff(volumes) >= 0)
+        assert getattr(cycles[-1], f"wear_volume_{body}") == pytest.approx(volumes[-1], rel=1e-12)
+        worn = getattr(i, f"wear_{body}")
+        assert i.weight @ worn == pytest.approx(volumes[-1], rel=1e-12)
+        assert result.summary[f"wear_volume_{body}_m3"] == pytest.approx(volumes[-1], rel=1e-12)
+        assert worn.max() == getattr(cycles[-1], f"max_wear_{body}")
+        last = volumes[-1] - getattr(cycles[-2], f"wear_volume_{body}")
+        per_cycle = result.summary[f"wear_volume_per_cycle_{body}_m3"]
+        jump = cycles[-1].cycle - cycles[-2].cycle
+        assert per_cycle == pytest.approx(last / jump, rel=1e-9)
+        rate = i.weight @ getattr(i, f"wear_rate_{body}")
+        period = 2.0 if name == "sticking" else 4.0
+        assert rate == pytest.approx(per_cycle / period, rel=1e-9)
+    assert result.summary["cycles"] == cycles[-1].cycle
+
+
+def test_cycles_are_counted(sticking):
+    """requirement: a row a computed cycle, with its number and its time."""
+    cycles = sticking.friction.cycles
+    assert [row.cycle for row in cycles] == [20000, 40000, 60000, 80000, 100000]
+    assert [row.time for row in cycles] == pytest.approx([40001, 80001, 120001, 160001, 200001])
+    assert [row.cycle for row in sticking.friction.rows[:8]] == [0] * 8
+    assert all(row.max_pressure > 0 < row.contact_area for row in cycles)
+    lost = [row.dissipated for row in cycles]
+    assert np.all(np.diff(lost, prepend=0.0) > 0)
+
+
+def test_the_middle_sticks_and_does_not_wear(sticking):
+    """requirement: wear where it slips, none in the middle; the pressure there grows for it."""
+    i = sticking.interface
+    middle, rim = np.abs(i.x) < 3e-5, (np.abs(i.x) > 7.5e-5) & (np.abs(i.x) < 8.5e-5)
+    assert np.all(i.wear_2[middle] == 0.0)
+    assert np.all(i.wear_2[rim] > 1e-10)
+    rows = sticking.friction.rows
+    assert rows[-1].max_pressure > 1.1 * rows[7].max_pressure
+    assert sticking.summary["equilibrium_relative_error"] < 1e-9
+
+
+def test_full_sliding_wears_nearly_at_the_bound(sliding):
+    """requirement: V = k F 4 (d - C mu F) a cycle, with the compliance C of little loads."""
+    history = {"time": ["0 s", "1 s"], "tangential_force": ["0 N", "0.5 N"]}
+    little = solved(FRETTING, {"load.history": history, "analysis.output_times": []}, *SMALL)
+    compliance = little.summary["tangential_displacement_m"] / 0.5
+    slid = 4 * (10e-6 - compliance * FRICTION * FORCE)
+    found = sliding.summary["wear_volume_per_cycle_2_m3"]
+    assert found == pytest.approx(K[1] * FORCE * slid, rel=2e-2)
+    assert slid < 0.75 * 4 * 10e-6
+
+
+def test_jumps_change_little(sliding):
+    """requirement: jumps of 20 cycles and of 5 agree."""
+    fine = solved(FRETTING, moved(), *SMALL, "analysis.cycles=60", "analysis.jump=5")
+    coarse, fine = (result.friction.cycles[-1] for result in (sliding, fine))
+    assert coarse.wear_volume_2 == pytest.approx(fine.wear_volume_2, rel=5e-3)
+    assert coarse.max_wear_2 == pytest.approx(fine.max_wear_2, rel=5e-2)
+
+
+def test_the_velocity_exponent():
+    """requirement: with a = 2 wear goes with the speed: half the time, twice the wear."""
+    law = {"coefficient": "1e-7 s/mm/MPa", "per": "pressure", "velocity_exponent": 2.0}
+    slow = moved(**{"wear": {"block": law}})
+    fast = moved(**{"wear": {"block": law}})
+    fast["load.history"]["time"] = [f"{t / 2} s" for t in range(5)]
+    volumes = [
+        solved(FRETTING, changes, *SMALL).summary["wear_volume_2_m3"] for changes in (slow, fast)
+    ]
+    assert volumes[1] == pytest.approx(2 * volumes[0], rel=1e-4)
+
+
+def test_a_sphere_wears_where_unlike_bodies_slip():
+    """requirement: an axisymmetric body under a force that comes and goes."""
+    history = {"time": ["0 s", "1 s", "2 s"], "force": ["100 N", "500 N", "100 N"]}
+    changes = {
+        "load": {"history": history},
+        "analysis": {"type": "fretting", "increments": 4, "cycles": 40, "jump": 10},
+        "bodies.sphere": {"young_modulus": "600 GPa", "poisson_ratio": 0.22},
+        "contact": {"friction": 0.05},
+        "wear.block": {"coefficient": "1e-7 1/MPa", "per": "pressure"},
+    }
+    result = solved("sphere-on-block", changes, "mesh.degree=3", "mesh.elements=12")
+    known = 1e-13 / 0.05 * result.summary["dissipated_energy_J"]
+    assert result.summary["wear_volume_2_m3"] == pytest.approx(known, rel=1e-9)
+    assert result.interface.wear_2.max() > 0
+    assert result.summary["wear_volume_1_m3"] == 0.0
+
+
+def test_output_times_in_later_cycles():
+    """requirement: an output time is hit in the cycle that it falls in, wear and all."""
+    times = ["1 s", "21.5 s", "43 s"]
+    result = solved(
+        FRETTING,
+        BOTH | {"analysis.output_times": times},
+        *SMALL,
+        "analysis.cycles=30",
+        "analysis.jump=15",
+    )
+    assert set(result.outputs) == {1.0, 21.5, 43.0}
+    assert [row.cycle for row in result.friction.cycles] == [11, 15, 21, 30]
+    depths = [result.outputs[t].wear_2.max() for t in (1.0, 21.5, 43.0)]
+    assert 0 < depths[0] < 0.2 * depths[1] < 0.5 * depths[2]
+    row = next(row for row in result.friction.rows if row.time == 21.5)
+    at = result.outputs[21.5]
+    assert row.wear_volume_2 == pytest.approx(at.weight @ at.wear_2, rel=1e-12)
+
+
+# ---- what ends early, and files ----
+
+
+class Stopping(Observer):
+    """Presses Ctrl-C after some cycles."""
+
+    def cycle(self, row):
+        if row.cycle == 40:
+            import signal
+
+            signal.raise_signal(signal.SIGINT)
+
+
+def test_an_interrupted_run_keeps_its_cycles():
+    """requirement: what was computed is kept, wear included."""
+    changes = BOTH | {"analysis.cycles": 100, "analysis.jump": 20, "analysis.output_times": []}
+    result = solved(FRETTING, changes, *SMALL, observer=Stopping())
+    assert isinstance(result.stopped, KeyboardInterrupt)
+    assert result.summary["cycles"] == 40
+    assert result.friction.cycles[-1].wear_volume_2 > 0
+    assert result.summary["wear_volume_2_m3"] == pytest.approx(
+        result.friction.cycles[-1].wear_volume_2, rel=1e-12
+    )
+
+
+def test_files_of_a_run(tmp_path, capsys):
+    """requirement: cycles.csv has the cycles, interface.csv the depths; pictures of them."""
+    file, folder = tmp_path / "case.toml", tmp_path / "results"
+    changes = BOTH | {"analysis.cycles": 6, "analysis.output_times": ["3 s"]}
+    file.write_text(tomli_w.dumps(tables(FRETTING, changes)), encoding="utf-8")
+    small = [f"--set={text}" for text in (*SMALL, "analysis.jump=2")]
+    assert main(["run", str(file), "-o", str(folder), *small]) == 0
+    assert "worn volume" in capsys.readouterr().out
+    with (folder / "cycles.csv").open() as rows:
+        cycles = list(csv.DictReader(rows))
+    assert [row["cycle"] for row in cycles] == ["1", "2", "4", "6"]
+    summary = json.loads((folder / "summary.json").read_text())
+    for body in (1, 2):
+        volume = float(cycles[-1][f"wear_volume_{body}_m3"])
+        assert volume == pytest.approx(summary[f"wear_volume_{body}_m3"], rel=1e-12)
+    for picture in ("cycles.png", "wear.png", "loads.png"):
+        assert (folder / picture).stat().st_size > 1000
+
+
+def test_the_tube_in_its_support():
+    """requirement: the starter; both bodies lose as much, where the contact travels."""
+    result = solved(TUBE, {}, "analysis.cycles=6000", "analysis.output_times=[]")
+    assert [row.cycle for row in result.friction.cycles] == [2000, 4000, 6000]
+    volumes = [result.summary[f"wear_volume_{body}_m3"] for body in (1, 2)]
+    assert volumes[0] == pytest.approx(volumes[1], rel=1e-12)
+    assert volumes[0] == pytest.approx(5e-14 * 20 * 4 * 5e-6 * 6000, rel=1e-2)
+    i = result.interface
+    worn = np.abs(i.x[i.wear_1 > 0.05 * i.wear_1.max()])
+    assert 4.5e-4 < worn.max() < 8e-4
+    assert abs(np.average(i.x, weights=i.weight * i.wear_1)) < 0.02 * worn.max()
+
+
+def test_bodies_of_a_case_that_do_not_wear():
+    """requirement: without wear tables all is as before, and volumes are zero."""
+    result = solved(FRETTING, {"analysis.output_times": []}, *SMALL, "analysis.cycles=2")
+    assert result.summary["wear_volume_1_m3"] == result.summary["wear_volume_2_m3"] == 0.0
+    assert [row.cycle for row in result.friction.cycles] == [1, 2]
+    once = solved(FRETTING, {"analysis.output_times": []}, *SMALL)
+    assert result.friction.cycles[0].dissipated == pytest.approx(
+        once.summary["dissipated_energy_J"], rel=1e-12
+    )
+    assert isinstance(result.friction.rows[0], tw.simulation.LoadRow)

@@ -1,0 +1,100 @@
+"""The way through a history of loads and the repetitions of its cycle."""
+
+import pytest
+
+from thermowear.case.analyses import Fretting
+from thermowear.case.history import History
+from thermowear.simulation.load_path import legs
+
+
+def history(*pushes, **keys):
+    times = [f"{t} s" for t in range(len(pushes))]
+    return History(time=times, tangential_force=[f"{q} N" for q in pushes], **keys)
+
+
+def way(loads, **settings):
+    return list(legs(loads, Fretting(type="fretting", **settings)))
+
+
+def ends(loads, **settings):
+    return [(leg.end, leg.cycle, leg.repeats) for leg in way(loads, **settings)]
+
+
+LOOP = history(0, 36, -36, 36)
+
+
+def test_the_first_leg_has_no_duration():
+    """requirement: the bodies are loaded at the first instant."""
+    first, second, *_ = way(LOOP)
+    assert (first.start, first.end, first.instant, first.cycle) == (0.0, 0.0, 0.0, 0)
+    assert (second.start, second.end) == (0.0, 1.0)
+
+
+def test_a_cycle_begins_where_the_loads_are_those_of_the_end():
+    """requirement: the first such instant by default; another one where it is given."""
+    assert LOOP.cycle == (1.0, 3.0)
+    assert history(0, 36, -36, 0).cycle == (0.0, 3.0)
+    again = history(36, 0, 36, -36, 36)
+    assert again.cycle == (0.0, 4.0)
+    assert again.model_copy(update={"cycle_start": 2.0}).cycle == (2.0, 4.0)
+    assert history(0, 1, 2).cycle is None
+    between = history(36, -36, 36, cycle_start="0 s")
+    assert between.cycle == (0.0, 2.0)
+
+
+def test_cycles_follow_one_another():
+    """requirement: time goes on, the loads come back, cycles are counted from one."""
+    found = way(LOOP, cycles=3)
+    assert [leg.end for leg in found] == [0, 1, 2, 3, 4, 5, 6, 7]
+    assert [leg.instant for leg in found] == [0, 1, 2, 3, 2, 3, 2, 3]
+    assert [leg.cycle for leg in found] == [0, 0, 1, 1, 2, 2, 3, 3]
+    assert [leg.ends_cycle for leg in found] == [False, False] + [False, True] * 3
+    assert all(leg.repeats == 1 and not leg.is_output for leg in found)
+    assert [leg.start for leg in found[1:]] == [leg.end for leg in found[:-1]]
+
+
+def test_without_a_cycle_the_history_is_followed_once():
+    """requirement: any history can be followed."""
+    assert ends(history(0, 1, 2)) == [(0, 0, 1), (1, 0, 1), (2, 0, 1)]
+
+
+def test_of_jumped_cycles_the_last_is_computed():
+    """requirement: it stands for all of them, also for what is left over at the end."""
+    assert ends(LOOP, cycles=8, jump=3)[2:] == [
+        *((6.0, 3, 3), (7.0, 3, 3)),
+        *((12.0, 6, 3), (13.0, 6, 3)),
+        *((16.0, 8, 2), (17.0, 8, 2)),
+    ]
+    assert sum(leg.repeats for leg in way(LOOP, cycles=1000, jump=77) if leg.ends_cycle) == 1000
+
+
+def test_output_times_are_hit():
+    """requirement: in the first pass, in later cycles, at ends of cycles; no cycle is invented."""
+    found = way(LOOP, cycles=10, jump=5, output_times=["0.5 s", "1 s", "4.25 s", "9 s"])
+    outputs = [(leg.end, leg.instant, leg.cycle) for leg in found if leg.is_output]
+    assert outputs == [(0.5, 0.5, 0), (1.0, 1.0, 0), (4.25, 2.25, 2), (9.0, 3.0, 4)]
+    computed = [(leg.cycle, leg.repeats) for leg in found if leg.ends_cycle]
+    assert computed == [(2, 2), (4, 2), (5, 1), (10, 5)]
+
+
+def test_ends_of_cycles_are_found_in_spite_of_rounding():
+    """requirement: an output at the end of a cycle of tenths of seconds is no leg of its own."""
+    short = History(time=["0 s", "0.1 s", "0.2 s"], tangential_force=["0 N", "1 N", "0 N"])
+    found = way(short, cycles=7, output_times=["0.6 s", "1.4 s", "0.7 s"])
+    assert len(found) == 1 + 7 * 2
+    assert [leg.end for leg in found if leg.is_output] == pytest.approx([0.6, 0.7, 1.4])
+    assert all(leg.end > leg.start for leg in found[1:])
+
+
+def test_a_cycle_may_begin_between_corners():
+    """requirement: it has a corner there, in the first pass."""
+    loads = history(0, 2, -2, 2, cycle_start="1 s")
+    assert ends(loads, cycles=2) == [
+        (0, 0, 1), (1, 0, 1), (2, 1, 1), (3, 1, 1), (4, 2, 1), (5, 2, 1),
+    ]  # fmt: skip
+    ramp = History(
+        time=["0 s", "2 s", "3 s", "4 s"],
+        tangential_force=["0 N", "2 N", "0 N", "1 N"],
+        cycle_start="1 s",
+    )
+    assert [leg.end for leg in way(ramp)] == [0, 1, 2, 3, 4]

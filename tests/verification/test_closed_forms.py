@@ -1,0 +1,36 @@
+"""The principle against closed forms and perturbations, without finite elements."""
+
+import pytest
+
+from thermowear.verification import minimality
+from thermowear.verification.closed_forms import CLOSED_FORMS
+from thermowear.verification.closed_forms.rows import printed
+
+
+@pytest.mark.parametrize("name", CLOSED_FORMS)
+def test_special_case(name):
+    """requirement: every number of the special cases to all digits given, by the generic solver."""
+    checks = list(CLOSED_FORMS[name]())
+    assert len(checks) >= 15
+    assert all(check.source and check.id == name for check in checks)
+    assert len({check.quantity for check in checks}) == len(checks)
+    assert not [check for check in checks if not check.passed]
+
+
+def test_minimality():
+    """requirement: of 1 000 random admissible pressures per case none has less than the minimum."""
+    checks = list(minimality.checks())
+    assert len(checks) > 100
+    assert not [check for check in checks if not check.passed]
+
+
+def test_printed_numbers_are_held_to_the_last_digit():
+    """requirement: half a unit of the last digit, whatever the exponent."""
+    for text, inside, outside in (
+        ("2.038987", 2.0389874, 2.0389876),
+        ("350", 350.49, 350.51),
+        ("1.130360", 1.1303604, 1.1303606),
+        ("2.4547e8", 2.45474e8, 2.45476e8),
+    ):
+        assert printed("x", "y", inside, text).passed
+        assert not printed("x", "y", outside, text).passed

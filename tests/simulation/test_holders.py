@@ -121,3 +121,23 @@ def test_least_worn(modes):
     for _ in range(200):
         other = R @ (d + 0.3 * rng.normal(size=modes)) - opening
         assert other.min() < 0 or weights @ other >= weights @ lost - 1e-9
+
+
+def test_a_block_that_is_pushed_in_place_of_guided():
+    """requirement: the force of the guide, given as a load, leaves the steady state as it is."""
+    guided = solved(DISK, None, *COARSE)
+    push = guided.summary["guide_force_N"]
+    free = ("holder.free=['z','x']", f"load.tangential_force={push!r} N")
+    pushed = solved(DISK, None, *COARSE, *free)
+    assert pushed.interface.pressure == pytest.approx(guided.interface.pressure, rel=1e-8)
+    assert pushed.summary["normal_force_N"] == pytest.approx(1e3, rel=1e-9)
+    assert "guide_force_N" in pushed.summary
+    assert pushed.summary["guide_force_N"] is None
+    drift = pushed.summary["rigid_wear_velocity_x_m_per_s"]
+    assert abs(drift) < 1e-8 * pushed.summary["rigid_wear_velocity_m_per_s"]
+    # with a little less of it the block wears to one side as well
+    less = ("holder.free=['z','x']", f"load.tangential_force={0.9 * push!r} N")
+    drifting = solved(DISK, None, *COARSE, *less).summary
+    assert abs(drifting["rigid_wear_velocity_x_m_per_s"]) > 1e-2 * abs(
+        drifting["rigid_wear_velocity_m_per_s"]
+    )

@@ -79,8 +79,8 @@ class Transient(Timed):
 class Reciprocating(Timed):
     """Wear of a body 1 that slides to and fro, and of what it rubs along, averaged over cycles.
 
-    Steady are wear rates that differ from their mean along each of the worn faces by less than
-    `steady_tolerance` of it, in the mean.
+    Steady are wear rates that differ from their mean along each of the worn faces, but for its
+    ends, by less than `steady_tolerance` of it.
 
     Attributes
     ----------

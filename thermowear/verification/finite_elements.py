@@ -28,7 +28,7 @@ _TRANSIENT = "analysis={type='transient', until='steady', steady_tolerance=1e-3,
 
 
 def running_in(
-    id: str, starter: str, *overrides: str, without: tuple[str, ...] = ()
+    id: str, label: str, starter: str, *overrides: str, without: tuple[str, ...] = ()
 ) -> Iterator[Check]:
     """Pressure and worn shape at the end of a running-in from unworn faces.
 
@@ -36,6 +36,8 @@ def running_in(
     ----------
     id : str
         Of the verification case.
+    label : str
+        What is said of the run.
     starter : str
     *overrides : str
         ``KEY=VALUE`` each.
@@ -45,8 +47,8 @@ def running_in(
     case = variant(starter, *overrides, without=without)
     direct = run(case)
     reached = run(variant(starter, *overrides, _TRANSIENT, without=without))
-    name = ", ".join((starter, *overrides, *(f"no {table}" for table in without)))
-    inner = away_from_ends(direct)
+    name = f"{starter}, {label}" if label else starter
+    inner = away_from_ends(case, direct)
     yield compare(
         id,
         f"{name}: pressure after running-in less the steady one, root mean square [Pa]",
@@ -75,16 +77,15 @@ def variant(starter: str, *overrides: str, without: tuple[str, ...] = ()) -> Cas
     return load(tables, overrides)
 
 
-def away_from_ends(result: Result) -> np.ndarray:
-    """Points that are not at an end of the face, shape (n,)."""
-    interface = result.interface
-    if result.summary["model"] != "3d":
-        s = interface.s
-        return (s > s[0] + EDGE) & (s < s[-1] - EDGE)
-    inner = np.ones(len(interface.x), dtype=bool)
-    for x in (interface.x, interface.y):
-        inner &= (x > x.min() + EDGE) & (x < x.max() - EDGE)
-    return inner
+def away_from_ends(case: Case, result: Result) -> np.ndarray:
+    """Points that are not at an end of the face, shape (n,); faces in space have four sides."""
+    i, center = result.interface, case.geometry.rotation_center
+    lengths = [i.s] if case.model != "3d" else [i.x, i.y]
+    if case.model == "3d" and center is not None:
+        radius = np.hypot(i.x - center[0], i.y - center[1])
+        lengths = [radius, radius * np.arctan2(i.y - center[1], i.x - center[0])]
+    inside = [(x > x.min() + EDGE) & (x < x.max() - EDGE) for x in lengths]
+    return np.all(inside, axis=0)
 
 
 def _mean_square(result: Result, values: np.ndarray, inner: np.ndarray) -> float:

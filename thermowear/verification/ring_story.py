@@ -37,7 +37,7 @@ def story(id: str) -> Iterator[Check]:
     second = _continued(_COLD, first)
     third = _continued(_HOT, second)
     for name, result in (("cold", second), ("then hot", third)):
-        inner = away_from_ends(result)
+        inner = away_from_ends(variant(_COLD), result)
         exact = steady_pressure(result.interface.x, FORCE, INNER, OUTER, 1.0)
         off = np.abs(result.interface.pressure / exact - 1.0)[inner]
         worst = np.flatnonzero(inner)[off.argmax()]

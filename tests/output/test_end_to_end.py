@@ -92,6 +92,10 @@ def test_a_starter_leaves_its_files(finished):
     name, folder = finished
     analysis = tw.load(folder / "case.resolved.toml").analysis
     more = set()
+    if analysis.type == "fretting":
+        at = ("", *(f"_{time:g}" for time in analysis.output_times))
+        more = {"loads.csv", "cycles.csv", *(f"friction{time}.csv" for time in at)}
+        more |= {f"interface{time}.csv" for time in at}
     if analysis.type == "transient":
         more = {"history.csv", *(f"interface_{time:g}.csv" for time in analysis.output_times)}
     assert {path.name for path in folder.iterdir()} == ALWAYS | MORE.get(name, more)

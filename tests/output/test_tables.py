@@ -56,6 +56,7 @@ def test_files_agree_with_each_other(folder):
         "interface.csv",
         "interface_0.5.csv",
         "interface_1.csv",
+        "profile.csv",
         "history.csv",
         "fields.vtu",
     }

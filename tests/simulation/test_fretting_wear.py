@@ -22,6 +22,11 @@ K = 1e-14, 0.6e-13
 FRICTION, FORCE = 0.6, 120.0
 
 
+def close(value, rel=1e-6):
+    """Equal numbers, however small: pytest's own allowance of 1e-12 would hide volumes."""
+    return pytest.approx(value, rel=rel, abs=0.0)
+
+
 def moved(amplitude="10 um", **more):
     """A cycle of displacement, beyond the limit of friction."""
     places = ["0 um", amplitude, "0 um", f"-{amplitude}", "0 um"]
@@ -51,26 +56,26 @@ def test_volumes_are_those_of_the_energy(name, request):
         lost = np.array([row.dissipated for row in rows])
         np.testing.assert_allclose(volumes, k / FRICTION * lost, rtol=1e-9, atol=1e-9 * volumes[-1])
         assert np.all(np.diff(volumes) >= 0)
-        assert getattr(cycles[-1], f"wear_volume_{body}") == pytest.approx(volumes[-1], rel=1e-12)
+        assert getattr(cycles[-1], f"wear_volume_{body}") == close(volumes[-1], rel=1e-12)
         worn = getattr(i, f"wear_{body}")
-        assert i.weight @ worn == pytest.approx(volumes[-1], rel=1e-12)
-        assert result.summary[f"wear_volume_{body}_m3"] == pytest.approx(volumes[-1], rel=1e-12)
+        assert i.weight @ worn == close(volumes[-1], rel=1e-12)
+        assert result.summary[f"wear_volume_{body}_m3"] == close(volumes[-1], rel=1e-12)
         assert worn.max() == getattr(cycles[-1], f"max_wear_{body}")
         last = volumes[-1] - getattr(cycles[-2], f"wear_volume_{body}")
         per_cycle = result.summary[f"wear_volume_per_cycle_{body}_m3"]
         jump = cycles[-1].cycle - cycles[-2].cycle
-        assert per_cycle == pytest.approx(last / jump, rel=1e-9)
+        assert per_cycle == close(last / jump, rel=1e-9)
         rate = i.weight @ getattr(i, f"wear_rate_{body}")
         period = 2.0 if name == "sticking" else 4.0
-        assert rate == pytest.approx(per_cycle / period, rel=1e-9)
+        assert rate == close(per_cycle / period, rel=1e-9)
     assert result.summary["cycles"] == cycles[-1].cycle
 
 
 def test_cycles_are_counted(sticking):
     """requirement: a row a computed cycle, with its number and its time."""
     cycles = sticking.friction.cycles
-    assert [row.cycle for row in cycles] == [20000, 40000, 60000, 80000, 100000]
-    assert [row.time for row in cycles] == pytest.approx([40001, 80001, 120001, 160001, 200001])
+    assert [row.cycle for row in cycles] == [1, 20000, 40000, 60000, 80000, 100000]
+    assert [row.time for row in cycles] == close([3, 40001, 80001, 120001, 160001, 200001])
     assert [row.cycle for row in sticking.friction.rows[:8]] == [0] * 8
     assert all(row.max_pressure > 0 < row.contact_area for row in cycles)
     lost = [row.dissipated for row in cycles]
@@ -95,7 +100,7 @@ def test_full_sliding_wears_nearly_at_the_bound(sliding):
     compliance = little.summary["tangential_displacement_m"] / 0.5
     slid = 4 * (10e-6 - compliance * FRICTION * FORCE)
     found = sliding.summary["wear_volume_per_cycle_2_m3"]
-    assert found == pytest.approx(K[1] * FORCE * slid, rel=2e-2)
+    assert found == close(K[1] * FORCE * slid, rel=2e-2)
     assert slid < 0.75 * 4 * 10e-6
 
 
@@ -103,8 +108,8 @@ def test_jumps_change_little(sliding):
     """requirement: jumps of 20 cycles and of 5 agree."""
     fine = solved(FRETTING, moved(), *SMALL, "analysis.cycles=60", "analysis.jump=5")
     coarse, fine = (result.friction.cycles[-1] for result in (sliding, fine))
-    assert coarse.wear_volume_2 == pytest.approx(fine.wear_volume_2, rel=5e-3)
-    assert coarse.max_wear_2 == pytest.approx(fine.max_wear_2, rel=5e-2)
+    assert coarse.wear_volume_2 == close(fine.wear_volume_2, rel=5e-3)
+    assert coarse.max_wear_2 == close(fine.max_wear_2, rel=5e-2)
 
 
 def test_the_velocity_exponent():
@@ -116,7 +121,7 @@ def test_the_velocity_exponent():
     volumes = [
         solved(FRETTING, changes, *SMALL).summary["wear_volume_2_m3"] for changes in (slow, fast)
     ]
-    assert volumes[1] == pytest.approx(2 * volumes[0], rel=1e-4)
+    assert volumes[1] == close(2 * volumes[0], rel=1e-4)
 
 
 def test_a_sphere_wears_where_unlike_bodies_slip():
@@ -130,8 +135,9 @@ def test_a_sphere_wears_where_unlike_bodies_slip():
         "wear.block": {"coefficient": "1e-7 1/MPa", "per": "pressure"},
     }
     result = solved("sphere-on-block", changes, "mesh.degree=3", "mesh.elements=12")
-    known = 1e-13 / 0.05 * result.summary["dissipated_energy_J"]
-    assert result.summary["wear_volume_2_m3"] == pytest.approx(known, rel=1e-9)
+    pressed, last = result.friction.rows[3].dissipated, result.friction.rows[-1].dissipated
+    known = 1e-13 / 0.05 * (last - pressed)  # nothing wears at the first instant
+    assert result.summary["wear_volume_2_m3"] == close(known, rel=1e-9)
     assert result.interface.wear_2.max() > 0
     assert result.summary["wear_volume_1_m3"] == 0.0
 
@@ -147,12 +153,12 @@ def test_output_times_in_later_cycles():
         "analysis.jump=15",
     )
     assert set(result.outputs) == {1.0, 21.5, 43.0}
-    assert [row.cycle for row in result.friction.cycles] == [11, 15, 21, 30]
+    assert [row.cycle for row in result.friction.cycles] == [1, 11, 15, 21, 30]
     depths = [result.outputs[t].wear_2.max() for t in (1.0, 21.5, 43.0)]
     assert 0 < depths[0] < 0.2 * depths[1] < 0.5 * depths[2]
     row = next(row for row in result.friction.rows if row.time == 21.5)
     at = result.outputs[21.5]
-    assert row.wear_volume_2 == pytest.approx(at.weight @ at.wear_2, rel=1e-12)
+    assert row.wear_volume_2 == close(at.weight @ at.wear_2, rel=1e-12)
 
 
 # ---- what ends early, and files ----
@@ -175,7 +181,7 @@ def test_an_interrupted_run_keeps_its_cycles():
     assert isinstance(result.stopped, KeyboardInterrupt)
     assert result.summary["cycles"] == 40
     assert result.friction.cycles[-1].wear_volume_2 > 0
-    assert result.summary["wear_volume_2_m3"] == pytest.approx(
+    assert result.summary["wear_volume_2_m3"] == close(
         result.friction.cycles[-1].wear_volume_2, rel=1e-12
     )
 
@@ -194,7 +200,7 @@ def test_files_of_a_run(tmp_path, capsys):
     summary = json.loads((folder / "summary.json").read_text())
     for body in (1, 2):
         volume = float(cycles[-1][f"wear_volume_{body}_m3"])
-        assert volume == pytest.approx(summary[f"wear_volume_{body}_m3"], rel=1e-12)
+        assert volume == close(summary[f"wear_volume_{body}_m3"], rel=1e-12)
     for picture in ("cycles.png", "wear.png", "loads.png"):
         assert (folder / picture).stat().st_size > 1000
 
@@ -202,10 +208,10 @@ def test_files_of_a_run(tmp_path, capsys):
 def test_the_tube_in_its_support():
     """requirement: the starter; both bodies lose as much, where the contact travels."""
     result = solved(TUBE, {}, "analysis.cycles=6000", "analysis.output_times=[]")
-    assert [row.cycle for row in result.friction.cycles] == [2000, 4000, 6000]
+    assert [row.cycle for row in result.friction.cycles] == [1, 2000, 4000, 6000]
     volumes = [result.summary[f"wear_volume_{body}_m3"] for body in (1, 2)]
-    assert volumes[0] == pytest.approx(volumes[1], rel=1e-12)
-    assert volumes[0] == pytest.approx(5e-14 * 20 * 4 * 5e-6 * 6000, rel=1e-2)
+    assert volumes[0] == close(volumes[1], rel=1e-12)
+    assert volumes[0] == close(5e-14 * 20 * 4 * 5e-6 * 6000, rel=1e-2)
     i = result.interface
     worn = np.abs(i.x[i.wear_1 > 0.05 * i.wear_1.max()])
     assert 4.5e-4 < worn.max() < 8e-4
@@ -218,7 +224,7 @@ def test_bodies_of_a_case_that_do_not_wear():
     assert result.summary["wear_volume_1_m3"] == result.summary["wear_volume_2_m3"] == 0.0
     assert [row.cycle for row in result.friction.cycles] == [1, 2]
     once = solved(FRETTING, {"analysis.output_times": []}, *SMALL)
-    assert result.friction.cycles[0].dissipated == pytest.approx(
+    assert result.friction.cycles[0].dissipated == close(
         once.summary["dissipated_energy_J"], rel=1e-12
     )
     assert isinstance(result.friction.rows[0], tw.simulation.LoadRow)

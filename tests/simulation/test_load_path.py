@@ -1,7 +1,5 @@
 """The way through a history of loads and the repetitions of its cycle."""
 
-import pytest
-
 from thermowear.case.analyses import Fretting
 from thermowear.case.history import History
 from thermowear.simulation.load_path import legs
@@ -59,9 +57,12 @@ def test_without_a_cycle_the_history_is_followed_once():
 
 
 def test_of_jumped_cycles_the_last_is_computed():
-    """requirement: it stands for all of them, also for what is left over at the end."""
+    """requirement: it stands for all of them, also for what is left over at the end; the first one
+    stands for itself.
+    """
     assert ends(LOOP, cycles=8, jump=3)[2:] == [
-        *((6.0, 3, 3), (7.0, 3, 3)),
+        *((2.0, 1, 1), (3.0, 1, 1)),
+        *((6.0, 3, 2), (7.0, 3, 2)),
         *((12.0, 6, 3), (13.0, 6, 3)),
         *((16.0, 8, 2), (17.0, 8, 2)),
     ]
@@ -74,16 +75,18 @@ def test_output_times_are_hit():
     outputs = [(leg.end, leg.instant, leg.cycle) for leg in found if leg.is_output]
     assert outputs == [(0.5, 0.5, 0), (1.0, 1.0, 0), (4.25, 2.25, 2), (9.0, 3.0, 4)]
     computed = [(leg.cycle, leg.repeats) for leg in found if leg.ends_cycle]
-    assert computed == [(2, 2), (4, 2), (5, 1), (10, 5)]
+    assert computed == [(1, 1), (2, 1), (4, 2), (5, 1), (10, 5)]
 
 
 def test_ends_of_cycles_are_found_in_spite_of_rounding():
     """requirement: an output at the end of a cycle of tenths of seconds is no leg of its own."""
     short = History(time=["0 s", "0.1 s", "0.2 s"], tangential_force=["0 N", "1 N", "0 N"])
-    found = way(short, cycles=7, output_times=["0.6 s", "1.4 s", "0.7 s"])
-    assert len(found) == 1 + 7 * 2
-    assert [leg.end for leg in found if leg.is_output] == pytest.approx([0.6, 0.7, 1.4])
-    assert all(leg.end > leg.start for leg in found[1:])
+    for count in range(1, 51):
+        time = f"{count / 10!r} s"
+        found = way(short, cycles=25, output_times=[time])
+        assert len(found) == 1 + 25 * 2
+        assert [leg.end for leg in found if leg.is_output] == [count / 10]
+        assert all(leg.end - leg.start > 0.09 for leg in found[1:])
 
 
 def test_a_cycle_may_begin_between_corners():

@@ -25,7 +25,6 @@ import numpy as np
 from ..errors import ComputationError
 from ..laws.wear import WearLaw
 from .pairing import Pairing
-from .tangential import tangents
 
 if TYPE_CHECKING:
     from .stick_slip import StickSlipState
@@ -41,7 +40,7 @@ class Profile:
     Attributes
     ----------
     places : ndarray, shape (m,)
-        Of the basis functions, along e (see `tangential`) [m].
+        Of the basis functions, as lengths along the face, which runs along +x [m].
     areas : ndarray, shape (m,)
         Of the basis functions [m²].
     moves : bool
@@ -53,17 +52,16 @@ class Profile:
     moves: bool
 
     def seen(self, slip: float) -> np.ndarray:
-        """L: coefficients at the contact, of the profile's own, at a slip [m], shape (m, m)."""
+        """L: coefficients at the contact, of the profile's own, at a slip along +x [m], (m, m)."""
         m = len(self.places)
         if not self.moves or slip == 0.0:
             return np.eye(m)
-        order = np.argsort(self.places)
-        places, at = self.places[order], self.places - slip
+        places, at = self.places, self.places - slip
         upper = np.clip(np.searchsorted(places, at), 1, m - 1)
         part = (at - places[upper - 1]) / (places[upper] - places[upper - 1])
         part = np.clip(part, 0.0, 1.0)
         result, rows = np.zeros((m, m)), np.arange(m)
-        result[rows, order[upper - 1]], result[rows, order[upper]] = 1 - part, part
+        result[rows, upper - 1], result[rows, upper] = 1 - part, part
         return result
 
     def lost(self, slip: float) -> np.ndarray:
@@ -82,10 +80,8 @@ def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> Profile:
         ``diag(w) Ψ``.
     body : int
     """
-    along = np.gradient(pairing.points, pairing.position, axis=0)
-    sense = np.sign(np.einsum("ni,ni->", along, tangents(pairing.normals)[0]))
     areas = weighted.sum(axis=0)
-    return Profile(sense * (pairing.position @ weighted) / areas, areas, body == 0)
+    return Profile((pairing.position @ weighted) / areas, areas, body == 0)
 
 
 @dataclass(frozen=True)
@@ -154,8 +150,9 @@ def implicitly(
 ) -> tuple[StickSlipState, np.ndarray]:
     """The end of an increment and the depths worn off in it, which the pressure there decides.
 
-    However much is worn off, that is stable. Each pass is Newton's method for the pressure and
-    takes the slip from the pass before.
+    However much is worn off, that is stable. Each pass is a step of Newton's method for the
+    pressure, from half way back where the last one went too far, and takes the slip from the pass
+    before.
 
     Parameters
     ----------
@@ -164,7 +161,7 @@ def implicitly(
         pressure, shape (m,), and its slope by the pressure, shape (m, m).
     wear : SlipWear
     slid : float
-        How far body 1 has slid, see `Profile` [m].
+        How far body 1 has been moved along +x [m].
     before, unworn : StickSlipState
         Begin of the increment, and its end without wear.
     areas : ndarray, shape (m,)
@@ -186,14 +183,18 @@ def implicitly(
     seen = np.reshape([profile.seen(slid) for profile in wear.profiles], (-1, m, m))
     opens = seen @ kept
     after, expected = unworn, np.zeros(m)
+    pressure, least = unworn.pressure, np.inf
     for _ in range(_PASSES):
-        slip = after.slides * np.linalg.norm(after.slip - before.slip, axis=1) / areas
+        slip = after.moves * np.linalg.norm(after.slip - before.slip, axis=1) / areas
         depths = wear.depths(after.pressure, slip)
         opened = np.einsum("bmn,bn->m", opens, depths)
-        if np.abs(opened - expected).max() <= _SETTLED * opened.max():
+        error = np.abs(opened - expected).max()
+        if error <= _SETTLED * opened.max():
             return after, np.einsum("bmn,bn->bm", kept, depths)
-        slope = np.einsum("bmn,bn->mn", opens, wear.slopes(after.pressure, slip))
-        start = opened - slope @ after.pressure
+        back = 0.0 if error < least else 0.5
+        pressure, least = back * pressure + (1 - back) * after.pressure, min(error, least)
+        slope = np.einsum("bmn,bn->mn", opens, wear.slopes(pressure, slip))
+        start = np.einsum("bmn,bn->m", opens, wear.depths(pressure, slip)) - slope @ pressure
         after = solve(after, start, slope)
         expected = start + slope @ after.pressure
     raise ComputationError(

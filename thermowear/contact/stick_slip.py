@@ -73,9 +73,9 @@ class StickSlipState:
     iterations: int = 0
 
     @property
-    def slides(self) -> np.ndarray:
-        """Which coefficients slipped in the last increment, shape (m,)."""
-        return self.status == Status.SLIP
+    def moves(self) -> np.ndarray:
+        """Which coefficients slipped, or were open, in the last increment, shape (m,)."""
+        return self.status != Status.STICK
 
 
 def unloaded(contact: FrictionalContact, wearing: int = 0) -> StickSlipState:

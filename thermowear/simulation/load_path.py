@@ -44,8 +44,8 @@ def legs(history: History, settings: Fretting) -> Iterator[Leg]:
     """All legs, one after the other.
 
     The first one has no duration: it loads the bodies at the first instant. Time goes on through
-    all cycles. Of those that are jumped the last is computed and stands for them all; cycles with
-    output times are always computed.
+    all cycles. Of those that are jumped the last is computed and stands for them all. The first
+    one, which begins unlike the others, and cycles with output times are always computed.
     """
     first, last = history.time[0], history.time[-1]
     begin = last if history.cycle is None else history.cycle[0]
@@ -69,7 +69,7 @@ def _computed(settings: Fretting, begin: float, period: float) -> list[int]:
     by_jump = range(settings.jump, settings.cycles, settings.jump)
     passed = [(time - begin) / period for time in settings.output_times]
     of_outputs = {math.ceil(cycles - _SAME) for cycles in passed if cycles > _SAME}
-    return sorted({*by_jump, *of_outputs, settings.cycles})
+    return sorted({1, *by_jump, *of_outputs, settings.cycles})
 
 
 def _corners(

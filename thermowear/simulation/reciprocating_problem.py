@@ -165,6 +165,8 @@ class ReciprocatingProblem:
     def solve(self, worn: np.ndarray, step: float, guess: Contact, closed: np.ndarray) -> Contact:
         """Contact at the end of an implicit step of wear, by Newton's method for the wear laws.
 
+        A step of it starts half way back where the last one went too far.
+
         Parameters
         ----------
         worn : ndarray, shape (N,)
@@ -184,8 +186,8 @@ class ReciprocatingProblem:
                 "wear: more is worn off than the contact is long; where the steady state is asked "
                 "for, it needs more elements, or a larger analysis.steady_tolerance"
             )
+        pressure, least = guess.pressure, np.inf
         for _ in range(_NEWTON_STEPS):
-            pressure = guess.pressure
             rates, slopes = self._local(pressure), self._slopes(pressure)
             before = np.einsum("bjnm,bjm->n", self._spread, rates - slopes * pressure)
             gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slopes)
@@ -194,9 +196,11 @@ class ReciprocatingProblem:
             )
             guess = self._contact(solution)
             exact = self._local(guess.pressure)
-            linear = rates + slopes * (guess.pressure - pressure)
-            if np.abs(exact - linear).max() <= _SETTLED * exact.max():
+            error = np.abs(exact - rates - slopes * (guess.pressure - pressure)).max()
+            if error <= _SETTLED * exact.max():
                 return guess
+            back = 0.0 if error < least else 0.5
+            pressure, least = back * pressure + (1 - back) * guess.pressure, min(error, least)
         raise ComputationError("contact: Newton's method for the implicit step of wear failed")
 
     def _contact(self, solution: CoupledSolution) -> Contact:

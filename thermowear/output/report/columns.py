@@ -9,7 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
-from ..quantities import FRICTION, HISTORY, INTERFACE, LOADS, Quantity
+from ..quantities import (
+    CYCLES,
+    FRICTION,
+    HISTORY,
+    INTERFACE,
+    LOADS,
+    PROFILE,
+    TRACK,
+    Quantity,
+)
 from .engineering import multiple, number, split_key
 
 _ROWS = 20
@@ -20,7 +29,7 @@ _EXTREMES = {
     "shear": Quantity("max_shear_Pa", "largest shear", "MPa", 1e-6),
     "slip": Quantity("max_slip_m", "largest slip", "µm", 1e6),
 }
-_TABLES = (INTERFACE, HISTORY, FRICTION, LOADS, _EXTREMES)
+_TABLES = (INTERFACE, PROFILE, HISTORY, FRICTION, LOADS, CYCLES, TRACK, _EXTREMES)
 _KNOWN = {quantity.header: quantity for table in _TABLES for quantity in table.values()}
 _AT_A_TIME = re.compile(r"(interface|friction)_([-+.0-9e]+)\.csv")
 

@@ -20,17 +20,21 @@ CAPTIONS = {
     "deformed": "The bodies as they deform, magnified.",
     "interface": "Along the contact: pressure, temperatures of a hot run, shape of the worn face.",
     "profile": "The worn shape.",
-    "wear": "Worn depth along the contact at the output times and at the end.",
+    "wear": "Pressure and worn depth along the contact at the output times and at the end.",
+    "track": "Worn depths of both bodies along x, body 1 in the middle of its stroke.",
     "history": "Largest pressure and worn volume over time.",
     "friction": "Shear between the limits of friction, and slip, at the output times.",
     "loads": "Tangential force over displacement, and energy dissipated over time.",
+    "cycles": "Largest wear depth and worn volume over the cycles.",
 }
 TABLES = {
     "history": "History, a row a step",
+    "cycles": "Cycles, a row a computed one",
     "loads": "History of loads, a row an increment",
     "interface": "Contact at the end",
     "profile": "Worn shape at the end",
     "friction": "Friction at the end",
+    "track": "Track at the end",
 }
 _PNG = b"\x89PNG\r\n\x1a\n"
 

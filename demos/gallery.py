@@ -24,7 +24,7 @@ from slides import SLIDES, Slide, draw_slide
 from thermowear.output.report.figures import figure_text
 
 HERE = Path(__file__).resolve().parent
-CHOICES = (("bodies",), ("wear", "track", "cycles", "friction", "profile", "interface"))
+CHOICES = (("bodies",), ("track", "cycles", "wear", "friction", "profile", "interface"))
 SIDES = (1100, 1000, 900, 800, 700, 600, 500)  # pixels of the longer side of a picture
 LARGEST = 120_000  # bytes of a picture
 KEYS = {

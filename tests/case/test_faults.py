@@ -13,7 +13,18 @@ import tomli_w
 import thermowear as tw
 from thermowear.cli import main
 
-from .starter import FILE, FRETTING, GONE, HERTZ, PUNCH, RUNNING_IN, SPHERE, STEADY, tables
+from .starter import (
+    FILE,
+    FRETTING,
+    GONE,
+    HERTZ,
+    PUNCH,
+    RECIPROCATING,
+    RUNNING_IN,
+    SPHERE,
+    STEADY,
+    tables,
+)
 
 
 @dataclass(frozen=True)
@@ -473,6 +484,125 @@ HISTORIES = [
     ),
 ]
 
+STROKE, TIMES_A_SECOND = "motion.amplitude", "motion.frequency"
+ENDLESS = {"analysis": {"type": "reciprocating"}}
+
+TO_AND_FRO = [
+    Bad("no amplitude", {STROKE: GONE}, STROKE, "missing; a reciprocating", RECIPROCATING),
+    Bad("no frequency", {TIMES_A_SECOND: GONE}, TIMES_A_SECOND, "missing", RECIPROCATING),
+    Bad("no motion at all", {"motion": GONE}, "motion", "missing; wear", RECIPROCATING),
+    Bad("no amplitude to speak of", {STROKE: "0 mm"}, STROKE, "greater than 0", RECIPROCATING),
+    Bad(
+        "frequency as an angular velocity",
+        {TIMES_A_SECOND: "12 rad/s"},
+        TIMES_A_SECOND,
+        "measures angles; write Hz",
+        RECIPROCATING,
+    ),
+    Bad(
+        "frequency in turns",
+        {TIMES_A_SECOND: "120 rpm"},
+        TIMES_A_SECOND,
+        "measures angles",
+        RECIPROCATING,
+    ),
+    Bad(
+        "velocity of a reciprocating body",
+        {"motion.velocity": "1 mm/s"},
+        "motion.velocity",
+        "has amplitude and frequency",
+        RECIPROCATING,
+    ),
+    Bad(
+        "amplitude of a steady state",
+        {"motion": {"velocity": "1 mm/s", "amplitude": "1 mm"}, "analysis": {"type": "steady"}},
+        STROKE,
+        "is for a reciprocating analysis, not for steady",
+        RECIPROCATING,
+    ),
+    Bad("no end of strokes", ENDLESS, END, "needs end_time, cycles or until", RECIPROCATING),
+    Bad("two ends", {END: "2000 s"}, "analysis.cycles", "only one of", RECIPROCATING),
+    Bad(
+        "output after the last cycle",
+        {TIMES: ["1001 s"]},
+        TIMES,
+        "1001 s lies after the last cycle",
+        RECIPROCATING,
+    ),
+    Bad(
+        "one position",
+        {"analysis.positions": 1},
+        "analysis.positions",
+        "at least 2",
+        RECIPROCATING,
+    ),
+    Bad("no wear", {"wear": GONE}, "wear", "missing; a reciprocating", RECIPROCATING),
+    Bad(
+        "heat to and fro",
+        {
+            "heat": {"cooling": {"punch_top": "1 W/(m^2 K)"}},
+            "bodies.punch.conductivity": "50 W/(m K)",
+            "bodies.punch.expansion": "1e-5 1/K",
+        },
+        "heat",
+        "is not for a reciprocating analysis",
+        RECIPROCATING,
+    ),
+    Bad(
+        "to and fro by penalty",
+        {"contact.method": "penalty"},
+        "contact.method",
+        "use condensed",
+        RECIPROCATING,
+    ),
+    Bad(
+        "free along the stroke",
+        {"holder.free": ["z", "x"]},
+        "holder.free",
+        "driven along it",
+        RECIPROCATING,
+    ),
+    Bad(
+        "steady though it turns",
+        {
+            "holder.free": ["z", "rotation"],
+            "analysis": {"type": "reciprocating", "until": "steady"},
+        },
+        "analysis.until",
+        "holder that does not turn",
+        RECIPROCATING,
+    ),
+    Bad(
+        "a strip that passes by and does not",
+        {"wear.strip.spread": "track"},
+        "wear.strip.spread",
+        "nothing passes by in a reciprocating analysis",
+        RECIPROCATING,
+    ),
+    Bad(
+        "a ring to and fro",
+        {
+            "motion": {"amplitude": "1 mm", "frequency": "1 Hz"},
+            "analysis": {"type": "reciprocating", "cycles": 1},
+        },
+        "model",
+        "slide along x in a plane",
+        RUNNING_IN,
+    ),
+    Bad(
+        "half of a punch to and fro",
+        {
+            "geometry.half": True,
+            "motion": {"amplitude": "1 mm", "frequency": "1 Hz"},
+            "wear.punch": {"coefficient": "1e-7 1/MPa", "per": "pressure"},
+            "analysis": {"type": "reciprocating", "cycles": 1},
+        },
+        "geometry.half",
+        "not symmetric",
+        PUNCH,
+    ),
+]
+
 NITSCHE, PENALTY = ({"contact": {"method": name}} for name in ("nitsche", "penalty"))
 STIFF, THETA, GAMMA = (f"contact.{key}" for key in ("penalty", "theta", "gamma"))
 DEGREE = "contact.pressure_degree"
@@ -571,7 +701,7 @@ OF_FILES = [
 ]
 
 ALL = (NAMES + QUANTITIES + NUMBERS + KINDS + RELATIONS) + (
-    MOTIONS + LOADS + HISTORIES + METHODS + PLANE + OF_FILES
+    MOTIONS + LOADS + HISTORIES + TO_AND_FRO + METHODS + PLANE + OF_FILES
 )
 
 

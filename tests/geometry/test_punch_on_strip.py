@@ -95,3 +95,18 @@ def test_sizes_that_do_not_fit():
     requirement: one clear line with the key's path.
     """
     assert fault(punch, strip_length="30 mm")[0] == "strip_length"
+
+
+def test_a_strip_that_is_rubbed_to_and_fro():
+    """
+    requirement: its face goes on by the stroke on both sides, in elements as large as the punch's.
+    """
+    mesh = punch(stroke="10 mm").build(Mesh(elements=6, grading=1.0), None)
+    check_mesh(mesh, {"punch": 0.03 * 0.02, "strip": 0.12 * 0.015}, shape=0.999)
+    assert unnamed(mesh) == 0
+    assert spans(mesh, "strip_face") == [pytest.approx((-0.025, 0.025))]
+    assert spans(mesh, "punch_face") == [pytest.approx((-0.015, 0.015))]
+    np.testing.assert_allclose(np.diff(ends(mesh, "strip_face")), 0.005, rtol=1e-9)
+    key, said = fault(punch, stroke="45 mm")
+    assert key == "strip_length"
+    assert "0.12 m" in said

@@ -170,3 +170,15 @@ def test_sizes_that_do_not_fit(changes, key, text):
     found, message = fault(tube, **changes)
     assert found == key
     assert text in message
+
+
+def test_a_mesh_for_a_contact_that_travels():
+    """requirement: the zone of the case, wherever the unworn bodies would touch; not too large."""
+    wide = tube(zone="1.5 mm")
+    assert wide.expected_zone(Pressing(1.0, None, 1e11)) == (-1.5e-3, 1.5e-3)
+    mesh = wide.build(Mesh(elements=10, grading=1.0), (-1.5e-3, 1.5e-3))
+    x = ends(mesh, "tube_face")
+    inside = x[np.abs(x) < 1.51e-3]
+    assert len(inside) == 11
+    with pytest.raises(CaseError, match=r"geometry.zone: too large for the contact"):
+        tube(zone="9.9 mm").build(Mesh(), (-9.9e-3, 9.9e-3))

@@ -54,4 +54,4 @@ class PunchOnStrip(OnStrip):
         if self.stroke == 0.0:
             return super()._lower_face(elements, grading, zone)
         start, end = self.lower_face  # the edges of the contact are everywhere: nothing to grade
-        return [Interval(start, end, math.ceil(elements * (end - start) / self.width))]
+        return [Interval(start, end, math.ceil(elements * (end - start) / self.width - 1e-9))]

@@ -100,9 +100,9 @@ def _short_strokes() -> Iterator[Check]:
     )
     for body in (1, 2):
         for place in PLACES:
-            depths = [
-                np.interp(place * HALF_WIDTH, r.interface.x, getattr(r.interface, f"wear_{body}"))
-                for r in (short, in_place)
-            ]
+            found, known = (
+                float(np.interp(place * HALF_WIDTH, i.x, getattr(i, f"wear_{body}")))
+                for i in (short.interface, in_place.interface)
+            )
             quantity = f"depth at {place:g} of the half-width, short strokes, body {body} [m]"
-            yield compare(ID, quantity, *map(float, depths), 1e-2, IN_PLACE)
+            yield compare(ID, quantity, found, known, 1e-2, IN_PLACE)

@@ -112,6 +112,17 @@ def test_jumps_change_little(sliding):
     assert coarse.max_wear_2 == close(fine.max_wear_2, rel=5e-2)
 
 
+def test_the_gap_is_closed_where_it_presses():
+    """requirement: the gap of the interface has body 1's profile where body 1 has slid to."""
+    changes = moved(**{"analysis.output_times": ["301 s"]})
+    changes["wear"] = {"cylinder": {"coefficient": "1e-6 1/MPa", "per": "pressure"}}
+    result = solved(FRETTING, changes, *SMALL, "analysis.cycles=80", "analysis.jump=20")
+    turned = result.outputs[301.0]
+    pressing = turned.pressure > 0.3 * turned.pressure.max()
+    assert turned.wear_1.max() > 5e-7
+    assert np.abs(turned.gap[pressing]).max() < 0.1 * turned.wear_1.max()
+
+
 def test_the_velocity_exponent():
     """requirement: with a = 2 wear goes with the speed: half the time, twice the wear."""
     law = {"coefficient": "1e-7 s/mm/MPa", "per": "pressure", "velocity_exponent": 2.0}

@@ -45,6 +45,7 @@ class Timed(Section):
         Allowed error of one step, relative to the largest pressure and to the largest depth worn.
     """
 
+    type: str
     end_time: units.Time | None = None
     until: Literal["steady"] | None = None
     steady_tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 1e-3

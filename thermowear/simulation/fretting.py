@@ -9,7 +9,7 @@ import numpy as np
 from ..case.analyses import Fretting
 from ..case.schema import Case
 from ..contact.loads import Loads
-from ..contact.slip_wear import SlipWear, profile
+from ..contact.slip_wear import Profile, SlipWear, profile
 from ..contact.stick_slip import follow, unloaded
 from ..contact.tangential import FrictionalContact, condense_tangential
 from ..laws.motions import translation
@@ -31,8 +31,10 @@ def fretting(system: System, observer: Observer) -> Outcome:
     translations = _translations(system.case)
     with system.phases("condense elasticity"):
         contact = condense_tangential(system.elastic, system.pairing, system.basis, translations)
-    record = FrettingRecord(system, translations, observer)
-    _, stopped = go_through(system, "load steps", _instants(system, contact), record.keep)
+    profiles = tuple(profile(system.pairing, contact.weighted, body) for body in system.laws)
+    record = FrettingRecord(system, translations, profiles, observer)
+    instants = _instants(system, contact, profiles)
+    _, stopped = go_through(system, "load steps", instants, record.keep)
     with system.phases("bodies"):
         bodies, interface = record.interface()
     return Outcome(
@@ -56,13 +58,14 @@ def _translations(case: Case) -> np.ndarray:
     return np.array(directions)
 
 
-def _instants(system: System, contact: FrictionalContact) -> Iterator[Instant]:
+def _instants(
+    system: System, contact: FrictionalContact, profiles: tuple[Profile, ...]
+) -> Iterator[Instant]:
     """Each increment's end, leg by leg."""
     settings, history = system.case.analysis, system.case.load.history
     assert isinstance(settings, Fretting)
     assert history is not None  # the case has been checked
     count, laws = settings.increments, tuple(system.laws.values())
-    profiles = tuple(profile(system.pairing, contact.weighted, body) for body in system.laws)
     state = unloaded(contact, len(laws))
     for leg in legs(history, settings):
         loads, step = _loads(system.case, leg.instant), (leg.end - leg.start) / count

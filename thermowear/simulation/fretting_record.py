@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..contact.slip_wear import Profile
 from ..contact.stick_slip import StickSlipState
 from ..laws.motions import translation
 from .load_path import Leg
@@ -45,16 +46,25 @@ class FrettingRecord:
     system : System
     translations : ndarray, shape (k, 2)
         Of the holder.
+    profiles : tuple of Profile
+        Of the wearing bodies.
     observer : Observer
         Told of each of them.
     """
 
     last: StickSlipState
 
-    def __init__(self, system: System, translations: np.ndarray, observer: Observer):
+    def __init__(
+        self,
+        system: System,
+        translations: np.ndarray,
+        profiles: tuple[Profile, ...],
+        observer: Observer,
+    ):
         self.outputs: dict[float, Interface] = {}
         self._system = system
         self._translations = translations
+        self._profiles = profiles
         self._observer = observer
         self._rows: list[LoadRow] = []
         self._cycles: list[CycleRow] = []
@@ -89,7 +99,16 @@ class FrettingRecord:
         assert history is not None  # the case has been checked
         begin, end = history.cycle or (0.0, np.inf)
         rates = self._per_cycle / (end - begin)
-        return interface_at(system, pressure, moved, self._depths(state), shear, rates)
+        bodies, found = interface_at(system, pressure, moved, self._depths(state), shear, rates)
+        return bodies, replace(found, gap=found.gap + system.basis @ self._slid_along())
+
+    def _slid_along(self) -> np.ndarray:
+        """What the profiles open more than in place, as body 1 has slid, coefficients [m]."""
+        state, nothing = self.last, np.zeros(self._system.basis.shape[1])
+        if len(state.motion) < 2:
+            return nothing
+        pairs = zip(self._profiles, state.worn, strict=True)
+        return sum((own.seen(state.motion[1]) @ ω - ω for own, ω in pairs), start=nothing)
 
     def history(self) -> FrictionHistory:
         """All of it."""

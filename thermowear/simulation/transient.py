@@ -78,7 +78,7 @@ def moments(problem: WearProblem, settings: Timed, steady: np.ndarray | None) ->
         step = max(following, planned) if hits else following
     if targets and not _is_steady(settings, distance):
         raise ComputationError(
-            f"transient: {settings.max_steps} steps were not enough (analysis.max_steps), "
+            f"{settings.type}: {settings.max_steps} steps were not enough (analysis.max_steps), "
             f"the run stands at {time:g} s"
         )
 
@@ -96,7 +96,7 @@ def _accept(problem, state, step, hits, time, settings):
         if error <= settings.tolerance:
             return following, step, error, hits, proposed
         step, hits = min(proposed, 0.9 * step), False
-    raise ComputationError(f"transient: no step is small enough at {time:g} s{trouble}")
+    raise ComputationError(f"{settings.type}: no step is small enough at {time:g} s{trouble}")
 
 
 def _targets(settings: Timed) -> list[float]:

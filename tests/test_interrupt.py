@@ -56,5 +56,5 @@ def test_interrupted_run_leaves_readable_results(tmp_path, number):
     assert summary["time_s"] == pytest.approx(rows["time"][-1], rel=1e-12)
     assert 0 < summary["time_s"] < 200
     volume = interface["weight"] @ interface["wear_1"]
-    assert volume == pytest.approx(rows["wear_volume_1"][-1], rel=1e-12)
+    assert volume == pytest.approx(rows["wear_volume_1"][-1], rel=1e-12, abs=0.0)
     assert (folder / "fields.vtu").stat().st_size > 1000

@@ -27,8 +27,10 @@ def test_definitions(q):
 
     rates = [1e-13 * P * V**0.5, 3e-20 * P**2 * V**1.5]
     D_w = sum(norm(C * P * rate) for rate in rates)
-    assert wear_dissipation(W, LAWS, V, q, C)(P) == pytest.approx(D_w, rel=1e-12)
-    assert wear_volume_rate(W, LAWS, V, q)(P) == pytest.approx(sum(map(norm, rates)), rel=1e-12)
+    assert wear_dissipation(W, LAWS, V, q, C)(P) == pytest.approx(D_w, rel=1e-12, abs=0.0)
+    assert wear_volume_rate(W, LAWS, V, q)(P) == pytest.approx(
+        sum(map(norm, rates)), rel=1e-12, abs=0.0
+    )
     D_F = norm(0.3 * P * V)
     assert friction_dissipation(W, 0.3, V, q)(P) == pytest.approx(D_F, rel=1e-12)
 

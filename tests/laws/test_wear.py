@@ -21,7 +21,7 @@ def test_archard_volume():
     pressure = np.array([5e6, 1e6, 8e6])
     law = WearLaw(1e-14)
     volume_rate = weights @ law.rate(pressure, np.full(3, 0.3))
-    assert volume_rate == pytest.approx(1e-14 * (weights @ pressure) * 0.3, rel=1e-14)
+    assert volume_rate == pytest.approx(1e-14 * (weights @ pressure) * 0.3, rel=1e-14, abs=0.0)
 
 
 @given(b=st.floats(0.3, 3.0), a=st.floats(0.0, 3.0), p=st.floats(1e3, 1e9), v=st.floats(1e-4, 1e2))

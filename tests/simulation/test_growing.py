@@ -94,6 +94,6 @@ def test_a_tube_in_its_support():
         assert half_width > 3 * law.half_width(0.0)
         # the arc of the contact, up to 0.17 rad, is no parabola: about half a per cent
         assert half_width == pytest.approx(law.elastic_half_width(slid), rel=0.012)
-        assert i.wear_2.max() == pytest.approx(law.elastic_depth(slid), rel=0.012)
+        assert i.wear_2.max() == pytest.approx(law.elastic_depth(slid), rel=0.012, abs=0.0)
         pressed = i.weight @ i.wear_2
         assert pressed == pytest.approx(1e-13 * 20 * slid, rel=5e-3)

@@ -49,7 +49,7 @@ def test_volume_follows_archard(running_in):
     i = running_in.interface
     volume = np.array([row.wear_volume_1 for row in running_in.history])
     time = np.array([row.time for row in running_in.history])
-    assert i.weight @ i.wear_1 == pytest.approx(volume[-1], rel=1e-12)
+    assert i.weight @ i.wear_1 == pytest.approx(volume[-1], rel=1e-12, abs=0.0)
     area = np.pi * (0.12**2 - 0.02**2)
     rate = (volume[-1] - volume[-2]) / (time[-1] - time[-2])
     assert rate == pytest.approx(1.75e-6 * area, rel=1e-4)
@@ -127,7 +127,7 @@ def test_both_bodies_wear_in_time():
     i, last = result.interface, result.history[-1]
     np.testing.assert_allclose(i.wear_1, 2 * i.wear_2, rtol=1e-9)
     volumes = (i.weight @ i.wear_1, i.weight @ i.wear_2)
-    assert (last.wear_volume_1, last.wear_volume_2) == pytest.approx(volumes, rel=1e-12)
+    assert (last.wear_volume_1, last.wear_volume_2) == pytest.approx(volumes, rel=1e-12, abs=0.0)
     summary = result.summary
     assert (summary["wear_volume_1_m3"], summary["wear_volume_2_m3"]) == pytest.approx(volumes)
     assert min(volumes) > 0

@@ -700,8 +700,62 @@ OF_FILES = [
     of_file("key of another geometry", "radius", "1 mm", "radius", "unknown key here"),
 ]
 
+TILT, STRIP, PIVOT, DISK = (
+    "punch-on-strip-tilting",
+    "punch-on-strip",
+    "pivoted-block",
+    "block-on-disk",
+)
+BEAM, BOX, DRUM, PADS = "beam-on-foundation", "rectangular-punch", "drum-brake", "disk-brake"
+FREE = "holder.free"
+
+HOLDERS = [
+    Bad("free in a word", {"holder": {"free": "z"}}, FREE, "must be a list", STRIP),
+    Bad("unknown motion", {"holder": {"free": ["up"]}}, f"{FREE}.0", "found 'up'", STRIP),
+    Bad("a motion twice", {"holder": {"free": ["z", "z"]}}, FREE, "twice", STRIP),
+    Bad("tilt of a section", {"holder": {"free": ["rotation-x"]}}, FREE, "not for plane", STRIP),
+    Bad("turning ring", {"holder": {"free": ["z", "rotation"]}}, FREE, "not for axisymmetric"),
+    Bad("turn in space", {FREE: ["z", "rotation"]}, FREE, "not for 3d", BOX),
+    Bad("pivot in space", {"holder.pivot": ["0 mm"] * 2}, "holder.pivot", "needs 3", BOX),
+    Bad("pivot without unit", {"holder.pivot": [0, "0 mm"]}, "holder.pivot.0", "its unit", TILT),
+    Bad("point in space", {"load.point": ["0 mm"]}, "load.point", "3d needs 2", BOX),
+    Bad("moments in the plane", {"load.moments": ["1 N m"] * 2}, "load.moments", "for 3d", TILT),
+    Bad("moment in space", {"load.moment": "1 N m"}, "load.moment", "for plane models", BOX),
+    Bad("lever and point", {"load.lever": "1 mm"}, "load.lever", "twice", TILT),
+    Bad("lever that turns nothing", {"load.lever": "1 mm"}, "load.lever", "may turn", STRIP),
+    Bad("moment and lever", {"load.moment": "1 N m"}, "load", "a moment, or a force", PIVOT),
+    Bad("nothing that turns it", {"load": {}}, "load", ONE, DRUM),
+    Bad("push in a guide", {"load.tangential_force": "1 N"}, "load.tangential_force", "free", DISK),
+    Bad("approach of a lever",
+        {"load": {"approach": "1 um"}, "analysis": {"type": "initial"}},
+        "load.approach", "add", PIVOT),
+    Bad("fixed and pushed", {"load.force": "1 N"}, "load", "load.surfaces, and nothing", BEAM),
+    Bad("fixed without a load", {"load": {}}, "load", "needs load.surfaces", BEAM),
+    Bad("steady and fixed", {"analysis": {"type": "steady"}}, FREE, "nothing presses", BEAM),
+    Bad("load on a surface of a guided body", {"load.surfaces": {"punch_top": "1 N"}},
+        "load.surfaces", "is for a fixed holder", STRIP),
+    Bad("load on no surface", {"load.surfaces": {"roof": "1 kN"}},
+        "load.surfaces.roof", "not a name", BEAM),
+    Bad("layer without unit", {"contact.compliance": 1e-9}, "contact.compliance", "unit", BEAM),
+    Bad("disk moved along", {"motion": SPEED}, "motion.velocity", "needs motion.angular", DISK),
+    Bad("spread punch", {"wear.punch.spread": "track"},
+        "wear.punch.spread", "only strip passes", STRIP),
+    Bad("spread plate", {"wear": {"plate": {"coefficient": "1e-7 1/MPa", "spread": "track"}}},
+        "wear.plate.spread", "all the time"),
+    Bad("only the track wears",
+        {"wear": {"strip": {"coefficient": "1e-7 1/MPa", "spread": "track"}}},
+        "wear.strip.spread", "no steady state", STRIP),
+    Bad("spread nowhere", {"wear.punch.spread": "thin"}, "wear.punch.spread", "must be", STRIP),
+    Bad("material of no part", {"bodies.bolt": {"like": "drum"}}, "bodies.bolt", "lining", DRUM),
+    Bad("nitsche in space", {"contact.method": "nitsche"}, "contact.method", "sections", BOX),
+    Bad("shape in space", {"geometry.initial_shape": "a.csv"},
+        "geometry.initial_shape", "not for 3d", BOX),
+    Bad("pad all the way and more", {"geometry.pad_angle": "400 deg"},
+        "geometry.pad_angle", "at most 360 deg", PADS),
+]  # fmt: skip
+
 ALL = (NAMES + QUANTITIES + NUMBERS + KINDS + RELATIONS) + (
-    MOTIONS + LOADS + HISTORIES + TO_AND_FRO + METHODS + PLANE + OF_FILES
+    MOTIONS + LOADS + HISTORIES + TO_AND_FRO + METHODS + PLANE + OF_FILES + HOLDERS
 )
 
 

@@ -6,7 +6,7 @@ import pytest
 from thermowear.errors import ComputationError
 from thermowear.simulation.steady import least_worn
 
-from ..case.starter import solved
+from ..case.starter import GONE, solved
 
 BLOCK, TILTING, DRUM, DISK = (
     "pivoted-block",
@@ -141,3 +141,31 @@ def test_a_block_that_is_pushed_in_place_of_guided():
     assert abs(drifting["rigid_wear_velocity_x_m_per_s"]) > 1e-2 * abs(
         drifting["rigid_wear_velocity_m_per_s"]
     )
+
+
+def test_lever_point_and_moment_say_the_same():
+    """requirement: a force down at x turns clockwise; a moment for a mere turn presses."""
+    point, lever, moment = (
+        solved(TILTING, {"load": {"force": "3 kN"} | more}, *COARSE).interface.pressure
+        for more in (
+            {"point": ["2 mm"]},
+            {"lever": "2 mm"},
+            {"moment": "-6 N m"},  # anticlockwise is positive
+        )
+    )
+    assert lever == pytest.approx(point, rel=1e-12)
+    assert moment == pytest.approx(point, rel=1e-12)
+    by_lever = solved(BLOCK, None, *COARSE).interface.pressure
+    by_moment = solved(BLOCK, {"load": {"moment": "200 N m"}}, *COARSE).interface.pressure
+    assert by_moment == pytest.approx(by_lever, rel=1e-12)
+
+
+def test_a_soft_layer_takes_the_edges_off():
+    """requirement: a Winkler layer between stiff bodies spreads the force evenly; it closes."""
+    stiff = {"bodies.punch.young_modulus": "2e5 GPa"}
+    layer = ("contact.compliance=1e-3 mm/MPa", "contact.friction=0.0")
+    cold = stiff | {"heat": GONE, "wear": GONE}
+    soft = solved("punch-on-strip", cold, *COARSE, INITIAL, *layer)
+    assert soft.interface.pressure == pytest.approx(10e6, rel=1e-3)
+    assert soft.summary["approach_m"] == pytest.approx(1e-5, rel=1e-2, abs=0.0)
+    assert np.abs(soft.interface.gap).max() < 1e-3 * 1e-5

@@ -9,7 +9,8 @@ from .analyses import Fretting, Reciprocating
 from .history import History
 
 if TYPE_CHECKING:
-    from .schema import Case, Motion
+    from .driving import Motion
+    from .schema import Case
 
 Fault = tuple[str, str]
 

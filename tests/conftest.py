@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -102,3 +103,11 @@ def hot_steady():
 def running_in():
     """The demo of running-in: cold, degree 8."""
     return tw.run(tw.load(COLD_RUNNING_IN))
+
+
+@pytest.fixture
+def heeds_ctrl_c():
+    """Ctrl-C interrupts, also where the tests run in the background and ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -185,6 +185,7 @@ class Stopping(Observer):
             signal.raise_signal(signal.SIGINT)
 
 
+@pytest.mark.usefixtures("heeds_ctrl_c")
 def test_an_interrupted_run_keeps_its_cycles():
     """requirement: what was computed is kept, wear included."""
     changes = BOTH | {"analysis.cycles": 100, "analysis.jump": 20, "analysis.output_times": []}

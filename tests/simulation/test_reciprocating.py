@@ -257,6 +257,7 @@ class Stopping(Observer):
             signal.raise_signal(signal.SIGINT)
 
 
+@pytest.mark.usefixtures("heeds_ctrl_c")
 def test_an_interrupted_run_keeps_its_steps():
     """requirement: what was computed before Ctrl-C is kept."""
     result = run(observer=Stopping())

@@ -67,3 +67,27 @@ def test_pads_take_up_a_sector_of_their_disk():
     end = "analysis={type='transient', end_time='1e5 s'}"
     worn = cold(PADS, *both, end).summary
     assert worn["wear_volume_2_m3"] == pytest.approx(worn["wear_volume_1_m3"], rel=1e-9, abs=0.0)
+
+
+def test_the_whole_disk_cools_what_the_pads_heat():
+    """requirement: heat of a sector leaves by the whole rim, through a disk that conducts well."""
+    changes = {"heat.cooling": {"disk_outside": "60 W/(m^2 K)"}}
+    summary = solved(PADS, changes, *COARSE, "bodies.disk.conductivity=1e6 W/(m K)")
+    power = summary.summary["friction_power_W"]
+    rim = 2 * np.pi * 0.135 * 0.006  # of the half of the disk that is modelled
+    rise = summary.interface.temperature_2 - 293.15
+    assert rise == pytest.approx(power / (60 * rim), rel=1e-3)
+
+
+def test_a_sector_heats_like_a_ring_of_another_disk():
+    """requirement: a sixth of the pads, a sixth of the heat per conductivity and cooling."""
+    cooling = {"disk_outside": 60, "disk_inside": 100, "disk_rest": 60}
+    sector = {f"heat.cooling.{name}": f"{h} W/(m^2 K)" for name, h in cooling.items()}
+    ring = {f"heat.cooling.{name}": f"{6 * h} W/(m^2 K)" for name, h in cooling.items()}
+    ring |= {"geometry.pad_angle": "360 deg", "load.force": "3 kN"}
+    ring |= {"bodies.disk.conductivity": "288 W/(m K)"}
+    by_sector, by_ring = (solved(PADS, changes, *COARSE) for changes in (sector, ring))
+    assert np.ptp(by_sector.interface.temperature_2) > 1.0
+    for body in (1, 2):
+        found, known = (getattr(r.interface, f"temperature_{body}") for r in (by_sector, by_ring))
+        assert found == pytest.approx(known, rel=1e-9)

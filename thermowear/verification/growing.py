@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -58,6 +58,22 @@ class Growth:
                 yield compare(self.id, name, value, float(soft), 1e-2, ELASTIC)
                 if abs(soft / hard - 1) < _SEEN:
                     yield compare(self.id, f"{name}, rigid", value, float(hard), 1e-2, RIGID)
+
+    def from_scar(self) -> Iterator[Check]:
+        """The same from the first state on, against the closed form of rigid bodies alone.
+
+        That scar is its a0. It is some times wider than Hertz's zone, and the dent of the bodies
+        counts for less the wider the contact has become.
+        """
+        (begun, scar), *later = self.states.items()
+        law = replace(self.law, start=worn_half_width(scar, self.moment))
+        for distance, state in later:
+            slid = distance - begun
+            place = f"at {float(law.half_width(slid)) / law.start:.3g} a0{self.note}"
+            found = worn_half_width(state, self.moment), float((state.wear_1 + state.wear_2)[0])
+            known = float(law.half_width(slid)), float(law.depth(slid))
+            for name, value, rigid in zip(("half-width", "depth"), found, known, strict=True):
+                yield compare(self.id, f"{name} {place}, rigid [m]", value, rigid, 1e-2, RIGID)
 
     def volumes(self, rate: float) -> Iterator[Check]:
         """Worn volume against ``k F s``; `rate` is k F [m²]."""

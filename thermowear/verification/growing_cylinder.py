@@ -16,6 +16,7 @@ STARTER = "cylinder-on-block-growing"
 FORCE, THICKNESS, RADIUS = 20.0, 1e-3, 10e-3
 COEFFICIENT = 1e-14
 MESH = ("mesh.elements=60",)
+WIDE = ("mesh.elements=90", "geometry.zone=1.15 mm")
 
 BOTH = ('wear.cylinder={coefficient="5e-9 1/MPa", per="pressure"}',)
 SQUARE = ('wear={cylinder={coefficient="1e-10 1/MPa^2", per="pressure", pressure_exponent=2}}',)
@@ -26,6 +27,8 @@ def checks() -> Iterator[Check]:
     growth = run("", 1.0, COEFFICIENT, (3, 4, 5, 6))
     yield from growth.checks()
     yield from growth.volumes(COEFFICIENT * FORCE)
+    scar = run(", a0: a scar of 4 Hertz's", 1.0, COEFFICIENT, (4, 12.5, 16), *WIDE)
+    yield from scar.from_scar()
     both = run(", both wear", 1.0, 1.5 * COEFFICIENT, (3, 4), *BOTH)
     yield from both.checks()
     yield from both.volumes(1.5 * COEFFICIENT * FORCE)

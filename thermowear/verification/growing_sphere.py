@@ -28,6 +28,8 @@ def checks() -> Iterator[Check]:
     growth = run("", 1.0, COEFFICIENT, (3, 4, 5, 6))
     yield from growth.checks()
     yield from growth.volumes(COEFFICIENT * FORCE)
+    scar = run(", a0: a scar of 2 Hertz's", 1.0, COEFFICIENT, (2, 6.1, 6.5))
+    yield from scar.from_scar()
     yield from run(", block wears, b = 2", 2.0, 1.33e-21, (3, 5), *SQUARE).checks()
     published = grown(STARTER, tuple(PUBLISHED), *MESH)
     for (distance, ratio), state in zip(PUBLISHED.items(), published.values(), strict=True):

@@ -144,6 +144,16 @@ def test_sliding_of_plane_models(velocity):
     assert slides.speed == pytest.approx(0.05)
 
 
+def test_friction_of_the_slowest_sliding():
+    """requirement: friction knows the direction of sliding, not its speed."""
+    model, normals = section_model("plane-strain", 1.0), np.array([[0.0, -1.0], [0.6, -0.8]])
+    slow, fast = (
+        sliding(model.sliding(normals, Motion(velocity=v)), normals, (0.0, -1.0)).along
+        for v in ("1e-15 m/s", "1 m/s")
+    )
+    assert slow == pytest.approx(fast, abs=1e-12)
+
+
 @pytest.mark.parametrize("turning", ["2 rad/s", "-2 rad/s"])
 def test_sliding_over_a_turning_disk(turning):
     """requirement: a disk that turns anticlockwise drags what lies on top of it along -x."""

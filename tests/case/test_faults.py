@@ -724,6 +724,8 @@ HOLDERS = [
     Bad("lever and point", {"load.lever": "1 mm"}, "load.lever", "twice", TILT),
     Bad("lever that turns nothing", {"load.lever": "1 mm"}, "load.lever", "may turn", STRIP),
     Bad("moment and lever", {"load.moment": "1 N m"}, "load", "a moment, or a force", PIVOT),
+    Bad("moment with a lever", {"load": {"moment": "1 N m", "lever": "1 mm"}}, "load",
+        "a moment, or a force", PIVOT),
     Bad("nothing that turns it", {"load": {}}, "load", ONE, DRUM),
     Bad("push in a guide", {"load.tangential_force": "1 N"}, "load.tangential_force", "free", DISK),
     Bad("approach of a lever",

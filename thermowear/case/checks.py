@@ -105,7 +105,7 @@ def _load(case: Case) -> Iterator[Fault]:
         if sum(given) > 0:
             yield "load", "the history gives the force or the approach already"
     elif turns_only and load.moment is not None:
-        if sum(given) > 0:
+        if sum(given) > 0 or load.lever is not None or load.point is not None:
             yield "load", "a holder that only turns needs a moment, or a force and its lever"
     elif not free:
         if sum(given) > 0 or not load.surfaces:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_TRANSVERSE = 1e-9
-"""Below this part of a unit the way down the face has no direction: the face is level."""
+_LEVEL = 1e-9
+"""Parts of a vector below this part of the largest one are rounding, and have no direction."""
 
 
 @dataclass(frozen=True)
@@ -61,11 +61,11 @@ def sliding(velocity: np.ndarray, normals: np.ndarray, press: tuple[float, ...])
     """
     gdim = normals.shape[1]
     n = _spatial(normals)
-    along = _unit(_tangential(velocity, n))
+    speed = np.linalg.norm(velocity, axis=1)
+    along = _unit(_tangential(velocity, n), float(speed.max(initial=0.0)))
     down = _tangential(np.broadcast_to(_spatial(np.array([press])), n.shape), n)
     down = down - np.einsum("ni,ni->n", down, along)[:, None] * along
-    speed = np.linalg.norm(velocity, axis=1)
-    return Sliding(speed, along[:, :gdim], _unit(down)[:, :gdim])
+    return Sliding(speed, along[:, :gdim], _unit(down, 1.0)[:, :gdim])
 
 
 def _spatial(vectors: np.ndarray) -> np.ndarray:
@@ -76,8 +76,8 @@ def _tangential(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
     return vectors - np.einsum("ni,ni->n", vectors, normals)[:, None] * normals
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    """Unit vectors; zero stays zero."""
+def _unit(vectors: np.ndarray, largest: float) -> np.ndarray:
+    """Unit vectors; what is zero beside the largest one stays zero."""
     sizes = np.linalg.norm(vectors, axis=1, keepdims=True)
-    scale = _TRANSVERSE * max(1.0, float(sizes.max(initial=0.0)))
-    return np.divide(vectors, sizes, out=np.zeros_like(vectors), where=sizes > scale)
+    counts = sizes > _LEVEL * largest
+    return np.divide(vectors, sizes, out=np.zeros_like(vectors), where=counts)

@@ -13,13 +13,16 @@ Structural Analysis, 1968, section 5.6). The foundation is one of springs under 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 _γ = 1 - 1 / math.sqrt(2)
+
+Advance = Callable[[np.ndarray, np.ndarray, float], tuple[np.ndarray, np.ndarray]]
+"""Depths and pressures after a step from those before it, and its size."""
 
 
 @dataclass(frozen=True)
@@ -119,19 +122,28 @@ class WornBeam:
         """Depth worn in the end, shape (n,) [m]."""
         return np.maximum(self.free_deflection - self.gap, 0.0)
 
-    def states(self, times: Sequence[float], steps: int = 400) -> list[BeamState]:
-        """States at increasing times.
+    def states(
+        self, times: Sequence[float], steps: int = 400, advance: Advance | None = None
+    ) -> list[BeamState]:
+        """States at increasing times, by implicit steps each 2 % longer than the one before.
 
-        Two-stage, second-order, L-stable implicit steps (Alexander, SIAM J. Numer. Anal. 14 (1977)
-        1006), each 2 % longer than the one before, up to the last time over `steps`.
+        Parameters
+        ----------
+        times : sequence of float
+            Increasing [s].
+        steps : int
+            The longest step is the last time over this.
+        advance : callable, optional
+            `two_stage` (default) or `euler`.
         """
+        advance = advance or self.two_stage
         worn, pressure = np.zeros(self.elements - 1), np.zeros(self.elements - 1)
         now, step, found = 0.0, 1e-4 * times[0], []
         for time in times:
             while now < time:
                 count = math.ceil((time - now) / step * (1 - 1e-9))
                 size = (time - now) / count
-                worn, pressure = self._advance(worn, pressure, size)
+                worn, pressure = advance(worn, pressure, size)
                 now = time if count == 1 else now + size
                 step = min(1.02 * step, times[-1] / steps)
             found.append(BeamState(time, pressure, worn))
@@ -153,7 +165,16 @@ class WornBeam:
             pressing = following
         raise RuntimeError("beam: the touching nodes do not settle")
 
-    def _advance(self, worn, pressure, step: float) -> tuple[np.ndarray, np.ndarray]:
+    def euler(self, worn, pressure, step: float) -> tuple[np.ndarray, np.ndarray]:
+        """An implicit step of first order."""
+        pressure = self.contact(worn, step, pressure)
+        return worn + step * self.rate * pressure, pressure
+
+    def two_stage(self, worn, pressure, step: float) -> tuple[np.ndarray, np.ndarray]:
+        """An implicit step of second order, L-stable.
+
+        Alexander, SIAM J. Numer. Anal. 14 (1977) 1006.
+        """
         first = self.contact(worn, _γ * step, pressure)
         before = worn + (1 - _γ) * step * self.rate * first
         last = self.contact(before, _γ * step, first)

@@ -7,44 +7,30 @@ the z-axis; its upper half is meshed, all the way round, and fixed at its middle
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from pydantic import model_validator
 
-from ..case.geometry import Geometry
-from ..case.section import KeyFault
-from ..case.units import Angle, Length
 from .blocks import Interval, graded_face, growing, smallest
 from .hexes import Lattice, ends_of, level, mesh_lattice
+from .pads_on_disk import PadsOnDisk
 from .quads import Body, tagged_bodies
 
-_WIDEST_PAD = 300.0  # degrees
 _WIDEST = math.radians(30)
 """Of an element of the disk beside the pad."""
 _ORDER = 3
 """Of the cells at most; never above the degree of the displacement, which has to rotate rigidly."""
 
 
-class DiskSector(Geometry):
-    """Sizes of pad and disk.
+class DiskSector(PadsOnDisk):
+    """Sizes of pad and disk, see the base.
 
     ``mesh.elements`` lie along the longer side of the pad, fewer along the shorter one.
-
-    Attributes
-    ----------
-    pad_inner_radius, pad_outer_radius, pad_thickness : float [m]
-    pad_angle : float
-        That the pad takes up [rad].
-    disk_inner_radius, disk_outer_radius : float [m]
-    disk_thickness : float
-        Of the whole disk [m].
     """
 
     name = "disk-sector"
     models = ("3d",)
-    bodies = ("pad", "disk")
+    widest_pad = 300.0
     surfaces = (
         "pad_face",
         "pad_back",
@@ -57,33 +43,8 @@ class DiskSector(Geometry):
         "disk_inside",
         "disk_outside",
     )
-    contact = ("pad_face", "disk_face")
-    held = "pad_back"
-    fixed = "disk_middle"
 
     type: Literal["disk-sector"]
-    pad_inner_radius: Length
-    pad_outer_radius: Length
-    pad_thickness: Length
-    pad_angle: Angle
-    disk_inner_radius: Length
-    disk_outer_radius: Length
-    disk_thickness: Length
-
-    @model_validator(mode="after")
-    def _nested(self):
-        names = ("disk_inner_radius", "pad_inner_radius", "pad_outer_radius", "disk_outer_radius")
-        for smaller, larger in pairwise(names):
-            a, b = getattr(self, smaller), getattr(self, larger)
-            if not a < b:
-                raise KeyFault(smaller, f"{a:g} m must be less than {larger} {b:g} m")
-        if not 0 < self.pad_angle <= math.radians(_WIDEST_PAD) * (1 + 1e-12):
-            raise KeyFault(
-                "pad_angle",
-                f"{math.degrees(self.pad_angle):g} deg must be greater than 0 deg, "
-                f"at most {_WIDEST_PAD:g} deg",
-            )
-        return self
 
     @property
     def press_direction(self) -> tuple[float, ...]:
@@ -98,9 +59,6 @@ class DiskSector(Geometry):
     @property
     def rotation_center(self) -> tuple[float, float]:
         return (0.0, 0.0)
-
-    def contact_area(self) -> float:
-        return self.pad_angle / 2 * (self.pad_outer_radius**2 - self.pad_inner_radius**2)
 
     def build(self, mesh, zone=None):
         order = min(mesh.degree, _ORDER)

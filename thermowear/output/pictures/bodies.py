@@ -20,7 +20,7 @@ _DEFORMED_PART = 0.06  # of the bodies' size: how far the largest displacement i
 _PIXELS = 1400  # of the longer side of a rendered picture
 _BEHIND = 1e-3  # of the bodies' size: how far body 1 is set back
 _SMALL = 0.15  # of the bodies' size: contacts smaller than that get panels of their own
-_FLAT = 0.35  # height over width: windows lower than that have their scale of colours below
+_FLAT = 0.55  # height over width: windows lower than that have their scale of colours below
 _AROUND = 3.0  # sizes of the contact that such a panel shows
 
 Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]

@@ -19,6 +19,7 @@ from . import __version__, load
 from .errors import CaseError, ComputationError
 
 _INTERRUPTED = 130
+_HEARD = 1.0  # s; a launcher may drop what a process said just before it ended with an error
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -39,7 +40,9 @@ def main(arguments: list[str] | None = None) -> int:
 def _complain(code: int, *lines: str) -> int:
     for line in lines if _speaks() else ():
         shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
-        print(f"error: {shown}", file=sys.stderr)
+        print(f"error: {shown}", file=sys.stderr, flush=True)
+    if _launched_processes() > 1:
+        time.sleep(_HEARD)
     return code
 
 

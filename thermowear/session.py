@@ -66,7 +66,8 @@ def run_session(chosen, comm, import_seconds: float) -> int:
     folder = _on_root_kept(
         comm, lambda: ResultsFolder(path, as_plain(case), comm.size, chosen.overwrite)
     )
-    console = Terminal(highlight=False, quiet=comm.rank != 0)
+    plain = False if comm.size > 1 else None  # a launcher's pseudo-terminal ends in a file
+    console = Terminal(highlight=False, quiet=comm.rank != 0, force_terminal=plain)
     try:
         with Progress(console) as progress:
             recorder = _Recorder(comm, folder, progress if comm.rank == 0 else None)

@@ -79,6 +79,27 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--overwrite", action="store_true", help="replace results that are there")
     run.add_argument("--no-pictures", dest="pictures", action="store_false")
 
+    sweep = _command(commands, "sweep", _sweep, "compute all combinations of values of keys")
+    _add_case(sweep)
+    sweep.add_argument(
+        "--over",
+        metavar="KEY=V1,V2,...",
+        action="append",
+        required=True,
+        help="a key and its values, such as load.force='1 kN,2 kN'; may be given several times",
+    )
+    sweep.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, help="default: results/<case>-sweep"
+    )
+    sweep.add_argument("--overwrite", action="store_true", help="replace results that are there")
+    sweep.add_argument("--no-pictures", dest="pictures", action="store_false")
+    sweep.add_argument(
+        "--processes",
+        metavar="N",
+        type=_positive,
+        help="for variants that share no factors; default: as many as there are cores",
+    )
+
     _command(commands, "cases", _cases, "list the starter cases")
 
     init = _command(commands, "init", _init, "write a starter case to edit")
@@ -104,6 +125,13 @@ def _parser() -> argparse.ArgumentParser:
     report = _command(commands, "report", _report, "write report.html of a results folder")
     report.add_argument("folder", metavar="DIR", type=Path)
     return parser
+
+
+def _positive(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise ValueError
+    return number
 
 
 def _command(commands, name: str, function, text: str) -> argparse.ArgumentParser:
@@ -171,9 +199,11 @@ def _guard(path: Path, overwrite: bool) -> None:
 
 def _plot(chosen) -> int:
     from .output.pictures import make_pictures
+    from .output.sweep import draw_sweep, is_sweep
 
     try:
-        problems = make_pictures(chosen.folder)
+        draw = draw_sweep if is_sweep(chosen.folder) else make_pictures
+        problems = draw(chosen.folder)
     except (OSError, ValueError) as error:
         raise CaseError(str(error)) from None
     for problem in problems:
@@ -209,9 +239,9 @@ def _run(chosen) -> int:
     Errors of the case and of the computation are raised on all ranks alike.
     """
     began = time.perf_counter()
-    import petsc4py
+    from .workers import start_petsc
 
-    petsc4py.init(["thermowear", "-no_signal_handler"])  # signals are Python's: Ctrl-C, | head
+    start_petsc()
 
     from mpi4py import MPI
 
@@ -228,3 +258,12 @@ def _run(chosen) -> int:
         if comm.size > 1:
             comm.Abort(ComputationError.exit_code)
         return ComputationError.exit_code
+
+
+def _sweep(chosen) -> int:
+    if _launched_processes() > 1:
+        raise CaseError("sweep: starts its own processes (--processes N); start it without mpirun")
+    from .sweeping import run_sweep
+
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    return run_sweep(chosen)

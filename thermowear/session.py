@@ -10,14 +10,14 @@ from .errors import CaseError, ComputationError
 from .output.console import Progress, Terminal, print_summary
 from .output.folder import ResultsFolder
 from .parallel import on_root
-from .simulation import CycleRow, HistoryRow, Interface, LoadRow, Observer, run
+from .simulation import CycleRow, HeatRow, HistoryRow, Interface, LoadRow, Observer, run
 from .simulation.phases import Phases
 
 
-class _Recorder(Observer):
-    """Passes what happens to the results folder and to the terminal, on rank 0."""
+class Recorder(Observer):
+    """Passes what happens to the results folder and to a terminal, on rank 0."""
 
-    def __init__(self, comm, folder, progress: Progress | None):
+    def __init__(self, comm, folder, progress: Progress | None = None):
         self._comm = comm
         self._folder = folder
         self._progress = progress
@@ -32,6 +32,9 @@ class _Recorder(Observer):
         self._save(lambda: self._folder.step(row))
         if self._progress is not None:
             self._progress.step(self._steps, row, distance)
+
+    def heat(self, row: HeatRow) -> None:
+        self._save(lambda: self._folder.heat(row))
 
     def load_step(self, row: LoadRow) -> None:
         self._steps += 1
@@ -70,7 +73,7 @@ def run_session(chosen, comm, import_seconds: float) -> int:
     console = Terminal(highlight=False, quiet=comm.rank != 0, force_terminal=plain)
     try:
         with Progress(console) as progress:
-            recorder = _Recorder(comm, folder, progress if comm.rank == 0 else None)
+            recorder = Recorder(comm, folder, progress if comm.rank == 0 else None)
             phases = Phases(recorder.phase)
             phases.add("import", import_seconds)
             result = run(case, comm, recorder, phases)

@@ -246,13 +246,12 @@ def by_thermowear(case, mesh) -> Outcome:
     clock.part("mesh, pairing, assembly, factors")
     problem = interface_problem(system)
     clock.part("condensation")
-    states = [problem.unworn()]
+    states = [problem.unworn().contact]
     clock.part("contact")
     further = Clock()
-    closed = np.ones(len(system.weights), dtype=bool)
     for step in range(1, STEPS + 1):
         lowered = -step * INCREMENT * system.holder.closing[:, 0]
-        states.append(problem.solve(lowered, 0.0, states[-1], closed))
+        states.append(problem.worn(lowered, states[-1]))
     further.part("steps")
     forces = [carried_by(system, state) for state in states[1:]]
     return Outcome(solution_of(system, states[0]), clock, further, forces)

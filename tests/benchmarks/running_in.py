@@ -17,7 +17,7 @@ import thermowear as tw
 from thermowear.bulk.factor import Factor
 from thermowear.simulation.phases import Phases
 from thermowear.simulation.preparation import interface_problem
-from thermowear.simulation.steady import steady_wear
+from thermowear.simulation.steady import steady_state
 from thermowear.simulation.system import build
 from thermowear.simulation.transient import moments
 
@@ -45,7 +45,7 @@ def main():
     case = tw.load("demos/annular_punch_running_in.toml")
     system = build(case, MPI.COMM_WORLD, Phases())
     condensation = seconds(lambda: system.contact, repeat=1)
-    steady = steady_wear(system).pressure
+    steady = steady_state(system)
     problem = interface_problem(system)
     steps = len(list(moments(problem, case.analysis, steady))) - 1
     implicit = seconds(lambda: list(moments(problem, case.analysis, steady)))
@@ -56,7 +56,7 @@ def main():
     def one_increment():
         matrix = elastic.stiffness.copy()
         matrix.zeroRowsColumns(rows, diag=1e12)
-        Factor(matrix).solve(system.trace @ (system.weights * steady))
+        Factor(matrix).solve(system.trace @ (system.weights * steady.wear.pressure))
 
     increment = seconds(one_increment)
     explicit_steps = case.analysis.end_time / largest_stable_increment(system)

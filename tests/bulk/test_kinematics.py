@@ -154,6 +154,17 @@ def test_friction_of_the_slowest_sliding():
     assert slow == pytest.approx(fast, abs=1e-12)
 
 
+@pytest.mark.parametrize("model", ["plane-strain", "plane-stress"])
+def test_sliding_across_a_section(model):
+    """requirement: speed as given, but nothing in the section that friction could drag along."""
+    normals = np.array([[0.0, -1.0], [0.6, -0.8]])
+    moved = section_model(model, 1.0).sliding(normals, Motion(velocity="-50 mm/s"), across=True)
+    assert moved == pytest.approx(np.array([[0.0, 0.0, -0.05]] * 2))
+    slides = sliding(moved, normals, (0.0, -1.0))
+    assert slides.speed == pytest.approx(0.05)
+    np.testing.assert_array_equal(slides.pull(normals, 0.3, 0.0), normals)
+
+
 @pytest.mark.parametrize("turning", ["2 rad/s", "-2 rad/s"])
 def test_sliding_over_a_turning_disk(turning):
     """requirement: a disk that turns anticlockwise drags what lies on top of it along -x."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime
-from dataclasses import dataclass, field
 from math import inf, nan
 from typing import Any
 
@@ -13,6 +12,7 @@ import tomli_w
 import thermowear as tw
 from thermowear.cli import main
 
+from .bad import Bad, assert_refused, faults
 from .starter import (
     FILE,
     FRETTING,
@@ -25,18 +25,6 @@ from .starter import (
     STEADY,
     tables,
 )
-
-
-@dataclass(frozen=True)
-class Bad:
-    """A change of a starter case and what must be said about it."""
-
-    name: str
-    changes: dict[str, Any]
-    path: str
-    text: str
-    starter: str = field(default=STEADY)
-
 
 YOUNG, NU, COOL = "bodies.punch.young_modulus", "bodies.punch.poisson_ratio", "heat.cooling"
 COEFFICIENT, A, B = (
@@ -362,7 +350,7 @@ HISTORIES = [
         "history of an initial contact",
         {HISTORY: {"time": ["0 s"]}},
         HISTORY,
-        "for a fretting analysis, not for initial",
+        "is for a transient or fretting analysis, not for initial",
         HERTZ,
     ),
     Bad("fretting without history", {HISTORY: GONE}, HISTORY, "missing; a fretting", FRETTING),
@@ -396,7 +384,14 @@ HISTORIES = [
     ),
     Bad("force, approach over time", {MOVE: ["1 um"] * 4}, "load", "already", FRETTING),
     Bad("nothing presses", {"load.force": GONE}, "load", ONE, FRETTING),
-    Bad("pull", {f"{HISTORY}.force": ["1 N", "0 N"]}, f"{HISTORY}.force.1", "greater", FRETTING),
+    Bad(
+        "nothing presses for a moment",
+        {f"{HISTORY}.force": ["1 N", "0 N", "1 N", "1 N"], "load.force": GONE},
+        f"{HISTORY}.force.1",
+        "must be greater than 0 N in a fretting analysis",
+        FRETTING,
+    ),
+    Bad("pull", {f"{HISTORY}.force": ["1 N", "-1 N"]}, f"{HISTORY}.force.1", "at least", FRETTING),
     Bad("half pushed across", {"geometry.half": True}, "geometry.half", "not symmetric", FRETTING),
     Bad(
         "sphere pushed across",
@@ -766,21 +761,7 @@ def test_a_fault_is_one_line_with_the_path_of_its_key(bad, tmp_path, capsys):
     """
     requirement: bad input ends with exit code 1 and one line: exact path, what is wrong with it.
     """
-    file = tmp_path / "case.toml"
-    file.write_text(tomli_w.dumps(tables(bad.starter, bad.changes)), encoding="utf-8")
-    code = main(["validate", str(file)])
-    printed = capsys.readouterr()
-    assert code == 1
-    assert printed.out == ""
-    (line,) = printed.err.splitlines()
-    assert line.startswith(f"error: {bad.path}: ")
-    assert bad.text in line
-
-
-def faults(changes: dict[str, Any], starter: str = STEADY) -> list[str]:
-    with pytest.raises(tw.CaseError) as caught:
-        tw.load(tables(starter, changes))
-    return caught.value.faults
+    assert_refused(bad, tmp_path, capsys)
 
 
 def test_several_faults_give_a_line_each():

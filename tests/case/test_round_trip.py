@@ -15,6 +15,12 @@ from thermowear.case.starters import starters
 
 from .starter import FILE, FRETTING, GONE, HERTZ, PUNCH, RUNNING_IN, STEADY, tables
 
+FACTORS = {
+    "temperature": {"at": ["20 degC", "333.3 degC"], "factor": [1.0, 0.7]},
+    "pressure": {"at": ["0 MPa", "3.3 kN/cm^2"], "factor": [1, 1.1]},
+    "speed": {"at": ["0.1 mm/s"], "factor": [0.9]},
+}
+
 VARIANTS = {
     **{name: (name, {}) for name in starters()},
     "cold": (STEADY, {"heat": GONE}),
@@ -50,6 +56,42 @@ VARIANTS = {
             "analysis.output_times": [],
         },
     ),
+    "heat in time": (
+        STEADY,
+        {
+            "analysis": {"type": "transient", "end_time": "10 s"},
+            "bodies.punch.density": "7.8 g/cm^3",
+            "bodies.punch.specific_heat": "460 J/(kg K)",
+            "bodies.punch.hardness": "2 GPa",
+            "bodies.punch.conductivity_factor": FACTORS["temperature"],
+            "bodies.punch.expansion_factor": FACTORS["temperature"],
+            "contact.friction_factor": FACTORS,
+            "wear.punch.factor": FACTORS,
+            "heat.conductance": {"type": "pressure", "coefficient": "2e-2 1/um"},
+            "heat.gap_conductance": "11.1 W/(m^2 K)",
+            "heat.partition": "effusivity",
+            "heat.transient": True,
+            "heat.initial": "77.7 degC",
+            "motion.history": {
+                "time": ["0 s", "333 ms", "1 min"],
+                "factor": [0, 1.1, 0],
+                "repeat": True,
+            },
+            "load": {"history": {"time": ["1 s", "100 s"], "force": ["0 N", "1.1 kN"]}},
+        },
+    ),
+    "tabulated conductance of a strip": (
+        "punch-on-strip",
+        {
+            "heat.conductance": {
+                "type": "table",
+                "pressure": ["0 MPa", "11.1 MPa"],
+                "conductance": ["0 W/(m^2 K)", "3.3 W/(cm^2 K)"],
+            },
+            "heat.advection": "spread",
+        },
+    ),
+    "stability": (STEADY, {"analysis": {"type": "stability"}, "wear": GONE}),
     "file": (HERTZ, {"geometry": FILE, "contact": {}}),
     "every key of a file": (
         HERTZ,
@@ -91,6 +133,7 @@ def test_every_default_is_written_out():
     assert plain["contact"]["method"] == "condensed"
     assert plain["wear"]["punch"]["per"] == "friction-stress"
     assert (plain["heat"]["partition"], plain["heat"]["ambient"]) == (0.5, "293.15 K")
+    assert (plain["heat"]["advection"], plain["heat"]["transient"]) == ("none", False)
 
 
 positive = st.floats(1e-12, 1e12)

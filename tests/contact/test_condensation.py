@@ -9,12 +9,12 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.contact.complementarity import solve_contact
-from thermowear.contact.condensation import condense
+from thermowear.contact.condensation import condense, influence
 from thermowear.contact.face import gather_face
 from thermowear.contact.holder import Drive, hold
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis
-from thermowear.contact.traces import gap_trace
+from thermowear.contact.traces import gap_trace, vector_trace
 from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks
 
@@ -71,3 +71,31 @@ def test_uniform_pressure(degree, columns):
     pressure = contact.basis @ solution.coefficients
     np.testing.assert_allclose(pressure, 1e8, rtol=1e-9)
     assert solution.motion[0] == pytest.approx(1e8 * (0.02 / 2e11 + 0.03 / 7e10), rel=1e-9)
+
+
+@pytest.mark.parametrize("columns", [(3, 3), (2, 5)])
+def test_another_friction_needs_no_new_solution(columns, monkeypatch):
+    """requirement: one influence gives the bodies' own compliance under any friction."""
+    elastic, pairing, trace, _ = condensed(4, columns)
+    basis = pressure_basis(pairing, 3)
+    answers = influence(elastic, pairing, trace, basis)
+    along = np.broadcast_to([1.0, 0.0], pairing.normals.shape)
+    holder = hold(pairing, pairing.normals, [Drive(translation((0.0, -1.0)), load=1.0)])
+    λ = np.random.default_rng(1).uniform(0, 1e8, basis.shape[1])
+    for friction in (-0.3, 0.6):
+        traction = vector_trace(elastic.space, pairing, pairing.normals + friction * along)
+        u = elastic.solve(traction @ (pairing.weights * (basis @ λ)))
+        with monkeypatch.context() as patch:
+            patch.setattr(type(elastic), "solve", None)
+            contact = answers.condensed(traction, holder)
+        weak = contact.weak(sum_over_ranks(COMM, trace.T @ u))
+        np.testing.assert_allclose(contact.compliance @ λ, weak, rtol=1e-9)
+        asymmetry = np.abs(contact.compliance - contact.compliance.T).max()
+        assert asymmetry > 1e-3 * np.abs(contact.compliance).max()
+        whole = condense(elastic, pairing, trace, traction, basis, holder, keep_influence=True)
+        np.testing.assert_array_equal(whole.compliance, contact.compliance)
+        given = np.random.default_rng(2).uniform(-1, 1, len(u))
+        opened = sum_over_ranks(COMM, trace.T @ elastic.solve(given))
+        np.testing.assert_allclose(
+            sum_over_ranks(COMM, whole.influence.T @ given), contact.weak(opened), rtol=1e-8
+        )

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.conduction import conduction
+from thermowear.bulk.conduction import ThermalMaterial, conduction
 from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.contact.complementarity import solve_contact
 from thermowear.contact.condensation import condense
 from thermowear.contact.face import gather_face
-from thermowear.contact.heat import bath_matrix, condense_heat
+from thermowear.contact.heat import at_rest, bath_matrix, condense_heat
 from thermowear.contact.holder import Drive, hold
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis
@@ -164,7 +164,7 @@ def test_a_quarter_of_a_ring_is_axisymmetric(degree, order, round_):
     assert moved == pytest.approx(motion, rel=2e-4)
 
 
-@pytest.mark.parametrize("h", [0.0, 1e3, None])
+@pytest.mark.parametrize("h", [0.0, 1e3, np.inf])
 @pytest.mark.parametrize(("divisions", "place"), [(SAME, bent), (OTHER, skewed)])
 def test_two_slabs_with_friction_heat(h, divisions, place):
     """requirement: temperatures and fluxes of heat that flows straight down, to 1e-9."""
@@ -172,16 +172,16 @@ def test_two_slabs_with_friction_heat(h, divisions, place):
     pairing = pair(*faces, Spatial(), 4)
     space = lagrange_space(bodies.mesh, 2)
     traces = tuple(value_trace(space, side) for side in pairing.sides)
-    shift, conductivities = 1000.0, {"upper": 50.0, "lower": 15.0}
+    shift, materials = 1000.0, {"upper": ThermalMaterial(50.0), "lower": ThermalMaterial(15.0)}
     bath = bath_matrix(space, traces, pairing.weights, shift)
     cold = {"upper_end": 0.0, "lower_end": 0.0}
-    conducting = conduction(bodies, Spatial(), space, conductivities, {}, cold, bath)
+    conducting = conduction(bodies, Spatial(), space, materials, {}, cold, bath)
     basis = pressure_basis(pairing, 1)
-    face = condense_heat(conducting, pairing.weights, basis, traces, shift, h, 0.3)
-    closed = np.ones(len(pairing.weights), dtype=bool)
-    state = face.exchange(closed).state(np.full(len(closed), 1e5))
-    across = np.inf if h is None else h
-    slab = HEIGHTS, tuple(conductivities.values()), (0.0, 0.0)
-    rises, fluxes = slabs.contact_temperatures(*slab, 1e5, 0.3, across)
+    face = condense_heat(conducting, pairing.weights, basis, traces, shift, 0.3)
+    resting = at_rest(np.zeros(len(conducting.fixed)), traces, bodies.mesh.comm)
+    made = np.full(len(pairing.weights), 1e5)
+    state = face.exchange(np.full(len(made), h)).state(made, resting)
+    slab = HEIGHTS, (50.0, 15.0), (0.0, 0.0)
+    rises, fluxes = slabs.contact_temperatures(*slab, 1e5, 0.3, h)
     for found, exact in zip((*state.rise, *state.flux), (*rises, *fluxes), strict=True):
         np.testing.assert_allclose(found, exact, rtol=1e-9, atol=1e-6)

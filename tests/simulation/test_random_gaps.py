@@ -8,6 +8,7 @@ import pytest
 import thermowear as tw
 from thermowear.case.starters import starter_text
 from thermowear.parallel import sum_over_ranks
+from thermowear.simulation.conditions import Surroundings
 from thermowear.simulation.phases import Phases
 from thermowear.simulation.preparation import interface_problem
 from thermowear.simulation.system import build
@@ -41,7 +42,8 @@ def test_no_wrong_pressure_is_returned(tables, method):
     for _ in range(TRIES):
         gap, force = random_problem(system, rng)
         object.__setattr__(system.holder.drives[0], "load", force)
-        found = interface_problem(system)._method.solve(gap, nothing, None, everywhere)
+        conditions = Surroundings(system).at(0.0, nothing, None, everywhere)
+        found = interface_problem(system)._method.solve(gap, nothing, None, conditions, None)
         p, w = found.pressure, system.weights
         assert p.min() >= 0
         assert system.holder.carried(p, w)[0] == pytest.approx(force, rel=1e-8)

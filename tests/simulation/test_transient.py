@@ -85,19 +85,18 @@ def test_second_order_in_time():
     from thermowear.simulation.phases import Phases
     from thermowear.simulation.preparation import interface_problem
     from thermowear.simulation.system import build
-    from thermowear.simulation.wear_step import WornContact, advance
+    from thermowear.simulation.wear_step import advance
 
     case = tw.load(COLD_RUNNING_IN, ("mesh.degree=3", "mesh.elements=8"))
     problem = interface_problem(build(case, MPI.COMM_WORLD, Phases()))
-    contact = problem.unworn()
-    state = WornContact(np.zeros_like(problem.rates(contact.pressure)), contact)
+    state = problem.start()
     for _ in range(40):  # let the singular start pass
-        state = advance(problem, state, 0.05)
+        state = advance(problem, state, 0.0, 0.05)
 
     def after(steps):
         run = state
         for _ in range(steps):
-            run = advance(problem, run, 4.0 / steps)
+            run = advance(problem, run, 0.0, 4.0 / steps)
         return run.worn
 
     exact = after(256)

@@ -1,11 +1,11 @@
-"""Steady heat conduction in both bodies, with cooled surfaces and given temperatures.
+"""Heat conduction in both bodies, one of which may pass by and carry heat along.
 
 The unknown is the rise over the ambient temperature.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from petsc4py import PETSc
 
@@ -16,12 +16,28 @@ from dolfinx import default_scalar_type, fem
 from dolfinx.fem.petsc import assemble_matrix
 
 from ..compat import exterior_facet_domain
+from ..errors import ComputationError
 from ..parallel import sum_over_ranks
+from .advection import Advection, Passage, advection
 from .bodies import Bodies
 from .compiled import compiled
+from .even_paths import EvenFactor, EvenPaths
 from .factor import Factor
 from .field import owned
 from .kinematics import Model, section_measure
+
+
+@dataclass(frozen=True)
+class ThermalMaterial:
+    """Conductivity [W/(m K)] and, where it is known, the heat capacity of a volume [J/(m³ K)]."""
+
+    conductivity: float
+    capacity: float | None = None
+
+    def times(self, factor: float) -> ThermalMaterial:
+        """So many times the material in the same place."""
+        capacity = None if self.capacity is None else factor * self.capacity
+        return ThermalMaterial(factor * self.conductivity, capacity)
 
 
 @dataclass(frozen=True)
@@ -33,67 +49,134 @@ class Conduction:
     space : dolfinx.fem.FunctionSpace
         Temperature rise over the ambient [K].
     conductivity : petsc4py.PETSc.Mat
-        Conduction and cooling, without given temperatures and without `exchange` [W/K].
+        Conduction, cooling and advection, without given temperatures and without `bath` [W/K].
     cooling : petsc4py.PETSc.Mat
         The cooling part alone: its row sums times the rise give the heat carried off [W/K].
+    carried : petsc4py.PETSc.Mat or None
+        The advection part alone, likewise [W/K].
+    capacity : petsc4py.PETSc.Mat or None
+        Heat stored per rise, where the materials say [J/K].
+    bath : petsc4py.PETSc.Mat
+        See `conduction`.
     fixed : ndarray of bool, shape (n_owned,)
         Where the temperature is given.
-    factor : Factor
-        Of conduction, cooling and exchange, with given temperatures.
     given : ndarray, shape (n_owned,)
         The rise in the fixed values, zero elsewhere [K].
+    factor : Factor or EvenFactor
+        Of conductivity and bath, with given temperatures.
     lifted : ndarray, shape (n_owned,)
         Heat into the free values that holds the given temperatures [W].
+    advection : Advection or None
+    even : EvenPaths or None
+        Of a body that passes so fast that heat is spread along its way.
     """
 
     space: fem.FunctionSpace
     conductivity: PETSc.Mat
     cooling: PETSc.Mat
+    carried: PETSc.Mat | None
+    capacity: PETSc.Mat | None
+    bath: PETSc.Mat
     fixed: np.ndarray
-    factor: Factor
     given: np.ndarray
+    factor: Factor | EvenFactor
     lifted: np.ndarray
+    advection: Advection | None
+    even: EvenPaths | None
 
     def respond(self, heat: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Rise [K] due to nodal heat [W] alone, given temperatures at ambient; columns allowed."""
-        if sp.issparse(heat):
-            return self.factor.solve((sp.diags(~self.fixed, dtype=float) @ heat).tocsr())
-        free = np.array(heat, dtype=float)
-        free[self.fixed] = 0.0
-        return self.factor.solve(free)
+        return self.factor.solve(self._free(heat))
+
+    def sense(self, weights: np.ndarray) -> np.ndarray:
+        """Its adjoint, by columns: ``weightsᵀ respond(heat) = sense(weights)ᵀ heat``."""
+        if self.carried is None:  # the matrix is symmetric
+            return self.respond(weights)
+        return self._free(self.factor.solve_transposed(self._free(weights)))
 
     def solve(self, heat: np.ndarray) -> np.ndarray:
         """Rise [K] due to nodal heat [W] and the given temperatures."""
         return self.given + self.respond(heat + self.lifted)
 
-    def outflow(self, rise: np.ndarray, heat: np.ndarray) -> tuple[float, float]:
-        """Net heat that leaves by cooling and by given temperatures, and its turnover [W].
+    def storing(self, step: float) -> Conduction:
+        """Conduction at the end of an implicit Euler step of time [s].
+
+        Its nodal heat is that of the bodies themselves and what `stored` gives of the state before,
+        over the step.
+
+        Raises
+        ------
+        ComputationError
+            If the heat capacity is not known.
+        """
+        if self.capacity is None:
+            raise ComputationError("heat: density and specific heat of the bodies are not known")
+        matrix = self.conductivity.copy()
+        structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+        matrix.axpy(1 / step, self.capacity, structure)
+        return replace(
+            self,
+            conductivity=matrix,
+            factor=_factor(
+                self.space, matrix, self.bath, self.fixed, self.carried is None, self.even
+            ),
+            lifted=-_multiply(matrix, self.given),
+        )
+
+    def stored(self, rise: np.ndarray) -> np.ndarray:
+        """Heat stored by nodes [J], owned rows; its sum over all ranks is that of the bodies."""
+        assert self.capacity is not None
+        return _multiply(self.capacity, rise)
+
+    def losses(
+        self, rise: np.ndarray, heat: np.ndarray, storage: np.ndarray | None = None
+    ) -> tuple[float, float, float]:
+        """Heat that leaves by cooling, by given temperatures, and with a body that passes [W].
 
         Parameters
         ----------
         rise, heat : ndarray, shape (n_owned,)
             A state and the nodal heat of the contact that goes with it.
+        storage : ndarray, shape (n_owned,), optional
+            Rate of what the nodes store, see `stored` [W].
 
         Returns
         -------
-        net, turnover : float
-            Sum over all ranks, signed and of magnitudes.
+        tuple of float
+            Sums over all ranks.
         """
         cooled = _multiply(self.cooling, rise)
-        held = (heat - _multiply(self.conductivity, rise))[self.fixed]
-        net = cooled.sum() + held.sum()
-        turnover = np.abs(cooled).sum() + np.abs(held).sum()
-        return tuple(sum_over_ranks(self.space.mesh.comm, np.array([net, turnover])))
+        left = heat - _multiply(self.conductivity, rise)
+        if storage is not None:
+            left = left - storage
+        carried = 0.0 if self.carried is None else _multiply(self.carried, rise).sum()
+        parts = np.array([cooled.sum(), left[self.fixed].sum(), carried])
+        return tuple(sum_over_ranks(self.space.mesh.comm, parts))
+
+    def turnover(self, rise: np.ndarray, heat: np.ndarray) -> float:
+        """Magnitude of what crosses cooled surfaces and those with a given temperature [W]."""
+        left = (heat - _multiply(self.conductivity, rise))[self.fixed]
+        size = np.abs(_multiply(self.cooling, rise)).sum() + np.abs(left).sum()
+        return float(sum_over_ranks(self.space.mesh.comm, size))
+
+    def _free(self, heat):
+        """Nodal heat without that into given temperatures."""
+        if sp.issparse(heat):
+            return (sp.diags(~self.fixed, dtype=float) @ heat).tocsr()
+        free = np.array(heat, dtype=float)
+        free[self.fixed] = 0.0
+        return free
 
 
 def conduction(
     bodies: Bodies,
     model: Model,
     space: fem.FunctionSpace,
-    conductivities: dict[str, float],
+    materials: dict[str, ThermalMaterial],
     cooling: dict[str, float],
     given: dict[str, float],
-    exchange: PETSc.Mat,
+    bath: PETSc.Mat,
+    passage: Passage | None = None,
 ) -> Conduction:
     """Assemble and factorise.
 
@@ -103,39 +186,92 @@ def conduction(
     model : Model
     space : dolfinx.fem.FunctionSpace
         Scalar.
-    conductivities : dict of str to float
-        By body [W/(m K)].
+    materials : dict of str to ThermalMaterial
+        By part.
     cooling : dict of str to float
         Heat transfer coefficients by surface [W/(m² K)].
     given : dict of str to float
         Rise over the ambient by surface [K].
-    exchange : petsc4py.PETSc.Mat
+    bath : petsc4py.PETSc.Mat
         Added to the factorised matrix only: what the contact faces give to a heat bath at ambient
         temperature. It keeps the matrix of an otherwise insulated body regular; the interface takes
         it out again.
+    passage : Passage, optional
+        Of a body that moves through the frame.
     """
-    mesh = bodies.mesh
-    rise, δrise = ufl.TrialFunction(space), ufl.TestFunction(space)
-    k = bodies.per_body(conductivities)
-    flow = k * ufl.inner(ufl.grad(rise), ufl.grad(δrise))
-    measure = section_measure(mesh, space.ufl_element().degree)
-    conductivity = assemble_matrix(compiled(model.integral(mesh, flow, measure)))
-    conductivity.assemble()
+    mesh, degree = bodies.mesh, space.ufl_element().degree
+    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
+    conductivities = {part: material.conductivity for part, material in materials.items()}
+    capacities = {p: m.capacity for p, m in materials.items() if m.capacity is not None}
+    moving, even = None, None
+    if passage is not None and passage.spread:
+        even = EvenPaths(bodies, space, passage)
+    elif passage is not None:
+        moving = advection(bodies, model, space, passage, conductivities, capacities)
+    flow = bodies.per_body(conductivities) * ufl.inner(ufl.grad(T), ufl.grad(δT))
+    measure = section_measure(mesh, degree)
+    form = model.integral(mesh, flow, measure)
+    conductivity = _assembled(form)
     cooled = conductivity.duplicate()
     cooled.zeroEntries()
     for surface, h in cooling.items():
         _add_cooling(cooled, bodies, model, space, surface, h)
     cooled.assemble()
-    conductivity.axpy(1.0, cooled, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+    structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+    conductivity.axpy(1.0, cooled, structure)
+    carried, test = None, δT
+    if moving is not None:
+        carried, test = _assembled(moving.carried), δT + moving.upwind
+        conductivity.axpy(1.0, carried, structure)
+    capacity = None
+    if len(capacities) == len(materials):
+        density = bodies.per_body(capacities) * T * test
+        capacity = _assembled(model.integral(mesh, density, measure))
 
     fixed, values = _given(bodies, space, given)
+    if even is not None:
+        fixed, values = even.whole(fixed, values)
+    factor = _factor(space, conductivity, bath, fixed, carried is None, even)
     lifted = -_multiply(conductivity, values)
+    return Conduction(
+        space,
+        conductivity,
+        cooled,
+        carried,
+        capacity,
+        bath,
+        fixed,
+        values,
+        factor,
+        lifted,
+        moving,
+        even,
+    )
+
+
+def _assembled(form) -> PETSc.Mat:
+    matrix = assemble_matrix(compiled(form))
+    matrix.assemble()
+    return matrix
+
+
+def _factor(
+    space,
+    conductivity: PETSc.Mat,
+    bath: PETSc.Mat,
+    fixed: np.ndarray,
+    symmetric: bool,
+    even: EvenPaths | None,
+) -> Factor | EvenFactor:
+    """Of conductivity and bath, rows and columns of given temperatures eliminated."""
     matrix = conductivity.copy()
-    matrix.axpy(1.0, exchange, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    if even is not None:
+        return even.factor(matrix, fixed)
     first = matrix.getOwnershipRange()[0]
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
-    factor = Factor(matrix, dim=mesh.topology.dim)
-    return Conduction(space, conductivity, cooled, fixed, factor, values, lifted)
+    known = "definite" if symmetric else "none"
+    return Factor(matrix, known, dim=space.mesh.topology.dim)
 
 
 def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):

@@ -84,6 +84,14 @@ class Factor:
             matrix.destroy()
         return result.reshape(loads.shape, order="F")
 
+    def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
+        """Solve with the transposed matrix; dense, shapes as in `solve`."""
+        self._factored.setMumpsIcntl(9, 0)  # PETSc's own transposed solve takes a single column
+        try:
+            return self.solve(loads)
+        finally:
+            self._factored.setMumpsIcntl(9, 1)
+
     def _dense(self, columns: np.ndarray) -> PETSc.Mat:
         sizes = (self._rows, columns.shape[1])
         return PETSc.Mat().createDense(sizes, array=columns, comm=self._comm)

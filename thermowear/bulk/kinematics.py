@@ -28,7 +28,11 @@ class Model(ABC):
 
     @abstractmethod
     def sliding(
-        self, points: np.ndarray, motion, center: tuple[float, float] | None = None
+        self,
+        points: np.ndarray,
+        motion,
+        center: tuple[float, float] | None = None,
+        across: bool = False,
     ) -> np.ndarray:
         """Velocity of body 1 relative to body 2; the last component is across a section.
 
@@ -38,6 +42,8 @@ class Model(ABC):
         motion : thermowear.case.schema.Motion
         center : tuple of float, optional
             x and y of the point, or of the vertical axis, about which body 2 turns [m].
+        across : bool
+            Whether body 1 slides across a plane section and not along x.
 
         Returns
         -------
@@ -121,7 +127,7 @@ class Axisymmetric(Model):
     def __init__(self, sector: float = 1.0):
         self.sector = sector
 
-    def sliding(self, points, motion, center=None):
+    def sliding(self, points, motion, center=None, across=False):
         if motion.velocity is not None:  # across the axis, in no direction of the section
             speed = np.full(len(points), motion.velocity)
         else:
@@ -151,7 +157,7 @@ class Axisymmetric(Model):
 class PlaneStrain(Model):
     """A long solid cut to a thickness; no strain across it.
 
-    Body 1 slides along x, or body 2 turns under it about a point of the section.
+    Body 1 slides along x or across the section, or body 2 turns under it about a point of it.
 
     Parameters
     ----------
@@ -164,7 +170,9 @@ class PlaneStrain(Model):
     def __init__(self, thickness: float):
         self.thickness = thickness
 
-    def sliding(self, points, motion, center=None):
+    def sliding(self, points, motion, center=None, across=False):
+        if across:
+            return np.tile((0.0, 0.0, motion.velocity), (len(points), 1))
         return _along_or_round(points, motion, center)
 
     def integral(self, mesh, density, measure):
@@ -203,7 +211,7 @@ class Spatial(Model):
 
     name = "3d"
 
-    def sliding(self, points, motion, center=None):
+    def sliding(self, points, motion, center=None, across=False):
         return _along_or_round(points, motion, center)
 
     def integral(self, mesh, density, measure):

@@ -106,6 +106,12 @@ class Reciprocating(Timed):
         return self
 
 
+class Stability(Section):
+    """Thermoelastic instability of the contact: the critical speed and the shape that grows."""
+
+    type: Literal["stability"]
+
+
 class Fretting(Section):
     """Sticking and slipping under a history of loads.
 

@@ -9,21 +9,21 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from ..errors import CaseError
+from .analyses import Transient
+from .courses import courses
+from .equilibrium import holder, load, motion
+from .heating import Need, heat, thermal_needs
 from .materials import resolve_like
 from .oscillation import fretting, reciprocating
+from .varying import condensed_only, varying
 
 if TYPE_CHECKING:
     from .schema import Case
 
 Fault = tuple[str, str]
 
-_FREE = {
-    "axisymmetric": ("z",),
-    "plane-strain": ("x", "z", "rotation"),
-    "plane-stress": ("x", "z", "rotation"),
-    "3d": ("x", "y", "z", "rotation-x", "rotation-y"),
-}
-"""Motions of the holder by model."""
+_SLIDING = ("steady", "transient", "reciprocating")
+"""Analyses of wear by sliding."""
 
 
 def check(case: Case) -> None:
@@ -60,116 +60,44 @@ def _model(case: Case) -> Iterator[Fault]:
 
 
 def _materials(case: Case) -> Iterator[Fault]:
-    needed = {"young_modulus": "", "poisson_ratio": ""}
-    if case.heat is not None:
-        why = " because the case has a [heat] table"
-        needed |= {"conductivity": why, "expansion": why}
-    for name, body in case.bodies.items():
-        if name not in case.geometry.parts:
+    sources = {}
+    for part in case.geometry.parts:
+        name = part if part in case.bodies else case.geometry.zones.get(part, part)
+        if name not in case.bodies:
             continue
-        if body.like is not None:
+        body = case.bodies[name]
+        if body.like is not None and part == name:
             for key in sorted(body.model_fields_set - {"like"}):
                 yield f"bodies.{name}.{key}", "a body that is like another has no keys of its own"
-            try:
-                resolve_like(case.bodies, name)
-            except ValueError as error:
+        try:
+            sources[part] = resolve_like(case.bodies, name)
+        except ValueError as error:
+            if part == name:
                 yield f"bodies.{name}.like", str(error)
-            continue
-        for key, why in needed.items():
-            if getattr(body, key) is None:
-                yield f"bodies.{name}.{key}", f"missing; needed{why}"
+    missing: dict[str, str] = {}
+    for part, key, why in _needs(case):
+        if part in sources and getattr(case.bodies[sources[part]], key) is None:
+            missing.setdefault(f"bodies.{sources[part]}.{key}", f"missing; needed{why}")
+    yield from missing.items()
 
 
-def _holder(case: Case) -> Iterator[Fault]:
-    free, dim = case.holder.free, len(case.geometry.press_direction)
-    allowed = _FREE.get(case.model, ())
-    for name in free:
-        if name not in allowed:
-            yield "holder.free", f"{name!r} is not for {case.model}; one of: {', '.join(allowed)}"
-    pivot, point = case.holder.pivot, case.load.point
-    if pivot is not None and len(pivot) != dim:
-        yield "holder.pivot", f"has {len(pivot)} coordinates; {case.model} needs {dim}"
-    if point is not None and len(point) != dim - 1:
-        yield "load.point", f"has {len(point)} coordinates; {case.model} needs {dim - 1}"
-    if case.geometry.symmetry and free != ("z",):
-        yield "geometry.half", "only a holder that moves along the press is symmetric"
-    if case.analysis.type == "fretting" and free != ("z",):
-        yield "holder", "is not for a fretting analysis: its history says how it moves"
-
-
-def _load(case: Case) -> Iterator[Fault]:
-    load, history, free = case.load, case.load.history, case.holder.free
-    given = [x is not None for x in (load.force, load.mean_pressure, load.approach)]
-    turns_only = free == ("rotation",)
-    if history is not None and (history.force is not None or history.approach is not None):
-        if sum(given) > 0:
-            yield "load", "the history gives the force or the approach already"
-    elif turns_only and load.moment is not None:
-        if sum(given) > 0 or load.lever is not None or load.point is not None:
-            yield "load", "a holder that only turns needs a moment, or a force and its lever"
-    elif not free:
-        if sum(given) > 0 or not load.surfaces:
-            yield "load", "a fixed holder (holder.free = []) needs load.surfaces, and nothing else"
-    elif load.surfaces:
-        yield "load.surfaces", "is for a fixed holder (holder.free = [])"
-    elif sum(given) != 1:
-        yield "load", "needs exactly one of force, mean_pressure and approach"
-    if load.mean_pressure is not None and case.geometry.contact_area() is None:
-        yield "load.mean_pressure", "this geometry has no nominal contact area; give the force"
-    if not free and case.analysis.type == "steady":
-        yield "holder.free", "is empty: nothing presses in the end; use a transient analysis"
-    if load.approach is not None and case.analysis.type == "steady":
-        yield "load.approach", "nothing presses in the end; the steady state needs a force"
-    if load.approach is not None and "z" not in free:
-        yield "load.approach", 'moves the holder along the press; add "z" to holder.free'
-    if load.lever is not None and load.point is not None:
-        yield "load.lever", "says with load.point twice where the force acts"
-    for key in ("lever", "point", "moment", "moments"):
-        if getattr(load, key) is not None and not case.holder.turns:
-            yield f"load.{key}", "is for a holder that may turn (holder.free)"
-    needs = {"moments": "3d", "moment": "plane", "lever": "plane"}
-    for key, model in needs.items():
-        if getattr(load, key) is not None and model not in case.model:
-            yield f"load.{key}", f"is for {model} models"
-    if load.tangential_force is not None and "x" not in free:
-        yield "load.tangential_force", 'is for a holder that is free along it: holder.free = ["x"…]'
-
-
-def _motion(case: Case) -> Iterator[Fault]:
-    if case.motion is None or case.model not in case.geometry.models:
-        return
-    if case.analysis.type == "reciprocating":  # see `oscillation`
-        return
-    for key in ("amplitude", "frequency"):
-        if getattr(case.motion, key) is not None:
-            yield f"motion.{key}", f"is for a reciprocating analysis, not for {case.analysis.type}"
-    across = case.geometry.slides_across and case.motion.velocity is not None
-    if across and case.motion.angular_velocity is None:
-        return  # the speed along which it slides is all it needs
-    turns = case.model == "axisymmetric" or case.geometry.rotation_center is not None
-    needed, other = "angular_velocity", "velocity"
-    if not turns:
-        needed, other = other, needed
-    what = "axisymmetric models" if case.model == "axisymmetric" else case.geometry.type
-    what = what if turns else f"{case.model} models"
-    given = getattr(case.motion, needed)
-    if getattr(case.motion, other) is not None:
-        yield f"motion.{other}", f"does not fit; {what} needs motion.{needed}"
-    elif given is None:
-        yield f"motion.{needed}", f"missing; {what} needs it"
-    elif case.model == "axisymmetric" and given < 0:
-        yield "motion.angular_velocity", "must be greater than 0 in an axisymmetric model"
+def _needs(case: Case) -> Iterator[Need]:
+    """Parts, the keys of their material that are needed, and why."""
+    for part in case.geometry.parts:
+        yield from ((part, key, "") for key in ("young_modulus", "poisson_ratio"))
+    yield from thermal_needs(case)
 
 
 def _sliding(case: Case) -> Iterator[Fault]:
-    wears = case.analysis.type in ("steady", "transient", "reciprocating")
-    if wears and not case.wear:
-        yield "wear", f"missing; a {case.analysis.type} analysis needs the wear law of a body"
-    slides = case.analysis.type != "fretting" and (wears or case.heat is not None)
-    if slides and case.motion is None:
+    analysis = case.analysis
+    if not case.wear and _wears(case):
+        yield "wear", f"missing; a {analysis.type} analysis needs the wear law of a body"
+    heats = case.heat is not None or analysis.type == "stability"
+    slides = heats or analysis.type in _SLIDING
+    if slides and analysis.type != "fretting" and case.motion is None:
         yield "motion", "missing; wear and friction heat need sliding"
     if case.contact.friction == 0.0:
-        if case.heat is not None:
+        if heats:
             yield "contact.friction", "is 0; friction heat needs friction"
         for name, law in case.wear.items():
             if law.per == "friction-stress":
@@ -177,6 +105,14 @@ def _sliding(case: Case) -> Iterator[Fault]:
                     "contact.friction",
                     f'is 0; wear.{name} is per friction stress (write per = "pressure" instead)',
                 )
+
+
+def _wears(case: Case) -> bool:
+    """Whether the analysis is about wear; temperatures in time may be followed without any."""
+    analysis, heat = case.analysis, case.heat
+    if isinstance(analysis, Transient) and analysis.until is None and heat is not None:
+        return not heat.transient
+    return analysis.type in _SLIDING
 
 
 def _spread(case: Case) -> Iterator[Fault]:
@@ -197,24 +133,6 @@ def _spread(case: Case) -> Iterator[Fault]:
             )
 
 
-def _heat(case: Case) -> Iterator[Fault]:
-    heat = case.heat
-    if heat is None:
-        return
-    if not heat.cooling and not heat.temperature:
-        yield "heat", "needs cooling or a given temperature: the friction heat has nowhere to go"
-    for name in heat.cooling:
-        if name in heat.temperature:
-            yield f"heat.cooling.{name}", "this surface has a given temperature already"
-    for table, found in (("cooling", heat.cooling), ("temperature", heat.temperature)):
-        for name in found:
-            if name in case.geometry.contact:
-                yield (
-                    f"heat.{table}.{name}",
-                    "a contact face exchanges heat with the other body only",
-                )
-
-
 def _degrees(case: Case) -> Iterator[Fault]:
     own = case.contact.pressure_degree
     if isinstance(own, int) and own > case.mesh.degree:
@@ -226,6 +144,9 @@ def _method(case: Case) -> Iterator[Fault]:
     for key, method in keys.items():
         if getattr(case.contact, key) is not None and case.contact.method != method:
             yield f"contact.{key}", f'is for method = "{method}"'
+    refused = condensed_only(case)
+    if refused is not None and case.contact.method != "condensed" and case.model != "3d":
+        yield "contact.method", f"{case.contact.method!r} is not for {refused}; use condensed"
 
 
 def _in_space(case: Case) -> Iterator[Fault]:
@@ -238,7 +159,7 @@ def _in_space(case: Case) -> Iterator[Fault]:
         yield f"contact.{key}", "is for sections, not for 3d"
     if case.geometry.initial_shape is not None:
         yield "geometry.initial_shape", "is a curve along a section; not for 3d"
-    if case.analysis.type not in ("initial", "steady", "transient"):
+    if case.analysis.type in ("fretting", "reciprocating"):
         yield "analysis.type", f"{case.analysis.type!r} is for sections, not for 3d"
 
 
@@ -250,8 +171,9 @@ def _positioning(case: Case) -> Iterator[Fault]:
 
 
 def _symmetry(case: Case) -> Iterator[Fault]:
-    drags = case.contact.friction > 0 and case.motion is not None
-    if drags and case.model != "axisymmetric" and case.geometry.symmetry:
+    geometry = case.geometry
+    drags = case.contact.friction > 0 and case.motion is not None and not geometry.slides_across
+    if drags and case.model != "axisymmetric" and geometry.symmetry:
         yield "geometry.half", "sliding friction is not symmetric; mesh the whole section"
 
 
@@ -259,14 +181,16 @@ _CHECKS = (
     _names,
     _model,
     _materials,
-    _holder,
-    _load,
-    _motion,
+    holder,
+    load,
+    courses,
+    motion,
     reciprocating,
     _sliding,
     _spread,
     fretting,
-    _heat,
+    heat,
+    varying,
     _degrees,
     _method,
     _in_space,

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import model_validator
 
 from . import units
-from .history import History
+from .history import History, SpeedHistory
 from .section import KeyFault, Section
 
 FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
@@ -68,7 +68,7 @@ class Load(Section):
     surfaces : dict of str to float
         Forces along the press, spread evenly over surfaces of body 1, whose holder is fixed [N].
     history : History or None
-        What changes, for a fretting analysis.
+        What changes: the loads of a fretting analysis, the force of a transient one.
     """
 
     mean_pressure: units.Pressure | None = None
@@ -95,12 +95,15 @@ class Motion(Section):
         Of body 1 over body 2 along x; negative: against it [m/s].
     amplitude, frequency : float or None
         Body 1 slides to and fro, ``x = amplitude sin(2 π frequency t)`` [m, Hz].
+    history : SpeedHistory or None
+        How the speed of a transient analysis changes.
     """
 
     angular_velocity: units.AngularVelocity | None = None
     velocity: units.Velocity | None = None
     amplitude: units.Length | None = None
     frequency: units.Frequency | None = None
+    history: SpeedHistory | None = None
 
     @property
     def one_way(self) -> Motion:

@@ -62,7 +62,7 @@ class Geometry(Section):
     held, fixed : str
         Surface of body 1 on the rigid holder; fixed surface of body 2.
     slides_across : bool
-        Whether an axisymmetric body 1 may slide across its axis, as a ball does on a flat.
+        Whether body 1 may slide across its axis, as a ball does on a flat, or across its section.
     initial_shape : str or None
         Table with the worn shape to start from (``profile.csv`` of an earlier run), relative to the
         current directory.
@@ -125,6 +125,18 @@ class Geometry(Section):
     def zones(self) -> dict[str, str]:
         """Parts of bodies that may have a material of their own, and the body of each."""
         return {}
+
+    @property
+    def facing(self) -> tuple[str, str]:
+        """What touches: each body, or the first of its zones, which bears its contact face."""
+        first, second = (self.parts_of(body)[:2][-1] for body in self.bodies)
+        return first, second
+
+    @property
+    def passes(self) -> bool:
+        """Whether body 2 passes under body 1 in the model, as a strip, a disk or a drum does."""
+        turns_in_space = self.rotation_center is not None and len(self.press_direction) == 3
+        return self.track is not None or turns_in_space
 
     @property
     def parts(self) -> tuple[str, ...]:

@@ -1,34 +1,106 @@
-"""Loads that change: straight lines in time between given corners."""
+"""What changes in time: straight lines between given instants."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from pydantic import model_validator
 
 from . import units
-from .section import KeyFault, Section
+from .factors import NotNegative, must_increase, must_match
+from .section import KeyFault, Section, Switch
 
-_CLOSED = 1e-9  # of the largest load: a cycle that ends so near to its begin is closed
+_CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
 
 
-class History(Section):
-    """Loads of the holder of body 1 at instants; straight lines between them.
+class Course(Section):
+    """Base of what is given at instants: straight lines between them, constant before and after.
 
     Attributes
     ----------
     time : tuple of float
         Increasing [s].
+    repeat : bool
+        From the last instant on it goes on as from the first one, again and again.
+    """
+
+    time: tuple[units.Instant, ...]
+    repeat: Switch = False
+
+    @model_validator(mode="after")
+    def _in_order(self):
+        must_increase("time", self.time)
+        if self.repeat and len(self.time) < 2:
+            raise KeyFault("repeat", "needs at least two instants in time")
+        return self
+
+    def _closes(self, key: str, values: tuple[float, ...]) -> None:
+        """Refuse repetitions of values that jump from the end back to the begin."""
+        if self.repeat and abs(values[-1] - values[0]) > _CLOSED * max(map(abs, values)):
+            raise KeyFault("repeat", f"{key} must end with the value that it begins with")
+
+    @property
+    def period(self) -> float:
+        """From the first instant to the last [s]."""
+        return self.time[-1] - self.time[0]
+
+    def instant(self, time: float) -> float:
+        """The instant between the first and the last one that holds at any time [s]."""
+        begin, end = self.time[0], self.time[-1]
+        if self.repeat and time > end:
+            return begin + (time - begin) % self.period
+        return min(max(time, begin), end)
+
+    def corners(self, end: float) -> tuple[float, ...]:
+        """Where a straight line ends or begins, after 0 and up to a time, repetitions too [s]."""
+        times = np.array(self.time)
+        if self.repeat:
+            again = np.arange(math.ceil(max(end - times[-1], 0.0) / self.period) + 1)
+            cycles = times[1:] + self.period * again[:, None]
+            times = np.concatenate([times[:1], cycles.ravel()])
+        return tuple(float(time) for time in times if 0 < time <= end)
+
+
+class SpeedHistory(Course):
+    """Sliding that changes: the motion of the case times a factor.
+
+    Attributes
+    ----------
+    factor : tuple of float
+        One of them at least greater than 0.
+    """
+
+    factor: tuple[NotNegative, ...]
+
+    @model_validator(mode="after")
+    def _fits(self):
+        must_match("factor", self.factor, self.time, "times")
+        if not any(self.factor):
+            raise KeyFault("factor", "one at least must be greater than 0")
+        self._closes("factor", self.factor)
+        return self
+
+    def factor_at(self, time: float) -> float:
+        """Factor of the speed at a time [s]."""
+        return float(np.interp(self.instant(time), self.time, self.factor))
+
+
+class History(Course):
+    """Loads of the holder of body 1 at instants; straight lines between them.
+
+    Attributes
+    ----------
     force, approach : tuple of float or None
         Along the press [N, m]; at most one of them. Neither: the constant load of the case.
     tangential_force, tangential_displacement : tuple of float or None
         Along x [N, m]; at most one of them. Neither: the holder only moves along the press.
     cycle_start : float or None
-        From there to the end the loads may be repeated, cycle by cycle; by default the first of
-        the instants with the loads of the last one [s].
+        From there to the end the loads of a fretting analysis may be repeated, cycle by cycle; by
+        default the first of the instants with the loads of the last one [s].
     """
 
-    time: tuple[units.Instant, ...]
-    force: tuple[units.Force, ...] | None = None
+    force: tuple[units.LeastForce, ...] | None = None
     approach: tuple[units.Length, ...] | None = None
     tangential_force: tuple[units.SignedForce, ...] | None = None
     tangential_displacement: tuple[units.Displacement, ...] | None = None
@@ -36,18 +108,17 @@ class History(Section):
 
     @model_validator(mode="after")
     def _fits(self):
-        if not self.time:
-            raise KeyFault("time", "is empty; needs at least one instant")
-        if any(b <= a for a, b in zip(self.time, self.time[1:], strict=False)):
-            raise KeyFault("time", "must increase")
         pairs = ("force", "approach"), ("tangential_force", "tangential_displacement")
         for first, second in pairs:
             if getattr(self, first) is not None and getattr(self, second) is not None:
                 raise KeyFault(second, f"only one of {first} and {second} can be given")
         for key in (key for pair in pairs for key in pair):
             values = getattr(self, key)
-            if values is not None and len(values) != len(self.time):
-                raise KeyFault(key, f"has {len(values)} values for {len(self.time)} times")
+            if values is not None:
+                must_match(key, values, self.time, "times")
+                self._closes(key, values)
+        if self.force is not None and not any(self.force):
+            raise KeyFault("force", "one at least must be greater than 0 N")
         start = self.cycle_start
         if start is not None:
             if not self.time[0] <= start < self.time[-1]:
@@ -75,11 +146,15 @@ class History(Section):
         return self.tangential_force is not None or self.tangential_displacement is not None
 
     def at(self, time: float) -> dict[str, float]:
-        """Values of the keys that are given, at an instant [s]."""
+        """Values of the keys that are given, at a time [s]."""
         keys = ("force", "approach", "tangential_force", "tangential_displacement")
         given = {key: getattr(self, key) for key in keys}
         return {
-            key: float(np.interp(time, self.time, values))
+            key: float(np.interp(self.instant(time), self.time, values))
             for key, values in given.items()
             if values is not None
         }
+
+    def factor_at(self, time: float) -> float:
+        """Part of the largest force that presses at a time [s]; 1 where the force is constant."""
+        return 1.0 if self.force is None else self.at(time)["force"] / max(self.force)

@@ -33,7 +33,7 @@ _MESSAGES = {
     "tuple_type": "must be a list",
 }
 
-_ANALYSES = "'initial', 'steady', 'transient', 'fretting', 'reciprocating'"
+_ANALYSES = "'initial', 'steady', 'transient', 'fretting', 'reciprocating', 'stability'"
 
 
 def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -> Case:

@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from pydantic import Field
 
 from . import units
+from .factors import ExpansionFactor, TemperatureFactor
 from .section import Number, Section
 
 
 class Body(Section):
-    """Material of a body, or the name of the body whose material it shares."""
+    """Material of a body, or the name of the body whose material it shares.
+
+    Attributes
+    ----------
+    conductivity, conductivity_factor
+        At the ambient temperature [W/(m K)], and its factor at others.
+    expansion, expansion_factor
+        Secant coefficient from the ambient temperature [1/K], and its factor at others: the thermal
+        strain is ``expansion factor(T) (T - ambient)``.
+    hardness : float or None
+        Of the softer surface layer, for a contact conductance that depends on the pressure [Pa].
+    """
 
     like: str | None = None
     young_modulus: units.Pressure | None = None
@@ -20,6 +33,18 @@ class Body(Section):
     expansion: units.Expansion | None = None
     density: units.Density | None = None
     specific_heat: units.SpecificHeat | None = None
+    hardness: units.Pressure | None = None
+    conductivity_factor: TemperatureFactor | None = None
+    expansion_factor: ExpansionFactor | None = None
+
+    @property
+    def effusivity(self) -> float:
+        """``sqrt(k rho c)`` [W sqrt(s)/(m² K)]."""
+        k, rho, c = self.conductivity, self.density, self.specific_heat
+        assert k is not None  # the case has been checked
+        assert rho is not None
+        assert c is not None
+        return math.sqrt(k * rho * c)
 
 
 def resolve_like(bodies: dict[str, Body], name: str) -> str:

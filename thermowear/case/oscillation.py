@@ -19,8 +19,6 @@ def fretting(case: Case) -> Iterator[Fault]:
     """A history of loads and a fretting analysis need each other."""
     analysis, history = case.analysis, case.load.history
     if not isinstance(analysis, Fretting):
-        if history is not None:
-            yield "load.history", f"is for a fretting analysis, not for {analysis.type}"
         return
     if history is None:
         yield "load.history", "missing; a fretting analysis follows a history of loads"
@@ -42,9 +40,10 @@ def reciprocating(case: Case) -> Iterator[Fault]:
     analysis, motion = case.analysis, case.motion
     if not isinstance(analysis, Reciprocating):
         return
-    if case.model not in ("plane-strain", "plane-stress") or case.geometry.rotation_center:
+    plane = case.model in ("plane-strain", "plane-stress")
+    if not plane or case.geometry.rotation_center or case.geometry.slides_across:
         yield "model", "a reciprocating analysis is for bodies that slide along x in a plane"
-    if case.geometry.symmetry:
+    elif case.geometry.symmetry:
         yield "geometry.half", "sliding to and fro is not symmetric; mesh the whole section"
     if case.heat is not None:
         yield "heat", "is not for a reciprocating analysis"

@@ -7,14 +7,18 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from ..errors import CaseError
 from . import units
-from .analyses import Fretting, Initial, Reciprocating, Steady, Transient
+from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .checks import check
+from .conductance import PressureConductance, TabulatedConductance, harmonic_mean
 from .driving import Holder, Load, Motion
+from .factors import Factors
 from .geometry import AnyGeometry, Pressing
+from .heat import Heat
 from .materials import Body, resolve_like
 from .section import Number, Section, Switch
 from .wear import Wear
@@ -81,6 +85,8 @@ class Contact(Section):
     ----------
     friction : float
         Coefficient of friction in the direction of sliding.
+    friction_factor : Factors
+        Of it, by the mean temperature of both faces, pressure and speed.
     transverse_friction : float
         Coefficient of friction across it, on faces that are not level (Páczelt and Mróz's mu_d).
     compliance : float or None
@@ -101,6 +107,7 @@ class Contact(Section):
     """
 
     friction: Annotated[Number, Field(ge=0.0)] = 0.0
+    friction_factor: Factors = Factors()
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
     compliance: units.Compliance | None = None
     method: Literal["condensed", "penalty", "nitsche"] = "condensed"
@@ -109,30 +116,6 @@ class Contact(Section):
     theta: Variant = None
     gamma: Annotated[Number, Field(gt=0.0)] | None = None
     positioning: Switch = False
-
-
-class Heat(Section):
-    """Friction heat.
-
-    Attributes
-    ----------
-    conductance : float or None
-        Contact conductance [W/(m² K)]; None: perfect contact.
-    partition : float
-        Part of the friction heat that is set free on body 1.
-    ambient : float
-        Temperature of the surroundings, and of the stress-free state [K].
-    cooling : dict of str to float
-        Heat transfer coefficients of named surfaces [W/(m² K)].
-    temperature : dict of str to float
-        Given temperatures of named surfaces [K].
-    """
-
-    conductance: units.HeatTransfer | None = None
-    partition: Fraction = 0.5
-    ambient: units.Temperature = 293.15
-    cooling: dict[str, units.HeatTransfer] = {}
-    temperature: dict[str, units.Temperature] = {}
 
 
 class Case(Section):
@@ -150,7 +133,8 @@ class Case(Section):
     wear: dict[str, Wear] = {}
     heat: Heat | None = None
     analysis: Annotated[
-        Initial | Steady | Transient | Fretting | Reciprocating, Field(discriminator="type")
+        Initial | Steady | Transient | Fretting | Reciprocating | Stability,
+        Field(discriminator="type"),
     ]
 
     @model_validator(mode="after")
@@ -184,6 +168,43 @@ class Case(Section):
             assert body.poisson_ratio is not None
             softness += (1 - body.poisson_ratio**2) / body.young_modulus
         return Pressing(self.force(), self.approach(), 1 / softness)
+
+    @property
+    def varies(self) -> bool:
+        """Whether friction, wear or conductance depend on temperature, pressure or speed."""
+        tables = (self.contact.friction_factor, *(law.factor for law in self.wear.values()))
+        conductance = None if self.heat is None else self.heat.conductance
+        return isinstance(conductance, Section) or any(table.depends_on for table in tables)
+
+    def partition(self) -> float:
+        """Part of the friction heat that is set free on body 1."""
+        assert self.heat is not None
+        share = self.heat.partition
+        if isinstance(share, float):
+            return share
+        e1, e2 = (self.material(part).effusivity for part in self.geometry.facing)
+        return e1 / (e1 + e2)
+
+    def conductance(self, pressure: np.ndarray) -> np.ndarray | None:
+        """Contact conductance at points [W/(m² K)]; None: perfect contact.
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (n,)
+            [Pa]
+        """
+        assert self.heat is not None
+        given = self.heat.conductance
+        if isinstance(given, TabulatedConductance):
+            return given.value(pressure)
+        if isinstance(given, PressureConductance):
+            facing = [self.material(part) for part in self.geometry.facing]
+            k, hardness = (
+                harmonic_mean(*(getattr(body, key) for body in facing))
+                for key in ("conductivity", "hardness")
+            )
+            return given.value(pressure, k, hardness)
+        return None if given is None else np.full(np.shape(pressure), given)
 
     def tagged_mesh(self, zone: tuple[float, float] | None = None):
         """The mesh of the case, made for a contact zone (by default the expected one).

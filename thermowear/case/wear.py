@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 
+from .factors import Factors
 from .section import KeyFault, Number, Section
 from .units import parse, registry
 
@@ -45,6 +46,8 @@ class Wear(Section):
     spread : str
         ``"in-place"``: the body wears where it is pressed; ``"track"``: a body 2 that passes under
         body 1 wears evenly along its whole track.
+    factor : Factors
+        Of the coefficient, by the temperature of the body's own face, pressure and speed.
     """
 
     coefficient: Coefficient
@@ -52,6 +55,7 @@ class Wear(Section):
     pressure_exponent: Annotated[Number, Field(ge=0.1, le=10.0)] = 1.0
     velocity_exponent: Annotated[Number, Field(ge=0.0, le=10.0)] = 1.0
     spread: Literal["in-place", "track"] = "in-place"
+    factor: Factors = Factors()
 
     @model_validator(mode="after")
     def _unit_fits(self):

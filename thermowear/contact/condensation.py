@@ -51,6 +51,99 @@ class CondensedContact:
         return self.weighted.T @ values
 
 
+@dataclass(frozen=True)
+class Influence:
+    """How the bodies answer each pressure function: all that condensation solves them for.
+
+    Loads, friction and wear do not enter it.
+
+    Attributes
+    ----------
+    trace : csr_matrix, shape (n_owned, n)
+        Bᵀ.
+    basis : ndarray, shape (n, m)
+        Ψ.
+    weighted : ndarray, shape (n, m)
+        ``diag(w) Ψ``.
+    touching : ndarray of int, shape (n_touching,)
+        Owned values in cells at the contact, the only ones that its tractions load.
+    near : ndarray, shape (n_touching, m)
+        Rows of K⁻¹ Bᵗ w Ψ [m per coefficient] for them.
+    whole : ndarray or None, shape (n_owned, m)
+        All rows: large, and kept where it is asked for.
+    comm : mpi4py.MPI.Comm
+    """
+
+    trace: sp.csr_matrix
+    basis: np.ndarray
+    weighted: np.ndarray
+    touching: np.ndarray
+    near: np.ndarray
+    whole: np.ndarray | None
+    comm: object
+
+    def condensed(self, traction: sp.csr_matrix, holder: Holder) -> CondensedContact:
+        """The contact with a friction and a holder; no body is solved. Every rank calls.
+
+        Parameters
+        ----------
+        traction : csr_matrix, shape (n_owned, n)
+            B_tᵀ; the trace itself where there is no friction in the section.
+        holder : Holder
+        """
+        pulls = traction[self.touching] @ sp.csr_matrix(self.weighted)
+        compliance = sum_over_ranks(self.comm, (pulls.T @ self.near).T)
+        if traction is self.trace:
+            compliance = (compliance + compliance.T) / 2
+        modes, force_modes = (self.weighted.T @ m for m in (holder.modes, holder.force_modes))
+        return CondensedContact(
+            self.basis, self.weighted, compliance, modes, force_modes, self.whole
+        )
+
+
+def influence(
+    elastic: Elasticity,
+    pairing: Pairing,
+    trace: sp.csr_matrix,
+    basis: np.ndarray,
+    keep_whole: bool = False,
+) -> Influence:
+    """Solve the bodies for every pressure function. Every rank calls.
+
+    Parameters
+    ----------
+    elastic : Elasticity
+    pairing : Pairing
+    trace : csr_matrix, shape (n_owned, n)
+        Bᵀ of the gap.
+    basis : ndarray, shape (n, m)
+        Ψ, from `pressure.pressure_basis`.
+    keep_whole : bool
+        For thermal distortion.
+    """
+    dim = elastic.bodies.mesh.geometry.dim
+    weighted = pairing.weights[:, None] * basis
+    # only nodes of cells at the contact carry loads: 2 % of the rows
+    loads = (trace @ sp.csr_matrix(weighted)).tocsc()
+    nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
+    touching = (nodes[:, None] * dim + np.arange(dim)).ravel()
+    near, whole = [], []
+    for start in range(0, weighted.shape[1], _COLUMNS[dim]):
+        displacements = elastic.solve(loads[:, start : start + _COLUMNS[dim]].tocsr())
+        near.append(displacements[touching])
+        if keep_whole:
+            whole.append(displacements)
+    return Influence(
+        trace,
+        basis,
+        weighted,
+        touching,
+        np.hstack(near),
+        np.hstack(whole) if keep_whole else None,
+        elastic.space.mesh.comm,
+    )
+
+
 def condense(
     elastic: Elasticity,
     pairing: Pairing,
@@ -60,35 +153,8 @@ def condense(
     holder: Holder,
     keep_influence: bool = False,
 ) -> CondensedContact:
-    """Condense elasticity to the pressure space. Every rank calls.
+    """Condense elasticity to the pressure space; parameters as in `influence` and `Influence`.
 
-    Parameters
-    ----------
-    elastic : Elasticity
-    pairing : Pairing
-    trace, traction : csr_matrix, shape (n_owned, n)
-        Bᵀ and B_tᵀ: of the gap and of what the pressure does work on; the same matrix where there
-        is no friction in the section.
-    basis : ndarray, shape (n, m)
-        Ψ, from `pressure.pressure_basis`.
-    holder : Holder
-    keep_influence : bool
-        For thermal distortion.
+    Every rank calls.
     """
-    weighted = pairing.weights[:, None] * basis
-    # only nodes of cells at the contact carry loads: 2 % of the rows
-    loads = trace @ sp.csr_matrix(weighted)
-    pulls = loads if traction is trace else traction @ sp.csr_matrix(weighted)
-    rows, kept, loads = [], [], loads.tocsc()
-    width = _COLUMNS[elastic.bodies.mesh.geometry.dim]
-    for start in range(0, weighted.shape[1], width):
-        displacements = elastic.solve(loads[:, start : start + width].tocsr())
-        rows.append((pulls.T @ displacements).T)
-        if keep_influence:
-            kept.append(displacements)
-    compliance = sum_over_ranks(elastic.space.mesh.comm, np.vstack(rows))
-    if traction is trace:
-        compliance = (compliance + compliance.T) / 2
-    modes, force_modes = weighted.T @ holder.modes, weighted.T @ holder.force_modes
-    influence = np.hstack(kept) if keep_influence else None
-    return CondensedContact(basis, weighted, compliance, modes, force_modes, influence)
+    return influence(elastic, pairing, trace, basis, keep_influence).condensed(traction, holder)

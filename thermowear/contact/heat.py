@@ -7,6 +7,7 @@ The bodies are linear and are condensed to their contact points once; what coupl
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from petsc4py import PETSc
 
@@ -36,6 +37,22 @@ class ThermalState:
 
 
 @dataclass(frozen=True)
+class Resting:
+    """What the bodies do without any heat at the contact: given temperatures, or heat stored.
+
+    Attributes
+    ----------
+    rise : tuple of ndarray, shape (n,)
+        Of the faces [K].
+    opening : ndarray or None, shape (m,)
+        Weak gap that it opens [m³]; None where that is not asked for.
+    """
+
+    rise: tuple[np.ndarray, np.ndarray]
+    opening: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
 class InterfaceHeat:
     """Both conducting bodies, condensed to the contact points.
 
@@ -52,10 +69,6 @@ class InterfaceHeat:
         that is taken out again here [W/(m² K)].
     response : tuple of ndarray, shape (n, n)
         Face rise per heat flux at the points, the bath included [m² K/W].
-    resting : tuple of ndarray, shape (n,)
-        Face rise without any heat at the contact (given temperatures) [K].
-    conductance : float or None
-        Of closed contact [W/(m² K)]; None: equal temperatures.
     partition : float
         Part of the friction heat set free on body 1.
     """
@@ -65,32 +78,25 @@ class InterfaceHeat:
     traces: tuple[sp.csr_matrix, sp.csr_matrix]
     shift: float
     response: tuple[np.ndarray, np.ndarray]
-    resting: tuple[np.ndarray, np.ndarray]
-    conductance: float | None
     partition: float
 
-    def exchange(self, closed: np.ndarray) -> HeatExchange:
-        """Couple the faces where they touch.
+    def exchange(self, conductance: np.ndarray) -> HeatExchange:
+        """Couple the faces.
 
         Parameters
         ----------
-        closed : ndarray of bool, shape (n,)
-            Points that exchange heat; separated ones do not.
+        conductance : ndarray, shape (n,)
+            Of the contact, or of the gap, at each point [W/(m² K)]; infinite where both faces have
+            the same temperature.
         """
-        n = len(self.weights)
-        identity = np.eye(n)
-        share = (self.partition, 1.0 - self.partition)
+        n, s = len(self.weights), self.shift
         Θ1, Θ2 = self.response
-        s = self.shift
-        if self.conductance is None:
-            modes = self.basis[:, np.any(self.basis[closed] > 0, axis=0)] * closed[:, None]
-            modes = modes[:, self.weights @ modes > 0]
-            tie = modes.T * self.weights
-            count = modes.shape[1]
-        else:
-            modes, count = np.zeros((n, 0)), 0
-            tie = np.zeros((0, n))
-        h = (self.conductance or 0.0) * closed
+        perfect = np.isinf(conductance)
+        h = np.where(perfect, 0.0, conductance)
+        modes = self.basis[:, np.any(self.basis[perfect] > 0, axis=0)] * perfect[:, None]
+        modes = modes[:, self.weights @ modes > 0]
+        tie, count = modes.T * self.weights, modes.shape[1]
+        identity = np.eye(n)
         matrix = np.block(
             [
                 [identity - Θ1 * (s - h), -Θ1 * h, -Θ1 @ modes],
@@ -98,16 +104,9 @@ class InterfaceHeat:
                 [-tie, tie, np.zeros((count, count))],
             ]
         )
-        right = np.zeros((2 * n + count, n + 1))
-        for i in (0, 1):
-            right[i * n : (i + 1) * n, :n] = share[i] * self.response[i]
-            right[i * n : (i + 1) * n, n] = self.resting[i]
-        solution = np.linalg.solve(matrix, right)
-        rise = (solution[:n], solution[n : 2 * n])
-        crossing = h[:, None] * (rise[1] - rise[0]) + modes @ solution[2 * n :]
-        friction = np.hstack([identity, np.zeros((n, 1))])
-        flux = (share[0] * friction + crossing, share[1] * friction - crossing)
-        return HeatExchange(self, rise, flux)
+        rise = np.linalg.solve(matrix, np.eye(2 * n + count, 2 * n))
+        crossing = h[:, None] * (rise[n : 2 * n] - rise[:n]) + modes @ rise[2 * n :]
+        return HeatExchange(self, rise[: 2 * n], crossing)
 
     def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
         """Nodal heat of the contact [W], owned rows; with what the bath gives where asked."""
@@ -121,25 +120,49 @@ class InterfaceHeat:
 
 @dataclass(frozen=True)
 class HeatExchange:
-    """Everything thermal as an affine function of the friction heat at the points.
+    """Faces that exchange heat, as a linear function of what their rises would be without it.
 
     Attributes
     ----------
     interface : InterfaceHeat
-    rise, flux : tuple of ndarray, shape (n, n + 1)
-        Last column: without friction heat.
+    rise : ndarray, shape (2 n, 2 n)
+        Of both faces, one after the other.
+    crossing : ndarray, shape (n, 2 n)
+        Heat from body 2 to body 1 [W/(m² K)].
     """
 
     interface: InterfaceHeat
-    rise: tuple[np.ndarray, np.ndarray]
-    flux: tuple[np.ndarray, np.ndarray]
+    rise: np.ndarray
+    crossing: np.ndarray
 
-    def state(self, friction_heat: np.ndarray) -> ThermalState:
-        """Temperatures and fluxes due to friction heat [W/m²] at the points."""
-        q = np.append(friction_heat, 1.0)
+    def state(self, friction_heat: np.ndarray, resting: Resting) -> ThermalState:
+        """Temperatures and fluxes due to friction heat [W/m²] at the points, shape (n,)."""
+        alone = self._alone @ friction_heat + np.concatenate(resting.rise)
+        T1, T2 = np.split(self.rise @ alone, 2)
+        crossing = self.crossing @ alone
+        f = self.interface.partition
         return ThermalState(
-            (self.rise[0] @ q, self.rise[1] @ q), (self.flux[0] @ q, self.flux[1] @ q)
+            (T1, T2), (f * friction_heat + crossing, (1 - f) * friction_heat - crossing)
         )
+
+    def into_bath(self, alone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Heat that crosses, and that the bath gives, into both bodies for rises without it."""
+        T1, T2 = np.split(self.rise @ alone, 2)
+        crossing, s = self.crossing @ alone, self.interface.shift
+        return crossing + s * T1, s * T2 - crossing
+
+    @cached_property
+    def per_friction_heat(self) -> tuple[np.ndarray, np.ndarray]:
+        """Heat into both bodies, that of the bath included, per friction heat, shape (n, n)."""
+        first, second = self.into_bath(self._alone)
+        f, identity = self.interface.partition, np.eye(len(self.interface.weights))
+        return f * identity + first, (1 - f) * identity + second
+
+    @cached_property
+    def _alone(self) -> np.ndarray:
+        """Rises of both faces without exchange per friction heat, shape (2 n, n)."""
+        f, (Θ1, Θ2) = self.interface.partition, self.interface.response
+        return np.vstack([f * Θ1, (1 - f) * Θ2])
 
 
 @dataclass(frozen=True)
@@ -150,22 +173,20 @@ class ThermalDistortion:
     ----------
     per_flux : tuple of ndarray, shape (m, n)
         Per heat flux into each body at the points, the bath included [m³ per W/m²].
-    resting : ndarray, shape (m,)
-        Without any heat at the contact (given temperatures) [m³].
     """
 
     per_flux: tuple[np.ndarray, np.ndarray]
-    resting: np.ndarray
 
-    def per_friction_heat(self, exchange: HeatExchange) -> tuple[np.ndarray, np.ndarray]:
-        """H of coupled faces: weak gap per friction heat (m, n), and without it (m,)."""
-        shift = exchange.interface.shift
-        first, second = (
-            matrix @ (flux + shift * rise)
-            for matrix, flux, rise in zip(self.per_flux, exchange.flux, exchange.rise, strict=True)
-        )
-        total = first + second
-        return total[:, :-1], total[:, -1] + self.resting
+    def per_friction_heat(self, exchange: HeatExchange) -> np.ndarray:
+        """H of coupled faces: weak gap per friction heat, shape (m, n)."""
+        first, second = exchange.per_friction_heat
+        return self.per_flux[0] @ first + self.per_flux[1] @ second
+
+    def at_rest(self, exchange: HeatExchange, resting: Resting) -> np.ndarray:
+        """Weak gap of coupled faces without friction heat, shape (m,)."""
+        assert resting.opening is not None
+        first, second = exchange.into_bath(np.concatenate(resting.rise))
+        return self.per_flux[0] @ first + self.per_flux[1] @ second + resting.opening
 
 
 def condense_heat(
@@ -174,7 +195,6 @@ def condense_heat(
     basis: np.ndarray,
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     shift: float,
-    conductance: float | None,
     partition: float,
 ) -> InterfaceHeat:
     """Condense conduction to the contact points; parameters as in `InterfaceHeat`.
@@ -184,18 +204,12 @@ def condense_heat(
     comm = conduction.space.mesh.comm
     # the bodies do not touch in the bulk: one solution serves a column of both faces
     field = conduction.respond(((traces[0] + traces[1]) @ sp.diags(weights)).tocsr())
-    still = conduction.solve(np.zeros(field.shape[0]))
     Θ1, Θ2 = (sum_over_ranks(comm, trace.T @ field) for trace in traces)
-    T1, T2 = (sum_over_ranks(comm, trace.T @ still) for trace in traces)
-    response, resting = (Θ1, Θ2), (T1, T2)
-    return InterfaceHeat(weights, basis, traces, shift, response, resting, conductance, partition)
+    return InterfaceHeat(weights, basis, traces, shift, (Θ1, Θ2), partition)
 
 
 def condense_distortion(
-    conduction: Conduction,
-    thermal_load: PETSc.Mat,
-    contact: CondensedContact,
-    face: InterfaceHeat,
+    conduction: Conduction, per_rise: np.ndarray, face: InterfaceHeat
 ) -> ThermalDistortion:
     """Condense ``Ψᵀ w B K⁻¹ G K_T⁻¹ Eᵀ w``: heat at the contact to the weak gap.
 
@@ -205,21 +219,42 @@ def condense_distortion(
     Parameters
     ----------
     conduction : Conduction
+    per_rise : ndarray, shape (n_owned, m)
+        Weak gap per nodal rise, see `gap_per_rise` [m³/K].
+    face : InterfaceHeat
+    """
+    comm = conduction.space.mesh.comm
+    adjoint = conduction.sense(per_rise)
+    first, second = (
+        sum_over_ranks(comm, (trace.T @ adjoint).T * face.weights) for trace in face.traces
+    )
+    return ThermalDistortion((first, second))
+
+
+def gap_per_rise(thermal_load: PETSc.Mat, contact: CondensedContact) -> np.ndarray:
+    """Weak gap per nodal temperature rise, shape (n_owned, m) [m³/K].
+
+    Parameters
+    ----------
     thermal_load : petsc4py.PETSc.Mat
         G, from `Elasticity.thermal_load`.
     contact : CondensedContact
         With its influence.
-    face : InterfaceHeat
     """
-    comm = conduction.space.mesh.comm
     assert contact.influence is not None
-    per_rise = transpose_product(thermal_load, contact.influence)
-    adjoint = conduction.respond(per_rise)
-    still = conduction.solve(np.zeros(len(per_rise)))
-    first, second = (
-        sum_over_ranks(comm, (trace.T @ adjoint).T * face.weights) for trace in face.traces
-    )
-    return ThermalDistortion((first, second), sum_over_ranks(comm, per_rise.T @ still))
+    return transpose_product(thermal_load, contact.influence)
+
+
+def at_rest(
+    rise: np.ndarray,
+    traces: tuple[sp.csr_matrix, sp.csr_matrix],
+    comm,
+    per_rise: np.ndarray | None = None,
+) -> Resting:
+    """What a nodal rise (n_owned,) does to faces and, with `per_rise`, to the weak gap."""
+    T1, T2 = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
+    opening = None if per_rise is None else sum_over_ranks(comm, per_rise.T @ rise)
+    return Resting((T1, T2), opening)
 
 
 def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:

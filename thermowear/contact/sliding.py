@@ -28,7 +28,9 @@ class Sliding:
     along: np.ndarray
     across: np.ndarray
 
-    def pull(self, normals: np.ndarray, friction: float, transverse: float) -> np.ndarray:
+    def pull(
+        self, normals: np.ndarray, friction: float | np.ndarray, transverse: float
+    ) -> np.ndarray:
         """``n + mu e + mu_d e_2``: the traction on body 1 is minus the pressure times it.
 
         The transverse part comes from the small velocity of wear across the sliding (Páczelt and
@@ -37,8 +39,10 @@ class Sliding:
         Parameters
         ----------
         normals : ndarray, shape (n, gdim)
-        friction, transverse : float
-            mu and mu_d.
+        friction : float or ndarray, shape (n, 1)
+            mu.
+        transverse : float
+            mu_d.
 
         Returns
         -------

@@ -58,6 +58,7 @@ def steady_pressure(
     laws: Sequence[WearLaw],
     speed: np.ndarray,
     spread: Sequence[Spreading] | None = None,
+    factors: np.ndarray | None = None,
 ) -> SteadyWear:
     """Solve the principle for pressure and rigid-body wear velocity.
 
@@ -78,6 +79,8 @@ def steady_pressure(
         Sliding speed [m/s].
     spread : sequence of Spreading, optional
         Where the wear of each body goes; by default each wears in place.
+    factors : ndarray, shape (n_wearing, n), optional
+        Of the wear rates at the points, by default 1.
 
     Returns
     -------
@@ -93,6 +96,7 @@ def steady_pressure(
         If points do not slide, nothing wears where it is pressed, or a motion presses nothing.
     """
     spread = spread if spread is not None else [InPlace()] * len(laws)
+    factors = factors if factors is not None else np.ones((len(laws), len(weights)))
     if not np.all(speed > 0):
         raise ComputationError("no steady state: some contact points do not slide")
     if not laws:
@@ -107,13 +111,16 @@ def steady_pressure(
         normal_modes,
         force_modes,
         load,
-        local=_power_sum(laws, speed, [way.share for way in spread]),
-        spread=_power_sum(laws, speed, [0.0 if way.row is None else way.row for way in spread]),
+        local=_power_sum(laws, speed, factors, [way.share for way in spread]),
+        spread=_power_sum(
+            laws, speed, factors, [0.0 if way.row is None else way.row for way in spread]
+        ),
     )
     if found is None or not found.regular:
         raise why_no_steady_state(weights, normal_modes, force_modes, load)
     rates = tuple(
-        way.rate(law.rate(found.pressure, speed)) for law, way in zip(laws, spread, strict=True)
+        way.rate(factor * law.rate(found.pressure, speed))
+        for law, way, factor in zip(laws, spread, factors, strict=True)
     )
     return SteadyWear(
         found.pressure,
@@ -124,10 +131,11 @@ def steady_pressure(
     )
 
 
-def _power_sum(laws: Sequence[WearLaw], speed: np.ndarray, portions) -> PowerSum:
+def _power_sum(laws: Sequence[WearLaw], speed: np.ndarray, factors, portions) -> PowerSum:
     """The part of the bodies' rates ``Z p^b`` that goes one way."""
-    factors = [portion * law.factor(speed) for portion, law in zip(portions, laws, strict=True)]
-    return PowerSum(np.array(factors), np.array([law.pressure_exponent for law in laws]))
+    each = zip(portions, laws, factors, strict=True)
+    Z = [portion * factor * law.factor(speed) for portion, law, factor in each]
+    return PowerSum(np.array(Z), np.array([law.pressure_exponent for law in laws]))
 
 
 def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:

@@ -14,15 +14,15 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from .quantities import CYCLES, FRICTION, HISTORY, INTERFACE, LOADS, PROFILE, TRACK
+from .quantities import CYCLES, FRICTION, HEAT, HISTORY, INTERFACE, LOADS, PROFILE, TRACK
 from .report import is_report
 from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields
 
 _OURS = re.compile(
-    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|loads|cycles|profile)\.csv"
+    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|heat|loads|cycles|profile)\.csv"
     r"|(interface|friction|track)(_[-+.0-9e]+)?\.csv"
-    r"|(interface|profile|wear|history|friction|loads|cycles|track|bodies|deformed)\.png"
+    r"|(interface|profile|wear|history|heat|friction|loads|cycles|track|bodies|deformed)\.png"
 )
 
 
@@ -79,6 +79,10 @@ class ResultsFolder:
     def step(self, row) -> None:
         """Append a step of a transient run."""
         self._add(row, "history.csv", HISTORY)
+
+    def heat(self, row) -> None:
+        """Append the heat of a step."""
+        self._add(row, "heat.csv", HEAT)
 
     def load_step(self, row) -> None:
         """Append an increment of a fretting analysis."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..contact.complementarity import ContactSolution, solve_contact
-from .friction_heat import FrictionHeat
-from .interface_problem import Contact, WearRates, newton_with_wear
+from ..contact.condensation import CondensedContact
+from .contact_method import Contact, WearRates, newton_with_wear
 from .system import System
 
 
@@ -16,38 +16,40 @@ class CondensedMethod:
     Parameters
     ----------
     system : System
-    heat : FrictionHeat or None
     """
 
-    def __init__(self, system: System, heat: FrictionHeat | None):
+    def __init__(self, system: System):
         self._system = system
         self._contact = system.contact
+        nominal = np.full(len(system.weights), system.friction)
+        self._rubbing = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
-        self._heat = heat
         self.note: str | None = None
 
-    def solve(self, gap, slope, guess: Contact | None, closed) -> Contact:
-        contact = self._contact
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
+        contact = self._rubbed(conditions.friction)
         compliance, weak = contact.compliance, contact.weak(gap + self._dead)
-        if self._heat is not None:
-            coupling = self._heat.coupling(closed)
+        if heat is not None:
+            coupling = heat.coupling(conditions, contact.basis)
             compliance, weak = compliance + coupling.compliance, weak + coupling.resting
-        return self._solved(compliance, weak, slope, guess)
+        return self._solved(contact, compliance, weak, slope, guess, conditions.load)
 
-    def steady(self, pressure, rates: WearRates) -> np.ndarray:
+    def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle in the pressure space.
 
         The mean wear rates, weighted by the basis, are those of the rigid motion. That is the
         implicit step of wear of bodies that do not yield.
         """
-        contact = self._contact
+        contact, load = self._rubbed(conditions.friction), conditions.load
         coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
         active = np.ones(len(coefficients), dtype=bool)
         still = np.zeros(contact.modes.shape[1])
         start = Contact(pressure, still, ContactSolution(coefficients, still, active))
         rigid = np.zeros_like(contact.compliance)
         return newton_with_wear(
-            lambda worn, slope, last: self._solved(rigid, contact.weak(worn), slope, last),
+            lambda worn, slope, last: self._solved(
+                contact, rigid, contact.weak(worn), slope, last, load
+            ),
             rates,
             1.0,
             start,
@@ -57,15 +59,23 @@ class CondensedMethod:
         opened = self._contact.compliance @ contact.memory.coefficients
         return float((opened / self._contact.weighted.sum(axis=0)).max())
 
-    def _solved(self, compliance, weak, slope, guess: Contact | None) -> Contact:
-        contact = self._contact
+    def _rubbed(self, friction: np.ndarray) -> CondensedContact:
+        """The condensed bodies under the present friction (n,); the last one is kept."""
+        key = friction.tobytes()
+        if self._rubbing[0] != key:
+            self._rubbing = (key, self._system.rubbing(friction).contact)
+        return self._rubbing[1]
+
+    def _solved(
+        self, contact: CondensedContact, compliance, weak, slope, guess: Contact | None, load
+    ) -> Contact:
         if slope.any():
             compliance = compliance + contact.weighted.T @ (slope[:, None] * contact.basis)
         solution = solve_contact(
             compliance,
             weak,
             contact.modes,
-            self._system.holder.load,
+            load,
             None if guess is None else guess.memory.active,
             contact.force_modes,
         )

@@ -30,15 +30,15 @@ def fretting(system: System, observer: Observer) -> Outcome:
     """
     translations = _translations(system.case)
     with system.phases("condense elasticity"):
-        contact = condense_tangential(system.elastic, system.pairing, system.basis, translations)
-    profiles = tuple(profile(system.pairing, contact.weighted, body) for body in system.laws)
+        condensed = condense_tangential(system.elastic, system.pairing, system.basis, translations)
+    profiles = tuple(profile(system.pairing, condensed.weighted, body) for body in system.laws)
     record = FrettingRecord(system, translations, profiles, observer)
-    instants = _instants(system, contact, profiles)
+    instants = _instants(system, condensed, profiles)
     _, stopped = go_through(system, "load steps", instants, record.keep)
     with system.phases("bodies"):
-        bodies, interface = record.interface()
+        contact, bodies, interface = record.interface()
     return Outcome(
-        pressure=interface.pressure,
+        contact=contact,
         motion=translation(record.last.motion @ translations),
         state=bodies,
         interface=interface,

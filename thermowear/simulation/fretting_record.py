@@ -13,7 +13,7 @@ from .load_path import Leg
 from .observer import Observer
 from .recording import interface_at
 from .result import CycleRow, FrictionHistory, FrictionInterface, Interface, LoadRow
-from .state import BodyState
+from .state import BodyState, ContactState, contact_state
 from .system import System
 
 _SLIDES = 1 - 1e-6  # of friction's limit
@@ -87,11 +87,11 @@ class FrettingRecord:
         if instant.ends_leg and leg.is_output:
             with self._system.phases("output"):
                 self._frictions[leg.end] = self._friction()
-                self.outputs[leg.end] = self.interface()[1]
+                self.outputs[leg.end] = self.interface()[2]
                 self._observer.output(leg.end, self.outputs[leg.end], self._frictions[leg.end])
 
-    def interface(self) -> tuple[BodyState, Interface]:
-        """Bodies and interface in the last state; wear rates are means of the last cycle."""
+    def interface(self) -> tuple[ContactState, BodyState, Interface]:
+        """Contact, bodies and interface in the last state; wear rates are means of its cycle."""
         system, state = self._system, self.last
         pressure, shear = system.basis @ state.pressure, system.basis @ state.shear[:, 0]
         moved = translation(state.motion @ self._translations)
@@ -99,8 +99,9 @@ class FrettingRecord:
         assert history is not None  # the case has been checked
         begin, end = history.cycle or (0.0, np.inf)
         rates = self._per_cycle / (end - begin)
-        bodies, found = interface_at(system, pressure, moved, self._depths(state), shear, rates)
-        return bodies, replace(found, gap=found.gap + system.basis @ self._slid_along())
+        contact = contact_state(system, pressure, shear)
+        bodies, found = interface_at(system, contact, moved, self._depths(state), rates)
+        return contact, bodies, replace(found, gap=found.gap + system.basis @ self._slid_along())
 
     def _slid_along(self) -> np.ndarray:
         """What the profiles open more than in place, as body 1 has slid, coefficients [m]."""

@@ -2,18 +2,41 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
-from ..contact.heat import HeatExchange, ThermalState
+from ..bulk.conduction import Conduction
+from ..contact.heat import (
+    HeatExchange,
+    InterfaceHeat,
+    Resting,
+    ThermalDistortion,
+    ThermalState,
+    at_rest,
+    condense_distortion,
+    condense_heat,
+    gap_per_rise,
+)
+from ..parallel import sum_over_ranks
+from .conditions import Conditions
 from .system import System
 from .thermal_system import ThermalSystem
+
+_KEPT = 6
+"""Sizes of steps whose operators are kept."""
+_SHALLOW = 1e-3
+"""Of the contact's length: heat that has gone so deep has changed nothing yet."""
+_HARDLY = 0.1
+"""Rise of the faces that is not worth a smaller first step [K]."""
 
 
 @dataclass(frozen=True)
 class Coupling:
-    """What heat does to the interface for one set of touching points.
+    """What heat does to the interface under some conditions.
 
     Attributes
     ----------
@@ -27,10 +50,193 @@ class Coupling:
     resting: np.ndarray
 
 
+class HeatOperators:
+    """Conduction condensed to the interface: steady, or over a step of time of one size.
+
+    The last exchange and coupling are kept, as conditions seldom change.
+
+    Parameters
+    ----------
+    conduction : Conduction
+    face : InterfaceHeat
+    heat : FrictionHeat
+    """
+
+    def __init__(self, conduction: Conduction, face: InterfaceHeat, heat: FrictionHeat):
+        self.conduction = conduction
+        self.face = face
+        self._heat = heat
+        self._exchange: tuple[bytes, HeatExchange] | None = None
+        self._compliance: tuple[bytes, np.ndarray] | None = None
+
+    @cached_property
+    def distortion(self) -> ThermalDistortion:
+        """Weak gap per heat at the faces. Every rank calls."""
+        return self._heat.condensed(self.conduction, self.face)
+
+    def exchange(self, conductance: np.ndarray) -> HeatExchange:
+        """How heat crosses the interface for conductances at the points, shape (n,)."""
+        key = conductance.tobytes()
+        if self._exchange is None or self._exchange[0] != key:
+            self._exchange = (key, self.face.exchange(conductance))
+        return self._exchange[1]
+
+    def compliance(self, conditions: Conditions, basis: np.ndarray) -> np.ndarray:
+        """``H diag(mu v) Ψ``, shape (m, m)."""
+        key = conditions.conductance.tobytes() + conditions.heating.tobytes()
+        if self._compliance is None or self._compliance[0] != key:
+            per_heat = self.distortion.per_friction_heat(self.exchange(conditions.conductance))
+            self._compliance = (key, per_heat @ (conditions.heating[:, None] * basis))
+        return self._compliance[1]
+
+
+class HeatStage(Protocol):
+    """Heat at one moment, as contact sees it."""
+
+    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+        """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
+
+    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+        """What heat does to the condensed interface."""
+
+
+@dataclass(frozen=True)
+class ConductedHeat:
+    """Conduction at one moment: its operators, and what the bodies bring along.
+
+    Attributes
+    ----------
+    operators : HeatOperators
+    stored : ndarray or None, shape (n_owned,)
+        Nodal heat that the bodies have stored before, per time [W]; None in a steady state.
+    resting : Resting
+    """
+
+    operators: HeatOperators
+    stored: np.ndarray | None
+    resting: Resting
+
+    @property
+    def unheated(self) -> ThermalState:
+        """The faces without any heat at the contact."""
+        nothing = np.zeros(len(self.resting.rise[0]))
+        return ThermalState(self.resting.rise, (nothing, nothing))
+
+    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+        """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
+        exchange = self.operators.exchange(conditions.conductance)
+        return exchange.state(conditions.heating * pressure, self.resting)
+
+    def rise(self, faces: ThermalState) -> np.ndarray:
+        """Temperature rise of the bodies, shape (n_owned,) [K]."""
+        heat = self.operators.face.nodal_heat(faces, bath=True)
+        if self.stored is not None:
+            heat = heat + self.stored
+        return self.operators.conduction.solve(heat)
+
+    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+        """What heat does to the condensed interface."""
+        operators = self.operators
+        exchange = operators.exchange(conditions.conductance)
+        return Coupling(
+            operators.compliance(conditions, basis),
+            operators.distortion.at_rest(exchange, self.resting),
+        )
+
+
+@dataclass(frozen=True)
+class StoredHeat:
+    """Heat in the bodies, where temperatures are followed in time.
+
+    Attributes
+    ----------
+    rise : ndarray, shape (n_owned,)
+        Of the nodes over the ambient [K].
+    turnover : ndarray, shape (2,)
+        Friction heat made so far, and heat lost [J].
+    largest : float
+        Rise of the faces so far, either way [K].
+    """
+
+    rise: np.ndarray
+    turnover: np.ndarray
+    largest: float
+
+    def towards(self, other: StoredHeat, part: float) -> StoredHeat:
+        """Moved on by a part of the way to another state."""
+        return StoredHeat(
+            self.rise + part * (other.rise - self.rise),
+            self.turnover + part * (other.turnover - self.turnover),
+            other.largest,
+        )
+
+
+@dataclass(frozen=True)
+class Warmth:
+    """How warm bodies and faces are.
+
+    Attributes
+    ----------
+    faces : ThermalState
+    rise : ndarray, shape (n_owned,)
+        Of the nodes over the ambient [K].
+    error : float
+        Relative imbalance of heat.
+    """
+
+    faces: ThermalState
+    rise: np.ndarray
+    error: float
+
+
+@dataclass(frozen=True)
+class HeatBalance:
+    """Heat from the start on.
+
+    Attributes
+    ----------
+    made, stored, lost : float
+        By friction, in the bodies, and to their surroundings [J].
+    """
+
+    made: float
+    stored: float
+    lost: float
+
+    @property
+    def error(self) -> float:
+        """What is missing, relative to the largest of them."""
+        scale = max(abs(self.made), abs(self.stored), abs(self.lost))
+        return abs(self.made - self.stored - self.lost) / scale if scale > 0 else 0.0
+
+
+class FrozenHeat:
+    """The first moment, in which no friction heat has flowed yet.
+
+    Attributes
+    ----------
+    stored : StoredHeat
+    initial : ThermalState
+        Of the faces.
+    """
+
+    def __init__(self, stored: StoredHeat, resting: Resting):
+        nothing = np.zeros(len(resting.rise[0]))
+        self.stored = stored
+        self.initial = ThermalState(resting.rise, (nothing, nothing))
+        self._resting = resting
+
+    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+        return self.initial
+
+    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+        opening, m = self._resting.opening, basis.shape[1]
+        assert opening is not None
+        return Coupling(np.zeros((m, m)), opening)
+
+
 class FrictionHeat:
     """Couples pressure, temperature and distortion at the contact points.
-
-    The last exchange and coupling are kept, as sets of touching points seldom change.
 
     Parameters
     ----------
@@ -41,33 +247,136 @@ class FrictionHeat:
     def __init__(self, system: System, thermal: ThermalSystem):
         self._system = system
         self._thermal = thermal
-        self._per_pressure = system.friction_heat(np.ones(len(system.weights)))
-        self._exchange: tuple[bytes, HeatExchange] | None = None
-        self._coupling: tuple[bytes, Coupling] | None = None
+        self._steps: OrderedDict[float, HeatOperators] = OrderedDict()
+        self._distorts = system.case.contact.method == "condensed"
 
-    def exchange(self, closed: np.ndarray) -> HeatExchange:
-        """How heat crosses the interface for a set of touching points, shape (n,)."""
-        key = closed.tobytes()
-        if self._exchange is None or self._exchange[0] != key:
-            self._exchange = (key, self._thermal.face.exchange(closed))
-        return self._exchange[1]
+    @cached_property
+    def steady(self) -> ConductedHeat:
+        """Temperatures that do not change any more."""
+        thermal = self._thermal
+        operators = HeatOperators(thermal.conduction, thermal.face, self)
+        still = np.zeros(len(thermal.conduction.fixed))
+        return ConductedHeat(operators, None, self.at_rest(thermal.conduction.solve(still)))
 
-    def coupling(self, closed: np.ndarray) -> Coupling:
-        """What heat does to the condensed interface for a set of touching points, shape (n,)."""
-        key = closed.tobytes()
-        if self._coupling is None or self._coupling[0] != key:
-            distortion = self._system.distortion
-            assert distortion is not None  # there is a thermal system
-            per_heat, resting = distortion.per_friction_heat(self.exchange(closed))
-            compliance = per_heat @ (self._per_pressure[:, None] * self._system.basis)
-            self._coupling = (key, Coupling(compliance, resting))
-        return self._coupling[1]
+    def after(self, rise: np.ndarray, step: float) -> ConductedHeat:
+        """The end of an implicit Euler step [s] from a nodal rise (n_owned,) [K]."""
+        if step not in self._steps:
+            self._steps[step] = self._operators(step)
+            if len(self._steps) > _KEPT:
+                self._steps.popitem(last=False)
+        self._steps.move_to_end(step)
+        operators = self._steps[step]
+        stored = operators.conduction.stored(rise) / step
+        return ConductedHeat(operators, stored, self.at_rest(operators.conduction.solve(stored)))
 
-    def state(self, pressure: np.ndarray, closed: np.ndarray) -> ThermalState:
-        """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
-        return self.exchange(closed).state(self._per_pressure * pressure)
+    @cached_property
+    def frozen(self) -> FrozenHeat:
+        """The first moment; every rank calls."""
+        conduction = self._thermal.conduction
+        rise = np.where(conduction.fixed, conduction.given, self._thermal.initial)
+        resting = self.at_rest(rise)
+        return FrozenHeat(StoredHeat(rise, np.zeros(2), float(np.abs(resting.rise).max())), resting)
 
-    def hottest(self, pressure: np.ndarray) -> float:
-        """Highest temperature of both faces under a pressure at the points [K]."""
-        rise = self.state(pressure, pressure > 0).rise
-        return float(np.max(rise) + self._thermal.ambient)
+    def stored(
+        self,
+        before: StoredHeat,
+        step: float,
+        heat: ConductedHeat,
+        faces: ThermalState,
+        friction_heat: np.ndarray,
+    ) -> StoredHeat:
+        """What the bodies have stored at the end of an implicit Euler step.
+
+        Parameters
+        ----------
+        before : StoredHeat
+        step : float
+            [s]
+        heat : ConductedHeat
+            From `after`.
+        faces : ThermalState
+            At the end.
+        friction_heat : ndarray, shape (n,)
+            Likewise [W/m²].
+        """
+        conduction, face = self._thermal.conduction, self._thermal.face
+        rise = heat.rise(faces)
+        storage = conduction.stored(rise - before.rise) / step
+        lost = sum(conduction.losses(rise, face.nodal_heat(faces, bath=False), storage))
+        made = float(face.weights @ friction_heat)
+        largest = max(before.largest, float(np.abs(faces.rise).max()))
+        return StoredHeat(rise, before.turnover + step * np.array([made, lost]), largest)
+
+    def lasting(self, conditions: Conditions, pressure: np.ndarray) -> Warmth:
+        """Temperatures that do not change any more, under a pressure (n,) [Pa]."""
+        conduction, face = self._thermal.conduction, self._thermal.face
+        faces = self.steady.faces(conditions, pressure)
+        rise = self.steady.rise(faces)
+        heat = face.nodal_heat(faces, bath=False)
+        made = float(face.weights @ (conditions.heating * pressure))
+        lost = sum(conduction.losses(rise, heat))
+        scale = max(made, conduction.turnover(rise, heat))
+        return Warmth(faces, rise, abs(lost - made) / scale if scale > 0 else 0.0)
+
+    def momentary(self, stored: StoredHeat, faces: ThermalState) -> Warmth:
+        """Temperatures that are followed in time; the balance is that of all the heat so far."""
+        return Warmth(faces, stored.rise, self.balance(stored).error)
+
+    def balance(self, stored: StoredHeat) -> HeatBalance:
+        """Where all the heat so far has gone; every rank calls."""
+        made, lost = (float(heat) for heat in stored.turnover)
+        kept = self.heat_content(stored.rise) - self.heat_content(self.frozen.stored.rise)
+        return HeatBalance(made, kept, lost)
+
+    def heat_content(self, rise: np.ndarray) -> float:
+        """Heat stored in the bodies over the ambient [J]; every rank calls."""
+        content = self._thermal.conduction.stored(rise).sum()
+        return float(sum_over_ranks(self._system.comm, content))
+
+    @property
+    def ambient(self) -> float:
+        """Temperature of the surroundings [K]."""
+        return self._thermal.ambient
+
+    def first_step(self, friction_heat: float) -> float:
+        """A step to begin with: heat goes not deep in it, or makes the faces hardly warmer [s].
+
+        Half-spaces under a constant flux q are warmer by ``2 q √(t/π)/√(k ρ c)``. Infinite where
+        there is no friction heat [W/m²] to begin with.
+        """
+        if friction_heat == 0.0:
+            return np.inf
+        case, thermal = self._system.case, self._thermal
+        effusivities = (case.material(part).effusivity for part in case.geometry.facing)
+        parts = case.partition(), 1 - case.partition()
+        steepest = max(f / e for f, e in zip(parts, effusivities, strict=True)) * friction_heat
+        through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
+        return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
+
+    def at_rest(self, rise: np.ndarray) -> Resting:
+        """What a nodal rise (n_owned,) does to the interface; every rank calls."""
+        per_rise = self._per_rise if self._distorts else None
+        return at_rest(rise, self._thermal.face.traces, self._system.comm, per_rise)
+
+    def condensed(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
+        """Thermal distortion condensed to the pressure space; every rank calls."""
+        with self._system.phases("condense distortion"):
+            return condense_distortion(conduction, self._per_rise, face)
+
+    @cached_property
+    def _per_rise(self) -> np.ndarray:
+        return gap_per_rise(self._thermal.load, self._system.contact)
+
+    def _operators(self, step: float) -> HeatOperators:
+        steady = self._thermal.face
+        with self._system.phases("condense conduction"):
+            conduction = self._thermal.conduction.storing(step)
+            face = condense_heat(
+                conduction,
+                steady.weights,
+                steady.basis,
+                steady.traces,
+                steady.shift,
+                steady.partition,
+            )
+        return HeatOperators(conduction, face, self)

@@ -14,13 +14,12 @@ from ..contact.stabilisation import (
 from ..contact.traction import normal_traction, thermal_traction
 from ..errors import ComputationError
 from ..parallel import sum_over_ranks
-from .friction_heat import FrictionHeat
-from .interface_problem import Contact, WearRates
+from .contact_method import Contact, WearRates
+from .mixing import Mixing
 from .system import System
 
 _PASSES = 60
 _SETTLED = 1e-9  # of the largest pressure
-_REMEMBERED = 6
 
 
 class FullMethod:
@@ -33,37 +32,34 @@ class FullMethod:
     Parameters
     ----------
     system : System
-    heat : FrictionHeat or None
     """
 
-    def __init__(self, system: System, heat: FrictionHeat | None):
+    def __init__(self, system: System):
         self._system = system
-        self._heat = heat
         self._contact, self.note = _full_contact(system)
         still = np.zeros(len(system.elastic.fixed))
         self._dead = still if system.dead_load is None else system.dead_load
-        self._softening = None if heat is None else thermal_traction(system.elastic, system.pairing)
+        heated = system.thermal is not None
+        self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
 
-    def solve(self, gap, slope, guess: Contact | None, closed) -> Contact:
-        start = None if guess is None else guess.memory
-        if self._heat is None:
-            return self._result(self._solved(gap, slope, start, self._dead, None))
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
+        start, load = None if guess is None else guess.memory, conditions.load
+        if heat is None:
+            return self._result(self._solved(gap, slope, start, load, self._dead, None))
         pressure = np.zeros(len(gap)) if guess is None else guess.pressure
-        tried: list[np.ndarray] = []
-        missed: list[np.ndarray] = []
+        mixing = Mixing()
         for _ in range(_PASSES):
-            start = self._warm(gap, slope, start, closed, pressure)
-            tried.append(pressure)
-            missed.append(start.pressure - pressure)
-            if np.abs(missed[-1]).max() <= _SETTLED * np.abs(start.pressure).max():
+            start = self._warm(gap, slope, start, conditions, heat, pressure)
+            missed = start.pressure - pressure
+            if np.abs(missed).max() <= _SETTLED * np.abs(start.pressure).max():
                 return self._result(start)
-            pressure = _accelerated(tried[-_REMEMBERED:], missed[-_REMEMBERED:])
+            pressure = mixing.next(pressure, missed)
         raise ComputationError(
             f"contact: heat and pressure do not settle in {_PASSES} turns; reduce the speed, "
             'or use contact.method = "condensed", which solves both at once'
         )
 
-    def steady(self, pressure, rates: WearRates) -> np.ndarray:
+    def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle point by point: the full system has no pressure space of its own."""
         return pressure
 
@@ -72,18 +68,15 @@ class FullMethod:
         opened = system.trace.T @ contact.memory.displacement
         return float(np.abs(sum_over_ranks(system.comm, opened)).max())
 
-    def _warm(self, gap, slope, start, closed, pressure) -> FullSolution:
+    def _warm(self, gap, slope, start, conditions, heat, pressure) -> FullSolution:
         """Contact of bodies that the friction heat of a pressure has distorted."""
-        thermal, heat = self._system.thermal, self._heat
-        assert thermal is not None
-        assert heat is not None
-        faces = heat.state(pressure, closed)
-        rise = thermal.conduction.solve(thermal.face.nodal_heat(faces, bath=True))
+        assert self._system.thermal is not None
+        faces = heat.faces(conditions, pressure)
+        forces = self._system.thermal.forces(heat.rise(faces))
         traction = -np.asarray(self._softening) * faces.rise[0]
-        return self._solved(gap, slope, start, self._dead + thermal.forces(rise), traction)
+        return self._solved(gap, slope, start, conditions.load, self._dead + forces, traction)
 
-    def _solved(self, gap, slope, start, nodal_loads, traction) -> FullSolution:
-        load = self._system.holder.load
+    def _solved(self, gap, slope, start, load, nodal_loads, traction) -> FullSolution:
         return self._contact.solve(gap, load, slope, nodal_loads, traction, start)
 
     def _result(self, solution: FullSolution) -> Contact:
@@ -118,16 +111,3 @@ def _full_contact(system: System) -> tuple[FullContact, str | None]:
         theta,
     )
     return contact, note
-
-
-def _accelerated(tried: list[np.ndarray], missed: list[np.ndarray]) -> np.ndarray:
-    """What to try next: Anderson's mixing of what was tried and by how much it missed.
-
-    Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715, method without damping.
-    """
-    last = tried[-1] + missed[-1]
-    if len(tried) == 1:
-        return last
-    Δtried, Δmissed = np.diff(tried, axis=0).T, np.diff(missed, axis=0).T
-    mixing = np.linalg.lstsq(Δmissed, missed[-1], rcond=1e-12)[0]
-    return last - (Δtried + Δmissed) @ mixing

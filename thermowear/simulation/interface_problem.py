@@ -2,112 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Protocol
+from dataclasses import replace
 
 import numpy as np
 
-from ..errors import ComputationError
-from ..laws import WearLaw
-from ..laws.spreading import Spreading
-from .friction_heat import FrictionHeat
+from .conditions import Conditions, Surroundings
+from .contact_method import Contact, ContactMethod, WearRates, newton_with_wear
+from .friction_heat import FrictionHeat, HeatBalance, HeatStage
+from .self_consistent import Supposed, self_consistent
+from .state import ContactState
+from .steady import SteadyState
 from .system import System
+from .wear_step import WornContact
 
-_NEWTON_STEPS = 40
-
-
-@dataclass(frozen=True)
-class Contact:
-    """A solved contact.
-
-    Attributes
-    ----------
-    pressure : ndarray, shape (n,) [Pa]
-    motion : ndarray, shape (n_drives,)
-        How far the holder has made each of its motions [m or rad].
-    memory : object
-        What the method that solved it starts from next time.
-    """
-
-    pressure: np.ndarray
-    motion: np.ndarray
-    memory: Any
-
-
-class ContactMethod(Protocol):
-    """A way to solve contact with given loads: condensed, or on the full system.
-
-    Attributes
-    ----------
-    note : str or None
-        What the user should know about its settings.
-    """
-
-    note: str | None
-
-    def solve(
-        self, gap: np.ndarray, slope: np.ndarray, guess: Contact | None, closed: np.ndarray
-    ) -> Contact:
-        """Contact of bodies with friction heat and a local compliance.
-
-        Parameters
-        ----------
-        gap : ndarray, shape (n,)
-            Without pressure, heat and motion of the holder [m].
-        slope : ndarray, shape (n,)
-            Gap that each point's own pressure opens in addition to the bodies [m/Pa].
-        guess : Contact or None
-        closed : ndarray of bool, shape (n,)
-            Points that exchange heat.
-
-        Raises
-        ------
-        ComputationError
-        """
-
-    def steady(self, pressure: np.ndarray, rates) -> np.ndarray:
-        """Steady pressure as the method discretises it, from that of the principle [Pa].
-
-        Parameters
-        ----------
-        pressure : ndarray, shape (n,) [Pa]
-        rates : WearRates
-        """
-
-    def opening(self, contact: Contact) -> float:
-        """Largest change of the gap by the bodies' deformation [m]."""
-
-
-@dataclass(frozen=True)
-class WearRates:
-    """The wear laws at the contact points.
-
-    Attributes
-    ----------
-    laws : list of WearLaw
-        Of the wearing bodies.
-    spreads : list of Spreading
-        Of the same bodies.
-    speed : ndarray, shape (n,) [m/s]
-    """
-
-    laws: list[WearLaw]
-    spreads: list[Spreading]
-    speed: np.ndarray
-
-    def __call__(self, pressure: np.ndarray) -> np.ndarray:
-        """Wear rates, shape (n_wearing, n) [m/s]."""
-        local = [law.rate(pressure, self.speed) for law in self.laws]
-        return np.array([s.rate(rate) for s, rate in zip(self.spreads, local, strict=True)])
-
-    def slope(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivative of their sum by the pressure on the spot, shape (n,) [m/s/Pa].
-
-        What a track has in common hardly changes with the pressures: their sum is the load.
-        """
-        slopes = [law.slope(pressure, self.speed) for law in self.laws]
-        parts = [s.share * slope for s, slope in zip(self.spreads, slopes, strict=True)]
-        return np.sum(parts, axis=0)
+_UNWORN = (
+    "contact: neither the touching points nor what depends on temperature and pressure settle; "
+    "give the contact a (smaller) heat.conductance, or reduce the speed"
+)
+_STEP = "contact: what depends on temperature or pressure does not settle in a step"
 
 
 class InterfaceProblem:
@@ -121,127 +33,202 @@ class InterfaceProblem:
     """
 
     def __init__(self, system: System, method: ContactMethod, heat: FrictionHeat | None):
+        self._system = system
         self._method = method
         self._heat = heat
+        self._surroundings = Surroundings(system)
         self._gap = system.pairing.gap - system.holder.imposed
-        self._softness = system.softness
-        laws, spreads = list(system.laws.values()), list(system.spreads.values())
-        self.rates = WearRates(laws, spreads, system.speed)
+        self._softness = np.full(len(self._gap), system.softness)
+        self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
+        case = system.case
+        self._transient = case.heat is not None and case.heat.transient
+
+    @property
+    def stores_heat(self) -> bool:
+        """Whether temperatures are followed in time."""
+        return self._transient
 
     @property
     def note(self) -> str | None:
         """What the user should know about the settings of the method."""
         return self._method.note
 
-    def deflection(self, contact: Contact) -> float:
-        """Largest change of the gap by the bodies' deformation under a pressure [m]."""
-        return self._method.opening(contact)
+    def unworn(self) -> WornContact:
+        """Contact of the unworn faces at the temperatures that its friction leads to.
 
-    def hottest(self, pressure: np.ndarray) -> float:
-        """Highest temperature of both faces [K]; NaN without heat."""
-        return float("nan") if self._heat is None else self._heat.hottest(pressure)
-
-    def unworn(self) -> Contact:
-        """Contact of the unworn faces; the points that exchange heat are found by iteration.
+        The points that exchange heat are found by iteration.
 
         Raises
         ------
         ComputationError
-            If the set of touching points does not settle.
+            If the set of touching points, or what depends on the state, does not settle.
         """
-        nothing = np.zeros(len(self._gap))
-        closed, contact = nothing == 0, None
-        for _ in range(50):
-            contact = self.solve(nothing, 0.0, None, closed)
-            touching = contact.pressure > 0
-            if self._heat is None or np.array_equal(touching, closed):
-                return contact
-            closed = touching
-        raise ComputationError(
-            "contact: the touching points do not settle under friction heat; "
-            "give the contact a (smaller) heat.conductance"
-        )
+        nothing = self._nothing()
+        heat = None if self._heat is None else self._heat.steady
 
-    def solve(
-        self, worn: np.ndarray, step: float, guess: Contact | None, closed: np.ndarray
+        def respond(conditions: Conditions) -> WornContact:
+            contact = self._contact(nothing, 0.0, conditions, heat, None)
+            faces = None if heat is None else heat.faces(conditions, contact.pressure)
+            return WornContact(nothing, contact, faces=faces)
+
+        start = Supposed(self._guess.pressure, None if heat is None else heat.unheated)
+        return self_consistent(self._surroundings, 0.0, start, respond, _UNWORN)[1]
+
+    def worn(self, depth: np.ndarray, guess: Contact | None = None) -> Contact:
+        """Contact of faces from which a depth (n,) is worn, without heat [m]."""
+        conditions = self.conditions(WornContact(self._nothing(), self._guess), 0.0)
+        return self._contact(depth[None], 0.0, conditions, None, guess)
+
+    def start(self) -> WornContact:
+        """The unworn faces at time 0."""
+        if not self._transient:
+            return self.unworn()
+        assert self._heat is not None
+        frozen = self._heat.frozen
+        guess = WornContact(self._nothing(), self._guess)
+        guess = replace(guess, faces=frozen.initial)
+        contact = self._contact(guess.worn, 0.0, self.conditions(guess, 0.0), frozen, None)
+        return replace(guess, contact=contact, stored=frozen.stored)
+
+    def stage(
+        self, before: WornContact, step: float, time: float, guess: WornContact
+    ) -> WornContact:
+        """The end of an implicit Euler step of wear, and of heat where it is followed in time.
+
+        What depends on the state is that of the end of the step, but for the points that exchange
+        heat: those that have touched before.
+        """
+        heat, last = self._heat_at_end(before, step), guess.contact
+
+        def respond(conditions: Conditions) -> WornContact:
+            nonlocal last
+            last = self._contact(before.worn, step, conditions, heat, last)
+            faces = None if heat is None else heat.faces(conditions, last.pressure)
+            return WornContact(before.worn, last, before.peak, faces)
+
+        conditions, found = self_consistent(
+            self._surroundings, time, guess, respond, _STEP, closed=guess.pressure > 0
+        )
+        return self._moved_on(before, found, step, conditions, heat)
+
+    def conditions(self, state: WornContact, time: float) -> Conditions:
+        """What holds at the interface in a state at a time [s]."""
+        return self._surroundings.at(time, state.pressure, state.faces, state.pressure > 0)
+
+    def contact_state(self, state: WornContact, time: float) -> ContactState:
+        """What a state does to the bodies; every rank calls."""
+        conditions, warmth = self.conditions(state, time), None
+        if self._heat is not None and state.stored is not None and state.faces is not None:
+            warmth = self._heat.momentary(state.stored, state.faces)
+        elif self._heat is not None:
+            warmth = self._heat.lasting(conditions, state.pressure)
+        return ContactState(state.pressure, conditions, warmth)
+
+    def hottest(self, state: WornContact) -> float:
+        """Highest temperature of both faces [K]; NaN without heat."""
+        if self._heat is None or state.faces is None:
+            return float("nan")
+        return float(np.max(state.faces.rise)) + self._heat.ambient
+
+    def face_temperatures(self, state: WornContact) -> tuple[np.ndarray, np.ndarray]:
+        """Of both faces at the points [K], where there is heat."""
+        assert self._heat is not None
+        assert state.faces is not None
+        T1, T2 = state.faces.rise
+        return T1 + self._heat.ambient, T2 + self._heat.ambient
+
+    def heat_balance(self, state: WornContact) -> HeatBalance:
+        """Of all the heat so far, where it is followed in time; every rank calls."""
+        assert self._heat is not None
+        assert state.stored is not None
+        return self._heat.balance(state.stored)
+
+    def corners(self, end: float) -> tuple[float, ...]:
+        """Times up to an end at which loads or speed change their course [s]."""
+        return self._surroundings.corners(end)
+
+    def first_step(self, state: WornContact) -> float:
+        """A step in which wear is small against the bodies' deflection, and heat goes not far [s].
+
+        May be infinite.
+        """
+        conditions = self.conditions(state, 0.0)
+        fastest = float(self._rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0))
+        step = np.inf
+        if fastest > 0.0:
+            step = 1e-3 * self._method.opening(state.contact) / fastest
+        if self._heat is not None and self._transient:
+            made = conditions.heating * state.pressure
+            step = min(step, self._heat.first_step(float(made.max())))
+        return step
+
+    def steady(self, steady: SteadyState) -> np.ndarray:
+        """Steady pressure of the discrete interface: what a running-in of it tends to [Pa]."""
+        conditions = steady.conditions
+        return self._method.steady(steady.wear.pressure, self._rates(conditions), conditions)
+
+    def distance(self, state: WornContact, steady: np.ndarray | None) -> float:
+        """Largest difference to a steady pressure, relative to the largest of that; NaN without."""
+        if steady is None:
+            return float("nan")
+        return float(np.abs(state.pressure - steady).max() / steady.max())
+
+    def _rates(self, conditions: Conditions) -> WearRates:
+        return WearRates(self._laws, self._spreads, conditions.speed, conditions.wear)
+
+    def _nothing(self) -> np.ndarray:
+        """No wear, shape (n_wearing, n)."""
+        return np.zeros((len(self._laws), len(self._gap)))
+
+    @property
+    def _guess(self) -> Contact:
+        """The mean pressure, all over the face."""
+        area = float(self._system.weights.sum())
+        pressure = np.full(len(self._gap), (self._system.case.force() or area) / area)
+        return Contact(pressure, np.zeros(0), None)
+
+    def _heat_at_end(self, before: WornContact, step: float) -> HeatStage | None:
+        if self._heat is None:
+            return None
+        if before.stored is None:
+            return self._heat.steady
+        return self._heat.after(before.stored.rise, step)
+
+    def _moved_on(self, before, state, step, conditions, heat) -> WornContact:
+        """A state with what has accumulated in a step."""
+        worn = before.worn + step * self._rates(conditions)(state.pressure)
+        stored = None
+        if before.stored is not None:
+            assert self._heat is not None
+            made = conditions.heating * state.pressure
+            stored = self._heat.stored(before.stored, step, heat, state.faces, made)
+        return replace(state, worn=worn, stored=stored)
+
+    def _contact(
+        self,
+        worn: np.ndarray,
+        step: float,
+        conditions: Conditions,
+        heat: HeatStage | None,
+        guess: Contact | None,
     ) -> Contact:
         """Contact at the end of an implicit step of wear, by Newton's method.
 
         Each Newton step is a contact problem of its own: wear that grows with the pressure adds
         ``step · ∂rate/∂p`` to the compliance of each point.
-
-        Parameters
-        ----------
-        worn : ndarray, shape (n,)
-            Depth worn off both bodies before the step [m].
-        step : float
-            [s]; 0 for contact alone.
-        guess : Contact or None
-        closed : ndarray of bool, shape (n,)
-            Points that exchange heat.
-
-        Raises
-        ------
-        ComputationError
         """
-        gap, soft = self._gap + worn, np.full(len(worn), self._softness)
-        if guess is None or step == 0.0:
-            guess = self._method.solve(gap, soft, guess, closed)
-        if step == 0.0:
-            return guess
-        return self._with_wear(gap, step, guess, closed)
+        gap = self._gap + worn.sum(axis=0)
+        if conditions.released:  # the holder stays where it is
+            motion = np.zeros(len(self._system.holder.drives)) if guess is None else guess.motion
+            return Contact(np.zeros(len(gap)), motion, None)
 
-    def steady(self, pressure: np.ndarray) -> np.ndarray:
-        """Steady pressure of the discrete interface: what a running-in of it tends to [Pa].
+        def solve(opened, slope, last):
+            return self._method.solve(gap + opened, self._softness + slope, last, conditions, heat)
 
-        Parameters
-        ----------
-        pressure : ndarray, shape (n,)
-            The steady pressure point by point [Pa].
-        """
-        return self._method.steady(pressure, self.rates)
-
-    def distance(self, pressure: np.ndarray, steady: np.ndarray | None) -> float:
-        """Largest difference to a steady pressure, relative to the largest of that; NaN without."""
-        if steady is None:
-            return float("nan")
-        return float(np.abs(pressure - steady).max() / steady.max())
-
-    def _with_wear(self, gap, step: float, guess: Contact, closed) -> Contact:
-        return newton_with_wear(
-            lambda worn, slope, last: self._method.solve(
-                gap + worn, self._softness + slope, last, closed
-            ),
-            self.rates,
-            step,
-            guess,
-        )
-
-
-def newton_with_wear(solve, rates: WearRates, step: float, guess: Contact) -> Contact:
-    """Newton's method on contact with wear that grows with the pressure.
-
-    Parameters
-    ----------
-    solve : callable
-        Contact for a worn depth at zero pressure (n,), its slope by the pressure (n,), and a guess.
-    rates : WearRates
-    step : float
-        [s]
-    guess : Contact
-
-    Raises
-    ------
-    ComputationError
-    """
-    pressure = guess.pressure
-    for _ in range(_NEWTON_STEPS):
-        rate = step * rates(pressure).sum(axis=0)
-        slope = step * rates.slope(pressure)
-        guess = solve(rate - slope * pressure, slope, guess)
-        change = guess.pressure - pressure
-        pressure = guess.pressure
-        exact = step * rates(pressure).sum(axis=0)
-        if np.abs(exact - rate - slope * change).max() <= 1e-11 * np.abs(exact).max():
-            return guess
-    raise ComputationError("contact: Newton's method for the implicit step of wear failed")
+        still = np.zeros(len(gap))
+        if guess is not None and guess.memory is None:
+            guess = None
+        if step == 0.0 or not self._laws:
+            return solve(still, still, guess)
+        guess = guess or solve(still, still, None)
+        return newton_with_wear(solve, self._rates(conditions), step, guess)

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from .result import CycleRow, FrictionInterface, HistoryRow, Interface, LoadRow, WornTrack
+from .result import (
+    CycleRow,
+    FrictionInterface,
+    HeatRow,
+    HistoryRow,
+    Interface,
+    LoadRow,
+    WornTrack,
+)
 
 
 class Observer:
@@ -13,6 +21,9 @@ class Observer:
 
     def step(self, row: HistoryRow, distance: float) -> None:
         """A step of a transient analysis was accepted, at a distance from the steady pressure."""
+
+    def heat(self, row: HeatRow) -> None:
+        """The heat of that step, where temperatures are followed in time."""
 
     def load_step(self, row: LoadRow) -> None:
         """An increment of a fretting analysis was accepted."""

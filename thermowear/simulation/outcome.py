@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import numpy as np
+from dataclasses import dataclass, field
 
 from ..laws.motions import RigidMotion
-from .result import FrictionHistory, HistoryRow, Interface, TrackHistory
-from .state import BodyState
+from .result import FrictionHistory, HeatRow, HistoryRow, Interface, TrackHistory
+from .state import BodyState, ContactState
 
 
 @dataclass(frozen=True)
@@ -17,7 +15,7 @@ class Outcome:
 
     Attributes
     ----------
-    pressure : ndarray, shape (n,) [Pa]
+    contact : ContactState
     motion : RigidMotion
         How far the holder has moved.
     state : BodyState
@@ -30,10 +28,12 @@ class Outcome:
         Of a fretting analysis.
     track : TrackHistory or None
         Of a reciprocating analysis.
+    heat : list of HeatRow
+        Of an analysis that follows temperatures in time.
     stopped : BaseException or None
     """
 
-    pressure: np.ndarray
+    contact: ContactState
     motion: RigidMotion
     state: BodyState
     interface: Interface
@@ -42,4 +42,5 @@ class Outcome:
     outputs: dict[float, Interface]
     friction: FrictionHistory | None = None
     track: TrackHistory | None = None
+    heat: list[HeatRow] = field(default_factory=list)
     stopped: BaseException | None = None

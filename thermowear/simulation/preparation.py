@@ -24,9 +24,9 @@ def interface_problem(system: System) -> InterfaceProblem:
     """The interface of a system, solved by the method of the case. Every rank calls."""
     heat = None if system.thermal is None else FrictionHeat(system, system.thermal)
     if system.case.contact.method == "condensed":
-        return InterfaceProblem(system, CondensedMethod(system, heat), heat)
+        return InterfaceProblem(system, CondensedMethod(system), heat)
     with system.phases("contact operators"):
-        method = FullMethod(system, heat)
+        method = FullMethod(system)
     return InterfaceProblem(system, method, heat)
 
 
@@ -66,7 +66,7 @@ def touching(system: System) -> tuple[float, float]:
     ComputationError
         If the faces touch in several places, or nowhere.
     """
-    contact = interface_problem(system).unworn()
+    contact = interface_problem(system).unworn().contact
     zones = contact_zones(system.pairing, contact.pressure)
     if len(zones) != 1:
         raise ComputationError(

@@ -15,7 +15,7 @@ from .preparation import interface_problem
 from .reciprocating_problem import ReciprocatingProblem
 from .recording import interface_at
 from .result import HistoryRow, Interface, TrackHistory, WornTrack
-from .state import BodyState
+from .state import BodyState, ContactState, contact_state
 from .stroke import positions
 from .system import System
 from .transient import Moment, moments
@@ -28,9 +28,9 @@ def reciprocating(system: System, observer: Observer) -> Outcome:
     run = moments(problem, _in_time(system.case), None)
     _, stopped = go_through(system, "time stepping", run, record.keep)
     with system.phases("bodies"):
-        motion, state, interface = record.in_the_middle()
+        contact, motion, state, interface = record.in_the_middle()
     return Outcome(
-        pressure=interface.pressure,
+        contact=contact,
         motion=motion,
         state=state,
         interface=interface,
@@ -79,18 +79,18 @@ class _Record:
         if moment.is_output:
             with self._system.phases("output"):
                 time = moment.time
-                self.outputs[time] = self.in_the_middle()[2]
+                self.outputs[time] = self.in_the_middle()[3]
                 self.tracks[time] = self.worn_track()
                 self._observer.output(time, self.outputs[time], track=self.tracks[time])
 
-    def in_the_middle(self) -> tuple[RigidMotion, BodyState, Interface]:
-        """Motion of the holder, bodies and interface where body 1 passes the middle along +x."""
+    def in_the_middle(self) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
+        """Contact, motion of the holder, bodies and interface where body 1 passes the middle."""
         system, state = self._system, self.last.state
         worn, rates = (self._seen(v) for v in (state.worn, self._problem.rates(state.pressure)))
-        everywhere = np.ones(len(system.weights), dtype=bool)
-        contact = interface_problem(system).solve(worn.sum(axis=0), 0.0, None, everywhere)
-        motion = combined(system.holder.motions, contact.motion)
-        return motion, *interface_at(system, contact.pressure, motion, worn, rates=rates)
+        found = interface_problem(system).worn(worn.sum(axis=0))
+        motion = combined(system.holder.motions, found.motion)
+        contact = contact_state(system, found.pressure)
+        return contact, motion, *interface_at(system, contact, motion, worn, rates)
 
     def worn_track(self) -> WornTrack:
         """Depths along the face of body 2."""

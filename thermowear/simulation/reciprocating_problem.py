@@ -22,7 +22,7 @@ thickness t of body 1, and the amplitude A, ``W1' = κ1 F v / (2 h t)`` and
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,9 +30,10 @@ from ..contact.complementarity import solve_contact
 from ..contact.coupled import CoupledSolution, solve_coupled
 from ..contact.track import Track, track
 from ..errors import ComputationError
-from .interface_problem import Contact
+from .contact_method import Contact
 from .stroke import Position, condensed, spreading
 from .system import System
+from .wear_step import WornContact
 
 _NEWTON_STEPS = 40
 _SETTLED = 1e-11  # of the largest local rate
@@ -105,8 +106,8 @@ class ReciprocatingProblem:
         m = self._contacts.gap.shape[1]
         return depths[0, :m], depths[0, m:]
 
-    def unworn(self) -> Contact:
-        """Contact of the unworn faces in all positions."""
+    def start(self) -> WornContact:
+        """The unworn faces, in contact in all positions."""
         all_of = self._contacts
         each = zip(all_of.compliance, all_of.gap, all_of.modes, all_of.force_modes, strict=True)
         found = [
@@ -118,7 +119,8 @@ class ReciprocatingProblem:
             for name in ("coefficients", "motion", "active")
         )
         nothing = np.zeros(all_of.seen.shape[2])
-        return self._contact(CoupledSolution(λ, motion, active, nothing))
+        contact = self._contact(CoupledSolution(λ, motion, active, nothing))
+        return WornContact(np.zeros_like(self.rates(contact.pressure)), contact)
 
     def rates(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates of all depths, means over the cycle, shape (1, N) [m/s].
@@ -144,26 +146,40 @@ class ReciprocatingProblem:
             motion=self._shares @ contact.motion,
         )
 
-    def deflection(self, contact: Contact) -> float:
-        """Largest change of the gap by the bodies' deformation [m]."""
-        opened = np.einsum("jmn,jn->jm", self._contacts.compliance, contact.pressure)
-        return float((opened / self.areas[0]).max())
+    def corners(self, end: float) -> tuple[float, ...]:
+        """Nothing changes its course."""
+        return ()
 
-    def steady(self, pressure: np.ndarray) -> np.ndarray:
-        """Nothing to be made of the pressures of the principle: they do not move to and fro."""
-        return pressure
+    def first_step(self, state: WornContact) -> float:
+        """A step in which wear is small against the elastic deflection of the bodies [s]."""
+        opened = np.einsum("jmn,jn->jm", self._contacts.compliance, state.pressure)
+        fastest = float(self.rates(state.pressure).max())
+        return 1e-3 * float((opened / self.areas[0]).max()) / fastest if fastest > 0.0 else np.inf
 
-    def distance(self, pressure: np.ndarray, steady: np.ndarray | None) -> float:
+    def steady(self, steady) -> np.ndarray:
+        """Of pressures nothing is known: the ones of the principle do not move to and fro."""
+        return steady
+
+    def distance(self, state: WornContact, steady: np.ndarray | None) -> float:
         """How uneven the wear rates are, which are uniform along both faces in the end.
 
         Their largest deviation from their means, relative to these, but for the ends of the faces:
         where the punch turns round its corner carries half the load, and no mesh resolves that.
         """
-        parts = zip(self.split(self.rates(pressure)), self._places, strict=True)
+        parts = zip(self.split(self.rates(state.pressure)), self._places, strict=True)
         return max(_unevenness(rate, place) for rate, place in parts if rate.any())
 
-    def solve(self, worn: np.ndarray, step: float, guess: Contact, closed: np.ndarray) -> Contact:
-        """Contact at the end of an implicit step of wear, by Newton's method for the wear laws.
+    def stage(
+        self, before: WornContact, step: float, time: float, guess: WornContact
+    ) -> WornContact:
+        """The end of an implicit Euler step of wear."""
+        contact = self._solve(before.worn[0], step, guess.contact)
+        return replace(
+            before, worn=before.worn + step * self.rates(contact.pressure), contact=contact
+        )
+
+    def _solve(self, worn: np.ndarray, step: float, guess: Contact) -> Contact:
+        """Contact at the end of a step, by Newton's method for the wear laws.
 
         A step of it starts half way back where the last one went too far.
 
@@ -174,8 +190,6 @@ class ReciprocatingProblem:
         step : float
             [s]
         guess : Contact
-        closed : ndarray
-            Not used, as nothing exchanges heat.
 
         Raises
         ------

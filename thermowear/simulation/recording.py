@@ -6,7 +6,7 @@ import numpy as np
 
 from ..laws.motions import RigidMotion
 from .result import Interface, Profile
-from .state import BodyState, body_state
+from .state import BodyState, ContactState, body_state
 from .system import System
 
 _STEEPEST = 0.05
@@ -15,10 +15,9 @@ _STEEPEST = 0.05
 
 def interface_at(
     system: System,
-    pressure: np.ndarray,
+    contact: ContactState,
     motion: RigidMotion,
     worn: np.ndarray,
-    shear: np.ndarray | None = None,
     rates: np.ndarray | None = None,
 ) -> tuple[BodyState, Interface]:
     """Solve the bodies and record the interface. Every rank calls.
@@ -26,36 +25,37 @@ def interface_at(
     Parameters
     ----------
     system : System
-    pressure : ndarray, shape (n,) [Pa]
+    contact : ContactState
     motion : RigidMotion
         Of the holder.
     worn : ndarray, shape (2, n)
         Depth worn off each body [m].
-    shear : ndarray, shape (n,), optional
-        See `body_state` [Pa].
     rates : ndarray, shape (2, n), optional
         See `record` [m/s].
     """
-    state = body_state(system, pressure, shear)
+    state = body_state(system, contact)
     lost = system.pairing.gap + worn.sum(axis=0)
     moved = motion.at(system.pairing.points)
     gap = (
         lost
-        + system.softness * pressure
+        + system.softness * contact.pressure
         + state.opening
         - np.einsum("ni,ni->n", system.pairing.normals, moved)
     )
-    return state, record(system, pressure, state, gap, lost.max() - lost, worn, rates)
+    return state, record(system, contact, state, gap, lost.max() - lost, worn, rates)
 
 
-def record(system: System, pressure, state: BodyState, gap, shape, worn, rates=None) -> Interface:
+def record(
+    system: System, contact: ContactState, state: BodyState, gap, shape, worn, rates=None
+) -> Interface:
     """The interface as it is written out; arrays of shape (n,), `worn` of (2, n).
 
     Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
     """
+    pressure = contact.pressure
     points = system.pairing.points
     nothing = np.full(len(pressure), np.nan)
-    rates = _local_rates(system, pressure) if rates is None else rates
+    rates = _local_rates(system, contact) if rates is None else rates
     temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
     fluxes = temperatures
     if state.thermal is not None and system.thermal is not None:
@@ -82,10 +82,11 @@ def record(system: System, pressure, state: BodyState, gap, shape, worn, rates=N
     )
 
 
-def _local_rates(system: System, pressure: np.ndarray) -> np.ndarray:
-    rates = np.zeros((2, len(pressure)))
-    for index, law in system.laws.items():
-        rates[index] = system.spreads[index].rate(law.rate(pressure, system.speed))
+def _local_rates(system: System, contact: ContactState) -> np.ndarray:
+    rates = np.zeros((2, len(contact.pressure)))
+    for row, (index, law) in enumerate(system.laws.items()):
+        local = law.rate(contact.pressure, contact.conditions.speed)
+        rates[index] = system.spreads[index].rate(contact.conditions.wear[row] * local)
     return rates
 
 

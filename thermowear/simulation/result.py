@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -70,6 +70,28 @@ class HistoryRow:
     approach: float
     step: float
     error: float
+
+
+@dataclass(frozen=True)
+class HeatRow:
+    """A step of an analysis in which temperatures are followed in time.
+
+    Names and units are those of ``heat.csv``. Heat is counted from the start on; temperatures are
+    those of the faces, means are taken over their area.
+    """
+
+    time: float
+    speed: float
+    normal_force: float
+    friction_power: float
+    heat_in: float
+    heat_stored: float
+    heat_lost: float
+    balance_error: float
+    max_temperature_1: float
+    max_temperature_2: float
+    mean_temperature_1: float
+    mean_temperature_2: float
 
 
 @dataclass(frozen=True)
@@ -218,6 +240,8 @@ class Result:
         Of a reciprocating analysis.
     stopped : Exception or None
         What ended the run before its time.
+    heat : list of HeatRow
+        Of an analysis that follows temperatures in time.
     """
 
     interface: Interface
@@ -229,3 +253,4 @@ class Result:
     friction: FrictionHistory | None = None
     track: TrackHistory | None = None
     stopped: BaseException | None = None
+    heat: list[HeatRow] = field(default_factory=list)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..case.analyses import Transient
 from ..case.schema import Case
 from ..errors import ComputationError
-from ..laws import SteadyWear
 from ..laws.motions import combined
-from .drives import reference_point
 from .fields import sample
 from .fretting import fretting
-from .guarded import go_through
 from .interface_problem import InterfaceProblem
 from .observer import Observer
 from .outcome import Outcome
@@ -20,12 +19,12 @@ from .phases import Phases
 from .preparation import interface_problem, prepare
 from .reciprocating import reciprocating
 from .recording import interface_at, profile, record
-from .result import HistoryRow, Interface, Result
-from .state import BodyState, body_state
-from .steady import least_worn, steady_wear
+from .result import Result
+from .running_in import running_in
+from .state import body_state
+from .steady import SteadyState, least_worn, steady_state
 from .summary import summarise
 from .system import System
-from .transient import Moment, moments
 
 _UNPAIRED = 1e-6
 _VELOCITIES = {
@@ -76,7 +75,7 @@ def run(
             "stays out of the contact"
         )
     outcome = _ANALYSES[case.analysis.type](system, observer)
-    if _outgrown(system, outcome.pressure):
+    if _outgrown(system, outcome.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
@@ -94,6 +93,7 @@ def run(
         outcome.friction,
         outcome.track,
         outcome.stopped,
+        outcome.heat,
     )
 
 
@@ -124,19 +124,24 @@ def _problem(system: System, observer: Observer) -> InterfaceProblem:
 def _initial(system: System, observer: Observer) -> Outcome:
     """Contact of the unworn faces."""
     with system.phases("contact"):
-        contact = _problem(system, observer).unworn()
-    still = np.zeros((2, len(contact.pressure)))
-    motion = combined(system.holder.motions, contact.motion)
-    state, interface = interface_at(system, contact.pressure, motion, still)
-    return Outcome(contact.pressure, motion, state, interface, {"steps": 0}, [], {})
+        problem = _problem(system, observer)
+        unworn = problem.unworn()
+    with system.phases("bodies"):
+        contact = problem.contact_state(unworn, 0.0)
+        motion = combined(system.holder.motions, unworn.contact.motion)
+        still = np.zeros((2, len(contact.pressure)))
+        state, interface = interface_at(system, contact, motion, still)
+    return Outcome(contact, motion, state, interface, {"steps": 0}, [], {})
 
 
 def _steady(system: System, observer: Observer) -> Outcome:
     """The steady state; the faces are as if they had worn into each other."""
     with system.phases("steady principle"):
-        steady = steady_wear(system)
+        found = steady_state(system)
     with system.phases("bodies"):
-        state = body_state(system, steady.pressure)
+        contact = found.contact
+        state = body_state(system, contact)
+    steady = found.wear
     pressing = steady.pressure > 0
     # the holder stands where the unworn faces would lose just enough material to fit
     opening = state.opening + system.softness * steady.pressure
@@ -145,7 +150,7 @@ def _steady(system: System, observer: Observer) -> Outcome:
     shape = lost[pressing].max() - lost
     interface = record(
         system,
-        steady.pressure,
+        contact,
         state,
         gap=np.where(pressing, 0.0, np.nan),
         shape=shape,
@@ -157,24 +162,32 @@ def _steady(system: System, observer: Observer) -> Outcome:
         "wear_dissipation_W": steady.dissipation,
     }
     motion = combined(system.holder.motions, amounts)
-    return Outcome(steady.pressure, motion, state, interface, extra, [], {})
+    return Outcome(contact, motion, state, interface, extra, [], {})
 
 
-def _principle(system: System, settings: Transient) -> SteadyWear | None:
+def _principle(system: System, settings: Transient) -> SteadyState | None:
     """The steady state that a running-in tends to; None where there is none.
 
-    There is none where nothing presses in the end, where the contact grows, or where the principle
-    has no solution.
+    There is none where nothing presses in the end, where the contact grows, where load or speed
+    change in time, or where the principle has no solution.
     """
     free, grows = system.holder.free, any(_beyond(system))
     if not (len(free) and free.all()) or (grows and settings.until is None):
         return None
+    if _changes(system.case) or not system.laws:
+        return None
     try:
-        return steady_wear(system)
+        return steady_state(system)
     except ComputationError:
         if settings.until == "steady":
             raise
         return None
+
+
+def _changes(case: Case) -> bool:
+    """Whether load or speed change in time."""
+    motion = case.motion
+    return case.load.history is not None or (motion is not None and motion.history is not None)
 
 
 def _wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:
@@ -187,42 +200,13 @@ def _wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, flo
 
 
 def _transient(system: System, observer: Observer) -> Outcome:
-    """Running-in. What was computed before an error or Ctrl-C is kept."""
+    """Running-in, with what the steady state that it tends to adds to the summary."""
     settings = system.case.analysis
     assert isinstance(settings, Transient)
     steady = _principle(system, settings)
-    problem = _problem(system, observer)
-    history: list[HistoryRow] = []
-    outputs: dict[float, Interface] = {}
-
-    def keep(moment: Moment) -> None:
-        history.append(_row(system, problem, moment))
-        observer.step(history[-1], moment.distance)
-        if moment.is_output:
-            with system.phases("output"):
-                outputs[moment.time] = _moment(system, moment)[1]
-                observer.output(moment.time, outputs[moment.time])
-
-    passing = moments(problem, settings, None if steady is None else steady.pressure)
-    last, stopped = go_through(system, "time stepping", passing, keep)
-    with system.phases("bodies"):
-        state, interface = _moment(system, last)
-    extra = {
-        "steps": len(history) - 1,
-        "time_s": last.time,
-        "distance_from_steady": None if steady is None else last.distance,
-        **_wear_velocity(system, None if steady is None else steady.velocity),
-    }
-    return Outcome(
-        pressure=last.state.pressure,
-        motion=combined(system.holder.motions, last.state.contact.motion),
-        state=state,
-        interface=interface,
-        extra=extra,
-        history=history,
-        outputs=outputs,
-        stopped=stopped,
-    )
+    outcome = running_in(system, _problem(system, observer), steady, observer)
+    velocity = _wear_velocity(system, None if steady is None else steady.wear.velocity)
+    return replace(outcome, extra=outcome.extra | velocity)
 
 
 _ANALYSES = {
@@ -232,41 +216,3 @@ _ANALYSES = {
     "fretting": fretting,
     "reciprocating": reciprocating,
 }
-
-
-def _by_body(system: System, worn: np.ndarray) -> np.ndarray:
-    """Rows for both bodies from rows for the wearing ones, shape (2, n)."""
-    both = np.zeros((2, worn.shape[1]))
-    both[list(system.laws)] = worn
-    return both
-
-
-def _row(system: System, problem: InterfaceProblem, moment: Moment) -> HistoryRow:
-    pressure = moment.state.pressure
-    volumes = system.worn_volumes(_by_body(system, moment.state.worn))
-    mean_speed = float(np.average(system.speed, weights=system.weights))
-    return HistoryRow(
-        time=moment.time,
-        sliding_distance=mean_speed * moment.time,
-        max_pressure=float(pressure.max()),
-        contact_area=float(system.weights[pressure > 0].sum()),
-        wear_volume_1=float(volumes[0]),
-        wear_volume_2=float(volumes[1]),
-        max_temperature=problem.hottest(pressure),
-        approach=_approach(system, moment),
-        step=moment.step,
-        error=moment.error,
-    )
-
-
-def _approach(system: System, moment: Moment) -> float:
-    """How far the holder has moved along the press, at its pivot [m]."""
-    moved = combined(system.holder.motions, moment.state.contact.motion)
-    return float(moved.at(reference_point(system.case)) @ system.press)
-
-
-def _moment(system: System, moment: Moment) -> tuple[BodyState, Interface]:
-    contact = moment.state.contact
-    motion = combined(system.holder.motions, contact.motion)
-    worn = _by_body(system, moment.state.worn)
-    return interface_at(system, contact.pressure, motion, worn)

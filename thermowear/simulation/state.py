@@ -12,7 +12,40 @@ from ..contact.tangential import tangents
 from ..contact.traces import vector_trace
 from ..laws.motions import translation
 from ..parallel import sum_over_ranks
+from .conditions import Conditions, Surroundings
+from .friction_heat import FrictionHeat, Warmth
 from .system import System
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """What the contact does to the bodies.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (n,) [Pa]
+    conditions : Conditions
+    warmth : Warmth or None
+        None without heat.
+    shear : ndarray or None, shape (n,)
+        Traction of sticking and slipping on body 1, see `contact.tangential` [Pa].
+    """
+
+    pressure: np.ndarray
+    conditions: Conditions
+    warmth: Warmth | None
+    shear: np.ndarray | None = None
+
+
+def contact_state(
+    system: System, pressure: np.ndarray, shear: np.ndarray | None = None
+) -> ContactState:
+    """Of a contact whose conditions depend on nothing but where it touches. Every rank calls."""
+    conditions = Surroundings(system).at(0.0, pressure, None, pressure > 0)
+    warmth = None
+    if system.thermal is not None:
+        warmth = FrictionHeat(system, system.thermal).lasting(conditions, pressure)
+    return ContactState(pressure, conditions, warmth, shear)
 
 
 @dataclass(frozen=True)
@@ -44,16 +77,10 @@ class BodyState:
     force_error: float
 
 
-def body_state(system: System, pressure: np.ndarray, shear: np.ndarray | None = None) -> BodyState:
-    """Solve the bodies for what the contact does to them. Every rank calls.
-
-    Parameters
-    ----------
-    system : System
-    pressure : ndarray, shape (n,) [Pa]
-    shear : ndarray, shape (n,), optional
-        Traction of sticking and slipping on body 1, see `contact.tangential` [Pa].
-    """
+def body_state(system: System, contact: ContactState) -> BodyState:
+    """Solve the bodies for what the contact does to them. Every rank calls."""
+    system = system.rubbing(contact.conditions.friction)
+    pressure, shear, warmth = contact.pressure, contact.shear, contact.warmth
     thermal, rise, hottest, heat_error = None, None, float("nan"), float("nan")
     loads = traction = system.traction @ (system.weights * pressure)
     if shear is not None:
@@ -62,29 +89,24 @@ def body_state(system: System, pressure: np.ndarray, shear: np.ndarray | None = 
         loads = traction = traction + along @ (system.weights * shear)
     if system.dead_load is not None:
         loads = traction = traction + system.dead_load
-    if system.thermal is not None:
-        face, conduction = system.thermal.face, system.thermal.conduction
-        generated = system.friction_heat(pressure)
-        thermal = face.exchange(pressure > 0).state(generated)
-        rise = conduction.solve(face.nodal_heat(thermal, bath=True))
+    if warmth is not None and system.thermal is not None:
+        thermal, rise, heat_error = warmth.faces, warmth.rise, warmth.error
         loads = traction + system.thermal.forces(rise)
         highest = max(system.comm.allgather(float(rise.max(initial=-np.inf))))
         hottest = max(highest, float(np.max(thermal.rise))) + system.thermal.ambient
-        outflow, turnover = conduction.outflow(rise, face.nodal_heat(thermal, bath=False))
-        power = float(system.weights @ generated)
-        heat_error = abs(outflow - power) / max(power, turnover)
     displacement = system.elastic.solve(loads)
     opening = sum_over_ranks(system.comm, system.trace.T @ displacement)
-    force_error = _force_error(system, pressure, shear, displacement, loads)
+    force_error = _force_error(system, contact, displacement, loads)
     return BodyState(displacement, rise, opening, thermal, hottest, heat_error, force_error)
 
 
-def _force_error(system: System, pressure, shear, displacement, loads) -> float:
+def _force_error(system: System, contact: ContactState, displacement, loads) -> float:
     """How far the supports' reactions are from what the holder gives, relative to it.
 
     Along every motion of the holder it must push body 1 with its load, or with what the contact
     carries where the motion is given, and the support must push body 2 back.
     """
+    pressure, shear = contact.pressure, contact.shear
     drives = system.holder.drives or (Drive(translation(system.press), amount=0.0),)
     holder = hold(system.pairing, system.pull, drives)
     weights, points = system.weights, system.pairing.points
@@ -99,14 +121,21 @@ def _force_error(system: System, pressure, shear, displacement, loads) -> float:
         carried = carried - weights * shear * np.einsum("kni,ni->kn", moved, along)
     dead = np.zeros_like(displacement) if system.dead_load is None else system.dead_load
     errors, scales = [], []
+    pressed = _part(contact.conditions.load, system.holder.load)
     for drive, share in zip(holder.drives, carried, strict=True):
         moved = drive.motion.at(nodes)
         work = (reactions * moved).sum(axis=1)
         parts = work[upper].sum(), work[~upper].sum(), dead @ moved.ravel()
         held, supported, given = sum_over_ranks(system.comm, np.array(parts))
         found = share.sum()
-        # the largest of a history may be over
-        load = found if drive.load is None or shear is not None else drive.load
+        # the largest of a history of loads may be over
+        load = found if drive.load is None or shear is not None else pressed * drive.load
         errors.append(max(abs(held + given - load), abs(supported + found)))
         scales.append(np.abs(share).sum() + abs(given))
-    return max(e / s if s > 0 else 0.0 for e, s in zip(errors, scales, strict=True))
+    return float(max(e / s if s > 0 else 0.0 for e, s in zip(errors, scales, strict=True)))
+
+
+def _part(load: np.ndarray, largest: np.ndarray) -> float:
+    """How much of the loads of the case there is."""
+    size = float(largest @ largest)
+    return float(load @ largest) / size if size > 0 else 1.0

@@ -2,23 +2,94 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.optimize import linprog
 
+from ..contact.heat import ThermalState
+from ..errors import ComputationError
 from ..laws import SteadyWear, steady_pressure
+from .conditions import Conditions, Surroundings
+from .friction_heat import FrictionHeat
+from .self_consistent import Supposed, self_consistent
+from .state import ContactState
 from .system import System
 
+_NONE = (
+    "no steady state found: each turn of the principle changes friction, wear or conductance, so "
+    "that it leads to another one; reduce the speed or the load, or follow the running-in in time"
+)
 
-def steady_wear(system: System) -> SteadyWear:
-    """Steady pressure, wear rates and rigid-body wear velocity of a system."""
+
+@dataclass(frozen=True)
+class SteadyState:
+    """The steady state of a system.
+
+    Attributes
+    ----------
+    wear : SteadyWear
+    contact : ContactState
+    """
+
+    wear: SteadyWear
+    contact: ContactState
+
+    @property
+    def conditions(self) -> Conditions:
+        """What holds at the interface in it."""
+        return self.contact.conditions
+
+
+def steady_state(system: System) -> SteadyState:
+    """Pressure, wear rates and rigid-body wear velocity of a system. Every rank calls.
+
+    Where friction, wear or conductance depend on the state that they lead to, it is a fixed point.
+
+    Raises
+    ------
+    ComputationError
+        If there is no steady state, or no fixed point is found.
+    """
+    heat = None if system.thermal is None else FrictionHeat(system, system.thermal)
+    area = float(system.weights.sum())
+    even = np.full(len(system.weights), (system.case.force() or area) / area)
+    start = Supposed(even, None if heat is None else heat.steady.unheated)
+
+    def respond(conditions: Conditions) -> _Worn:
+        wear = _principle(system, conditions)
+        faces = None if heat is None else heat.steady.faces(conditions, wear.pressure)
+        return _Worn(wear, faces)
+
+    conditions, found = self_consistent(Surroundings(system), 0.0, start, respond, _NONE)
+    warmth = None if heat is None else heat.lasting(conditions, found.pressure)
+    return SteadyState(found.wear, ContactState(found.pressure, conditions, warmth))
+
+
+@dataclass(frozen=True)
+class _Worn:
+    """The principle's answer to some conditions."""
+
+    wear: SteadyWear
+    faces: ThermalState | None
+
+    @property
+    def pressure(self) -> np.ndarray:
+        return self.wear.pressure
+
+
+def _principle(system: System, conditions: Conditions) -> SteadyWear:
+    """The steady state under given conditions."""
+    holder = system.rubbing(conditions.friction).holder
     return steady_pressure(
         weights=system.weights,
-        normal_modes=system.holder.modes,
-        force_modes=system.holder.force_modes,
-        load=system.holder.load,
+        normal_modes=holder.modes,
+        force_modes=holder.force_modes,
+        load=conditions.load,
         laws=list(system.laws.values()),
-        speed=system.speed,
+        speed=conditions.speed,
         spread=list(system.spreads.values()),
+        factors=conditions.wear,
     )
 
 

@@ -16,6 +16,7 @@ from ..contact.traces import gap_trace, vector_trace
 from ..contact.track import Track
 from ..errors import CaseError
 from .drives import drives
+from .parts import Parts
 from .system import System, contact_points
 
 _UNPAIRED = 1e-6
@@ -108,8 +109,10 @@ def moved(system: System, offset: float, way: int) -> System:
         traction=vector_trace(elastic.space, pairing, pull) if drags else trace,
         basis=basis,
         holder=hold(in_place, pull, drives(case, in_place)),
+        slides=slides,
         pull=pull,
         speed=slides.speed,
+        parts=Parts(),  # other points: nothing condensed to them is at hand
     )
 
 

@@ -31,8 +31,9 @@ _ROTATIONS = {
 def summarise(system: System, outcome: Outcome) -> dict:
     """All numbers of ``summary.json`` but the seconds. Quantities that do not exist are None."""
     case, w = system.case, system.weights
-    p, interface = outcome.pressure, outcome.interface
-    friction = system.friction * p
+    contact, interface = outcome.contact, outcome.interface
+    p, friction = contact.pressure, contact.conditions.friction * contact.pressure
+    system = system.rubbing(contact.conditions.friction)
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
     volumes = system.worn_volumes(np.array([interface.wear_1, interface.wear_2]))
@@ -45,7 +46,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "dofs_temperature": _thermal_dofs(system),
         "contact_points": len(w),
         "friction": system.friction,
-        "normal_force_N": _normal_force(system, p),
+        "normal_force_N": normal_force(system, p),
         "friction_force_N": float(w @ friction),
         "friction_torque_Nm": _torque(system, friction),
         "guide_force_N": None,
@@ -57,7 +58,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "shape_range_m": float(np.ptp(interface.shape)),
         "approach_m": float(outcome.motion.at(reference_point(case)) @ system.press),
         "max_temperature_K": _number(outcome.state.hottest),
-        "friction_power_W": float(w @ system.friction_heat(p)),
+        "friction_power_W": float(w @ (contact.conditions.heating * p)),
         "heat_balance_relative_error": _number(outcome.state.heat_error),
         "equilibrium_relative_error": outcome.state.force_error,
         "rigid_wear_velocity_m_per_s": None,
@@ -69,7 +70,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
     return summary | _guide_reactions(system, p) | _rotations(system, outcome) | outcome.extra
 
 
-def _normal_force(system: System, pressure: np.ndarray) -> float:
+def normal_force(system: System, pressure: np.ndarray) -> float:
     """Force along the press that the pressure and its friction carry [N]."""
     return float(system.weights @ (pressure * (system.pull @ system.press)))
 

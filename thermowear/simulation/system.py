@@ -13,9 +13,8 @@ from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
 from ..bulk.kinematics import Model, section_model
 from ..bulk.surface_load import surface_load
 from ..case.schema import Case
-from ..contact.condensation import CondensedContact, condense
+from ..contact.condensation import CondensedContact, influence
 from ..contact.face import gather_face
-from ..contact.heat import ThermalDistortion, condense_distortion
 from ..contact.holder import Holder, hold
 from ..contact.pairing import Pairing, pair
 from ..contact.pressure import pressure_basis
@@ -26,6 +25,7 @@ from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
 from ..parallel import on_root, sum_over_ranks
 from .drives import drives
 from .initial_shape import initial_depth
+from .parts import Inputs, Parts, inputs
 from .phases import Phases
 from .thermal_system import ThermalSystem, thermal_system
 
@@ -45,6 +45,8 @@ class System:
     basis : ndarray, shape (n, m)
         Ψ.
     holder : Holder
+    slides : Sliding or None
+        How body 1 slides; None where nothing does.
     pull : ndarray, shape (n, gdim)
         ``n + mu e``: the traction on body 1 is minus the pressure times it.
     speed : ndarray, shape (n,)
@@ -53,6 +55,10 @@ class System:
         Nodal forces of loads on surfaces [N].
     thermal : ThermalSystem or None
     phases : Phases
+    parts : Parts
+        Those that it shares with the systems of other cases.
+    inputs : Inputs
+        What they are made from.
     """
 
     case: Case
@@ -63,11 +69,14 @@ class System:
     traction: sp.csr_matrix
     basis: np.ndarray
     holder: Holder
+    slides: Sliding | None
     pull: np.ndarray
     speed: np.ndarray
     dead_load: np.ndarray | None
     thermal: ThermalSystem | None
     phases: Phases
+    parts: Parts
+    inputs: Inputs
 
     @property
     def comm(self):
@@ -138,59 +147,77 @@ class System:
     @cached_property
     def contact(self) -> CondensedContact:
         """Elasticity condensed to the pressure space."""
+        hot = self.thermal is not None
+        bodies = self.elastic, self.pairing, self.trace, self.basis
         with self.phases("condense elasticity"):
-            return condense(
-                self.elastic,
-                self.pairing,
-                self.trace,
-                self.traction,
-                self.basis,
-                self.holder,
-                keep_influence=self.thermal is not None,
+            answers = self.parts.get(
+                "influence", self.inputs.elasticity, lambda: influence(*bodies, keep_whole=hot)
             )
+            return answers.condensed(self.traction, self.holder)
 
-    @cached_property
-    def distortion(self) -> ThermalDistortion | None:
-        """Thermal distortion condensed to the pressure space; None without heat."""
-        thermal, contact = self.thermal, self.contact
-        if thermal is None:
-            return None
-        with self.phases("condense distortion"):
-            return condense_distortion(thermal.conduction, thermal.load, contact, thermal.face)
+    def rubbing(self, friction: np.ndarray) -> System:
+        """The same bodies with coefficients of friction (n,) that are not the nominal one."""
+        if self.slides is None or np.all(friction == self.friction):
+            return self
+        transverse = self.case.contact.transverse_friction
+        pull = self.slides.pull(self.pairing.normals, friction[:, None], transverse)
+        drags = not np.array_equal(pull, self.pairing.normals)
+        return replace(
+            self,
+            holder=hold(self.pairing, pull, self.holder.drives),
+            pull=pull,
+            traction=vector_trace(self.elastic.space, self.pairing, pull) if drags else self.trace,
+        )
 
-    def friction_heat(self, pressure: np.ndarray) -> np.ndarray:
-        """``q = mu p v`` at the points [W/m²]."""
-        return self.friction * pressure * self.speed
 
-
-def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = None) -> System:
+def build(
+    case: Case,
+    comm,
+    phases: Phases,
+    zone: tuple[float, float] | None = None,
+    parts: Parts | None = None,
+) -> System:
     """Mesh, pair and assemble a case. Every rank calls.
+
+    Parameters
+    ----------
+    case : Case
+    comm : mpi4py.MPI.Comm
+    phases : Phases
+    zone : tuple of float, optional
+        Range of x to mesh for, by default where the case expects contact [m].
+    parts : Parts, optional
+        Of systems built before on the same ranks; what this one can share is not made again.
 
     Raises
     ------
     CaseError
         If the geometry cannot be meshed or paired.
     """
-    degree, geometry = case.mesh.degree, case.geometry
+    parts, made_from = Parts() if parts is None else parts, inputs(case, zone)
+    geometry = case.geometry
     model = section_model(case.model, geometry.thickness_factor, geometry.sector)
     with phases("mesh"):
-        bodies = distribute(on_root(comm, lambda: case.tagged_mesh(zone)), comm)
+        bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(case, comm, zone))
     with phases("pair"):
-        faces = [gather_face(bodies, surface) for surface in geometry.contact]
-        pairing, basis = contact_points(case, comm, model, *faces)
+        pairing, basis = parts.get(
+            "points", made_from.mesh, lambda: _paired(case, comm, model, bodies)
+        )
+    with phases("assemble elasticity"):
+        elastic, trace = parts.get(
+            "elasticity", made_from.elasticity, lambda: _elastic(case, model, bodies, pairing)
+        )
     slides = _sliding(case, model, pairing)
     pull, speed = pairing.normals, np.zeros(len(pairing.weights))
     if slides is not None:
         friction = case.contact.friction, case.contact.transverse_friction
         pull, speed = slides.pull(pairing.normals, *friction), slides.speed
-    with phases("assemble elasticity"):
-        materials = {name: _elastic_material(case, name) for name in geometry.parts}
-        clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
-        elastic = elasticity(
-            bodies, model, degree, materials, clamped, geometry.symmetry, geometry.rollers
-        )
-    trace = gap_trace(elastic.space, pairing)
     drags = not np.array_equal(pull, pairing.normals)
+    thermal = parts.get(
+        "conduction",
+        made_from.conduction,
+        lambda: thermal_system(case, bodies, model, pairing, elastic, basis, phases),
+    )
     return System(
         case=case,
         bodies=bodies,
@@ -200,12 +227,48 @@ def build(case: Case, comm, phases: Phases, zone: tuple[float, float] | None = N
         traction=vector_trace(elastic.space, pairing, pull) if drags else trace,
         basis=basis,
         holder=hold(pairing, pull, drives(case, pairing)),
+        slides=slides,
         pull=pull,
         speed=speed,
         dead_load=_dead_load(case, elastic),
-        thermal=thermal_system(case, bodies, model, pairing, elastic, basis, phases),
+        thermal=None if thermal is None else _exchanging(thermal, case),
         phases=phases,
+        parts=parts,
+        inputs=made_from,
     )
+
+
+def _meshed(case: Case, comm, zone: tuple[float, float] | None) -> Bodies:
+    return distribute(on_root(comm, lambda: case.tagged_mesh(zone)), comm)
+
+
+def _paired(case: Case, comm, model: Model, bodies: Bodies) -> tuple[Pairing, np.ndarray]:
+    faces = [gather_face(bodies, surface) for surface in case.geometry.contact]
+    return contact_points(case, comm, model, *faces)
+
+
+def _elastic(
+    case: Case, model: Model, bodies: Bodies, pairing: Pairing
+) -> tuple[Elasticity, sp.csr_matrix]:
+    """The elastic bodies, and the trace of the gap in their space."""
+    geometry = case.geometry
+    materials = {name: _elastic_material(case, name) for name in geometry.parts}
+    clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
+    elastic = elasticity(
+        bodies,
+        model,
+        case.mesh.degree,
+        materials,
+        clamped,
+        geometry.symmetry,
+        geometry.rollers,
+    )
+    return elastic, gap_trace(elastic.space, pairing)
+
+
+def _exchanging(thermal: ThermalSystem, case: Case) -> ThermalSystem:
+    """The same bodies with the partition of this case."""
+    return replace(thermal, face=replace(thermal.face, partition=case.partition()))
 
 
 def _sliding(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
@@ -213,7 +276,9 @@ def _sliding(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
     if case.motion is None:
         return None
     geometry = case.geometry
-    velocity = model.sliding(pairing.points, case.motion.one_way, geometry.rotation_center)
+    velocity = model.sliding(
+        pairing.points, case.motion.one_way, geometry.rotation_center, geometry.slides_across
+    )
     return sliding(velocity, pairing.normals, geometry.press_direction)
 
 

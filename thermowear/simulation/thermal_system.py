@@ -8,8 +8,9 @@ from petsc4py import PETSc
 
 import numpy as np
 
+from ..bulk.advection import Passage
 from ..bulk.bodies import Bodies
-from ..bulk.conduction import Conduction, conduction
+from ..bulk.conduction import Conduction, ThermalMaterial, conduction
 from ..bulk.elasticity import Elasticity
 from ..bulk.field import lagrange_space
 from ..bulk.kinematics import Model
@@ -32,12 +33,18 @@ class ThermalSystem:
     face : InterfaceHeat
     ambient : float
         [K]
+    initial : float
+        Rise over it at the start of a run that follows temperatures in time [K].
+    diffusivity : float
+        The largest of the materials; zero where none is known [m²/s].
     """
 
     conduction: Conduction
     load: PETSc.Mat
     face: InterfaceHeat
     ambient: float
+    initial: float
+    diffusivity: float
 
     def forces(self, rise: np.ndarray) -> np.ndarray:
         """Nodal forces of a temperature rise, owned rows [N]."""
@@ -64,30 +71,54 @@ def thermal_system(
         space = lagrange_space(bodies.mesh, case.mesh.degree)
         upper, lower = pairing.sides
         traces = (value_trace(space, upper), value_trace(space, lower))
-        conductivities, cooling = _round_the_ring(case)
-        shift = max(conductivities.values()) / pairing.extent
+        materials, cooling = _round_the_ring(case)
+        shift = max(m.conductivity for m in materials.values()) / pairing.extent
         given = {name: value - heat.ambient for name, value in heat.temperature.items()}
         bath = bath_matrix(space, traces, pairing.weights, shift)
-        conducting = conduction(bodies, model, space, conductivities, cooling, given, bath)
+        passage = _passage(case)
+        conducting = conduction(bodies, model, space, materials, cooling, given, bath, passage)
         load = elastic.thermal_load(space)
     with phases("condense conduction"):
-        face = condense_heat(
-            conducting, pairing.weights, basis, traces, shift, heat.conductance, heat.partition
-        )
-    return ThermalSystem(conducting, load, face, heat.ambient)
+        face = condense_heat(conducting, pairing.weights, basis, traces, shift, case.partition())
+    diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
+    initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
+    return ThermalSystem(conducting, load, face, heat.ambient, initial, diffusivity)
 
 
-def _round_the_ring(case: Case) -> tuple[dict[str, float], dict[str, float]]:
-    """Conductivities by body and heat transfer by surface, for the modelled sector.
+def _passage(case: Case) -> Passage | None:
+    """How body 2 passes under body 1; None where that is left out of the conduction."""
+    heat, geometry, motion = case.heat, case.geometry, case.motion
+    assert heat is not None
+    if heat.advection == "none" or motion is None:
+        return None
+    parts, center = geometry.parts_of(geometry.bodies[1]), geometry.rotation_center
+    one_way = motion.one_way  # of body 1 over body 2 along x, of body 2 about a centre
+    speed = -(one_way.velocity or 0.0) if center is None else one_way.angular_velocity or 0.0
+    return Passage(parts, center, speed, spread=heat.advection == "spread")
+
+
+def thermal_material(case: Case, part: str) -> ThermalMaterial:
+    """What a part conducts and stores."""
+    material = case.material(part)
+    assert material.conductivity is not None  # the case has been checked
+    if material.density is None or material.specific_heat is None:
+        return ThermalMaterial(material.conductivity)
+    return ThermalMaterial(material.conductivity, material.density * material.specific_heat)
+
+
+def _round_the_ring(case: Case) -> tuple[dict[str, ThermalMaterial], dict[str, float]]:
+    """Materials by part and heat transfer by surface, for the modelled sector.
 
     Under a body 1 that takes up a sector, all of a turning body 2 comes by and is heated: what
-    conducts and cools is the whole ring.
+    conducts, stores and cools is the whole ring.
     """
     assert case.heat is not None
-    moving, sector = case.geometry.bodies[1], case.geometry.sector
-    conductivities = {b: case.material(b).conductivity or 0.0 for b in case.geometry.parts}
-    conductivities[moving] /= sector
+    geometry = case.geometry
+    moving, sector = geometry.bodies[1], geometry.sector
+    materials = {part: thermal_material(case, part) for part in geometry.parts}
+    for part in geometry.parts_of(moving):
+        materials[part] = materials[part].times(1 / sector)
     whole = {
         s: h / sector if s.startswith(f"{moving}_") else h for s, h in case.heat.cooling.items()
     }
-    return conductivities, whole
+    return materials, whole

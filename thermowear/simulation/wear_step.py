@@ -2,42 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
-from .interface_problem import Contact
+from ..contact.heat import ThermalState
+from .contact_method import Contact
+from .friction_heat import StoredHeat
 
 _γ = 1 - 1 / np.sqrt(2)
 
 
-class WearProblem(Protocol):
-    """Contact of bodies that wear: in place, or averaged over a cycle.
-
-    Depths have shape (n_rows, n); what they open is their sum over the rows.
-    """
-
-    def unworn(self) -> Contact:
-        """Contact of the unworn faces."""
-
-    def rates(self, pressure: np.ndarray) -> np.ndarray:
-        """Wear rates of the depths [m/s]."""
-
-    def solve(self, worn: np.ndarray, step: float, guess: Contact, closed: np.ndarray) -> Contact:
-        """Contact at the end of an implicit step of wear, from the sum of the depths before."""
-
-    def steady(self, pressure: np.ndarray) -> np.ndarray:
-        """Steady pressure of the discrete interface [Pa]."""
-
-    def distance(self, pressure: np.ndarray, steady: np.ndarray | None) -> float:
-        """How far from the steady state; NaN where that is not known."""
-
-    def deflection(self, contact: Contact) -> float:
-        """Largest change of the gap by the bodies' deformation [m]."""
-
-
 _ROUNDING = 1e-13  # of the largest pressure so far: no step makes smaller errors
+_LEAST_RISE = 10.0  # K; errors of smaller rises are held against this one
 
 
 @dataclass(frozen=True)
@@ -51,11 +29,17 @@ class WornContact:
     contact : Contact
     peak : float
         Largest pressure before [Pa].
+    faces : ThermalState or None
+        Temperatures and fluxes of the faces; None without heat.
+    stored : StoredHeat or None
+        None where temperatures are those of a steady state at any time.
     """
 
     worn: np.ndarray
     contact: Contact
     peak: float = 0.0
+    faces: ThermalState | None = None
+    stored: StoredHeat | None = None
 
     @property
     def pressure(self) -> np.ndarray:
@@ -67,24 +51,70 @@ class WornContact:
         """Pressure so far [Pa]."""
         return max(self.peak, float(self.pressure.max()))
 
+    def towards(self, other: WornContact, part: float) -> WornContact:
+        """What accumulates moved on by a part of the way to another state."""
+        stored = self.stored
+        if stored is not None and other.stored is not None:
+            stored = stored.towards(other.stored, part)
+        worn = self.worn + part * (other.worn - self.worn)
+        return WornContact(worn, other.contact, self.largest, other.faces, stored)
 
-def advance(problem: WearProblem, state: WornContact, step: float) -> WornContact:
+
+class WearProblem(Protocol):
+    """Contact of bodies that wear: in place, or averaged over a cycle.
+
+    Depths have shape (n_rows, n); what they open is their sum over the rows.
+    """
+
+    def start(self) -> WornContact:
+        """The unworn faces, at time 0."""
+
+    def stage(
+        self, before: WornContact, step: float, time: float, guess: WornContact
+    ) -> WornContact:
+        """The end of an implicit Euler step.
+
+        Parameters
+        ----------
+        before : WornContact
+            What has accumulated before the step.
+        step, time : float
+            Its size and its end [s].
+        guess : WornContact
+            A state near to the result.
+
+        Raises
+        ------
+        ComputationError
+        """
+
+    def corners(self, end: float) -> tuple[float, ...]:
+        """Times up to an end that steps must not pass over [s]."""
+
+    def first_step(self, state: WornContact) -> float:
+        """A step to begin with [s]; may be infinite."""
+
+    def steady(self, steady) -> np.ndarray:
+        """Pressure of the discrete interface in a steady state [Pa]."""
+
+    def distance(self, state: WornContact, steady: np.ndarray | None) -> float:
+        """How far from the steady state; NaN where that is not known."""
+
+
+def advance(problem: WearProblem, state: WornContact, time: float, step: float) -> WornContact:
     """One step of the two-stage, second-order, L-stable diagonally implicit Runge-Kutta method.
 
     It is stiffly accurate, so the contact conditions hold at the end of the step, and its weights
-    are positive, so wear never goes back (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006).
+    are positive, so wear never goes back (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006). Both
+    stages are implicit Euler steps of the size γ step.
     """
-    closed = state.pressure > 0
-    first = problem.solve(state.worn.sum(axis=0), _γ * step, state.contact, closed)
-    rates = problem.rates(first.pressure)
-    before = state.worn + (1 - _γ) * step * rates
-    last = problem.solve(before.sum(axis=0), _γ * step, first, closed)
-    worn = before + _γ * step * problem.rates(last.pressure)
-    return WornContact(worn, last, state.largest)
+    first = problem.stage(state, _γ * step, time + _γ * step, state)
+    before = state.towards(first, (1 - _γ) / _γ)
+    return replace(problem.stage(before, _γ * step, time + step, first), peak=state.largest)
 
 
 def advance_with_error(
-    problem: WearProblem, state: WornContact, step: float
+    problem: WearProblem, state: WornContact, time: float, step: float
 ) -> tuple[WornContact, float]:
     """Two half steps, and their error from the difference to a whole one (Richardson).
 
@@ -93,22 +123,31 @@ def advance_with_error(
     WornContact
         After the two half steps.
     float
-        Larger of the errors of pressure and of wear, relative to the largest pressure and to the
-        largest depth worn so far. What rounding makes of a pressure that vanishes in the end is
+        Largest of the errors of pressure, of wear, and of temperatures that are followed in time:
+        relative to the largest pressure, to the largest depth worn and to the largest rise of the
+        faces so far, 10 K at least. What rounding makes of a pressure that vanishes in the end is
         no error of the step.
     """
-    whole = advance(problem, state, step)
-    halves = advance(problem, advance(problem, state, step / 2), step / 2)
+    whole = advance(problem, state, time, step)
+    middle = advance(problem, state, time, step / 2)
+    halves = advance(problem, middle, time + step / 2, step / 2)
     rounding = _ROUNDING * halves.largest
     scale = max(float(halves.pressure.max()), rounding)
-    pressure_error = _relative(halves.pressure - whole.pressure, scale, rounding)
-    wear_error = _relative(halves.worn - whole.worn, float(halves.worn.max()))
-    return halves, max(pressure_error, wear_error) / 3.0
+    errors = [
+        _relative(halves.pressure - whole.pressure, scale, rounding),
+        _relative(halves.worn - whole.worn, float(halves.worn.max(initial=0.0))),
+    ]
+    if halves.stored is not None and halves.faces is not None and whole.faces is not None:
+        errors += [
+            _relative(ours - theirs, max(halves.stored.largest, _LEAST_RISE))
+            for ours, theirs in zip(halves.faces.rise, whole.faces.rise, strict=True)
+        ]
+    return halves, max(errors) / 3.0
 
 
 def _relative(errors: np.ndarray, scale: float, allowed: float = 0.0) -> float:
     """By how much the largest exceeds what is allowed, against a scale; 0 where nothing does."""
-    largest = float(np.abs(errors).max()) - allowed
+    largest = float(np.abs(errors).max(initial=0.0)) - allowed
     return largest / scale if largest > 0.0 else 0.0
 
 

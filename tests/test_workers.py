@@ -1,0 +1,65 @@
+"""Processes that work off tasks, die, and are interrupted."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+
+import pytest
+
+from thermowear.workers import work_off
+
+
+def square(task, tell):
+    for number in task:
+        if number < 0:
+            os.kill(os.getpid(), signal.SIGKILL)
+        tell((number, number**2, os.getpid()))
+
+
+def dawdle(task, tell):
+    try:
+        tell("begun")
+        time.sleep(60)
+    except KeyboardInterrupt:
+        tell("saved")
+        raise
+
+
+def test_all_tasks_are_done_in_other_processes():
+    """requirement: tasks go to processes of their own, each told as it is done."""
+    told, lost = [], []
+    work_off([[1, 2], [3], [4], [5, 6]], 2, square, told.append, lambda *given: lost.append(given))
+    assert sorted((a, b) for a, b, _ in told) == [(k, k**2) for k in range(1, 7)]
+    processes = {process for *_, process in told}
+    assert len(processes) <= 2
+    assert os.getpid() not in processes
+    assert not lost
+
+
+def test_a_process_that_dies_takes_one_task_with_it():
+    """requirement: a crash is told, and the other tasks are done."""
+    told, lost = [], []
+    tasks = [[1, -1], [2], [3]]
+    work_off(tasks, 1, square, told.append, lambda *given: lost.append(given))
+    assert [a for a, *_ in told] == [1, 2, 3]
+    ((task, why),) = lost
+    assert task == [1, -1]
+    assert "-9" in why
+
+
+def test_what_is_saved_after_ctrl_c_arrives(heeds_ctrl_c):
+    """requirement: Ctrl-C lets the processes save what they have, and ends them."""
+    told = []
+
+    def hear(message):
+        told.append(message)
+        if told.count("begun") == 2 and "saved" not in told:
+            raise KeyboardInterrupt
+
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        work_off([1, 2, 3], 2, dawdle, hear, lambda *given: None)
+    assert told == ["begun", "begun", "saved", "saved"]
+    assert time.monotonic() - began < 30

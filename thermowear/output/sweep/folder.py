@@ -1,0 +1,167 @@
+"""The folder of a sweep: a results folder for each variant, and one table of all of them."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from ...errors import CaseError
+from ..folder import ResultsFolder, _is_ours, _versions
+from ..quantities import PROFILE
+from ..tables import write_points
+from .keys import Swept
+
+_OURS = re.compile(r"sweep\.csv|shapes\.png|sweep\.png|run\.json")
+_VARIANT = re.compile(r"\d{3,}")
+_INTERVAL = 1.0  # seconds between two states of the table on disk
+
+
+class VariantFolder(ResultsFolder):
+    """Results of one variant, without the fields in the bodies."""
+
+    def finish(self, result, seconds: dict[str, float]) -> None:
+        friction, track = (more and more.last for more in (result.friction, result.track))
+        self._points(None, result.interface, friction, track)
+        write_points(self.path / "profile.csv", PROFILE, result.profile)
+        rounded = {name: round(value, 4) for name, value in seconds.items()}
+        self._write_json("summary.json", result.summary | {"seconds": rounded})
+
+
+class SweepFolder:
+    """Writes one sweep.
+
+    Parameters
+    ----------
+    path : Path
+        Made if it does not exist.
+    over : dict of str to list of str
+        Values by key, as they were written.
+    keys : sequence of Swept
+    overwrite : bool
+        Allow a folder with an earlier sweep, whose results are removed; nothing else is touched.
+
+    Raises
+    ------
+    CaseError
+        If the folder cannot be used.
+    """
+
+    def __init__(
+        self, path: Path, over: dict[str, list[str]], keys: Sequence[Swept], overwrite: bool
+    ):
+        self.path = path
+        self._keys = keys
+        self._count = len(keys[0].values)
+        self._rows: dict[int, tuple[str, dict[str, float]]] = {}
+        self._written = 0.0
+        self._run: dict[str, Any] = {
+            "status": "running",
+            "started": datetime.now(UTC).isoformat(timespec="seconds"),
+            "over": over,
+            "variants": self._count,
+            "versions": _versions(),
+        }
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            if any(path.iterdir()):
+                self._clear(overwrite)
+            self._write_run()
+        except OSError as error:
+            raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
+        self._write_table()
+
+    def variant(self, number: int) -> Path:
+        """Folder of a variant."""
+        return self.path / f"{number:03d}"
+
+    def add(self, number: int, status: str, summary: dict[str, Any] | None, seconds: float) -> None:
+        """A variant has ended.
+
+        Parameters
+        ----------
+        number : int
+            From 1.
+        status : str
+            ``done``, or what went wrong.
+        summary : dict or None
+        seconds : float
+            That it took.
+        """
+        numbers = {
+            name: value
+            for name, value in (summary or {}).items()
+            if isinstance(value, int | float) and not isinstance(value, bool)
+        }
+        self._rows[number] = status, numbers | {"seconds": round(seconds, 4)}
+        if time.monotonic() - self._written > _INTERVAL:
+            self._write_table()
+
+    def close(self, status: str, message: str, seconds: float) -> None:
+        """Record how the sweep ended: ``done``, ``failed`` or ``interrupted``."""
+        self._write_table()
+        self._run |= {
+            "status": status,
+            "finished": datetime.now(UTC).isoformat(timespec="seconds"),
+            "seconds": round(seconds, 4),
+            **({"message": message} if message else {}),
+        }
+        self._write_run()
+
+    def _clear(self, overwrite: bool) -> None:
+        if not overwrite:
+            raise CaseError(
+                f"-o {self.path}: exists and is not empty; use --overwrite or another folder"
+            )
+        ours = [entry for entry in self.path.iterdir() if _OURS.fullmatch(entry.name)]
+        if not is_sweep(self.path) and ours:
+            raise CaseError(
+                f"-o {self.path}: holds {ours[0].name} but is no folder of a sweep; use another"
+            )
+        for entry in ours:
+            entry.unlink()
+        for folder in self.path.iterdir():
+            if _VARIANT.fullmatch(folder.name) and (folder / "run.json").is_file():
+                for entry in filter(_is_ours, list(folder.iterdir())):
+                    entry.unlink()
+                if not any(folder.iterdir()):
+                    folder.rmdir()
+
+    def _write_table(self) -> None:
+        """``sweep.csv``, a row a variant; those that have not ended have no numbers."""
+        names = list(dict.fromkeys(name for _, row in self._rows.values() for name in row))
+        draft = self.path / ".sweep.csv.part"
+        with draft.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["variant", *(key.header for key in self._keys), "status", *names])
+            for k in range(self._count):
+                status, row = self._rows.get(k + 1, ("not computed", {}))
+                values = [key.values[k] for key in self._keys]
+                numbers = [row.get(name, float("nan")) for name in names]
+                writer.writerow([k + 1, *map(_cell, values), status, *map(_cell, numbers)])
+        os.replace(draft, self.path / "sweep.csv")
+        self._written = time.monotonic()
+
+    def _write_run(self) -> None:
+        draft = self.path / ".run.json.part"
+        draft.write_text(json.dumps(self._run, indent=2, ensure_ascii=False) + "\n", "utf-8")
+        os.replace(draft, self.path / "run.json")
+
+
+def is_sweep(folder: Path) -> bool:
+    """Whether a folder holds a sweep."""
+    try:
+        run = json.loads((folder / "run.json").read_text("utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(run, dict) and "over" in run
+
+
+def _cell(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.15g}"

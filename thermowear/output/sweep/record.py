@@ -1,0 +1,83 @@
+"""A sweep read back from its files."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from .keys import Axis, axis
+
+
+@dataclass(frozen=True)
+class Record:
+    """The variants of a sweep that were computed to their end.
+
+    Attributes
+    ----------
+    axes : tuple of Axis
+        The swept keys.
+    places : ndarray of int, shape (n, n_axes)
+        Which of its values each variant has of each key.
+    folders : list of Path
+        One a variant.
+    numbers : dict of str to ndarray, shape (n,)
+        Columns of ``sweep.csv`` beside the swept keys.
+    """
+
+    axes: tuple[Axis, ...]
+    places: np.ndarray
+    folders: list[Path]
+    numbers: dict[str, np.ndarray]
+
+    def only(self, chosen: np.ndarray) -> Record:
+        """Some of the variants."""
+        folders = [folder for folder, takes in zip(self.folders, chosen, strict=True) if takes]
+        numbers = {name: values[chosen] for name, values in self.numbers.items()}
+        return Record(self.axes, self.places[chosen], folders, numbers)
+
+
+def read_sweep(folder: Path) -> Record:
+    """Read a sweep.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds none.
+    """
+    over = json.loads((folder / "run.json").read_text("utf-8"))["over"]
+    with (folder / "sweep.csv").open(encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    try:
+        status = header.index("status")
+        keys = header[1:status]
+        places = np.array(list(product(*(range(len(values)) for values in over.values()))))
+        axes = tuple(
+            axis(key, written, _different(rows, k + 1, places[:, k]), keys[k])
+            for k, (key, written) in enumerate(over.items())
+        )
+        done = np.array([row[status] == "done" for row in rows])
+        numbers = {
+            name: np.array([float(row[k]) for row in rows])
+            for k, name in enumerate(header)
+            if k > status
+        }
+        folders = [folder / f"{int(row[0]):03d}" for row in rows]
+        return Record(axes, places, folders, numbers).only(done)
+    except (IndexError, KeyError) as error:
+        raise ValueError(f"{folder}: run.json and sweep.csv do not go together") from error
+
+
+def _different(rows: list[list[str]], column: int, place: np.ndarray) -> Sequence[float | str]:
+    """The values of a key, one for each that was written."""
+    first = [int(np.argmax(place == k)) for k in range(place.max() + 1)]
+    cells = [rows[k][column] for k in first]
+    try:
+        return [float(cell) for cell in cells]
+    except ValueError:
+        return cells

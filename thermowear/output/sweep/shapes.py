@@ -1,0 +1,76 @@
+"""``shapes.png``: pressures and worn shapes of all variants along the contact."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from .. import tables
+from ..pictures.curves import STYLE, abscissa
+from ..quantities import INTERFACE
+from .layout import LINES, Layout
+from .legend import add_legend, tallest
+
+_SINGULAR, _MOST = 3.0, 0.9
+"""A peak that is so many times higher than what most points have is cut off."""
+
+
+def draw_shapes(layout: Layout, path: Path) -> None:
+    """Draw the shape of each variant, and the pressure that goes with it."""
+    data = [tables.read(f / "interface.csv", INTERFACE) for f in layout.record.folders]
+    names = ["pressure", "shape"] if any(np.ptp(d["shape"]) > 0 for d in data) else ["pressure"]
+    columns = len(layout.columns)
+    with mpl.rc_context(STYLE):
+        keys = legends(layout)
+        size = (max(7.4, 1.4 + 3.4 * columns), 2.9 * len(names) + 0.4 + tallest(keys.values()))
+        figure = Figure(figsize=size, layout="constrained", dpi=150)
+        axes = figure.subplots(len(names), columns, sharex=True, sharey="row", squeeze=False)
+        for column, (title, chosen) in enumerate(layout.columns):
+            axes[0, column].set_title(title, fontsize="medium")
+            for k in np.flatnonzero(chosen):
+                where, place = abscissa(data[k])
+                places = layout.record.places[k]
+                for axis, name in zip(axes[:, column], names, strict=True):
+                    axis.plot(
+                        place,
+                        INTERFACE[name].drawn(data[k][name]),
+                        layout.line(places),
+                        color=layout.color(places[layout.colored]),
+                        linewidth=1.2,
+                    )
+            axes[-1, column].set_xlabel(where)
+        for row, name in zip(axes, names, strict=True):
+            row[0].set_ylabel(f"{INTERFACE[name].label}\n[{INTERFACE[name].unit}]")
+        _cut(axes[0, 0], [INTERFACE["pressure"].drawn(d["pressure"]) for d in data])
+        if layout.continuous:
+            figure.colorbar(layout.scale(), ax=axes, label=layout.axis.label, pad=0.01)
+        for side, (title, handles) in zip(("left", "right"), keys.items(), strict=False):
+            add_legend(figure, f"outside lower {side}", title, handles)
+        figure.savefig(path)
+
+
+def legends(layout: Layout) -> dict[str, list[Line2D]]:
+    """What colours and lines stand for, by the key."""
+    found, used = {}, sorted(set(layout.record.places[:, layout.colored]))
+    if not layout.continuous and len(used) > 1:
+        found[layout.axis.key] = [
+            Line2D([], [], color=layout.color(k), label=layout.axis.words[k]) for k in used
+        ]
+    if layout.lined is not None:
+        axis = layout.record.axes[layout.lined]
+        found[axis.key] = [
+            Line2D([], [], color="0.3", linestyle=LINES[k], label=word)
+            for k, word in enumerate(axis.words)
+        ]
+    return found
+
+
+def _cut(axis, curves: list[np.ndarray]) -> None:
+    """Leave room for what most points have: singular corners of unworn faces have no end."""
+    usual = max(float(np.nanquantile(curve, _MOST)) for curve in curves)
+    peak = max(float(np.nanmax(curve)) for curve in curves)
+    axis.set_ylim(bottom=0, top=1.5 * usual if usual > 0 and peak > _SINGULAR * usual else None)

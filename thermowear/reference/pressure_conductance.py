@@ -1,0 +1,71 @@
+"""Contact conductance that grows with the pressure, and how warm it leaves the faces of two blocks.
+
+Heat crosses where asperities touch, on a part ``p/H`` of the face that the softer material decides.
+With harmonic means of conductivities and hardnesses,
+
+    h = C k_h p/H_h,   k_h = 2 k1 k2/(k1 + k2),   H_h = 2 H1 H2/(H1 + H2),
+
+as in MOOSE (class GapFluxModelPressureDependentConduction of its heat transfer module) and, with a
+constant of its own, in 4C.
+"""
+
+from __future__ import annotations
+
+from .slabs import contact_temperatures
+
+
+def harmonic_mean(first: float, second: float) -> float:
+    """``2 a b/(a + b)``."""
+    return 2 * first * second / (first + second)
+
+
+def conductance(
+    coefficient: float,
+    conductivities: tuple[float, float],
+    hardnesses: tuple[float, float],
+    pressure: float,
+) -> float:
+    """Contact conductance at a pressure [W/(m² K)].
+
+    Parameters
+    ----------
+    coefficient : float
+        C [1/m].
+    conductivities : tuple of float
+        k of both bodies [W/(m K)].
+    hardnesses : tuple of float
+        H of both bodies [Pa].
+    pressure : float [Pa]
+    """
+    return coefficient * harmonic_mean(*conductivities) * pressure / harmonic_mean(*hardnesses)
+
+
+def block_temperatures(
+    lengths: tuple[float, float],
+    conductivities: tuple[float, float],
+    hardnesses: tuple[float, float],
+    ends: tuple[float, float],
+    coefficient: float,
+    pressure: float,
+    friction_heat: float = 0.0,
+    partition: float = 0.5,
+) -> tuple[float, float]:
+    """Temperatures of the faces of two blocks that are pressed together.
+
+    The far ends have given temperatures, the sides are insulated; see `slabs` for the resistances.
+
+    Parameters
+    ----------
+    lengths, conductivities, hardnesses, ends : tuple of float
+        Of each block: length [m], conductivity [W/(m K)], hardness [Pa], temperature of its end.
+    coefficient : float
+        See `conductance` [1/m].
+    pressure : float
+        > 0 [Pa].
+    friction_heat : float
+        [W/m²]
+    partition : float
+        Part of it set free on block 1.
+    """
+    h = conductance(coefficient, conductivities, hardnesses, pressure)
+    return contact_temperatures(lengths, conductivities, ends, friction_heat, partition, h)[0]

@@ -1,0 +1,106 @@
+"""Half-spaces that are heated evenly from a moment on.
+
+One half-space under a constant flux (Carslaw and Jaeger, Conduction of Heat in Solids, 1959,
+section 2.9), and two that touch and share what friction sets free between them. All that counts at
+a surface is the effusivity ``e = √(k ρ c)``: a flux q has raised it by ``2 q √(t/π)/e``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, pi, sqrt
+
+import numpy as np
+from scipy.special import erfc, erfcx
+
+
+@dataclass(frozen=True)
+class HalfSpace:
+    """A material from the surface on.
+
+    Attributes
+    ----------
+    conductivity : float [W/(m K)]
+    capacity : float
+        ρ c [J/(m³ K)].
+    """
+
+    conductivity: float
+    capacity: float
+
+    @property
+    def diffusivity(self) -> float:
+        """κ [m²/s]."""
+        return self.conductivity / self.capacity
+
+    @property
+    def effusivity(self) -> float:
+        """``√(k ρ c)`` [W √s/(m² K)]."""
+        return sqrt(self.conductivity * self.capacity)
+
+    def rise(self, flux: float, time, depth=0.0) -> np.ndarray:
+        """``(2 q/k) √(κ t) ierfc(z/(2 √(κ t)))`` under a constant flux [K].
+
+        Parameters
+        ----------
+        flux : float [W/m²]
+        time : array_like
+            Since it began, > 0 [s].
+        depth : array_like
+            z [m].
+        """
+        reach = np.sqrt(self.diffusivity * np.asarray(time))
+        return 2 * flux / self.conductivity * reach * _ierfc(np.asarray(depth) / (2 * reach))
+
+
+def share(first: HalfSpace, second: HalfSpace) -> float:
+    """Part of the friction heat that the first one takes where both are equally warm."""
+    return first.effusivity / (first.effusivity + second.effusivity)
+
+
+def surface_rises(
+    bodies: tuple[HalfSpace, HalfSpace],
+    friction_heat: float,
+    time,
+    partition: float = 0.5,
+    conductance: float = inf,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Temperatures of both surfaces above where they began, with constant friction heat [K].
+
+    With the flux ``h D`` from body 2 to body 1, ``D = T2 - T1``, the Laplace transforms
+    ``T_i = q_i/(e_i √s)`` give with ``g = h (1/e1 + 1/e2)`` ::
+
+        h D = A (1 - exp(g² t) erfc(g √t)),   A = q ((1 - f)/e2 - f/e1)/(1/e1 + 1/e2),
+
+    so that body 1 has received as much as under the constant flux ``f q + A``, less
+    ``A (1 - exp(g² t) erfc(g √t))/(g e1)`` of temperature.
+
+    Parameters
+    ----------
+    bodies : tuple of HalfSpace
+    friction_heat : float
+        q [W/m²].
+    time : array_like
+        Since it began, > 0 [s].
+    partition : float
+        f, part of it set free on body 1; without effect where the contact is perfect.
+    conductance : float
+        h > 0, infinite for a perfect contact [W/(m² K)].
+    """
+    first, second = bodies
+    e1, e2 = first.effusivity, second.effusivity
+    ease = 1 / e1 + 1 / e2
+    across = friction_heat * ((1 - partition) / e2 - partition / e1) / ease
+    root = np.sqrt(np.asarray(time))
+    late = 0.0
+    if conductance < inf:
+        g = conductance * ease
+        late = across * (1 - erfcx(g * root)) / g
+    T1 = first.rise(partition * friction_heat + across, time) - late / e1
+    T2 = second.rise((1 - partition) * friction_heat - across, time) + late / e2
+    return T1, T2
+
+
+def _ierfc(x: np.ndarray) -> np.ndarray:
+    """Integral of the complementary error function from x to infinity."""
+    return np.exp(-(x**2)) / sqrt(pi) - x * erfc(x)

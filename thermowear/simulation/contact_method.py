@@ -1,0 +1,154 @@
+"""Ways to solve contact, and what an implicit step of wear asks of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..errors import ComputationError
+from ..laws import WearLaw
+from ..laws.spreading import Spreading
+from .conditions import Conditions
+from .friction_heat import HeatStage
+
+_NEWTON_STEPS = 40
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A solved contact.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (n,) [Pa]
+    motion : ndarray, shape (n_drives,)
+        How far the holder has made each of its motions [m or rad].
+    memory : object
+        What the method that solved it starts from next time.
+    """
+
+    pressure: np.ndarray
+    motion: np.ndarray
+    memory: Any
+
+
+class ContactMethod(Protocol):
+    """A way to solve contact with given loads: condensed, or on the full system.
+
+    Attributes
+    ----------
+    note : str or None
+        What the user should know about its settings.
+    """
+
+    note: str | None
+
+    def solve(
+        self,
+        gap: np.ndarray,
+        slope: np.ndarray,
+        guess: Contact | None,
+        conditions: Conditions,
+        heat: HeatStage | None,
+    ) -> Contact:
+        """Contact of bodies with friction heat and a local compliance.
+
+        Parameters
+        ----------
+        gap : ndarray, shape (n,)
+            Without pressure, heat and motion of the holder [m].
+        slope : ndarray, shape (n,)
+            Gap that each point's own pressure opens in addition to the bodies [m/Pa].
+        guess : Contact or None
+        conditions : Conditions
+        heat : HeatStage or None
+
+        Raises
+        ------
+        ComputationError
+        """
+
+    def steady(
+        self, pressure: np.ndarray, rates: WearRates, conditions: Conditions
+    ) -> np.ndarray:
+        """Steady pressure as the method discretises it, from that of the principle [Pa].
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (n,) [Pa]
+        rates : WearRates
+        conditions : Conditions
+            That the steady state leads to.
+        """
+
+    def opening(self, contact: Contact) -> float:
+        """Largest change of the gap by the bodies' deformation [m]."""
+
+
+@dataclass(frozen=True)
+class WearRates:
+    """The wear laws at the contact points.
+
+    Attributes
+    ----------
+    laws : list of WearLaw
+        Of the wearing bodies.
+    spreads : list of Spreading
+        Of the same bodies.
+    speed : ndarray, shape (n,) [m/s]
+    factors : ndarray, shape (n_wearing, n)
+        Of the rates.
+    """
+
+    laws: list[WearLaw]
+    spreads: list[Spreading]
+    speed: np.ndarray
+    factors: np.ndarray
+
+    def __call__(self, pressure: np.ndarray) -> np.ndarray:
+        """Wear rates, shape (n_wearing, n) [m/s]."""
+        rates = np.zeros_like(self.factors)
+        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
+            rates[row] = spread.rate(self.factors[row] * law.rate(pressure, self.speed))
+        return rates
+
+    def slope(self, pressure: np.ndarray) -> np.ndarray:
+        """Derivative of their sum by the pressure on the spot, shape (n,) [m/s/Pa].
+
+        What a track has in common hardly changes with the pressures: their sum is the load.
+        """
+        slopes = np.zeros_like(self.factors)
+        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
+            slopes[row] = spread.share * self.factors[row] * law.slope(pressure, self.speed)
+        return slopes.sum(axis=0)
+
+
+def newton_with_wear(solve, rates: WearRates, step: float, guess: Contact) -> Contact:
+    """Newton's method on contact with wear that grows with the pressure.
+
+    Parameters
+    ----------
+    solve : callable
+        Contact for a worn depth at zero pressure (n,), its slope by the pressure (n,), and a guess.
+    rates : WearRates
+    step : float
+        [s]
+    guess : Contact
+
+    Raises
+    ------
+    ComputationError
+    """
+    pressure = guess.pressure
+    for _ in range(_NEWTON_STEPS):
+        rate = step * rates(pressure).sum(axis=0)
+        slope = step * rates.slope(pressure)
+        guess = solve(rate - slope * pressure, slope, guess)
+        change = guess.pressure - pressure
+        pressure = guess.pressure
+        exact = step * rates(pressure).sum(axis=0)
+        if np.abs(exact - rate - slope * change).max() <= 1e-11 * np.abs(exact).max():
+            return guess
+    raise ComputationError("contact: Newton's method for the implicit step of wear failed")

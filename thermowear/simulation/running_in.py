@@ -1,0 +1,178 @@
+"""Running-in: contact, wear and heat in time, to an end time or to the steady state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..case.analyses import Transient
+from ..errors import ComputationError
+from ..laws.motions import RigidMotion, combined
+from .conditions import Conditions
+from .drives import reference_point
+from .guarded import go_through
+from .interface_problem import InterfaceProblem
+from .observer import Observer
+from .outcome import Outcome
+from .recording import interface_at
+from .result import HeatRow, HistoryRow, Interface
+from .state import BodyState, ContactState
+from .step_sizes import AnySize, FewSizes
+from .summary import normal_force
+from .system import System
+from .transient import Moment, moments, times_to_hit
+
+_MELTED = 5000.0  # K; no solid is as hot
+
+
+def running_in(system: System, problem: InterfaceProblem, steady, observer: Observer) -> Outcome:
+    """Follow contact in time. What was computed before an error or Ctrl-C is kept.
+
+    Parameters
+    ----------
+    system : System
+    problem : InterfaceProblem
+    steady : SteadyState or None
+        That it tends to, where there is one.
+    observer : Observer
+    """
+    settings = system.case.analysis
+    assert isinstance(settings, Transient)
+    sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
+    record = _Record(system, problem, observer)
+    passing = _solid(problem, moments(problem, settings, steady, sizes))
+    last, stopped = go_through(system, "time stepping", passing, record.keep)
+    with system.phases("bodies"):
+        contact, motion, state, interface = record.bodies(last)
+    return Outcome(
+        contact=contact,
+        motion=motion,
+        state=state,
+        interface=interface,
+        extra=record.extra(steady),
+        history=record.rows,
+        outputs=record.outputs,
+        heat=record.heat,
+        stopped=stopped,
+    )
+
+
+def _solid(problem: InterfaceProblem, passing: Iterator[Moment]) -> Iterator[Moment]:
+    """The moments until friction heat has made more of itself than any solid can take."""
+    for moment in passing:
+        yield moment
+        hottest = problem.hottest(moment.state)
+        if problem.stores_heat and hottest > _MELTED:
+            raise ComputationError(
+                f"transient: the temperature runs away, {hottest:.3g} K at {moment.time:g} s: "
+                "friction heat makes the bodies bulge, and press and heat each other more and more "
+                "where they do (thermoelastic instability); reduce the speed or the friction"
+            )
+
+
+class _Record:
+    """Rows and outputs so far.
+
+    Parameters
+    ----------
+    system : System
+    problem : InterfaceProblem
+    observer : Observer
+    """
+
+    def __init__(self, system: System, problem: InterfaceProblem, observer: Observer):
+        self.rows: list[HistoryRow] = []
+        self.heat: list[HeatRow] = []
+        self.outputs: dict[float, Interface] = {}
+        self._system = system
+        self._problem = problem
+        self._observer = observer
+        self._speed = 0.0
+        self._distance_from_steady = float("nan")
+
+    def keep(self, moment: Moment) -> None:
+        """Take up a step."""
+        conditions = self._problem.conditions(moment.state, moment.time)
+        speed = self._mean(conditions.speed)
+        slid = moment.step * (self._speed + speed) / 2  # no step passes a corner of the speed
+        self._speed, self._distance_from_steady = speed, moment.distance
+        self.rows.append(self._row(moment, slid))
+        self._observer.step(self.rows[-1], moment.distance)
+        if self._problem.stores_heat:
+            self.heat.append(self._heat_row(moment, conditions))
+            self._observer.heat(self.heat[-1])
+        if moment.is_output:
+            with self._system.phases("output"):
+                self.outputs[moment.time] = self.bodies(moment)[3]
+                self._observer.output(moment.time, self.outputs[moment.time])
+
+    def bodies(self, moment: Moment) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
+        """Contact, motion of the holder, bodies and interface at a moment."""
+        contact = self._problem.contact_state(moment.state, moment.time)
+        motion = combined(self._system.holder.motions, moment.state.contact.motion)
+        worn = self._by_body(moment.state.worn)
+        return contact, motion, *interface_at(self._system, contact, motion, worn)
+
+    def extra(self, steady) -> dict:
+        """What the analysis adds to the summary."""
+        result = {
+            "steps": len(self.rows) - 1,
+            "time_s": self.rows[-1].time,
+            "distance_from_steady": None if steady is None else self._distance_from_steady,
+        }
+        if not self.heat:
+            return result
+        last, peak = self.heat[-1], max(self.rows, key=lambda row: row.max_temperature)
+        return result | {
+            "heat_in_J": last.heat_in,
+            "heat_stored_J": last.heat_stored,
+            "heat_lost_J": last.heat_lost,
+            "peak_temperature_K": peak.max_temperature,
+            "peak_temperature_time_s": peak.time,
+        }
+
+    def _row(self, moment: Moment, slid: float) -> HistoryRow:
+        system, pressure = self._system, moment.state.pressure
+        volumes = system.worn_volumes(self._by_body(moment.state.worn))
+        moved = combined(system.holder.motions, moment.state.contact.motion)
+        return HistoryRow(
+            time=moment.time,
+            sliding_distance=slid + (self.rows[-1].sliding_distance if self.rows else 0.0),
+            max_pressure=float(pressure.max()),
+            contact_area=float(system.weights[pressure > 0].sum()),
+            wear_volume_1=float(volumes[0]),
+            wear_volume_2=float(volumes[1]),
+            max_temperature=self._problem.hottest(moment.state),
+            approach=float(moved.at(reference_point(system.case)) @ system.press),
+            step=moment.step,
+            error=moment.error,
+        )
+
+    def _heat_row(self, moment: Moment, conditions: Conditions) -> HeatRow:
+        pressure, balance = moment.state.pressure, self._problem.heat_balance(moment.state)
+        T1, T2 = self._problem.face_temperatures(moment.state)
+        return HeatRow(
+            time=moment.time,
+            speed=self._speed,
+            normal_force=normal_force(self._system.rubbing(conditions.friction), pressure),
+            friction_power=float(self._system.weights @ (conditions.heating * pressure)),
+            heat_in=balance.made,
+            heat_stored=balance.stored,
+            heat_lost=balance.lost,
+            balance_error=balance.error,
+            max_temperature_1=float(T1.max()),
+            max_temperature_2=float(T2.max()),
+            mean_temperature_1=self._mean(T1),
+            mean_temperature_2=self._mean(T2),
+        )
+
+    def _mean(self, values: np.ndarray) -> float:
+        """Over the face, by area."""
+        return float(np.average(values, weights=self._system.weights))
+
+    def _by_body(self, worn: np.ndarray) -> np.ndarray:
+        """Rows for both bodies from rows for the wearing ones, shape (2, n)."""
+        both = np.zeros((2, worn.shape[1]))
+        both[list(self._system.laws)] = worn
+        return both

@@ -1,0 +1,69 @@
+"""How large a step of time may be, besides what its error allows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from functools import reduce
+from typing import Protocol
+
+_HIT = 1e-9
+"""Of what is left: a step that ends so near to a time ends there."""
+_FINEST = 256
+"""Common measures that are a smaller part of the way between two times are of no use."""
+
+
+class StepSizes(Protocol):
+    """Chooses sizes of steps on the way from one time that is hit exactly to the next."""
+
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        """A step from a time, between a begin and an end, that is not larger than this one [s]."""
+
+
+class AnySize:
+    """Steps as large as they may be, but none that leaves a tiny one over."""
+
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        left = end - time
+        return left if ends(wanted, left) else min(wanted, max(left / 2, 0.1 * wanted))
+
+
+class FewSizes:
+    """Halves, quarters, ... and doubles of one size, so that few operators serve all steps.
+
+    Times are multiples of the step that leaves them, as the marks of a ruler are: what is left to
+    the next one to be hit is always made up by few steps of such sizes.
+
+    Parameters
+    ----------
+    times : iterable of float
+        All that will be hit exactly [s].
+    """
+
+    def __init__(self, times: Iterable[float]):
+        self._measure = reduce(_common_measure, (t for t in times if t < math.inf), 0.0)
+
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        unit, passed = self._unit(end - begin), time - begin
+        size = unit * 2.0 ** math.floor(math.log2(min(wanted, end - time) / unit) + _HIT)
+        while abs(math.remainder(passed, size)) > 1e-3 * size:
+            size /= 2
+        return size
+
+    def _unit(self, way: float) -> float:
+        """What divides the way between two times, and as many others as can be [s]."""
+        measure = self._measure or 1.0
+        return way if _FINEST * measure < way < math.inf else measure
+
+
+def ends(step: float, left: float) -> bool:
+    """Whether a step goes as far as a time that is so far away [s]."""
+    return step >= left * (1 - _HIT)
+
+
+def _common_measure(a: float, b: float) -> float:
+    """The largest number that both are multiples of, by Euclid's algorithm."""
+    rounding = _HIT * max(a, b)
+    while b > rounding:
+        a, b = b, abs(math.remainder(a, b))
+    return a

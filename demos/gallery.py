@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import shlex
 import subprocess
 import sys
 import textwrap
@@ -20,14 +21,23 @@ from pathlib import Path
 
 from PIL import Image  # matplotlib does not come without it
 from slides import SLIDES, Slide, draw_slide
+from studies import STUDIES, Study, draw_study
 
 from thermowear.output.report.figures import figure_text
 
 HERE = Path(__file__).resolve().parent
-CHOICES = (("bodies",), ("track", "cycles", "wear", "friction", "profile", "interface"))
+CHOICES = (
+    ("bodies",),
+    ("mode", "heat", "track", "cycles", "wear", "friction", "profile", "interface"),
+)
 SIDES = (1100, 1000, 900, 800, 700, 600, 500)  # pixels of the longer side of a picture
 LARGEST = 120_000  # bytes of a picture
+FLAT = 1e-12  # m: rounding, not a worn shape
 KEYS = {
+    "critical_speed_m_per_s": "critical speed",
+    "critical_speed_with_wear_m_per_s": "with wear",
+    "critical_angular_velocity_rad_per_s": "critical speed",
+    "critical_angular_velocity_with_wear_rad_per_s": "with wear",
     "max_pressure_Pa": "largest pressure",
     "shape_range_m": "worn shape, highest to lowest",
     "wear_volume_1_m3": "worn off body 1",
@@ -46,6 +56,13 @@ COMPARISONS = """# One thing varied
 Runs of the cases above with some keys changed; `slides.py` says which.
 """
 
+SWEEPS = """# Distortion by heat
+
+Sweeps of the cases above over the speed: one command each computes all variants, and what they
+share once. The steady pressure does not know the speed. The worn shape does: it bends in proportion
+to the speed, as the friction heat does.
+"""
+
 
 def main() -> int:
     """Compute the cases and write the page."""
@@ -62,7 +79,10 @@ def main() -> int:
     for slide in SLIDES:
         print(f"{slide.name} …", flush=True)
         draw_slide(slide, results, results / f"{slide.name}.png")
-    write_gallery(HERE, cases, results, SLIDES)
+    for study in STUDIES:
+        print(f"{study.name} …", flush=True)
+        draw_study(study, results, results / f"{study.name}.png")
+    write_gallery(HERE, cases, results, SLIDES, STUDIES)
     return 0
 
 
@@ -73,7 +93,11 @@ def compute(case: Path, folder: Path) -> int:
 
 
 def write_gallery(
-    place: Path, cases: list[Path], results: Path, slides: Sequence[Slide] = ()
+    place: Path,
+    cases: list[Path],
+    results: Path,
+    slides: Sequence[Slide] = (),
+    studies: Sequence[Study] = (),
 ) -> None:
     """Write ``README.md`` and ``pictures/`` from the results of the cases.
 
@@ -83,20 +107,22 @@ def write_gallery(
         Where they are written; pictures of earlier galleries are removed.
     cases : list of Path
     results : Path
-        Holds a results folder for each case, named like it, and a picture for each slide.
+        Holds a results folder for each case, named like it, and a picture for each slide and study.
     slides : sequence of Slide
+    studies : sequence of Study
     """
     pictures = place / "pictures"
     pictures.mkdir(exist_ok=True)
     for old in pictures.glob("*.png"):
         old.unlink()
     entries = [_entry(case, results / case.stem, pictures) for case in cases]
-    if slides:
-        entries.append(COMPARISONS)
-    for slide in slides:
-        (pictures / f"{slide.name}.png").write_bytes(small_png(results / f"{slide.name}.png"))
-        lines = [f"## {slide.title}", "", *textwrap.wrap(slide.text, 100), ""]
-        entries.append("\n".join([*lines, f"![{slide.title}](pictures/{slide.name}.png)", ""]))
+    for head, drawn in ((COMPARISONS, slides), (SWEEPS, studies)):
+        entries += [head] if drawn else []
+        for one in drawn:
+            (pictures / f"{one.name}.png").write_bytes(small_png(results / f"{one.name}.png"))
+            lines = [f"## {one.title}", "", *textwrap.wrap(one.text, 100), ""]
+            lines += [*command_of(one), ""] if isinstance(one, Study) else []
+            entries.append("\n".join([*lines, f"![{one.title}](pictures/{one.name}.png)", ""]))
     (place / "README.md").write_text("\n".join([HEAD, *entries]), encoding="utf-8")
 
 
@@ -114,10 +140,22 @@ def leading_text(case_text: str) -> str:
     return " ".join(words)
 
 
+def command_of(study: Study) -> list[str]:
+    """The command that computes a study, as an indented block: an option a line."""
+    options = [("--over", study.over), *(("--set", text) for text in study.sets)]
+    lines = [f"python3 -m thermowear sweep demos/{study.case}.toml"]
+    lines += [f"    {name} {shlex.quote(value)}" for name, value in options]
+    return [f"    {line}" for line in " \\\n".join(lines).split("\n")]
+
+
 def figures(summary: dict) -> str:
     """Key figures of a summary that say something, in one line."""
     worn = bool(summary["wear_coefficient_per"])
     found = {key: summary.get(key) for key in KEYS if worn or key != "shape_range_m"}
+    if abs(found.get("shape_range_m") or 0.0) < FLAT:
+        found["shape_range_m"] = None
+    if summary.get("peak_temperature_K") is not None:  # on the way, not at the end
+        found["max_temperature_K"] = summary["peak_temperature_K"]
     said = [f"{KEYS[key]} {_rounded(figure_text(key, v))}" for key, v in found.items() if v]
     line = " · ".join(said)
     return line[:1].upper() + line[1:]

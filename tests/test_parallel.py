@@ -53,6 +53,8 @@ def summaries(tmp_path, case, *overrides):
         (COLD_RUNNING_IN, ["mesh.degree=3", "mesh.bodies.plate.elements=7"]),
         (DEMOS / "cylinder_on_block.toml", ["contact.method=nitsche"]),
         (DEMOS / "cylinder_stick_slip.toml", ["mesh.degree=2", "analysis.increments=4"]),
+        (DEMOS / "disk_brake_stability.toml", ["mesh.degree=4"]),
+        (DEMOS / "disk_brake_stop.toml", ["mesh.degree=3", "analysis.end_time=6 s"]),
     ],
 )
 def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):

@@ -82,6 +82,12 @@ MOVING = [
     Bad("block below", {PASSING: "resolved", "bodies.lower.density": "1 g/cm^3",
         "bodies.lower.specific_heat": "1 J/kg/K"}, PASSING, "lower does not pass", BLOCKS),
     Bad("disk that is spread", {PASSING: "spread"}, PASSING, "round the disk already", BRAKE),
+    Bad("at a speed that changes", STORING | IN_TIME | {PASSING: "resolved",
+        "motion.history": {"time": ["0 s", "1 s"], "factor": [1.0, 0.0]}},
+        PASSING, "is for one speed", STRIP),
+    Bad("carried round, and nothing cools", {PASSING: "resolved", "heat.cooling": GONE,
+        "bodies.block.density": "1 g/cm^3", "bodies.block.specific_heat": "1 J/kg/K"},
+        "heat", "nowhere to go", DISK),
     Bad("carries what", {PASSING: "resolved", DENSE: "1 g/cm^3"}, WARM, '"resolved"', STRIP),
 ]  # fmt: skip
 
@@ -115,6 +121,7 @@ UNSTABLE = [
     Bad("smooth", STABLE | {"contact.friction": 0, "wear": GONE}, "contact.friction", "is 0"),
     Bad("by Nitsche", STABLE | {"contact.method": "nitsche"}, "contact.method",
         "'nitsche' is not for a stability analysis"),
+    Bad("insulated", STABLE | {"heat.cooling": GONE}, "heat", "nowhere to go"),
     Bad("in time", STABLE | STORING | {"heat.transient": True}, "heat.transient",
         "not for stability"),
 ]  # fmt: skip
@@ -169,8 +176,11 @@ ALLOWED = {
         HOT | {"analysis": {"type": "transient", "until": "steady"}},
     ),
     "strip that carries heat": (STRIP, STORING | {PASSING: "resolved"}),
+    "heat that leaves with the strip": (
+        STRIP,
+        STORING | {PASSING: "resolved", "heat.cooling": GONE},
+    ),
     "strip that spreads heat, in time": (STRIP, HOT | {PASSING: "spread"}),
-    "insulated, perhaps unstable": (STEADY, STABLE | {"heat.cooling": GONE}),
     "unstable without wear": (STEADY, STABLE | {"wear": GONE}),
     "unstable under an approach": (STEADY, STABLE | {"load": {"approach": "1 um"}}),
     "pressure by Nitsche, steady": (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -67,6 +68,10 @@ def test_figures_say_what_there_is(gallery):
     assert gallery.figures(summary) == f"{worn} · worn off body 1 15610 mm³"
     summary |= {"wear_coefficient_per": {}, "wear_volume_1_m3": 0.0, "max_temperature_K": 368.15}
     assert gallery.figures(summary) == "Largest pressure 175 MPa · highest temperature 95 °C"
+    summary |= {"peak_temperature_K": 373.15, "shape_range_m": 4e-19}
+    summary |= {"wear_coefficient_per": {"punch": "pressure"}, "critical_speed_m_per_s": 0.5}
+    found = "Critical speed 500 mm/s · largest pressure 175 MPa · highest temperature 100 °C"
+    assert gallery.figures(summary) == found
 
 
 def noise(path: Path, width: int, height: int) -> None:
@@ -124,6 +129,24 @@ def test_a_page_of_all_cases(two, gallery):
     shown = re.findall(r"\]\((.*)\)", page)
     assert shown == [f"pictures/{n}.png" for n in ("one-bodies", "one-wear", "two-interface")]
     assert {f"pictures/{path.name}" for path in (two / "pictures").iterdir()} == set(shown)
+
+
+def test_studies_on_the_page(two, gallery):
+    """requirement: a study has its picture, and a command that a shell takes as it stands."""
+    study = gallery.Study(
+        "bent", "Bent", "As it is.", "one", "a.b", ("1 N", "2 N"), ('heat={ambient="20 degC"}',)
+    )
+    noise(two / "results" / "bent.png", 60, 40)
+    gallery.write_gallery(two, [], two / "results", (), [study])
+    page = (two / "README.md").read_text(encoding="utf-8")
+    _, block = page.split("\nAs it is.\n\n")
+    command = block.split("\n\n")[0].replace("\\\n", " ")
+    assert shlex.split(command) == [
+        *("python3", "-m", "thermowear", "sweep", "demos/one.toml"),
+        *("--over", "a.b=1 N,2 N", "--set", 'heat={ambient="20 degC"}'),
+    ]
+    assert "![Bent](pictures/bent.png)" in page
+    assert [path.name for path in (two / "pictures").iterdir()] == ["bent.png"]
 
 
 def test_a_case_that_fails_ends_the_gallery(two, gallery, monkeypatch, capfd):

@@ -69,6 +69,7 @@ OURS = [
     "case.resolved.toml",
     "fields.vtu",
     "history.csv",
+    "heat.csv",
     "interface.csv",
     "interface_20.csv",
     "interface_0.5.csv",
@@ -77,6 +78,7 @@ OURS = [
     "interface.png",
     "wear.png",
     "history.png",
+    "heat.png",
     "bodies.png",
     "deformed.png",
 ]

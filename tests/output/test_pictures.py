@@ -10,6 +10,7 @@ from thermowear import CaseError
 from thermowear.case.starters import starter_text
 from thermowear.cli import main
 from thermowear.output.pictures import make
+from thermowear.output.pictures.heat import draw_heat
 from thermowear.output.pictures.make import make_pictures
 
 from ..conftest import COLD_RUNNING_IN, HOT
@@ -63,6 +64,26 @@ def test_pictures_of_curved_faces(name, expected, tmp_path):
         image = mpimg.imread(path)[..., :3]
         assert min(image.shape[:2]) > 400, path
         assert (np.abs(image - image[0, 0]).max(axis=2) > 0.05).mean() > 0.01, path
+
+
+def test_temperatures_in_time(tmp_path):
+    """requirement: R1, three panels, curves from the first step to the last; none for one row."""
+    file, folder = tmp_path / "case.toml", tmp_path / "results"
+    file.write_text(starter_text("disk-brake-stop"), encoding="utf-8")
+    small = ["--no-pictures", "--set=mesh.degree=2", "--set=mesh.elements=4"]
+    assert main(["run", str(file), "-o", str(folder), *small]) == 0
+    draw_heat(folder)
+    image = mpimg.imread(folder / "heat.png")[..., :3]
+    third = image.shape[0] // 3
+    for k in range(3):
+        panel = image[k * third : (k + 1) * third]
+        coloured = (panel.max(axis=2) - panel.min(axis=2)) > 0.2
+        assert coloured.any(axis=0).mean() > 0.75
+    (folder / "heat.png").unlink()
+    rows = (folder / "heat.csv").read_text(encoding="utf-8").splitlines()[:2]
+    (folder / "heat.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    draw_heat(folder)
+    assert not (folder / "heat.png").exists()
 
 
 def test_bodies_are_drawn_in_colour(folders):

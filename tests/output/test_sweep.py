@@ -15,6 +15,7 @@ from thermowear.output.sweep import SweepFolder, draw_sweep, is_sweep, swept
 from thermowear.output.sweep.keys import axis
 from thermowear.output.sweep.layout import is_wide, lay_out
 from thermowear.output.sweep.record import read_sweep
+from thermowear.output.sweep.shapes import alike
 from thermowear.output.tables import write_points
 
 
@@ -197,6 +198,15 @@ def test_pictures(name, tmp_path):
     drawn = matplotlib.image.imread(tmp_path / "s" / "shapes.png")
     assert np.ptp(drawn) > 0.5
     assert (tmp_path / "s" / "sweep.png").is_file() == (name != "single")
+
+
+def test_curves_that_are_one():
+    """requirement: equal but for rounding, point by point; a single one is not compared."""
+    curve = np.array([1.0, np.nan, 2.0])
+    assert alike([curve, curve * (1 + 1e-9)])
+    assert not alike([curve, curve * (1 + 1e-5)])
+    assert not alike([curve, curve[:2]])
+    assert not alike([curve])
 
 
 def test_pictures_of_faces_in_space(tmp_path):

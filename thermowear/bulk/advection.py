@@ -103,8 +103,8 @@ def advection(
     """The forms of a passage. Every rank calls.
 
     Where cells are too large, upwind test functions (SUPG, Brooks and Hughes, Comput. Methods Appl.
-    Mech. Eng. 32 (1982) 199) keep the temperature free of oscillations; consistent, so that the
-    order of convergence stays.
+    Mech. Eng. 32 (1982) 199) keep the temperature free of oscillations. From degree 2 on they are
+    consistent, so that the order of convergence stays; degree 1 has no second derivatives.
 
     Parameters
     ----------

@@ -69,6 +69,8 @@ class Conduction:
     advection : Advection or None
     even : EvenPaths or None
         Of a body that passes so fast that heat is spread along its way.
+    symmetric : bool
+        Whether the factorised matrix is.
     """
 
     space: fem.FunctionSpace
@@ -83,14 +85,15 @@ class Conduction:
     lifted: np.ndarray
     advection: Advection | None
     even: EvenPaths | None
+    symmetric: bool
 
     def respond(self, heat: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Rise [K] due to nodal heat [W] alone, given temperatures at ambient; columns allowed."""
         return self.factor.solve(self._free(heat))
 
     def sense(self, weights: np.ndarray) -> np.ndarray:
-        """Its adjoint, by columns: ``weightsᵀ respond(heat) = sense(weights)ᵀ heat``."""
-        if self.carried is None:  # the matrix is symmetric
+        """The adjoint, by columns: its product with any heat is that of weights and `respond`."""
+        if self.symmetric:
             return self.respond(weights)
         return self._free(self.factor.solve_transposed(self._free(weights)))
 
@@ -111,16 +114,18 @@ class Conduction:
         """
         if self.capacity is None:
             raise ComputationError("heat: density and specific heat of the bodies are not known")
-        matrix = self.conductivity.copy()
-        structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
-        matrix.axpy(1 / step, self.capacity, structure)
+        return self.plus(self.capacity, 1 / step, self.symmetric)
+
+    def plus(self, matrix: PETSc.Mat, times: float, symmetric: bool) -> Conduction:
+        """So many times a matrix of the same pattern added to the conductivity; factorises it."""
+        sum_ = self.conductivity.copy()
+        sum_.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         return replace(
             self,
-            conductivity=matrix,
-            factor=_factor(
-                self.space, matrix, self.bath, self.fixed, self.carried is None, self.even
-            ),
-            lifted=-_multiply(matrix, self.given),
+            conductivity=sum_,
+            factor=_factor(self.space, sum_, self.bath, self.fixed, symmetric, self.even),
+            lifted=-_multiply(sum_, self.given),
+            symmetric=symmetric,
         )
 
     def stored(self, rise: np.ndarray) -> np.ndarray:
@@ -246,6 +251,7 @@ def conduction(
         lifted,
         moving,
         even,
+        symmetric=carried is None,
     )
 
 
@@ -266,11 +272,11 @@ def _factor(
     """Of conductivity and bath, rows and columns of given temperatures eliminated."""
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    known = "definite" if symmetric else "none"
     if even is not None:
-        return even.factor(matrix, fixed)
+        return even.factor(matrix, fixed, known)
     first = matrix.getOwnershipRange()[0]
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
-    known = "definite" if symmetric else "none"
     return Factor(matrix, known, dim=space.mesh.topology.dim)
 
 

@@ -92,13 +92,18 @@ class Elasticity:
         count, dim = self.space.dofmap.index_map.size_local, self.bodies.mesh.geometry.dim
         return self.space.tabulate_dof_coordinates()[:count, :dim]
 
-    def thermal_load(self, temperature_space: fem.FunctionSpace) -> PETSc.Mat:
-        """G: nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K]."""
-        mesh = self.bodies.mesh
+    def thermal_load(
+        self, temperature_space: fem.FunctionSpace, only: str | None = None
+    ) -> PETSc.Mat:
+        """G: nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV``, of all or one part [N/K]."""
+        mesh, modulus = self.bodies.mesh, self.lame[2]
+        if only is not None:
+            modulus = self.bodies.per_body({only: 1.0})
+            modulus.x.array[:] *= self.lame[2].x.array
         rise, δu = ufl.TrialFunction(temperature_space), ufl.TestFunction(self.space)
         ε = self.model.strain(mesh, δu)
         measure = section_measure(mesh, temperature_space.ufl_element().degree)
-        form = self.model.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
+        form = self.model.integral(mesh, modulus * rise * ufl.tr(ε), measure)
         matrix = assemble_matrix(compiled(form))
         matrix.assemble()
         return matrix

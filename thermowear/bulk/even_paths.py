@@ -56,14 +56,14 @@ class EvenPaths:
         given[self._passing] = mean[self._path]
         return fixed, given
 
-    def factor(self, matrix: PETSc.Mat, fixed: np.ndarray) -> EvenFactor:
-        """Factorise a symmetric matrix of all values, those that are `fixed` eliminated."""
+    def factor(self, matrix: PETSc.Mat, fixed: np.ndarray, symmetry: str) -> EvenFactor:
+        """Factorise a matrix of all values, those that are `fixed` eliminated; see `Factor`."""
         join = self._joining(matrix)
         small = matrix.ptap(join)
         first = small.getOwnershipRange()[0]
         held = np.flatnonzero(self.joined(fixed[:, None].astype(float))[:, 0] > 0)
         small.zeroRowsColumns((held + first).astype(PETSc.IntType), diag=1.0)
-        return EvenFactor(self, Factor(small, dim=self._dim))
+        return EvenFactor(self, Factor(small, symmetry, dim=self._dim))
 
     def joined(self, loads: np.ndarray | sp.csr_matrix):
         """Loads on the unknowns from those on the values, by columns."""
@@ -114,13 +114,16 @@ class EvenFactor:
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Solve for one or several right-hand sides, see `Factor.solve`."""
-        columns = loads if loads.ndim == 2 else loads[:, None]
-        unknowns = self._factor.solve(self._paths.joined(columns))
-        return self._paths.spread(unknowns).reshape(loads.shape, order="F")
+        return self._solved(self._factor.solve, loads)
 
     def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
-        """The same: the matrix is symmetric."""
-        return self.solve(loads)
+        """Solve with the transposed matrix, see `Factor.solve_transposed`."""
+        return self._solved(self._factor.solve_transposed, loads)
+
+    def _solved(self, solve, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
+        columns = loads if loads.ndim == 2 else loads[:, None]
+        unknowns = solve(self._paths.joined(columns))
+        return self._paths.spread(unknowns).reshape(loads.shape, order="F")
 
 
 def _numbered(comm, places: np.ndarray) -> tuple[np.ndarray, int]:

@@ -72,7 +72,7 @@ class Factor:
         """
         if not isinstance(loads, np.ndarray) and self._comm.size > 1:
             loads = loads.toarray()  # MUMPS wants sparse ones on one rank
-        flat = loads.reshape(loads.shape[0], -1)
+        flat = loads if loads.ndim == 2 else loads[:, None]  # a rank may own nothing
         dense = isinstance(flat, np.ndarray)
         right = self._dense(np.asfortranarray(flat)) if dense else self._sparse(flat)
         result = np.empty(flat.shape, order="F")  # written in place: it may be large

@@ -52,6 +52,22 @@ class Factor(Section):
         """The factor at `x`, an array of any shape in SI."""
         return np.interp(x, self.at, self.factor)
 
+    def slope(self, x: np.ndarray) -> np.ndarray:
+        """Its derivative; where lines meet, that of the next one."""
+        slopes = np.concatenate([[0.0], np.diff(self.factor) / np.diff(self.at), [0.0]])
+        return slopes[np.searchsorted(self.at, x, side="right")]
+
+    def integral(self, start: float, x: np.ndarray) -> np.ndarray:
+        """Its integral from `start` to `x`."""
+        return self._integral(np.asarray(x, dtype=float)) - self._integral(np.asarray(start))
+
+    def _integral(self, x: np.ndarray) -> np.ndarray:
+        """From the first place on: straight lines are integrated exactly by their means."""
+        at, factor = np.array(self.at), np.array(self.factor)
+        whole = np.concatenate([[0.0], np.cumsum(np.diff(at) * (factor[1:] + factor[:-1]) / 2)])
+        last = np.maximum(np.searchsorted(at, x, side="right") - 1, 0)
+        return whole[last] + (x - at[last]) * (factor[last] + self.value(x)) / 2
+
 
 class TemperatureFactor(Factor):
     """A factor that depends on the temperature [K]."""

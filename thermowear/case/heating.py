@@ -18,18 +18,24 @@ _COLD = ("fretting", "reciprocating")
 
 def heat(case: Case) -> Iterator[Fault]:
     """Friction heat must have somewhere to go, from where the geometry and the analysis have it."""
-    if case.heat is None:
+    heat = case.heat
+    if heat is None:
         if case.analysis.type == "stability":
             yield "heat", "missing; a stability analysis asks what friction heat does"
         return
-    yield from _surfaces(case, case.heat)
-    if case.heat.advection != "none" and not case.geometry.passes:
+    yield from _surfaces(case, heat)
+    if heat.advection != "none" and not case.geometry.passes:
         yield "heat.advection", _not_advected(case)
+    elif heat.advection == "resolved" and case.motion is not None and case.motion.history:
+        yield (
+            "heat.advection",
+            '"resolved" is for one speed, not for motion.history: use "spread" or "none"',
+        )
     if case.analysis.type in _COLD:
         return
-    if case.heat.transient and case.analysis.type != "transient":
+    if heat.transient and case.analysis.type != "transient":
         yield "heat.transient", f"is for a transient analysis, not for {case.analysis.type}"
-    elif case.heat.initial is not None and not case.heat.transient:
+    elif heat.initial is not None and not heat.transient:
         yield "heat.initial", "is for temperatures in time: heat.transient = true"
 
 
@@ -58,8 +64,9 @@ def thermal_needs(case: Case) -> Iterator[Need]:
 
 def _surfaces(case: Case, heat: Heat) -> Iterator[Fault]:
     """What cools, or has a given temperature."""
-    lasts = not heat.transient and case.analysis.type != "stability"
-    if lasts and not heat.cooling and not heat.temperature:
+    lasts = not heat.transient  # a stability analysis asks for a base state that lasts
+    leaves = heat.advection == "resolved" and case.geometry.rotation_center is None
+    if lasts and not leaves and not heat.cooling and not heat.temperature:
         yield "heat", "needs cooling or a given temperature: the friction heat has nowhere to go"
     for name in heat.cooling:
         if name in heat.temperature:

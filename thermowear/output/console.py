@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from math import pi
 
 from rich.console import Console
 from rich.table import Table
@@ -128,6 +129,11 @@ def _highlights(summary: dict):
     if summary["max_temperature_K"] is not None:
         yield "highest temperature", f"{summary['max_temperature_K'] - 273.15:.5g} °C"
         yield "friction power", f"{summary['friction_power_W']:.6g} W"
+    if summary.get("max_cell_peclet_number") is not None:
+        peclet = f"cell Péclet number up to {summary['max_cell_peclet_number']:.3g}"
+        yield "heat carried along", f"{summary['heat_advection']}, {peclet}"
+    if summary.get("heat_carried_out_W") is not None:
+        yield "heat carried out", f"{summary['heat_carried_out_W']:.6g} W"
     if summary.get("rigid_wear_velocity_m_per_s") is not None:
         yield "steady wear rate", f"{summary['rigid_wear_velocity_m_per_s'] * 1e9:.5g} nm/s"
     if summary.get("dissipated_energy_J") is not None:
@@ -140,5 +146,28 @@ def _highlights(summary: dict):
     volumes = (summary["wear_volume_1_m3"], summary["wear_volume_2_m3"])
     if max(volumes) > 0:
         yield "worn volume, body 1 and 2", " and ".join(f"{v * 1e9:.5g} mm³" for v in volumes)
+    if summary.get("critical_speed_factor") is not None:
+        yield "critical speed", _critical(summary, "")
+    if summary.get("critical_speed_factor_with_wear") is not None:
+        yield "critical speed with wear", _critical(summary, "_with_wear")
+    if summary.get("growth_rate_per_s") is not None:
+        yield "disturbances", _growing(summary)
     if summary.get("distance_from_steady") is not None:
         yield "distance from steady", f"{summary['distance_from_steady']:.2e}"
+
+
+def _critical(summary: dict, which: str) -> str:
+    """A critical speed, and how far the case is from it."""
+    part = 1 / summary[f"critical_speed_factor{which}"]
+    speed = summary[f"critical_speed{which}_m_per_s"]
+    turning = summary[f"critical_angular_velocity{which}_rad_per_s"]
+    said = f"{turning:.4g} rad/s" if speed is None else f"{speed * 1e3:.4g} mm/s"
+    return f"{said}: this case runs at {part:.3g} of it"
+
+
+def _growing(summary: dict) -> str:
+    """What becomes of a disturbance."""
+    rate, swing = summary["growth_rate_per_s"], summary["growth_frequency_rad_per_s"]
+    word = "grow" if rate > 0 else "die out"
+    swinging = f", swinging with a period of {2 * pi / swing:.4g} s" if swing > 0 else ""
+    return f"{word} e-fold in {1 / abs(rate):.4g} s{swinging}"

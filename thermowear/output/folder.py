@@ -7,6 +7,7 @@ import os
 import platform
 import re
 from datetime import UTC, datetime
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 
@@ -14,15 +15,15 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from .quantities import CYCLES, FRICTION, HEAT, HISTORY, INTERFACE, LOADS, PROFILE, TRACK
+from .quantities import CYCLES, FRICTION, HEAT, HISTORY, INTERFACE, LOADS, MODES, PROFILE, TRACK
 from .report import is_report
 from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields
 
 _OURS = re.compile(
-    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|heat|loads|cycles|profile)\.csv"
+    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|heat|loads|cycles|profile|mode)\.csv"
     r"|(interface|friction|track)(_[-+.0-9e]+)?\.csv"
-    r"|(interface|profile|wear|history|heat|friction|loads|cycles|track|bodies|deformed)\.png"
+    r"|(interface|profile|wear|history|heat|friction|loads|cycles|track|mode|bodies|deformed)\.png"
 )
 
 
@@ -112,7 +113,10 @@ class ResultsFolder:
         friction, track = (more and more.last for more in (result.friction, result.track))
         self._points(None, result.interface, friction, track)
         write_points(self.path / "profile.csv", PROFILE, result.profile)
-        write_fields(self.path / "fields.vtu", result.fields)
+        if result.fields is not None:
+            write_fields(self.path / "fields.vtu", result.fields)
+        if result.modes is not None:
+            write_points(self.path / "mode.csv", MODES, result.modes)
         rounded = {name: round(value, 4) for name, value in seconds.items()}
         self._write_json("summary.json", result.summary | {"seconds": rounded})
 
@@ -147,6 +151,7 @@ def _is_ours(path: Path) -> bool:
     return bool(_OURS.fullmatch(path.name)) or (path.name == "report.html" and is_report(path))
 
 
+@cache
 def _versions() -> dict[str, str]:
     found = {"thermowear": __version__, "python": platform.python_version()}
     for package in ("fenics-dolfinx", "petsc4py", "numpy", "scipy", "gmsh", "meshio", "pydantic"):

@@ -133,6 +133,16 @@ LOADS = {
 
 TRACK = {name: INTERFACE[name] for name in ("x", "wear_2", "wear_rate_2")}
 
+MODES = {
+    "mode": Quantity("mode", "mode", "1"),
+    "speed_factor": Quantity("speed_factor", "factor of the speed", "1"),
+    "growth_rate": Quantity("growth_rate_per_s", "growth rate", "1/s"),
+    "frequency": Quantity("frequency_rad_per_s", "angular frequency", "rad/s"),
+    **{name: INTERFACE[name] for name in ("x", "y", "z", "s")},
+    "pressure": Quantity("pressure", "pressure of the disturbance", "1"),
+    "pressure_imaginary": Quantity("pressure_imaginary", "pressure, imaginary part", "1"),
+}
+
 CYCLES = {
     "cycle": LOADS["cycle"],
     "time": LOADS["time"],

@@ -6,8 +6,11 @@ import numpy as np
 
 from ..contact.complementarity import ContactSolution, solve_contact
 from ..contact.condensation import CondensedContact
+from ..errors import ComputationError
 from .contact_method import Contact, WearRates, newton_with_wear
 from .system import System
+
+_TURNS = 60
 
 
 class CondensedMethod:
@@ -27,12 +30,26 @@ class CondensedMethod:
         self.note: str | None = None
 
     def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
-        contact = self._rubbed(conditions.friction)
-        compliance, weak = contact.compliance, contact.weak(gap + self._dead)
-        if heat is not None:
-            coupling = heat.coupling(conditions, contact.basis)
-            compliance, weak = compliance + coupling.compliance, weak + coupling.resting
-        return self._solved(contact, compliance, weak, slope, guess, conditions.load)
+        bodies = self._rubbed(conditions.friction)
+        compliance, weak = bodies.compliance, bodies.weak(gap + self._dead)
+        if heat is None:
+            return self._solved(bodies, compliance, weak, slope, guess, conditions.load)
+        for _ in range(_TURNS):
+            hot = heat.coupling(conditions, bodies.basis)
+            guess = self._solved(
+                bodies,
+                compliance + hot.compliance,
+                weak + hot.resting,
+                slope,
+                guess,
+                conditions.load,
+            )
+            if heat.holds(conditions, guess.pressure):
+                return guess
+        raise ComputationError(
+            "contact: pressure and temperatures do not settle where conductivity or expansion "
+            "change; reduce the speed"
+        )
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle in the pressure space.

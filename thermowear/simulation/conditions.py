@@ -6,10 +6,12 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ..case.history import History, SpeedHistory
 from ..contact.heat import ThermalState
 from .system import System
 
 _SETTLED = 1e-10
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,12 @@ def _difference(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(a - b).max() / max(np.abs(a).max(), np.abs(b).max()))
 
 
+def _part(course: History | SpeedHistory | None, time: float) -> float:
+    """How much of a load or a speed there is; none where rounding of the time alone leaves some."""
+    part = 1.0 if course is None else course.factor_at(time)
+    return part if part > _ROUNDING else 0.0
+
+
 class Surroundings:
     """The conditions of a case at any time, pressure and temperature.
 
@@ -108,8 +116,8 @@ class Surroundings:
     def _present(self, time, pressure, faces, closed) -> Conditions:
         system, case = self._system, self._case
         load, motion = case.load.history, case.motion
-        pressed = 1.0 if load is None else load.factor_at(time)
-        moved = 1.0 if motion is None or motion.history is None else motion.history.factor_at(time)
+        pressed = _part(load, time)
+        moved = _part(None if motion is None else motion.history, time)
         speed = moved * system.speed
         temperatures = self._temperatures(faces)
         friction = self._friction(temperatures, pressure, speed)

@@ -7,6 +7,7 @@ import ufl
 from dolfinx import fem
 
 from ..bulk.field import as_function
+from ..bulk.varying import straining_rise
 from ..compat import evaluate
 from ..laws.motions import RigidMotion
 from .result import BodyFields
@@ -29,11 +30,13 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
     u = as_function(elastic.space, _with_holder(system, state.displacement, motion), "u")
     du = as_function(elastic.space, state.displacement, "u")
-    rise, ambient = None, 0.0
-    if state.rise is not None and system.thermal is not None:
-        rise = as_function(system.thermal.conduction.space, state.rise, "rise")
-        ambient = system.thermal.ambient
-    σ = elastic.stress(du, rise)
+    rise, straining, ambient, thermal = None, None, 0.0, system.thermal
+    if state.rise is not None and thermal is not None:
+        space = thermal.conduction.space
+        rise = as_function(space, state.rise, "rise")
+        straining = straining_rise(space, state.rise, system.bodies, thermal.expansions)
+        ambient = thermal.ambient
+    σ = elastic.stress(du, straining)
     wanted = [u, _von_mises(σ)] + ([] if rise is None else [rise])
     values = [evaluate(fem.Expression(ufl.SpatialCoordinate(mesh), grid), mesh, cells)]
     values += [evaluate(fem.Expression(w, inside), mesh, cells) for w in wanted]

@@ -26,8 +26,12 @@ from .conditions import Conditions
 from .system import System
 from .thermal_system import ThermalSystem
 
-_KEPT = 6
-"""Sizes of steps whose operators are kept."""
+_MEMORY = 1e9
+"""Bytes that the operators of all sizes of steps may take on a rank."""
+_FEWEST = 3
+"""Sizes of steps whose operators are kept in any case: those of a step, its half and its double."""
+_FILL = {2: 100, 3: 1000}
+"""Entries of triangular factors per unknown, by dimension of the mesh."""
 _SHALLOW = 1e-3
 """Of the contact's length: heat that has gone so deep has changed nothing yet."""
 _HARDLY = 0.1
@@ -99,6 +103,23 @@ class HeatStage(Protocol):
     def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
         """What heat does to the condensed interface."""
 
+    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+        """Whether the last coupling is right under the pressure that it has led to.
+
+        Where it is not, the next one is nearer.
+        """
+
+
+class ConductingStage(HeatStage, Protocol):
+    """Heat that the bodies conduct, as opposed to that of the first moment."""
+
+    @property
+    def unheated(self) -> ThermalState:
+        """The faces without any heat at the contact."""
+
+    def rise(self, faces: ThermalState) -> np.ndarray:
+        """Temperature rise of the bodies, shape (n_owned,) [K]."""
+
 
 @dataclass(frozen=True)
 class ConductedHeat:
@@ -143,6 +164,10 @@ class ConductedHeat:
             operators.distortion.at_rest(exchange, self.resting),
         )
 
+    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+        """Linear heat is right at once."""
+        return True
+
 
 @dataclass(frozen=True)
 class StoredHeat:
@@ -152,6 +177,8 @@ class StoredHeat:
     ----------
     rise : ndarray, shape (n_owned,)
         Of the nodes over the ambient [K].
+    content : ndarray, shape (n_owned,)
+        Heat that the nodes have stored over the ambient [J].
     turnover : ndarray, shape (2,)
         Friction heat made so far, and heat lost [J].
     largest : float
@@ -159,6 +186,7 @@ class StoredHeat:
     """
 
     rise: np.ndarray
+    content: np.ndarray
     turnover: np.ndarray
     largest: float
 
@@ -166,6 +194,7 @@ class StoredHeat:
         """Moved on by a part of the way to another state."""
         return StoredHeat(
             self.rise + part * (other.rise - self.rise),
+            self.content + part * (other.content - self.content),
             self.turnover + part * (other.turnover - self.turnover),
             other.largest,
         )
@@ -234,6 +263,9 @@ class FrozenHeat:
         assert opening is not None
         return Coupling(np.zeros((m, m)), opening)
 
+    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+        return True
+
 
 class FrictionHeat:
     """Couples pressure, temperature and distortion at the contact points.
@@ -251,22 +283,27 @@ class FrictionHeat:
         self._distorts = system.case.contact.method == "condensed"
 
     @cached_property
-    def steady(self) -> ConductedHeat:
+    def steady(self) -> ConductingStage:
         """Temperatures that do not change any more."""
         thermal = self._thermal
         operators = HeatOperators(thermal.conduction, thermal.face, self)
         still = np.zeros(len(thermal.conduction.fixed))
-        return ConductedHeat(operators, None, self.at_rest(thermal.conduction.solve(still)))
+        resting = self._system.parts.get(
+            "at rest",
+            (self._system.inputs.conduction, self._distorts),
+            lambda: self.at_rest(thermal.conduction.solve(still)),
+        )
+        return ConductedHeat(operators, None, resting)
 
-    def after(self, rise: np.ndarray, step: float) -> ConductedHeat:
-        """The end of an implicit Euler step [s] from a nodal rise (n_owned,) [K]."""
+    def after(self, before: StoredHeat, step: float) -> ConductingStage:
+        """The end of an implicit Euler step [s]; every rank calls."""
         if step not in self._steps:
             self._steps[step] = self._operators(step)
-            if len(self._steps) > _KEPT:
+            if len(self._steps) > self._kept:
                 self._steps.popitem(last=False)
         self._steps.move_to_end(step)
         operators = self._steps[step]
-        stored = operators.conduction.stored(rise) / step
+        stored = before.content / step
         return ConductedHeat(operators, stored, self.at_rest(operators.conduction.solve(stored)))
 
     @cached_property
@@ -275,13 +312,14 @@ class FrictionHeat:
         conduction = self._thermal.conduction
         rise = np.where(conduction.fixed, conduction.given, self._thermal.initial)
         resting = self.at_rest(rise)
-        return FrozenHeat(StoredHeat(rise, np.zeros(2), float(np.abs(resting.rise).max())), resting)
+        largest = float(np.abs(resting.rise).max())
+        return FrozenHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(2), largest), resting)
 
     def stored(
         self,
         before: StoredHeat,
         step: float,
-        heat: ConductedHeat,
+        heat: ConductingStage,
         faces: ThermalState,
         friction_heat: np.ndarray,
     ) -> StoredHeat:
@@ -292,7 +330,7 @@ class FrictionHeat:
         before : StoredHeat
         step : float
             [s]
-        heat : ConductedHeat
+        heat : ConductingStage
             From `after`.
         faces : ThermalState
             At the end.
@@ -301,11 +339,13 @@ class FrictionHeat:
         """
         conduction, face = self._thermal.conduction, self._thermal.face
         rise = heat.rise(faces)
-        storage = conduction.stored(rise - before.rise) / step
+        content = conduction.stored(rise)
+        storage = (content - before.content) / step
         lost = sum(conduction.losses(rise, face.nodal_heat(faces, bath=False), storage))
         made = float(face.weights @ friction_heat)
         largest = max(before.largest, float(np.abs(faces.rise).max()))
-        return StoredHeat(rise, before.turnover + step * np.array([made, lost]), largest)
+        turnover = before.turnover + step * np.array([made, lost])
+        return StoredHeat(rise, content, turnover, largest)
 
     def lasting(self, conditions: Conditions, pressure: np.ndarray) -> Warmth:
         """Temperatures that do not change any more, under a pressure (n,) [Pa]."""
@@ -325,13 +365,8 @@ class FrictionHeat:
     def balance(self, stored: StoredHeat) -> HeatBalance:
         """Where all the heat so far has gone; every rank calls."""
         made, lost = (float(heat) for heat in stored.turnover)
-        kept = self.heat_content(stored.rise) - self.heat_content(self.frozen.stored.rise)
-        return HeatBalance(made, kept, lost)
-
-    def heat_content(self, rise: np.ndarray) -> float:
-        """Heat stored in the bodies over the ambient [J]; every rank calls."""
-        content = self._thermal.conduction.stored(rise).sum()
-        return float(sum_over_ranks(self._system.comm, content))
+        gained = (stored.content - self.frozen.stored.content).sum()
+        return HeatBalance(made, float(sum_over_ranks(self._system.comm, gained)), lost)
 
     @property
     def ambient(self) -> float:
@@ -361,11 +396,31 @@ class FrictionHeat:
     def condensed(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
         """Thermal distortion condensed to the pressure space; every rank calls."""
         with self._system.phases("condense distortion"):
-            return condense_distortion(conduction, self._per_rise, face)
+            if conduction is not self._thermal.conduction:  # over a step of time
+                return condense_distortion(conduction, self._per_rise, face)
+            return self._system.parts.get(
+                "distortion",
+                self._system.inputs.conduction,
+                lambda: condense_distortion(conduction, self._per_rise, face),
+            )
+
+    @cached_property
+    def _kept(self) -> int:
+        """Number of sizes of steps whose operators are kept."""
+        conduction, points = self._thermal.conduction, len(self._thermal.face.weights)
+        dense, nodes = 12 * points**2, len(conduction.fixed)
+        numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes
+        least = min(self._system.comm.allgather(_MEMORY / (8 * numbers)))
+        return max(int(least), _FEWEST)
 
     @cached_property
     def _per_rise(self) -> np.ndarray:
-        return gap_per_rise(self._thermal.load, self._system.contact)
+        system = self._system
+        return system.parts.get(
+            "gap per rise",
+            system.inputs.elasticity,
+            lambda: gap_per_rise(self._thermal.load, system.contact),
+        )
 
     def _operators(self, step: float) -> HeatOperators:
         steady = self._thermal.face

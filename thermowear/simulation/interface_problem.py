@@ -192,7 +192,7 @@ class InterfaceProblem:
             return None
         if before.stored is None:
             return self._heat.steady
-        return self._heat.after(before.stored.rise, step)
+        return self._heat.after(before.stored, step)
 
     def _moved_on(self, before, state, step, conditions, heat) -> WornContact:
         """A state with what has accumulated in a step."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ..laws.motions import RigidMotion
-from .result import FrictionHistory, HeatRow, HistoryRow, Interface, TrackHistory
+from .result import FrictionHistory, HeatRow, HistoryRow, Interface, Modes, TrackHistory
 from .state import BodyState, ContactState
 
 
@@ -31,6 +31,8 @@ class Outcome:
     heat : list of HeatRow
         Of an analysis that follows temperatures in time.
     stopped : BaseException or None
+    modes : Modes or None
+        Of a stability analysis.
     """
 
     contact: ContactState
@@ -44,3 +46,4 @@ class Outcome:
     track: TrackHistory | None = None
     heat: list[HeatRow] = field(default_factory=list)
     stopped: BaseException | None = None
+    modes: Modes | None = None

@@ -8,11 +8,11 @@ from ..case.schema import Case
 from ..contact.zones import contact_zones
 from ..errors import ComputationError
 from .condensed_method import CondensedMethod
-from .friction_heat import FrictionHeat
 from .full_method import FullMethod
 from .interface_problem import InterfaceProblem
 from .phases import Phases
 from .system import System, build
+from .varying_heat import friction_heat
 
 _PASSES = 12
 _SETTLED = 0.1  # of the element at the edge
@@ -22,7 +22,7 @@ _LONGEST = 0.4  # of the zone: its edges never change places
 
 def interface_problem(system: System) -> InterfaceProblem:
     """The interface of a system, solved by the method of the case. Every rank calls."""
-    heat = None if system.thermal is None else FrictionHeat(system, system.thermal)
+    heat = friction_heat(system)
     if system.case.contact.method == "condensed":
         return InterfaceProblem(system, CondensedMethod(system), heat)
     with system.phases("contact operators"):

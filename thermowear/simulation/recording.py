@@ -96,7 +96,8 @@ def profile(system: System, interface: Interface) -> Profile:
     normals[:, : points.shape[1]] = system.pairing.normals
     along = system.pairing.normals @ system.press
     along = np.where(along > _STEEPEST, along, np.nan)
-    lost = (interface.shape.max() - interface.shape) / along
+    lost = system.pairing.gap + interface.wear_1 + interface.wear_2
+    lost = (interface.shape.max() - interface.shape + lost.min()) / along
     rate = interface.wear_rate_1 + interface.wear_rate_2
     return Profile(
         x=interface.x,

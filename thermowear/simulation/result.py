@@ -194,6 +194,27 @@ class TrackHistory:
 
 
 @dataclass(frozen=True)
+class Modes:
+    """Disturbances of the pressure, one entry a contact point and mode; as in ``mode.csv``.
+
+    The largest value of each is 1. First comes what grows fastest at the given speed, if anything
+    grows; then what begins to grow at the critical speed, if it swings; then what neither grows nor
+    dies out, each at its own speed.
+    """
+
+    mode: np.ndarray
+    speed_factor: np.ndarray
+    growth_rate: np.ndarray
+    frequency: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    s: np.ndarray
+    pressure: np.ndarray
+    pressure_imaginary: np.ndarray
+
+
+@dataclass(frozen=True)
 class BodyFields:
     """Fields on a fine grid of points in each cell, on rank 0.
 
@@ -242,6 +263,8 @@ class Result:
         What ended the run before its time.
     heat : list of HeatRow
         Of an analysis that follows temperatures in time.
+    modes : Modes or None
+        Of a stability analysis.
     """
 
     interface: Interface
@@ -254,3 +277,4 @@ class Result:
     track: TrackHistory | None = None
     stopped: BaseException | None = None
     heat: list[HeatRow] = field(default_factory=list)
+    modes: Modes | None = None

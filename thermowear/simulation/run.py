@@ -10,6 +10,7 @@ from ..case.analyses import Transient
 from ..case.schema import Case
 from ..errors import ComputationError
 from ..laws.motions import combined
+from .condensed_method import CondensedMethod
 from .fields import sample
 from .fretting import fretting
 from .interface_problem import InterfaceProblem
@@ -19,8 +20,9 @@ from .phases import Phases
 from .preparation import interface_problem, prepare
 from .reciprocating import reciprocating
 from .recording import interface_at, profile, record
-from .result import Result
+from .result import BodyFields, Result
 from .running_in import running_in
+from .stability import stability
 from .state import body_state
 from .steady import SteadyState, least_worn, steady_state
 from .summary import summarise
@@ -68,25 +70,38 @@ def run(
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
     system = prepare(case, comm, phases)
+    outcome = analyse(system, observer)
+    with phases("fields"):
+        fields = sample(system, outcome.state, outcome.motion)
+    return conclude(system, outcome, fields)
+
+
+def analyse(system: System, observer: Observer) -> Outcome:
+    """The analysis that the case of a system asks for; what is odd about it is said.
+
+    Every rank calls.
+    """
     if system.pairing.unpaired > _UNPAIRED:
         percent = 100 * system.pairing.unpaired
         observer.note(
             f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
             "stays out of the contact"
         )
-    outcome = _ANALYSES[case.analysis.type](system, observer)
+    outcome = _ANALYSES[system.case.analysis.type](system, observer)
     if _outgrown(system, outcome.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
-    with phases("fields"):
-        fields = sample(system, outcome.state, outcome.motion)
-    summary = summarise(system, outcome)
+    return outcome
+
+
+def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:
+    """What a run returns."""
     return Result(
         outcome.interface,
         profile(system, outcome.interface),
-        summary,
+        summarise(system, outcome),
         outcome.history,
         outcome.outputs,
         fields,
@@ -94,6 +109,7 @@ def run(
         outcome.track,
         outcome.stopped,
         outcome.heat,
+        outcome.modes,
     )
 
 
@@ -123,8 +139,11 @@ def _problem(system: System, observer: Observer) -> InterfaceProblem:
 
 def _initial(system: System, observer: Observer) -> Outcome:
     """Contact of the unworn faces."""
+    return _unworn(system, _problem(system, observer))
+
+
+def _unworn(system: System, problem: InterfaceProblem) -> Outcome:
     with system.phases("contact"):
-        problem = _problem(system, observer)
         unworn = problem.unworn()
     with system.phases("bodies"):
         contact = problem.contact_state(unworn, 0.0)
@@ -209,10 +228,20 @@ def _transient(system: System, observer: Observer) -> Outcome:
     return replace(outcome, extra=outcome.extra | velocity)
 
 
+def _stability(system: System, observer: Observer) -> Outcome:
+    """Disturbances of the steady state, or of the cold unworn contact where there is none."""
+    free = system.holder.free
+    if system.laws and len(free) and free.all():
+        return stability(system, _steady(system, observer), observer)
+    cold = InterfaceProblem(system, CondensedMethod(system), None)
+    return stability(system, _unworn(system, cold), observer)
+
+
 _ANALYSES = {
     "initial": _initial,
     "steady": _steady,
     "transient": _transient,
     "fretting": fretting,
     "reciprocating": reciprocating,
+    "stability": _stability,
 }

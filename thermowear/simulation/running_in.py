@@ -24,6 +24,11 @@ from .system import System
 from .transient import Moment, moments, times_to_hit
 
 _MELTED = 5000.0  # K; no solid is as hot
+_STEEPER = 3.0  # heating now to heating so far; a load and a speed that grow evenly make 2.5 of it
+_UNSTABLE = (
+    "the temperature runs away: friction heat makes the bodies bulge, so that they press and heat "
+    "each other ever more (thermoelastic instability); reduce the speed or the friction"
+)
 
 
 def running_in(system: System, problem: InterfaceProblem, steady, observer: Observer) -> Outcome:
@@ -41,7 +46,7 @@ def running_in(system: System, problem: InterfaceProblem, steady, observer: Obse
     assert isinstance(settings, Transient)
     sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
     record = _Record(system, problem, observer)
-    passing = _solid(problem, moments(problem, settings, steady, sizes))
+    passing = record.watched(moments(problem, settings, steady, sizes))
     last, stopped = go_through(system, "time stepping", passing, record.keep)
     with system.phases("bodies"):
         contact, motion, state, interface = record.bodies(last)
@@ -56,19 +61,6 @@ def running_in(system: System, problem: InterfaceProblem, steady, observer: Obse
         heat=record.heat,
         stopped=stopped,
     )
-
-
-def _solid(problem: InterfaceProblem, passing: Iterator[Moment]) -> Iterator[Moment]:
-    """The moments until friction heat has made more of itself than any solid can take."""
-    for moment in passing:
-        yield moment
-        hottest = problem.hottest(moment.state)
-        if problem.stores_heat and hottest > _MELTED:
-            raise ComputationError(
-                f"transient: the temperature runs away, {hottest:.3g} K at {moment.time:g} s: "
-                "friction heat makes the bodies bulge, and press and heat each other more and more "
-                "where they do (thermoelastic instability); reduce the speed or the friction"
-            )
 
 
 class _Record:
@@ -107,6 +99,27 @@ class _Record:
                 self.outputs[moment.time] = self.bodies(moment)[3]
                 self._observer.output(moment.time, self.outputs[moment.time])
 
+    def watched(self, passing: Iterator[Moment]) -> Iterator[Moment]:
+        """The moments, until the faces are hotter than any solid can be.
+
+        Raises
+        ------
+        ComputationError
+            That says so, as that of a step does if it fails while they get hotter ever faster.
+        """
+        try:
+            for moment in passing:
+                yield moment
+                hottest = self._problem.hottest(moment.state)
+                if self.heat and hottest > _MELTED:
+                    raise ComputationError(
+                        f"transient: {hottest:.3g} K at {moment.time:g} s, no solid is as hot"
+                    )
+        except ComputationError as reason:
+            if self._runs_away():
+                raise ComputationError(f"{reason}; {_UNSTABLE}") from None
+            raise
+
     def bodies(self, moment: Moment) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
         """Contact, motion of the holder, bodies and interface at a moment."""
         contact = self._problem.contact_state(moment.state, moment.time)
@@ -131,6 +144,15 @@ class _Record:
             "peak_temperature_K": peak.max_temperature,
             "peak_temperature_time_s": peak.time,
         }
+
+    def _runs_away(self) -> bool:
+        """Whether the faces have become hotter much faster than they did before."""
+        if not self.heat or len(self.rows) < 3:
+            return False
+        first, before, last = self.rows[0], self.rows[-2], self.rows[-1]
+        so_far = (before.max_temperature - first.max_temperature) / before.time
+        now = (last.max_temperature - before.max_temperature) / last.step
+        return now > _STEEPER * so_far > 0.0
 
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
         system, pressure = self._system, moment.state.pressure

@@ -14,8 +14,8 @@ from .conditions import Conditions, Surroundings
 from .mixing import Mixing
 
 _DAMPED = 0.5
-_NEAR = 1e-2
-"""Relative miss below which turns are mixed: on the way there mixing may leave for another state."""
+_NEAR = 0.05
+"""Relative miss below which turns are mixed; farther off, that may lead to another state."""
 _TURNS = 100
 _LEAST_RISE = 1.0  # K
 

@@ -13,8 +13,9 @@ from ..contact.traces import vector_trace
 from ..laws.motions import translation
 from ..parallel import sum_over_ranks
 from .conditions import Conditions, Surroundings
-from .friction_heat import FrictionHeat, Warmth
+from .friction_heat import Warmth
 from .system import System
+from .varying_heat import friction_heat
 
 
 @dataclass(frozen=True)
@@ -42,9 +43,8 @@ def contact_state(
 ) -> ContactState:
     """Of a contact whose conditions depend on nothing but where it touches. Every rank calls."""
     conditions = Surroundings(system).at(0.0, pressure, None, pressure > 0)
-    warmth = None
-    if system.thermal is not None:
-        warmth = FrictionHeat(system, system.thermal).lasting(conditions, pressure)
+    heat = friction_heat(system)
+    warmth = None if heat is None else heat.lasting(conditions, pressure)
     return ContactState(pressure, conditions, warmth, shear)
 
 

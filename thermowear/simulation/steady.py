@@ -8,13 +8,12 @@ import numpy as np
 from scipy.optimize import linprog
 
 from ..contact.heat import ThermalState
-from ..errors import ComputationError
 from ..laws import SteadyWear, steady_pressure
 from .conditions import Conditions, Surroundings
-from .friction_heat import FrictionHeat
 from .self_consistent import Supposed, self_consistent
 from .state import ContactState
 from .system import System
+from .varying_heat import friction_heat
 
 _NONE = (
     "no steady state found: each turn of the principle changes friction, wear or conductance, so "
@@ -51,7 +50,7 @@ def steady_state(system: System) -> SteadyState:
     ComputationError
         If there is no steady state, or no fixed point is found.
     """
-    heat = None if system.thermal is None else FrictionHeat(system, system.thermal)
+    heat = friction_heat(system)
     area = float(system.weights.sum())
     even = np.full(len(system.weights), (system.case.force() or area) / area)
     start = Supposed(even, None if heat is None else heat.steady.unheated)

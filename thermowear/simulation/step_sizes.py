@@ -9,8 +9,8 @@ from typing import Protocol
 
 _HIT = 1e-9
 """Of what is left: a step that ends so near to a time ends there."""
-_FINEST = 256
-"""Common measures that are a smaller part of the way between two times are of no use."""
+_FEW = 5
+"""Powers of two that a way may be made up of: at most so many steps are smaller than need be."""
 
 
 class StepSizes(Protocol):
@@ -53,7 +53,9 @@ class FewSizes:
     def _unit(self, way: float) -> float:
         """What divides the way between two times, and as many others as can be [s]."""
         measure = self._measure or 1.0
-        return way if _FINEST * measure < way < math.inf else measure
+        if way == math.inf or round(way / measure).bit_count() <= _FEW:
+            return measure
+        return way
 
 
 def ends(step: float, left: float) -> bool:

@@ -67,7 +67,38 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "wear_volume_2_m3": float(volumes[1]),
         "wear_coefficient_per": {name: law.per for name, law in case.wear.items()},
     }
-    return summary | _guide_reactions(system, p) | _rotations(system, outcome) | outcome.extra
+    about = _passing(system, outcome) | _guide_reactions(system, p) | _rotations(system, outcome)
+    return summary | about | _friction(system, outcome) | outcome.extra
+
+
+def _friction(system: System, outcome: Outcome) -> dict[str, float]:
+    """The coefficients where it presses, and their mean by force, where they are not constant."""
+    pressure = outcome.contact.pressure
+    if not system.case.contact.friction_factor.depends_on or not pressure.any():
+        return {}
+    friction, carries = outcome.contact.conditions.friction, pressure > 0
+    return {
+        "friction_mean": float(np.average(friction, weights=system.weights * pressure)),
+        "friction_min": float(friction[carries].min()),
+        "friction_max": float(friction[carries].max()),
+    }
+
+
+def _passing(system: System, outcome: Outcome) -> dict:
+    """What a body 2 that passes under body 1 does with heat, and where heat leaves the bodies."""
+    thermal, rise, heat = system.thermal, outcome.state.rise, system.case.heat
+    if thermal is None or rise is None or heat is None or not system.case.geometry.passes:
+        return {}
+    advection = thermal.conduction.advection
+    stabilised = advection is not None and advection.stabilised
+    cooled, _, carried = thermal.conduction.losses(rise, np.zeros(len(rise)))
+    leaves = advection is not None and system.case.geometry.rotation_center is None
+    return {
+        "heat_advection": "stabilised" if stabilised else heat.advection,
+        "max_cell_peclet_number": None if advection is None else advection.peclet,
+        "heat_cooled_W": float(cooled),
+        "heat_carried_out_W": float(carried) if leaves else None,
+    }
 
 
 def normal_force(system: System, pressure: np.ndarray) -> float:

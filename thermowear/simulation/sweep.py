@@ -10,10 +10,8 @@ from .observer import Observer
 from .parts import Parts, inputs
 from .phases import Phases
 from .preparation import prepare
-from .recording import profile
 from .result import Result
-from .run import _ANALYSES
-from .summary import summarise
+from .run import analyse, conclude
 from .system import System, build
 
 
@@ -47,18 +45,7 @@ class Series:
         """
         observer = observer or Observer()
         system = self._prepared(case, phases or Phases(observer.phase))
-        outcome = _ANALYSES[case.analysis.type](system, observer)
-        return Result(
-            outcome.interface,
-            profile(system, outcome.interface),
-            summarise(system, outcome),
-            outcome.history,
-            outcome.outputs,
-            None,
-            outcome.friction,
-            outcome.track,
-            outcome.stopped,
-        )
+        return conclude(system, analyse(system, observer), None)
 
     def _prepared(self, case: Case, phases: Phases) -> System:
         if case.contact.positioning:  # its mesh is where this very case has its contact

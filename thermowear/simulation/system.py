@@ -9,9 +9,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..bulk.bodies import Bodies, distribute
-from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
+from ..bulk.elasticity import Elasticity
 from ..bulk.kinematics import Model, section_model
-from ..bulk.surface_load import surface_load
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, influence
 from ..contact.face import gather_face
@@ -19,11 +18,12 @@ from ..contact.holder import Holder, hold
 from ..contact.pairing import Pairing, pair
 from ..contact.pressure import pressure_basis
 from ..contact.sliding import Sliding, sliding
-from ..contact.traces import gap_trace, vector_trace
+from ..contact.traces import vector_trace
 from ..laws import WearLaw
 from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
 from ..parallel import on_root, sum_over_ranks
 from .drives import drives
+from .elastic_system import dead_load, elastic_system
 from .initial_shape import initial_depth
 from .parts import Inputs, Parts, inputs
 from .phases import Phases
@@ -166,8 +166,21 @@ class System:
             self,
             holder=hold(self.pairing, pull, self.holder.drives),
             pull=pull,
-            traction=vector_trace(self.elastic.space, self.pairing, pull) if drags else self.trace,
+            traction=self._traction(pull) if drags else self.trace,
         )
+
+    def _traction(self, pull: np.ndarray) -> sp.csr_matrix:
+        """B_tᵀ of a pull (n, gdim), from those along the coordinates."""
+        each = zip(self._along_coordinates, pull.T, strict=True)
+        first, *others = (trace @ sp.diags(component) for trace, component in each)
+        return sum(others, first)
+
+    @cached_property
+    def _along_coordinates(self) -> list[sp.csr_matrix]:
+        """Traces of the displacement along each coordinate, shape (n_owned, n) each."""
+        n, gdim = self.pull.shape
+        units = (np.tile(unit, (n, 1)) for unit in np.eye(gdim))
+        return [vector_trace(self.elastic.space, self.pairing, unit) for unit in units]
 
 
 def build(
@@ -205,7 +218,7 @@ def build(
         )
     with phases("assemble elasticity"):
         elastic, trace = parts.get(
-            "elasticity", made_from.elasticity, lambda: _elastic(case, model, bodies, pairing)
+            "elasticity", made_from.elasticity, lambda: elastic_system(case, model, bodies, pairing)
         )
     slides = _sliding(case, model, pairing)
     pull, speed = pairing.normals, np.zeros(len(pairing.weights))
@@ -230,7 +243,7 @@ def build(
         slides=slides,
         pull=pull,
         speed=speed,
-        dead_load=_dead_load(case, elastic),
+        dead_load=dead_load(case, elastic),
         thermal=None if thermal is None else _exchanging(thermal, case),
         phases=phases,
         parts=parts,
@@ -245,25 +258,6 @@ def _meshed(case: Case, comm, zone: tuple[float, float] | None) -> Bodies:
 def _paired(case: Case, comm, model: Model, bodies: Bodies) -> tuple[Pairing, np.ndarray]:
     faces = [gather_face(bodies, surface) for surface in case.geometry.contact]
     return contact_points(case, comm, model, *faces)
-
-
-def _elastic(
-    case: Case, model: Model, bodies: Bodies, pairing: Pairing
-) -> tuple[Elasticity, sp.csr_matrix]:
-    """The elastic bodies, and the trace of the gap in their space."""
-    geometry = case.geometry
-    materials = {name: _elastic_material(case, name) for name in geometry.parts}
-    clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
-    elastic = elasticity(
-        bodies,
-        model,
-        case.mesh.degree,
-        materials,
-        clamped,
-        geometry.symmetry,
-        geometry.rollers,
-    )
-    return elastic, gap_trace(elastic.space, pairing)
 
 
 def _exchanging(thermal: ThermalSystem, case: Case) -> ThermalSystem:
@@ -295,20 +289,3 @@ def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pair
         depth = initial_depth(comm, case.geometry.initial_shape, pairing.position)
         pairing = replace(pairing, gap=pairing.gap + depth)
     return pairing, basis
-
-
-def _elastic_material(case: Case, body: str) -> ElasticMaterial:
-    material = case.material(body)
-    E, ν, α = material.young_modulus, material.poisson_ratio, material.expansion
-    assert E is not None  # the case has been checked
-    assert ν is not None
-    return ElasticMaterial(E, ν, α if case.heat is not None and α is not None else 0.0)
-
-
-def _dead_load(case: Case, elastic: Elasticity) -> np.ndarray | None:
-    press = np.array(case.geometry.press_direction)
-    loads = [
-        surface_load(elastic, surface, force * press)
-        for surface, force in case.load.surfaces.items()
-    ]
-    return np.sum(loads, axis=0) if loads else None

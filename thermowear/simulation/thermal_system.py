@@ -14,6 +14,13 @@ from ..bulk.conduction import Conduction, ThermalMaterial, conduction
 from ..bulk.elasticity import Elasticity
 from ..bulk.field import lagrange_space
 from ..bulk.kinematics import Model
+from ..bulk.varying import (
+    VaryingConduction,
+    VaryingExpansion,
+    thermal_forces,
+    varying_conduction,
+    varying_expansion,
+)
 from ..case.schema import Case
 from ..contact.heat import InterfaceHeat, bath_matrix, condense_heat
 from ..contact.pairing import Pairing
@@ -37,6 +44,8 @@ class ThermalSystem:
         Rise over it at the start of a run that follows temperatures in time [K].
     diffusivity : float
         The largest of the materials; zero where none is known [m²/s].
+    expansions : tuple of VaryingExpansion
+        Of parts whose expansion changes with the temperature.
     """
 
     conduction: Conduction
@@ -45,13 +54,16 @@ class ThermalSystem:
     ambient: float
     initial: float
     diffusivity: float
+    expansions: tuple[VaryingExpansion, ...]
+
+    @property
+    def varies(self) -> bool:
+        """Whether conductivity or expansion change with the temperature."""
+        return isinstance(self.conduction, VaryingConduction)
 
     def forces(self, rise: np.ndarray) -> np.ndarray:
         """Nodal forces of a temperature rise, owned rows [N]."""
-        right, result = self.load.createVecs()
-        right.setArray(rise)
-        self.load.mult(right, result)
-        return result.getArray().copy()
+        return thermal_forces(self.load, self.expansions, rise)
 
 
 def thermal_system(
@@ -78,11 +90,34 @@ def thermal_system(
         passage = _passage(case)
         conducting = conduction(bodies, model, space, materials, cooling, given, bath, passage)
         load = elastic.thermal_load(space)
+        conducting, expansions = _varying(case, conducting, bodies, model, elastic, materials)
     with phases("condense conduction"):
         face = condense_heat(conducting, pairing.weights, basis, traces, shift, case.partition())
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
-    return ThermalSystem(conducting, load, face, heat.ambient, initial, diffusivity)
+    return ThermalSystem(conducting, load, face, heat.ambient, initial, diffusivity, expansions)
+
+
+def _varying(
+    case: Case,
+    conducting: Conduction,
+    bodies: Bodies,
+    model: Model,
+    elastic: Elasticity,
+    materials: dict[str, ThermalMaterial],
+) -> tuple[Conduction, tuple[VaryingExpansion, ...]]:
+    """Let conductivity and expansion change with the temperature where the case has tables."""
+    assert case.heat is not None
+    found = {part: case.material(part) for part in case.geometry.parts}
+    conducts = {p: m.conductivity_factor for p, m in found.items() if m.conductivity_factor}
+    expands = {p: m.expansion_factor for p, m in found.items() if m.expansion_factor}
+    if not conducts and not expands:
+        return conducting, ()
+    ambient = case.heat.ambient
+    return (
+        varying_conduction(conducting, bodies, model, materials, conducts, ambient),
+        varying_expansion(elastic, conducting.space, expands, ambient),
+    )
 
 
 def _passage(case: Case) -> Passage | None:

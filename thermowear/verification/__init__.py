@@ -3,20 +3,25 @@
 from . import (
     annular_punch,
     beam_shakedown,
+    braking_stop,
     flat_punch,
     fretting_wear,
     fuel_fretting,
     growing_cylinder,
     growing_sphere,
+    half_plane_instability,
     hertz_line,
     hertz_sphere,
     methods_agree,
     mindlin,
     minimality,
+    moving_band,
     patch,
     reciprocating,
     running_in,
+    sliding_rod,
     special_cases,
+    step_flux,
 )
 from .check import Check, Checks, compare
 
@@ -37,7 +42,12 @@ CASES: dict[str, Checks] = special_cases.CHECKS | {
         fretting_wear,
         fuel_fretting,
         reciprocating,
+        moving_band,
         minimality,
+        step_flux,
+        braking_stop,
+        sliding_rod,
+        half_plane_instability,
     )
 }
 """Verification cases by id; each yields its checks."""

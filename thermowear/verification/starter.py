@@ -6,12 +6,13 @@ import tomllib
 
 from .. import geometry  # noqa: F401  (makes the geometries known)
 from ..case import load
+from ..case.schema import Case
 from ..case.starters import starter_text
 from ..simulation import Result, run
 
 
-def run_starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Result:
-    """Compute a starter case.
+def starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
+    """A starter case with changes.
 
     Parameters
     ----------
@@ -19,9 +20,18 @@ def run_starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Re
     *overrides : str
         ``KEY=VALUE`` each.
     without : tuple of str
-        Tables to leave out.
+        Paths of tables and keys to leave out.
     """
     tables = tomllib.loads(starter_text(name))
-    for table in without:
-        del tables[table]
-    return run(load(tables, overrides))
+    for path in without:
+        *above, key = path.split(".")
+        table = tables
+        for part in above:
+            table = table[part]
+        del table[key]
+    return load(tables, overrides)
+
+
+def run_starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Result:
+    """Compute a starter case; parameters as in `starter`."""
+    return run(starter(name, *overrides, without=without))

@@ -42,7 +42,7 @@ def draw_interface(folder: Path) -> None:
                 axis.set_ylabel("temperature\n[°C]")
                 axis.legend()
             else:
-                axis.set_ylabel(_wrapped(INTERFACE[names[0]]))
+                axis.set_ylabel(wrapped(INTERFACE[names[0]]))
         axes[0].set_ylim(bottom=0)
         axes[-1].set_xlabel(place[0])
         figure.savefig(folder / "interface.png")
@@ -117,5 +117,6 @@ def abscissa(data: dict[str, np.ndarray]) -> tuple[str, np.ndarray]:
     return quantity.axis, quantity.drawn(data["x" if flat else "s"])
 
 
-def _wrapped(quantity: Quantity) -> str:
+def wrapped(quantity: Quantity) -> str:
+    """Label of a narrow axis, in two lines."""
     return f"{quantity.label}\n[{quantity.unit}]"

@@ -11,7 +11,9 @@ from pathlib import Path
 from ...errors import CaseError
 from .curves import draw_history, draw_interface, draw_wear
 from .friction import draw_cycles, draw_friction, draw_loads
+from .heat import draw_heat
 from .maps import draw_interface_maps, draw_wear_maps, is_surface
+from .modes import draw_modes
 from .profile import draw_profile
 from .track import draw_track
 
@@ -44,10 +46,12 @@ def make_pictures(folder: Path) -> list[str]:
         draw_profile(folder)
         draw_wear(folder)
     draw_history(folder)
+    draw_heat(folder)
     draw_friction(folder)
     draw_loads(folder)
     draw_cycles(folder)
     draw_track(folder)
+    draw_modes(folder)
     if not (folder / "fields.vtu").is_file():
         return [f"{folder}: no fields.vtu, so no pictures of the bodies"]
     reason = _render(folder)

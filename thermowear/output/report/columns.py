@@ -12,6 +12,7 @@ import numpy as np
 from ..quantities import (
     CYCLES,
     FRICTION,
+    HEAT,
     HISTORY,
     INTERFACE,
     LOADS,
@@ -29,7 +30,7 @@ _EXTREMES = {
     "shear": Quantity("max_shear_Pa", "largest shear", "MPa", 1e-6),
     "slip": Quantity("max_slip_m", "largest slip", "µm", 1e6),
 }
-_TABLES = (INTERFACE, PROFILE, HISTORY, FRICTION, LOADS, CYCLES, TRACK, _EXTREMES)
+_TABLES = (INTERFACE, PROFILE, HISTORY, HEAT, FRICTION, LOADS, CYCLES, TRACK, _EXTREMES)
 _KNOWN = {quantity.header: quantity for table in _TABLES for quantity in table.values()}
 _AT_A_TIME = re.compile(r"(interface|friction)_([-+.0-9e]+)\.csv")
 

@@ -23,18 +23,22 @@ CAPTIONS = {
     "wear": "Pressure and worn depth along the contact at the output times and at the end.",
     "track": "Worn depths of both bodies along x, body 1 in the middle of its stroke.",
     "history": "Largest pressure and worn volume over time.",
+    "heat": "Temperatures of both faces, friction power and largest pressure over time.",
     "friction": "Shear between the limits of friction, and slip, at the output times.",
     "loads": "Tangential force over displacement, and energy dissipated over time.",
     "cycles": "Largest wear depth and worn volume over the cycles.",
+    "mode": "Disturbances of the pressure: what grows fastest, and what stays at which speed.",
 }
 TABLES = {
     "history": "History, a row a step",
+    "heat": "Heat, a row a step",
     "cycles": "Cycles, a row a computed one",
     "loads": "History of loads, a row an increment",
     "interface": "Contact at the end",
     "profile": "Worn shape at the end",
     "friction": "Friction at the end",
     "track": "Track at the end",
+    "mode": "Disturbances of the pressure",
 }
 _PNG = b"\x89PNG\r\n\x1a\n"
 

@@ -53,6 +53,10 @@ GROUPS = {
     "Heat and energy": {
         "max_temperature_K": "highest temperature",
         "friction_power_W": "friction power",
+        "heat_advection": "heat carried along",
+        "max_cell_peclet_number": "largest cell Péclet number",
+        "heat_cooled_W": "heat lost by cooling",
+        "heat_carried_out_W": "heat carried out",
         "dissipated_energy_J": "energy dissipated",
         "heat_balance_relative_error": "error of the heat balance",
     },

@@ -23,6 +23,8 @@ _NUMBERS = {
     "max_pressure_Pa": Quantity("", "largest pressure", "MPa", 1e-6),
     "place": Quantity("", "place of the largest pressure, x", "mm", 1e3),
     "max_temperature_K": Quantity("", "highest temperature", "°C", 1.0, -273.15),
+    "peak_temperature_K": Quantity("", "highest temperature on the way", "°C", 1.0, -273.15),
+    "heat_carried_out_W": Quantity("", "heat carried out", "W"),
     "shape_range_m": Quantity("", "range of the worn shape", "µm", 1e6),
     "rigid_wear_velocity_m_per_s": Quantity("", "wear rate along the press", "nm/s", 1e9),
     "friction_power_W": Quantity("", "friction power", "W"),
@@ -32,6 +34,12 @@ _NUMBERS = {
     "guide_force_N": Quantity("", "force on the guide", "N"),
     "approach_m": Quantity("", "approach", "µm", 1e6),
     "critical_speed_m_per_s": Quantity("", "critical speed", "m/s"),
+    "critical_speed_with_wear_m_per_s": Quantity("", "critical speed with wear", "m/s"),
+    "critical_angular_velocity_rad_per_s": Quantity("", "critical speed", "rad/s"),
+    "critical_angular_velocity_with_wear_rad_per_s": Quantity(
+        "", "critical speed with wear", "rad/s"
+    ),
+    "growth_rate_per_s": Quantity("", "growth rate", "1/s"),
     "dissipated_energy_J": Quantity("", "energy dissipated", "mJ", 1e3),
 }
 

@@ -17,12 +17,15 @@ from .legend import add_legend, tallest
 
 _SINGULAR, _MOST = 3.0, 0.9
 """A peak that is so many times higher than what most points have is cut off."""
+_SAME = 1e-6
+"""Curves that are nearer to each other, relative to their highest value, are one."""
 
 
 def draw_shapes(layout: Layout, path: Path) -> None:
     """Draw the shape of each variant, and the pressure that goes with it."""
     data = [tables.read(f / "interface.csv", INTERFACE) for f in layout.record.folders]
     names = ["pressure", "shape"] if any(np.ptp(d["shape"]) > 0 for d in data) else ["pressure"]
+    same = {name for name in names if alike([d[name] for d in data])}
     columns = len(layout.columns)
     with mpl.rc_context(STYLE):
         keys = legends(layout)
@@ -38,13 +41,15 @@ def draw_shapes(layout: Layout, path: Path) -> None:
                     axis.plot(
                         place,
                         INTERFACE[name].drawn(data[k][name]),
-                        layout.line(places),
-                        color=layout.color(places[layout.colored]),
+                        "-" if name in same else layout.line(places),
+                        color="0.3" if name in same else layout.color(places[layout.colored]),
                         linewidth=1.2,
                     )
             axes[-1, column].set_xlabel(where)
         for row, name in zip(axes, names, strict=True):
             row[0].set_ylabel(f"{INTERFACE[name].label}\n[{INTERFACE[name].unit}]")
+            if name in same:
+                row[0].text(0.5, 0.05, "the same in all", ha="center", transform=row[0].transAxes)
         _cut(axes[0, 0], [INTERFACE["pressure"].drawn(d["pressure"]) for d in data])
         if layout.continuous:
             figure.colorbar(layout.scale(), ax=axes, label=layout.axis.label, pad=0.01)
@@ -67,6 +72,15 @@ def legends(layout: Layout) -> dict[str, list[Line2D]]:
             for k, word in enumerate(axis.words)
         ]
     return found
+
+
+def alike(curves: list[np.ndarray]) -> bool:
+    """Whether several curves are one."""
+    first, *others = curves
+    if not others or any(len(curve) != len(first) for curve in others):
+        return False
+    nearest = _SAME * np.nanmax(np.abs(first))
+    return all(np.allclose(curve, first, 0.0, nearest, equal_nan=True) for curve in others)
 
 
 def _cut(axis, curves: list[np.ndarray]) -> None:

@@ -1,0 +1,96 @@
+"""Bodies that pass: a strip and a ring alone, and conduction in them."""
+
+from mpi4py import MPI
+from petsc4py import PETSc
+
+import numpy as np
+from dolfinx import fem
+
+from thermowear.bulk.advection import Passage
+from thermowear.bulk.bodies import distribute
+from thermowear.bulk.conduction import ThermalMaterial, conduction
+from thermowear.bulk.field import lagrange_space, owned
+from thermowear.bulk.kinematics import PlaneStrain
+from thermowear.geometry.polar import Polar
+from thermowear.geometry.quads import Sheet, grid, mesh_body, tagged_bodies
+
+COMM = MPI.COMM_WORLD
+STEEL = ThermalMaterial(50.0, 2e6)
+INNER, OUTER = 0.01, 0.02
+
+
+def strip(columns=4, rows=4, length=0.02, height=0.01, bend=0.0):
+    """A rectangle from the origin; its cells are curved inside where `bend` is not zero."""
+
+    def place(p):
+        x, y = p[..., 0] * length, p[..., 1] * height
+        wave = bend * np.sin(np.pi * p[..., 0]) * np.sin(np.pi * p[..., 1])
+        return np.stack([x + wave * length, y - 0.7 * wave * height], axis=-1)
+
+    sheet = Sheet(grid(np.linspace(0, 1, columns + 1), np.linspace(0, 1, rows + 1)), place)
+    body = mesh_body([sheet], 3 if bend else 1)
+    eps = 1e-9
+    surfaces = {
+        "strip_left": lambda p: np.all(p[..., 0] < eps, axis=1),
+        "strip_right": lambda p: np.all(p[..., 0] > length - eps, axis=1),
+        "strip_bottom": lambda p: np.all(p[..., 1] < eps, axis=1),
+        "strip_top": lambda p: np.all(p[..., 1] > height - eps, axis=1),
+    }
+    return _distributed({"strip": body}, surfaces)
+
+
+def ring(columns=24, rows=3):
+    """A ring about the origin, of curved cells."""
+    angles, radii = np.linspace(0, 2 * np.pi, columns + 1), np.linspace(INNER, OUTER, rows + 1)
+    at = Polar()
+    surfaces = {
+        "ring_rim": lambda p: at.on_circle(p, OUTER),
+        "ring_bore": lambda p: at.on_circle(p, INNER),
+    }
+    return _distributed({"ring": mesh_body([at.sheet(angles, radii)], 3)}, surfaces)
+
+
+def _distributed(bodies, surfaces):
+    return distribute(tagged_bodies(bodies, surfaces) if COMM.rank == 0 else None, COMM)
+
+
+def along(speed):
+    return Passage(("strip",), None, speed, spread=False)
+
+
+def turning(speed, spread=False):
+    return Passage(("ring",), (0.0, 0.0), speed, spread)
+
+
+def conducting(bodies, degree, passage=None, given=None, cooling=None, material=STEEL):
+    """Conduction, a metre thick, without a bath."""
+    space = lagrange_space(bodies.mesh, degree)
+    n = (owned(space), space.dofmap.index_map.size_global)
+    nothing = PETSc.Mat().createAIJ((n, n), comm=bodies.mesh.comm)
+    nothing.setUp()
+    nothing.assemble()
+    materials = dict.fromkeys(bodies.names, material)
+    return conduction(
+        bodies, PlaneStrain(1.0), space, materials, cooling or {}, given or {}, nothing, passage
+    )
+
+
+def interpolated(space, function):
+    values = fem.Function(space)
+    values.interpolate(function)
+    return values.x.array[: owned(space)]
+
+
+def times(matrix, values):
+    x, y = matrix.createVecs()
+    x.setArray(values)
+    matrix.mult(x, y)
+    return y.getArray().copy()
+
+
+def total(values):
+    return COMM.allreduce(float(np.sum(values)))
+
+
+def largest(values):
+    return max(COMM.allgather(float(np.abs(values).max(initial=0.0))))

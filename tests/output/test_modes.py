@@ -1,0 +1,69 @@
+"""The files and the words of a stability analysis."""
+
+import json
+
+import matplotlib.image as mpimg
+import numpy as np
+import pytest
+import tomli_w
+
+from thermowear.cli import main
+from thermowear.output import tables
+from thermowear.output.quantities import MODES
+
+from ..case.starter import tables as case_tables
+
+DISK, BLOCKS = "disk-brake-stability", "stacked-blocks"
+
+
+def run(tmp_path, capsys, name, changes, *options):
+    file, folder = tmp_path / "case.toml", tmp_path / "results"
+    file.write_bytes(tomli_w.dumps(case_tables(name, changes)).encode())
+    assert main(["run", str(file), "-o", str(folder), *options]) == 0
+    return folder, " ".join(capsys.readouterr().out.split())
+
+
+def drawn(path):
+    image = mpimg.imread(path)[..., :3]
+    return (np.abs(image - image[0, 0]).max(axis=2) > 0.05).mean()
+
+
+def test_swinging_bands(tmp_path, capsys):
+    """requirement: the critical speeds are told, shapes are in mode.csv, and drawn."""
+    folder, said = run(tmp_path, capsys, DISK, {"mesh.degree": 3, "mesh.elements": 6})
+    summary = json.loads((folder / "summary.json").read_text())
+    modes = tables.read(folder / "mode.csv", MODES)
+    first = modes["mode"] == 1
+    for column, key in (
+        ("frequency", "critical_frequency_with_wear_rad_per_s"),
+        ("speed_factor", "critical_speed_factor_with_wear"),
+    ):
+        assert modes[column][first][0] == pytest.approx(summary[key], rel=1e-12)
+        assert summary[key] > 0
+    size = np.hypot(modes["pressure"], modes["pressure_imaginary"])
+    for number in np.unique(modes["mode"]):
+        assert size[modes["mode"] == number].max() == pytest.approx(1.0)
+    assert not modes["pressure_imaginary"][~first].any()
+    speed = summary["critical_angular_velocity_with_wear_rad_per_s"]
+    part = 1 / summary["critical_speed_factor_with_wear"]
+    assert f"critical speed with wear {speed:.4g} rad/s: this case runs at {part:.3g} of it" in said
+    assert "disturbances die out" in said
+    assert "swinging with a period" in said
+    assert drawn(folder / "mode.png") > 0.01
+    assert main(["report", str(folder)]) == 0
+    assert "Disturbances of the pressure" in (folder / "report.html").read_text()
+
+
+def test_growing_waves(tmp_path, capsys):
+    """requirement: beyond the critical speed it says how fast they grow."""
+    storing = {"density": "7800 kg/m^3", "specific_heat": "460 J/(kg K)"}
+    changes = {f"bodies.{b}.{k}": v for b in ("upper", "lower") for k, v in storing.items()}
+    changes |= {"analysis": {"type": "stability"}, "mesh.degree": 2}
+    folder, said = run(tmp_path, capsys, BLOCKS, changes, "--no-pictures")
+    summary = json.loads((folder / "summary.json").read_text())
+    modes = tables.read(folder / "mode.csv", MODES)
+    assert modes["growth_rate"][0] == pytest.approx(summary["growth_rate_per_s"], rel=1e-12)
+    assert modes["growth_rate"][0] > 0
+    assert modes["speed_factor"][0] == 1.0
+    assert f"disturbances grow e-fold in {1 / summary['growth_rate_per_s']:.4g} s" in said
+    assert "mm/s: this case runs at" in said

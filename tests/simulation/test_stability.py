@@ -1,0 +1,163 @@
+"""Thermoelastic stability of contacts: closed forms, and runs in time that settle or do not."""
+
+import numpy as np
+import pytest
+
+import thermowear as tw
+from thermowear.errors import ComputationError
+
+from ..case.starter import GONE, STEADY, solved, tables
+
+BLOCKS, STRIP, DISK = "stacked-blocks", "punch-on-strip", "disk-brake-stability"
+STABILITY = {"analysis": {"type": "stability"}}
+STORING = {"density": "7800 kg/m^3", "specific_heat": "460 J/(kg K)"}
+WAVE, DEPTH = 0.02, 0.03
+COARSE = {"mesh": {"degree": 4, "elements": 6, "grading": 0.3}}
+
+
+def half_wave(**changes):
+    """Two conducting blocks of half a wave, deep enough."""
+    sizes = {"geometry.width": f"{WAVE / 2} m", "geometry.upper_height": f"{DEPTH} m"}
+    sizes["geometry.lower_height"] = f"{DEPTH} m"
+    sizes |= {f"bodies.{b}.{key}": v for b in ("upper", "lower") for key, v in STORING.items()}
+    found = {key.replace("__", "."): value for key, value in changes.items()}
+    return solved(BLOCKS, {**STABILITY, **sizes, "wear": GONE, **found})
+
+
+@pytest.mark.parametrize("conductance", [1e-3, 3e3, 3e4, None])
+@pytest.mark.parametrize("share", [0.3, 1.0])
+def test_two_conductors(conductance, share):
+    """requirement: heat that crosses decides which body swells; in closed form for waves.
+
+    Of friction heat q body 1 takes ``[f + h/(m k2)]/(1 + h/(m k1) + h/(m k2))``; what a body takes
+    lifts its face by ``α (1 + ν)/(k m²)`` times it, and ``2 p/(E* m)`` flattens them.
+    """
+    result = half_wave(
+        heat__conductance=f"{conductance} W/(m^2 K)" if conductance else GONE,
+        heat__partition=share,
+    )
+    m, ν = 2 * np.pi / WAVE, 0.3
+    k1, k2, α1, α2, E1, E2 = 50.0, 15.0, 1.2e-5, 1.6e-5, 210e9, 200e9
+    h = conductance or 1e12
+    taken = (share + h / (m * k2)) / (1 + h / (m * k1) + h / (m * k2))
+    lift = (1 + ν) / m**2 * (α1 * taken / k1 + α2 * (1 - taken) / k2)
+    flat = 2 * (1 - ν**2) * (1 / E1 + 1 / E2) / m
+    critical = flat / (0.2 * lift)
+    assert result.summary["critical_speed_m_per_s"] == pytest.approx(critical, rel=2e-4)
+    assert result.summary["critical_speed_factor"] == pytest.approx(critical / 0.1, rel=2e-4)
+    assert result.summary["static_speed_factors"][0] == pytest.approx(critical / 0.1, rel=2e-4)
+    modes = result.modes
+    first = modes.speed_factor == result.summary["static_speed_factors"][0]
+    wave = np.cos(m * modes.x[first])
+    np.testing.assert_allclose(modes.pressure[first] * modes.pressure[first][0], wave, atol=1e-3)
+
+
+def test_rates_need_capacities():
+    """requirement: without them the static speeds, and a word about what may be missed."""
+    said = []
+
+    class Listener(tw.simulation.Observer):
+        def note(self, text):
+            said.append(text)
+
+    summary = solved(BLOCKS, {**STABILITY}, observer=Listener()).summary
+    assert summary["critical_speed_factor"] == summary["static_speed_factors"][0]
+    assert summary["growth_rate_per_s"] is None
+    assert summary["critical_speed_factor_with_wear"] is None
+    assert any("density and specific_heat" in text for text in said)
+
+
+@pytest.mark.parametrize(("part", "settles"), [(0.97, True), (1.03, False)])
+def test_hot_contact_exists_below_the_critical_speed(part, settles):
+    """requirement: pressed by an approach, blocks carry it; above, heat has no equilibrium."""
+    pressed = {"load": {"approach": "1 um"}, "wear": GONE}
+    critical = solved(BLOCKS, {**STABILITY, **pressed}).summary["static_speed_factors"][0]
+    velocity = f"{0.1 * part * critical!r} m/s"
+    changes = {**pressed, "analysis": {"type": "initial"}, "motion.velocity": velocity}
+    if settles:
+        assert solved(BLOCKS, changes).summary["normal_force_N"] > 0
+    else:
+        with pytest.raises(ComputationError, match=r"critical sliding speed|do not settle"):
+            solved(BLOCKS, changes)
+
+
+def ring(speed, **analysis):
+    changes = {f"bodies.punch.{key}": value for key, value in STORING.items()}
+    changes |= {**COARSE, "motion.angular_velocity": f"{speed} rad/s", "analysis": analysis}
+    return tables(STEADY, changes)
+
+
+def test_running_in_settles_below_the_critical_speed_only():
+    """requirement: heat and wear in time, nothing linearised, agree; what swings is found to swing.
+
+    Beyond it the pressure goes on swinging with about the period of the disturbance.
+    """
+    summary = tw.run(tw.load(ring(0.1, type="stability"))).summary
+    critical = summary["critical_angular_velocity_with_wear_rad_per_s"]
+    assert critical == pytest.approx(0.146, rel=0.01)
+    assert critical > summary["critical_angular_velocity_rad_per_s"]
+    timed = {"type": "transient", "end_time": "6000 s", "tolerance": 3e-3}
+    settled, swinging = (
+        tw.run(tw.load(ring(f * critical, **timed), ("heat.transient=true",))) for f in (0.9, 1.15)
+    )
+    assert settled.summary["distance_from_steady"] < 0.02
+    assert swinging.summary["distance_from_steady"] > 0.2
+    time, peak = np.array([(row.time, row.max_pressure) for row in swinging.history]).T
+    t = np.linspace(3000, 6000, 1500)
+    p = np.interp(t, time, peak)
+    rising = t[1:][(p[:-1] < p.mean()) & (p[1:] >= p.mean())]
+    period = 2 * np.pi / summary["critical_frequency_with_wear_rad_per_s"]
+    assert np.diff(rising).mean() == pytest.approx(period, rel=0.15)
+
+
+def test_rates_at_the_critical_speed_vanish():
+    """requirement: at the speed found nothing grows or dies out, where heat is carried along too.
+
+    Friction in the section: the operators are not symmetric.
+    """
+    for advection in ("none", "resolved"):
+        changes = {f"bodies.{body}.{k}": v for body in ("punch",) for k, v in STORING.items()}
+        changes |= {**STABILITY, "mesh": {"degree": 3, "elements": 6}, "heat.advection": advection}
+        changes |= {"heat.partition": 0.5}
+        factor = solved(STRIP, changes).summary["critical_speed_factor"]
+        rates = [
+            solved(STRIP, changes | {"motion.velocity": f"{-3e-3 * part * factor} m/s"}).summary[
+                "growth_rate_without_wear_per_s"
+            ]
+            for part in (0.99, 1.01)
+        ]
+        assert rates[0] < 0 < rates[1]
+
+
+def test_wear_holds_hot_bands_back():
+    """requirement: the brake is unstable without wear and stable with it; more wear, more so."""
+    summary = solved(DISK, {**COARSE}).summary
+    assert summary["growth_rate_without_wear_per_s"] > 0 > summary["growth_rate_per_s"]
+    assert summary["critical_speed_factor"] < 1 < summary["critical_speed_factor_with_wear"]
+    more = solved(DISK, {**COARSE, "wear.pad.coefficient": "2e-7 1/MPa"}).summary
+    worn = "critical_speed_factor_with_wear"
+    assert more[worn] > 1.1 * summary[worn]
+    assert more["critical_speed_factor"] == pytest.approx(summary["critical_speed_factor"])
+
+
+def test_the_load_does_not_matter():
+    """requirement: all is linear in the pressure."""
+    found = [
+        solved(DISK, {**COARSE, "load.force": force}).summary["critical_speed_factor_with_wear"]
+        for force in ("300 N", "3 kN")
+    ]
+    assert found[0] == pytest.approx(found[1], rel=1e-7)
+
+
+def test_in_space():
+    """requirement: a contact that is a surface has its critical speed and its shapes."""
+    changes = {**STABILITY, "mesh": {"degree": 2, "elements": 3}, "motion.velocity": "5 mm/s"}
+    changes |= {f"bodies.punch.{key}": v for key, v in STORING.items()}
+    changes |= {"bodies.punch.conductivity": "50 W/(m K)", "bodies.punch.expansion": "1.2e-5 1/K"}
+    changes |= {"contact.friction": 0.3}
+    changes["heat"] = {"ambient": "20 degC", "temperature": {"block_bottom": "20 degC"}}
+    result = solved("rectangular-punch", changes)
+    assert result.summary["critical_speed_factor"] > 0
+    weights, modes = result.interface.weight, result.modes
+    for number in np.unique(modes.mode):
+        assert abs(weights @ modes.pressure[modes.mode == number]) < 1e-9 * weights.sum()

@@ -1,0 +1,58 @@
+"""The elastic bodies of a case, and what loads them beside the contact."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from ..bulk.bodies import Bodies
+from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
+from ..bulk.kinematics import Model
+from ..bulk.surface_load import surface_load
+from ..case.schema import Case
+from ..contact.pairing import Pairing
+from ..contact.traces import gap_trace
+
+
+def elastic_system(
+    case: Case, model: Model, bodies: Bodies, pairing: Pairing
+) -> tuple[Elasticity, sp.csr_matrix]:
+    """Assemble and factorise the elastic bodies. Every rank calls.
+
+    Returns
+    -------
+    elastic : Elasticity
+    trace : csr_matrix, shape (n_owned, n)
+        Bᵀ of the gap in their space.
+    """
+    geometry = case.geometry
+    materials = {name: _elastic_material(case, name) for name in geometry.parts}
+    clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
+    elastic = elasticity(
+        bodies,
+        model,
+        case.mesh.degree,
+        materials,
+        clamped,
+        geometry.symmetry,
+        geometry.rollers,
+    )
+    return elastic, gap_trace(elastic.space, pairing)
+
+
+def dead_load(case: Case, elastic: Elasticity) -> np.ndarray | None:
+    """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without any."""
+    press = np.array(case.geometry.press_direction)
+    loads = [
+        surface_load(elastic, surface, force * press)
+        for surface, force in case.load.surfaces.items()
+    ]
+    return np.sum(loads, axis=0) if loads else None
+
+
+def _elastic_material(case: Case, body: str) -> ElasticMaterial:
+    material = case.material(body)
+    E, ν, α = material.young_modulus, material.poisson_ratio, material.expansion
+    assert E is not None  # the case has been checked
+    assert ν is not None
+    return ElasticMaterial(E, ν, α if case.heat is not None and α is not None else 0.0)

@@ -1,0 +1,253 @@
+"""Friction heat in bodies whose conductivity or expansion change with temperature.
+
+Newton's method: contact sees linear bodies, those of small changes about the last temperatures.
+Their operators cost a factorisation; they are kept as long as the steps go on getting smaller.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+
+from ..bulk.conduction import Conduction
+from ..bulk.varying import VaryingConduction, VaryingExpansion
+from ..contact.heat import (
+    InterfaceHeat,
+    Resting,
+    ThermalDistortion,
+    ThermalState,
+    at_rest,
+    condense_distortion,
+    condense_heat,
+    gap_per_rise,
+)
+from ..errors import ComputationError
+from ..parallel import sum_over_ranks
+from .conditions import Conditions
+from .friction_heat import ConductedHeat, Coupling, FrictionHeat, HeatOperators, StoredHeat
+from .system import System
+from .thermal_system import ThermalSystem
+
+_TURNS = 60
+_SETTLED = 1e-11
+"""Change of the temperatures, relative to the largest rise."""
+_SLOW = 0.3
+"""Changes that get smaller by less than that ask for new operators."""
+_LEAST_RISE = 1.0  # K
+
+
+def friction_heat(system: System) -> FrictionHeat | None:
+    """The friction heat of a system; None where there is none."""
+    thermal = system.thermal
+    if thermal is None:
+        return None
+    return (VaryingFrictionHeat if thermal.varies else FrictionHeat)(system, thermal)
+
+
+class VaryingFrictionHeat(FrictionHeat):
+    """Friction heat of bodies whose properties change; parameters as in `FrictionHeat`."""
+
+    def __init__(self, system: System, thermal: ThermalSystem):
+        super().__init__(system, thermal)
+        assert isinstance(thermal.conduction, VaryingConduction)
+        self._conduction = thermal.conduction
+        self._tangents: OrderedDict[float, Tangents] = OrderedDict()
+
+    @cached_property
+    def steady(self) -> VaryingHeat:
+        return VaryingHeat(self, Tangents(self, None), None, self._conduction.given)
+
+    def after(self, before: StoredHeat, step: float) -> VaryingHeat:
+        if step not in self._tangents:
+            self._tangents[step] = Tangents(self, step)
+            if len(self._tangents) > self._kept:
+                self._tangents.popitem(last=False)
+        self._tangents.move_to_end(step)
+        return VaryingHeat(self, self._tangents[step], before.content / step, before.rise)
+
+    def at_rest(self, rise: np.ndarray) -> Resting:
+        faces = at_rest(rise, self._thermal.face.traces, self._system.comm).rise
+        return Resting(faces, self._opening(rise))
+
+    def tangent(self, rise: np.ndarray, step: float | None) -> TangentOperators:
+        """Operators for small changes of a rise (n_owned,); every rank calls."""
+        face = self._thermal.face
+        with self._system.phases("condense conduction"):
+            conduction = self._conduction.tangent(rise, step)
+            face = condense_heat(
+                conduction, face.weights, face.basis, face.traces, face.shift, face.partition
+            )
+        return TangentOperators(conduction, face, self, rise)
+
+    def gap_per_rise(self, rise: np.ndarray) -> np.ndarray:
+        """Weak gap per small change of a nodal rise, shape (n_owned, m)."""
+        result = self._per_rise
+        for part, per_rise in self._per_excess:
+            result = result + part.slope(rise)[:, None] * per_rise
+        return result
+
+    def about(
+        self, operators: TangentOperators, stored: np.ndarray | None, rise: np.ndarray
+    ) -> ConductedHeat:
+        """Linear heat about a rise, by operators of a rise that is near; every rank calls."""
+        heat = self._conduction.remainder(rise, operators.reference)
+        heat = heat if stored is None else heat + stored
+        alone = operators.conduction.solve(heat)
+        traces, comm = self._thermal.face.traces, self._system.comm
+        faces = at_rest(alone, traces, comm).rise
+        changed = sum_over_ranks(comm, operators.per_rise.T @ (alone - rise))
+        return ConductedHeat(operators, heat, Resting(faces, self._opening(rise) + changed))
+
+    def far(self, rise: np.ndarray, other: np.ndarray) -> float:
+        """How different two rises are, relative to the larger one; every rank calls."""
+        sizes = [float(np.abs(values).max(initial=0.0)) for values in (rise - other, rise)]
+        change, largest = np.max(self._system.comm.allgather(sizes), axis=0)
+        return change / max(largest, _LEAST_RISE)
+
+    def _opening(self, rise: np.ndarray) -> np.ndarray:
+        """Weak gap that a rise opens, shape (m,) [m³]."""
+        opening = self._per_rise.T @ rise
+        for part, per_rise in self._per_excess:
+            opening = opening + per_rise.T @ part.excess(rise)
+        return sum_over_ranks(self._system.comm, opening)
+
+    @cached_property
+    def _per_excess(self) -> list[tuple[VaryingExpansion, np.ndarray]]:
+        """Expansions that change, and the weak gap per nodal rise of their parts alone."""
+        contact = self._system.contact
+        return [(part, gap_per_rise(part.matrix, contact)) for part in self._thermal.expansions]
+
+
+class TangentOperators(HeatOperators):
+    """Conduction of small changes of the temperature, condensed to the interface.
+
+    Parameters
+    ----------
+    conduction : Conduction
+    face : InterfaceHeat
+    heat : VaryingFrictionHeat
+    reference : ndarray, shape (n_owned,)
+        The rise that they are changes of [K].
+    """
+
+    def __init__(
+        self,
+        conduction: Conduction,
+        face: InterfaceHeat,
+        heat: VaryingFrictionHeat,
+        reference: np.ndarray,
+    ):
+        super().__init__(conduction, face, heat)
+        self.reference = reference
+        self._varying = heat
+
+    @cached_property
+    def per_rise(self) -> np.ndarray:
+        """Weak gap per nodal rise, shape (n_owned, m) [m³/K]."""
+        return self._varying.gap_per_rise(self.reference)
+
+    @cached_property
+    def distortion(self) -> ThermalDistortion:
+        return condense_distortion(self.conduction, self.per_rise, self.face)
+
+
+class Tangents:
+    """The operators that were used last, for one size of step or for a steady state.
+
+    Parameters
+    ----------
+    heat : VaryingFrictionHeat
+    step : float or None
+        [s]
+    """
+
+    def __init__(self, heat: VaryingFrictionHeat, step: float | None):
+        self._heat = heat
+        self._step = step
+        self._last: TangentOperators | None = None
+
+    def near(self, rise: np.ndarray) -> TangentOperators:
+        """Those at hand; made for a rise (n_owned,) where there are none."""
+        return self._last or self.at(rise)
+
+    def at(self, rise: np.ndarray) -> TangentOperators:
+        """New ones for a rise."""
+        self._last = self._heat.tangent(rise, self._step)
+        return self._last
+
+
+class VaryingHeat:
+    """Heat at one moment, linear about the temperatures that were found last.
+
+    Parameters
+    ----------
+    heat : VaryingFrictionHeat
+    tangents : Tangents
+    stored : ndarray or None, shape (n_owned,)
+        Nodal heat that the bodies have stored before, per time [W]; None in a steady state.
+    rise : ndarray, shape (n_owned,)
+        To start from [K].
+    """
+
+    def __init__(
+        self,
+        heat: VaryingFrictionHeat,
+        tangents: Tangents,
+        stored: np.ndarray | None,
+        rise: np.ndarray,
+    ):
+        self._heat = heat
+        self._tangents = tangents
+        self._stored = stored
+        self._rise = rise
+        self._last = np.inf
+        self._linear = heat.about(tangents.near(rise), stored, rise)
+
+    @property
+    def unheated(self) -> ThermalState:
+        """The faces without any heat at the contact, about."""
+        return self._linear.unheated
+
+    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+        """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
+        return self._newton(lambda: self._linear.faces(conditions, pressure))
+
+    def rise(self, faces: ThermalState) -> np.ndarray:
+        """Temperature rise of the bodies, shape (n_owned,) [K]."""
+        self._newton(lambda: faces)
+        return self._rise
+
+    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+        """What heat does to the condensed interface, about the last temperatures."""
+        return self._linear.coupling(conditions, basis)
+
+    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+        """Whether the last coupling holds under a pressure; the next one is about its heat."""
+        return self._moved(self._linear.faces(conditions, pressure)) <= _SETTLED
+
+    def _newton(self, respond: Callable[[], ThermalState]) -> ThermalState:
+        """Go on to the temperatures that the faces' response to the present ones leads to."""
+        for _ in range(_TURNS):
+            faces = respond()
+            if self._moved(faces) <= _SETTLED:
+                return faces
+        raise ComputationError(
+            "heat: Newton's method for conductivity or expansion that change with temperature does "
+            "not settle; give smoother tables, or reduce the speed"
+        )
+
+    def _moved(self, faces: ThermalState) -> float:
+        """By how much the temperatures of some faces differ from the last ones; moves there."""
+        rise = self._linear.rise(faces)
+        change = self._heat.far(rise, self._rise)
+        if change <= _SETTLED:
+            self._last = np.inf
+            return change
+        slow = change > _SLOW * self._last
+        operators = self._tangents.at(rise) if slow else self._tangents.near(rise)
+        self._linear = self._heat.about(operators, self._stored, rise)
+        self._rise, self._last = rise, np.inf if slow else change
+        return change

@@ -63,7 +63,7 @@ def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):
     noise = {"seconds", "heat_balance_relative_error", "equilibrium_relative_error"}
     for key in serial.keys() - noise:
         expected = serial[key]
-        if key == "contact_zones_m":
+        if key in ("contact_zones_m", "static_speed_factors"):
             np.testing.assert_allclose(parallel[key], expected, rtol=1e-8)
             continue
         if isinstance(expected, float):
@@ -72,6 +72,9 @@ def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):
             expected = pytest.approx(expected, rel=1e-8, abs=noise_of_load)
             if key == "distance_from_steady":
                 expected = pytest.approx(serial[key], abs=1e-8)
+            if key.startswith("growth_rate"):  # what is left of heating and wear
+                rates = [abs(serial[k]) for k in serial if k.startswith("growth_rate")]
+                expected = pytest.approx(serial[key], abs=1e-8 * max(rates))
         assert parallel[key] == expected, key
     assert parallel["equilibrium_relative_error"] < 1e-9
     assert json.loads((other / "run.json").read_text())["ranks"] == 2

@@ -18,7 +18,8 @@ from . import load
 from .case import Case, as_plain
 from .errors import CaseError, ComputationError
 from .output.console import Terminal
-from .output.sweep import SweepFolder, VariantFolder, draw_sweep, swept
+from .output.folder import ResultsFolder
+from .output.sweep import SweepFolder, draw_sweep, swept
 from .variants import Variant, parse_over, variants, written
 from .workers import start_petsc, work_off
 
@@ -156,7 +157,7 @@ def _computed(series, job: Job) -> Ended:
 
     began, phases, summary = time.perf_counter(), Phases(), None
     try:
-        folder = VariantFolder(job.path, as_plain(job.case), 1, overwrite=True)
+        folder = ResultsFolder(job.path, as_plain(job.case), 1, overwrite=True)
         try:
             result = series.run(job.case, Recorder(series.comm, folder), phases)
             with phases("write"):

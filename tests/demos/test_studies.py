@@ -106,7 +106,7 @@ def test_a_part_of_the_worn_shape_needs_no_running_in(name, tmp_path):
         ("punch_on_strip", 0.1605, 3.61, 3.61),
         ("block_on_disk", 0.835, 1.104, 2.05),
         ("drum_brake", -6.405, 5.25, 10.04),
-        ("annular_punch", 259.2, 39.92, 57.98),
+        ("annular_punch", 259.2, 39.92, 39.6),
         ("disk_brake", 1.514, 2.228, 10.46),
     ],
 )
@@ -117,6 +117,23 @@ def test_figures(name, per_speed, cold, hot):
     assert bending == pytest.approx(per_speed, rel=0.01)
     ranges = [1e6 * result.summary["shape_range_m"] for result in results]
     assert [ranges[0], ranges[-1]] == pytest.approx([cold, hot], rel=0.01)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_contact_is_stable(name):
+    """requirement: all speeds of the study are below the critical one."""
+    study = studies()[name]
+    case = tw.load(DEMOS / f"{name}.toml", (*study.sets, *COARSE))
+    own = [part for part, body in case.bodies.items() if body.like is None]
+    metal = [
+        f'bodies.{part}.{key}="{value}"'
+        for part in own
+        for key, value in (("density", "7500 kg/m^3"), ("specific_heat", "480 J/(kg K)"))
+    ]
+    fastest = (f"{study.key}={study.values[-1]}", 'analysis={type="stability"}')
+    tried = tw.run(tw.load(DEMOS / f"{name}.toml", (*study.sets, *COARSE, *metal, *fastest)))
+    assert tried.summary["critical_speed_factor"] > 1.4
+    assert tried.summary["growth_rate_per_s"] < 0
 
 
 def test_one_end_of_the_punch_is_higher_by_friction_alone():
@@ -133,4 +150,4 @@ def test_heat_turns_the_ring_round():
     outer = [1e6 * (r.interface.shape[-1] - r.interface.shape[0]) for r in results]
     assert np.diff(outer) == pytest.approx(np.diff(outer)[-1], rel=1e-3)
     assert outer[0] < -35
-    assert outer[-1] > 35
+    assert outer[-1] > 20

@@ -6,6 +6,7 @@ The unknown is the rise over the ambient temperature.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from petsc4py import PETSc
 
@@ -150,19 +151,36 @@ class Conduction:
         tuple of float
             Sums over all ranks.
         """
-        cooled = _multiply(self.cooling, rise)
-        left = heat - _multiply(self.conductivity, rise)
-        if storage is not None:
-            left = left - storage
-        carried = 0.0 if self.carried is None else _multiply(self.carried, rise).sum()
-        parts = np.array([cooled.sum(), left[self.fixed].sum(), carried])
+        cooled, carried = self._per_rise
+        left = self._into_given(rise, heat if storage is None else heat - storage)
+        parts = np.array([cooled @ rise, left.sum(), carried @ rise])
         return tuple(sum_over_ranks(self.space.mesh.comm, parts))
 
     def turnover(self, rise: np.ndarray, heat: np.ndarray) -> float:
         """Magnitude of what crosses cooled surfaces and those with a given temperature [W]."""
-        left = (heat - _multiply(self.conductivity, rise))[self.fixed]
-        size = np.abs(_multiply(self.cooling, rise)).sum() + np.abs(left).sum()
+        size = np.abs(_multiply(self.cooling, rise)).sum()
+        size += np.abs(self._into_given(rise, heat)).sum()
         return float(sum_over_ranks(self.space.mesh.comm, size))
+
+    def _into_given(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
+        """Heat into the values with a given temperature [W]."""
+        if not self._holds:
+            return np.zeros(0)
+        return (heat - _multiply(self.conductivity, rise))[self.fixed]
+
+    @cached_property
+    def _holds(self) -> bool:
+        """Whether any rank has a given temperature; every rank calls."""
+        return any(self.space.mesh.comm.allgather(bool(self.fixed.any())))
+
+    @cached_property
+    def _per_rise(self) -> tuple[np.ndarray, np.ndarray]:
+        """Heat that leaves by cooling, and carried along, per nodal rise [W/K]."""
+        nothing = np.zeros(len(self.fixed))
+        return (
+            _column_sums(self.cooling),
+            nothing if self.carried is None else _column_sums(self.carried),
+        )
 
     def _free(self, heat):
         """Nodal heat without that into given temperatures."""
@@ -302,6 +320,14 @@ def _given(bodies: Bodies, space, given: dict[str, float]) -> tuple[np.ndarray, 
         mine = dofs[dofs < count]
         fixed[mine], values[mine] = True, rise
     return fixed, values
+
+
+def _column_sums(matrix: PETSc.Mat) -> np.ndarray:
+    """By owned columns; every rank calls."""
+    sums, ones = matrix.createVecs()
+    ones.set(1.0)
+    matrix.multTranspose(ones, sums)
+    return sums.getArray().copy()
 
 
 def _multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:

@@ -53,13 +53,13 @@ class ResultsFolder:
             "status": "running",
             "started": datetime.now(UTC).isoformat(timespec="seconds"),
             "ranks": ranks,
-            "versions": _versions(),
+            "versions": versions(),
         }
         self._rows: dict[str, RowWriter] = {}
         self._made = not os.path.exists(path)  # unlike Path.exists, no error at odd names
         try:
             path.mkdir(parents=True, exist_ok=True)
-            present = [entry for entry in path.iterdir() if _is_ours(entry)]
+            present = [entry for entry in path.iterdir() if is_ours(entry)]
             if any(path.iterdir()) and not overwrite:
                 raise CaseError(
                     f"-o {path}: exists and is not empty; use --overwrite or another folder"
@@ -146,13 +146,13 @@ class ResultsFolder:
         os.replace(draft, self.path / name)
 
 
-def _is_ours(path: Path) -> bool:
+def is_ours(path: Path) -> bool:
     """Whether a file is a result of this program; a report is known by what it says in its head."""
     return bool(_OURS.fullmatch(path.name)) or (path.name == "report.html" and is_report(path))
 
 
 @cache
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
     found = {"thermowear": __version__, "python": platform.python_version()}
     for package in ("fenics-dolfinx", "petsc4py", "numpy", "scipy", "gmsh", "meshio", "pydantic"):
         try:

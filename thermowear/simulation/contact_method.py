@@ -70,9 +70,7 @@ class ContactMethod(Protocol):
         ComputationError
         """
 
-    def steady(
-        self, pressure: np.ndarray, rates: WearRates, conditions: Conditions
-    ) -> np.ndarray:
+    def steady(self, pressure: np.ndarray, rates: WearRates, conditions: Conditions) -> np.ndarray:
         """Steady pressure as the method discretises it, from that of the principle [Pa].
 
         Parameters

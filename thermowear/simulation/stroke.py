@@ -12,7 +12,7 @@ from ..case.analyses import Reciprocating
 from ..contact.coupled import CoupledContacts
 from ..contact.holder import hold
 from ..contact.sliding import sliding
-from ..contact.traces import gap_trace, vector_trace
+from ..contact.traces import gap_trace
 from ..contact.track import Track
 from ..errors import CaseError
 from .drives import drives
@@ -99,14 +99,11 @@ def moved(system: System, offset: float, way: int) -> System:
     slides = sliding(velocity, pairing.normals, geometry.press_direction)
     friction = case.contact.friction, case.contact.transverse_friction
     pull = slides.pull(pairing.normals, *friction)
-    trace = gap_trace(elastic.space, pairing)
-    drags = not np.array_equal(pull, pairing.normals)
     in_place = replace(pairing, points=pairing.points - np.array([offset, 0.0]))
     return replace(
         system,
         pairing=pairing,
-        trace=trace,
-        traction=vector_trace(elastic.space, pairing, pull) if drags else trace,
+        trace=gap_trace(elastic.space, pairing),
         basis=basis,
         holder=hold(in_place, pull, drives(case, in_place)),
         slides=slides,

@@ -40,8 +40,8 @@ class System:
     bodies : Bodies
     pairing : Pairing
     elastic : Elasticity
-    trace, traction : csr_matrix, shape (n_owned, n)
-        Bᵀ and B_tᵀ, see `contact.pairing`.
+    trace : csr_matrix, shape (n_owned, n)
+        Bᵀ, see `contact.pairing`.
     basis : ndarray, shape (n, m)
         Ψ.
     holder : Holder
@@ -66,7 +66,6 @@ class System:
     pairing: Pairing
     elastic: Elasticity
     trace: sp.csr_matrix
-    traction: sp.csr_matrix
     basis: np.ndarray
     holder: Holder
     slides: Sliding | None
@@ -161,21 +160,19 @@ class System:
             return self
         transverse = self.case.contact.transverse_friction
         pull = self.slides.pull(self.pairing.normals, friction[:, None], transverse)
-        drags = not np.array_equal(pull, self.pairing.normals)
-        return replace(
-            self,
-            holder=hold(self.pairing, pull, self.holder.drives),
-            pull=pull,
-            traction=self._traction(pull) if drags else self.trace,
-        )
-
-    def _traction(self, pull: np.ndarray) -> sp.csr_matrix:
-        """B_tᵀ of a pull (n, gdim), from those along the coordinates."""
-        each = zip(self._along_coordinates, pull.T, strict=True)
-        first, *others = (trace @ sp.diags(component) for trace, component in each)
-        return sum(others, first)
+        return replace(self, holder=hold(self.pairing, pull, self.holder.drives), pull=pull)
 
     @cached_property
+    def traction(self) -> sp.csr_matrix:
+        """B_tᵀ, shape (n_owned, n), see `contact.pairing`: that of the gap where nothing drags."""
+        if np.array_equal(self.pull, self.pairing.normals):
+            return self.trace
+        along = self.parts.get("traces", self.inputs.elasticity, self._along_coordinates)
+        first, *others = (
+            trace @ sp.diags(component) for trace, component in zip(along, self.pull.T, strict=True)
+        )
+        return sum(others, first)
+
     def _along_coordinates(self) -> list[sp.csr_matrix]:
         """Traces of the displacement along each coordinate, shape (n_owned, n) each."""
         n, gdim = self.pull.shape
@@ -225,7 +222,6 @@ def build(
     if slides is not None:
         friction = case.contact.friction, case.contact.transverse_friction
         pull, speed = slides.pull(pairing.normals, *friction), slides.speed
-    drags = not np.array_equal(pull, pairing.normals)
     thermal = parts.get(
         "conduction",
         made_from.conduction,
@@ -237,7 +233,6 @@ def build(
         pairing=pairing,
         elastic=elastic,
         trace=trace,
-        traction=vector_trace(elastic.space, pairing, pull) if drags else trace,
         basis=basis,
         holder=hold(pairing, pull, drives(case, pairing)),
         slides=slides,

@@ -17,11 +17,14 @@ from . import (
     minimality,
     moving_band,
     patch,
+    pressure_conductance,
     reciprocating,
     running_in,
     sliding_rod,
     special_cases,
     step_flux,
+    temperature_dependent,
+    two_slabs,
 )
 from .check import Check, Checks, compare
 
@@ -43,6 +46,9 @@ CASES: dict[str, Checks] = special_cases.CHECKS | {
         fuel_fretting,
         reciprocating,
         moving_band,
+        two_slabs,
+        pressure_conductance,
+        temperature_dependent,
         minimality,
         step_flux,
         braking_stop,

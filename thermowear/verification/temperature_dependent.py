@@ -71,8 +71,13 @@ def _expansion() -> Iterator[Check]:
         5e6 * length * (1 + 0.3) * (1 - 2 * 0.3) / (E * (1 - 0.3))
         for length, E in ((0.01, 210e9), (0.02, 200e9))
     )
-    swollen = (1 + 0.3) / (1 - 0.3) * (
-        1.2e-5 * 0.01 * _mean_strain(0.0, T1, slope) + 1.6e-5 * 0.02 * _mean_strain(400, T2, slope)
+    swollen = (
+        (1 + 0.3)
+        / (1 - 0.3)
+        * (
+            1.2e-5 * 0.01 * _mean_strain(0.0, T1, slope)
+            + 1.6e-5 * 0.02 * _mean_strain(400, T2, slope)
+        )
     )
     found, known = result.summary["approach_m"], squeezed - swollen
     yield compare(ID, "approach of the holder [m]", found, known, 1e-8, STRAIN)

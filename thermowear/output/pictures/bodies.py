@@ -84,7 +84,10 @@ def _draw(path: Path, grid, fields: list[tuple[str, str]], note: str, contact=No
     rows, columns = (1, len(windows)) if beside else (len(windows), len(fields))
     tall = max(shapes) if beside else sum(shapes)
     flat_rows = sum(shape < _FLAT for shape in shapes)
-    size = (5.2 * columns, 3.45 * tall + 0.7 * (rows + flat_rows) + (0.3 if note else 0.0))
+    size = (
+        5.2 * columns,
+        min(3.45 * tall, 6.0 * rows) + 0.7 * (rows + flat_rows) + (0.3 if note else 0.0),
+    )
     figure = Figure(figsize=size, layout="constrained", dpi=150)
     ratios = None if beside else shapes
     panels = figure.subplots(rows, columns, squeeze=False, height_ratios=ratios)

@@ -28,7 +28,7 @@ def draw_interface(folder: Path) -> None:
     data = tables.read(folder / "interface.csv", INTERFACE)
     hot = np.isfinite(data["temperature_1"]).all()
     panels = [["pressure"], *([["temperature_1", "temperature_2"]] if hot else [])]
-    if np.ptp(data["shape"]) > 0:  # flat faces that have not worn have nothing to show
+    if np.ptp(data["shape"]) > 1e-12:  # less is rounding: flat faces that have not worn
         panels.append(["shape"])
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 2.3 * len(panels)), layout="constrained", dpi=150)

@@ -52,9 +52,14 @@ GROUPS = {
     },
     "Heat and energy": {
         "max_temperature_K": "highest temperature",
+        "peak_temperature_K": "highest temperature on the way",
+        "peak_temperature_time_s": "time of the highest temperature",
         "friction_power_W": "friction power",
         "heat_advection": "heat carried along",
         "max_cell_peclet_number": "largest cell Péclet number",
+        "heat_in_J": "friction heat",
+        "heat_stored_J": "heat stored",
+        "heat_lost_J": "heat lost",
         "heat_cooled_W": "heat lost by cooling",
         "heat_carried_out_W": "heat carried out",
         "dissipated_energy_J": "energy dissipated",
@@ -77,7 +82,10 @@ GROUPS = {
 """Which key stands where, and what it is called."""
 
 OTHER = "Other"
-_CELSIUS = {"max_temperature_K"}  # a difference in K must not be turned to °C: only what is known
+_CELSIUS = {
+    "max_temperature_K",
+    "peak_temperature_K",
+}  # a difference in K must not be turned to °C: only what is known
 _UNITS = {"seconds": "s"}  # of keys that do not end in theirs
 _BALANCES = {
     "equilibrium_relative_error": "equilibrium",

@@ -1,7 +1,7 @@
 """Results of a sweep: a folder of variants, one table, two pictures."""
 
-from .folder import SweepFolder, VariantFolder, is_sweep
+from .folder import SweepFolder, is_sweep
 from .keys import swept
 from .pictures import draw_sweep
 
-__all__ = ["SweepFolder", "VariantFolder", "draw_sweep", "is_sweep", "swept"]
+__all__ = ["SweepFolder", "draw_sweep", "is_sweep", "swept"]

@@ -13,25 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import CaseError
-from ..folder import ResultsFolder, _is_ours, _versions
-from ..quantities import PROFILE
-from ..tables import write_points
+from ..folder import is_ours, versions
 from .keys import Swept
 
 _OURS = re.compile(r"sweep\.csv|shapes\.png|sweep\.png|run\.json")
 _VARIANT = re.compile(r"\d{3,}")
 _INTERVAL = 1.0  # seconds between two states of the table on disk
-
-
-class VariantFolder(ResultsFolder):
-    """Results of one variant, without the fields in the bodies."""
-
-    def finish(self, result, seconds: dict[str, float]) -> None:
-        friction, track = (more and more.last for more in (result.friction, result.track))
-        self._points(None, result.interface, friction, track)
-        write_points(self.path / "profile.csv", PROFILE, result.profile)
-        rounded = {name: round(value, 4) for name, value in seconds.items()}
-        self._write_json("summary.json", result.summary | {"seconds": rounded})
 
 
 class SweepFolder:
@@ -66,7 +53,7 @@ class SweepFolder:
             "started": datetime.now(UTC).isoformat(timespec="seconds"),
             "over": over,
             "variants": self._count,
-            "versions": _versions(),
+            "versions": versions(),
         }
         try:
             path.mkdir(parents=True, exist_ok=True)
@@ -128,7 +115,7 @@ class SweepFolder:
             entry.unlink()
         for folder in self.path.iterdir():
             if _VARIANT.fullmatch(folder.name) and (folder / "run.json").is_file():
-                for entry in filter(_is_ours, list(folder.iterdir())):
+                for entry in filter(is_ours, list(folder.iterdir())):
                     entry.unlink()
                 if not any(folder.iterdir()):
                     folder.rmdir()

@@ -8,8 +8,8 @@ from dolfinx import fem
 
 from thermowear.bulk.advection import Passage
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.conduction import ThermalMaterial, conduction
 from thermowear.bulk.field import lagrange_space, owned
+from thermowear.bulk.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import PlaneStrain
 from thermowear.geometry.polar import Polar
 from thermowear.geometry.quads import Sheet, grid, mesh_body, tagged_bodies

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.conduction import ThermalMaterial, conduction
 from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import lagrange_space
+from thermowear.bulk.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.contact.complementarity import solve_contact
 from thermowear.contact.condensation import condense

@@ -17,6 +17,7 @@ def test_case(name):
     assert len(checks) > 5
     assert all(check.source and check.id == name for check in checks)
     assert not [check for check in checks if not check.passed]
+    assert json.dumps([check.as_row() for check in checks])
 
 
 def fake(error):

@@ -1,8 +1,9 @@
 """What happens inside the bodies: elasticity with thermal strain, heat conduction."""
 
 from .bodies import Bodies, distribute
-from .conduction import Conduction, conduction
+from .conduction import Conduction
 from .elasticity import Elasticity, ElasticMaterial, elasticity
+from .heat_equation import conduction
 from .kinematics import Axisymmetric, PlaneStrain, PlaneStress
 
 __all__ = [

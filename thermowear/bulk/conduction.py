@@ -1,4 +1,4 @@
-"""Heat conduction in both bodies, one of which may pass by and carry heat along.
+"""The conducting bodies, one of which may pass by and carry heat along.
 
 The unknown is the rise over the ambient temperature.
 """
@@ -12,33 +12,13 @@ from petsc4py import PETSc
 
 import numpy as np
 import scipy.sparse as sp
-import ufl
-from dolfinx import default_scalar_type, fem
-from dolfinx.fem.petsc import assemble_matrix
+from dolfinx import fem
 
-from ..compat import exterior_facet_domain
 from ..errors import ComputationError
 from ..parallel import sum_over_ranks
-from .advection import Advection, Passage, advection
-from .bodies import Bodies
-from .compiled import compiled
+from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 from .factor import Factor
-from .field import owned
-from .kinematics import Model, section_measure
-
-
-@dataclass(frozen=True)
-class ThermalMaterial:
-    """Conductivity [W/(m K)] and, where it is known, the heat capacity of a volume [J/(m³ K)]."""
-
-    conductivity: float
-    capacity: float | None = None
-
-    def times(self, factor: float) -> ThermalMaterial:
-        """So many times the material in the same place."""
-        capacity = None if self.capacity is None else factor * self.capacity
-        return ThermalMaterial(factor * self.conductivity, capacity)
 
 
 @dataclass(frozen=True)
@@ -124,15 +104,15 @@ class Conduction:
         return replace(
             self,
             conductivity=sum_,
-            factor=_factor(self.space, sum_, self.bath, self.fixed, symmetric, self.even),
-            lifted=-_multiply(sum_, self.given),
+            factor=factorised(self.space, sum_, self.bath, self.fixed, symmetric, self.even),
+            lifted=-multiply(sum_, self.given),
             symmetric=symmetric,
         )
 
     def stored(self, rise: np.ndarray) -> np.ndarray:
         """Heat stored by nodes [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None
-        return _multiply(self.capacity, rise)
+        return multiply(self.capacity, rise)
 
     def losses(
         self, rise: np.ndarray, heat: np.ndarray, storage: np.ndarray | None = None
@@ -158,7 +138,7 @@ class Conduction:
 
     def turnover(self, rise: np.ndarray, heat: np.ndarray) -> float:
         """Magnitude of what crosses cooled surfaces and those with a given temperature [W]."""
-        size = np.abs(_multiply(self.cooling, rise)).sum()
+        size = np.abs(multiply(self.cooling, rise)).sum()
         size += np.abs(self._into_given(rise, heat)).sum()
         return float(sum_over_ranks(self.space.mesh.comm, size))
 
@@ -166,7 +146,7 @@ class Conduction:
         """Heat into the values with a given temperature [W]."""
         if not self._holds:
             return np.zeros(0)
-        return (heat - _multiply(self.conductivity, rise))[self.fixed]
+        return (heat - multiply(self.conductivity, rise))[self.fixed]
 
     @cached_property
     def _holds(self) -> bool:
@@ -191,95 +171,7 @@ class Conduction:
         return free
 
 
-def conduction(
-    bodies: Bodies,
-    model: Model,
-    space: fem.FunctionSpace,
-    materials: dict[str, ThermalMaterial],
-    cooling: dict[str, float],
-    given: dict[str, float],
-    bath: PETSc.Mat,
-    passage: Passage | None = None,
-) -> Conduction:
-    """Assemble and factorise.
-
-    Parameters
-    ----------
-    bodies : Bodies
-    model : Model
-    space : dolfinx.fem.FunctionSpace
-        Scalar.
-    materials : dict of str to ThermalMaterial
-        By part.
-    cooling : dict of str to float
-        Heat transfer coefficients by surface [W/(m² K)].
-    given : dict of str to float
-        Rise over the ambient by surface [K].
-    bath : petsc4py.PETSc.Mat
-        Added to the factorised matrix only: what the contact faces give to a heat bath at ambient
-        temperature. It keeps the matrix of an otherwise insulated body regular; the interface takes
-        it out again.
-    passage : Passage, optional
-        Of a body that moves through the frame.
-    """
-    mesh, degree = bodies.mesh, space.ufl_element().degree
-    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
-    conductivities = {part: material.conductivity for part, material in materials.items()}
-    capacities = {p: m.capacity for p, m in materials.items() if m.capacity is not None}
-    moving, even = None, None
-    if passage is not None and passage.spread:
-        even = EvenPaths(bodies, space, passage)
-    elif passage is not None:
-        moving = advection(bodies, model, space, passage, conductivities, capacities)
-    flow = bodies.per_body(conductivities) * ufl.inner(ufl.grad(T), ufl.grad(δT))
-    measure = section_measure(mesh, degree)
-    form = model.integral(mesh, flow, measure)
-    conductivity = _assembled(form)
-    cooled = conductivity.duplicate()
-    cooled.zeroEntries()
-    for surface, h in cooling.items():
-        _add_cooling(cooled, bodies, model, space, surface, h)
-    cooled.assemble()
-    structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
-    conductivity.axpy(1.0, cooled, structure)
-    carried, test = None, δT
-    if moving is not None:
-        carried, test = _assembled(moving.carried), δT + moving.upwind
-        conductivity.axpy(1.0, carried, structure)
-    capacity = None
-    if len(capacities) == len(materials):
-        density = bodies.per_body(capacities) * T * test
-        capacity = _assembled(model.integral(mesh, density, measure))
-
-    fixed, values = _given(bodies, space, given)
-    if even is not None:
-        fixed, values = even.whole(fixed, values)
-    factor = _factor(space, conductivity, bath, fixed, carried is None, even)
-    lifted = -_multiply(conductivity, values)
-    return Conduction(
-        space,
-        conductivity,
-        cooled,
-        carried,
-        capacity,
-        bath,
-        fixed,
-        values,
-        factor,
-        lifted,
-        moving,
-        even,
-        symmetric=carried is None,
-    )
-
-
-def _assembled(form) -> PETSc.Mat:
-    matrix = assemble_matrix(compiled(form))
-    matrix.assemble()
-    return matrix
-
-
-def _factor(
+def factorised(
     space,
     conductivity: PETSc.Mat,
     bath: PETSc.Mat,
@@ -298,30 +190,6 @@ def _factor(
     return Factor(matrix, known, dim=space.mesh.topology.dim)
 
 
-def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):
-    """Add ``∫ h T δT dS`` of one surface; all surfaces share one compiled form."""
-    mesh = bodies.mesh
-    rise, δrise = ufl.TrialFunction(space), ufl.TestFunction(space)
-    facets = exterior_facet_domain(mesh, bodies.facets(surface))
-    ds = ufl.Measure("ds", domain=mesh, subdomain_data=[(1, facets)])
-    coefficient = fem.Constant(mesh, default_scalar_type(h))
-    form = model.integral(mesh, coefficient * rise * δrise, ds(1))
-    assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on matrix
-
-
-def _given(bodies: Bodies, space, given: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Which owned values are fixed, and to what."""
-    count = owned(space)
-    fixed, values = np.zeros(count, dtype=bool), np.zeros(count)
-    for surface, rise in given.items():
-        dofs = fem.locate_dofs_topological(
-            space, bodies.mesh.topology.dim - 1, bodies.facets(surface)
-        )
-        mine = dofs[dofs < count]
-        fixed[mine], values[mine] = True, rise
-    return fixed, values
-
-
 def _column_sums(matrix: PETSc.Mat) -> np.ndarray:
     """By owned columns; every rank calls."""
     sums, ones = matrix.createVecs()
@@ -330,7 +198,7 @@ def _column_sums(matrix: PETSc.Mat) -> np.ndarray:
     return sums.getArray().copy()
 
 
-def _multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:
+def multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:
     x, y = matrix.createVecs()
     x.setArray(values)
     matrix.mult(x, y)

@@ -22,9 +22,10 @@ from dolfinx.fem.petsc import assemble_matrix
 
 from .bodies import Bodies
 from .compiled import compiled
-from .conduction import Conduction, ThermalMaterial
+from .conduction import Conduction
 from .elasticity import Elasticity
 from .field import as_function
+from .heat_equation import ThermalMaterial
 from .kinematics import Model, section_measure
 
 _SAME = PETSc.Mat.Structure.SAME_NONZERO_PATTERN

@@ -11,7 +11,7 @@ from ..errors import ComputationError
 from ..laws import WearLaw
 from ..laws.spreading import Spreading
 from .conditions import Conditions
-from .friction_heat import HeatStage
+from .heat_stages import HeatStage
 
 _NEWTON_STEPS = 40
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
 from ..bulk.conduction import Conduction
 from ..contact.heat import (
-    HeatExchange,
     InterfaceHeat,
     Resting,
     ThermalDistortion,
@@ -23,6 +20,8 @@ from ..contact.heat import (
 )
 from ..parallel import sum_over_ranks
 from .conditions import Conditions
+from .heat_stages import ConductedHeat, ConductingStage, FrozenHeat, HeatOperators
+from .heat_states import HeatBalance, StoredHeat, Warmth
 from .system import System
 from .thermal_system import ThermalSystem
 
@@ -36,235 +35,6 @@ _SHALLOW = 1e-3
 """Of the contact's length: heat that has gone so deep has changed nothing yet."""
 _HARDLY = 0.1
 """Rise of the faces that is not worth a smaller first step [K]."""
-
-
-@dataclass(frozen=True)
-class Coupling:
-    """What heat does to the interface under some conditions.
-
-    Attributes
-    ----------
-    compliance : ndarray, shape (m, m)
-        Weak gap per pressure coefficient, ``H diag(mu v) Ψ``: to be added to the elastic one.
-    resting : ndarray, shape (m,)
-        Weak gap of heat that does not come from friction [m³].
-    """
-
-    compliance: np.ndarray
-    resting: np.ndarray
-
-
-class HeatOperators:
-    """Conduction condensed to the interface: steady, or over a step of time of one size.
-
-    The last exchange and coupling are kept, as conditions seldom change.
-
-    Parameters
-    ----------
-    conduction : Conduction
-    face : InterfaceHeat
-    heat : FrictionHeat
-    """
-
-    def __init__(self, conduction: Conduction, face: InterfaceHeat, heat: FrictionHeat):
-        self.conduction = conduction
-        self.face = face
-        self._heat = heat
-        self._exchange: tuple[bytes, HeatExchange] | None = None
-        self._compliance: tuple[bytes, np.ndarray] | None = None
-
-    @cached_property
-    def distortion(self) -> ThermalDistortion:
-        """Weak gap per heat at the faces. Every rank calls."""
-        return self._heat.condensed(self.conduction, self.face)
-
-    def exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """How heat crosses the interface for conductances at the points, shape (n,)."""
-        key = conductance.tobytes()
-        if self._exchange is None or self._exchange[0] != key:
-            self._exchange = (key, self.face.exchange(conductance))
-        return self._exchange[1]
-
-    def compliance(self, conditions: Conditions, basis: np.ndarray) -> np.ndarray:
-        """``H diag(mu v) Ψ``, shape (m, m)."""
-        key = conditions.conductance.tobytes() + conditions.heating.tobytes()
-        if self._compliance is None or self._compliance[0] != key:
-            per_heat = self.distortion.per_friction_heat(self.exchange(conditions.conductance))
-            self._compliance = (key, per_heat @ (conditions.heating[:, None] * basis))
-        return self._compliance[1]
-
-
-class HeatStage(Protocol):
-    """Heat at one moment, as contact sees it."""
-
-    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
-        """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
-
-    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
-        """What heat does to the condensed interface."""
-
-    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
-        """Whether the last coupling is right under the pressure that it has led to.
-
-        Where it is not, the next one is nearer.
-        """
-
-
-class ConductingStage(HeatStage, Protocol):
-    """Heat that the bodies conduct, as opposed to that of the first moment."""
-
-    @property
-    def unheated(self) -> ThermalState:
-        """The faces without any heat at the contact."""
-
-    def rise(self, faces: ThermalState) -> np.ndarray:
-        """Temperature rise of the bodies, shape (n_owned,) [K]."""
-
-
-@dataclass(frozen=True)
-class ConductedHeat:
-    """Conduction at one moment: its operators, and what the bodies bring along.
-
-    Attributes
-    ----------
-    operators : HeatOperators
-    stored : ndarray or None, shape (n_owned,)
-        Nodal heat that the bodies have stored before, per time [W]; None in a steady state.
-    resting : Resting
-    """
-
-    operators: HeatOperators
-    stored: np.ndarray | None
-    resting: Resting
-
-    @property
-    def unheated(self) -> ThermalState:
-        """The faces without any heat at the contact."""
-        nothing = np.zeros(len(self.resting.rise[0]))
-        return ThermalState(self.resting.rise, (nothing, nothing))
-
-    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
-        """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
-        exchange = self.operators.exchange(conditions.conductance)
-        return exchange.state(conditions.heating * pressure, self.resting)
-
-    def rise(self, faces: ThermalState) -> np.ndarray:
-        """Temperature rise of the bodies, shape (n_owned,) [K]."""
-        heat = self.operators.face.nodal_heat(faces, bath=True)
-        if self.stored is not None:
-            heat = heat + self.stored
-        return self.operators.conduction.solve(heat)
-
-    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
-        """What heat does to the condensed interface."""
-        operators = self.operators
-        exchange = operators.exchange(conditions.conductance)
-        return Coupling(
-            operators.compliance(conditions, basis),
-            operators.distortion.at_rest(exchange, self.resting),
-        )
-
-    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
-        """Linear heat is right at once."""
-        return True
-
-
-@dataclass(frozen=True)
-class StoredHeat:
-    """Heat in the bodies, where temperatures are followed in time.
-
-    Attributes
-    ----------
-    rise : ndarray, shape (n_owned,)
-        Of the nodes over the ambient [K].
-    content : ndarray, shape (n_owned,)
-        Heat that the nodes have stored over the ambient [J].
-    turnover : ndarray, shape (2,)
-        Friction heat made so far, and heat lost [J].
-    largest : float
-        Rise of the faces so far, either way [K].
-    """
-
-    rise: np.ndarray
-    content: np.ndarray
-    turnover: np.ndarray
-    largest: float
-
-    def towards(self, other: StoredHeat, part: float) -> StoredHeat:
-        """Moved on by a part of the way to another state."""
-        return StoredHeat(
-            self.rise + part * (other.rise - self.rise),
-            self.content + part * (other.content - self.content),
-            self.turnover + part * (other.turnover - self.turnover),
-            other.largest,
-        )
-
-
-@dataclass(frozen=True)
-class Warmth:
-    """How warm bodies and faces are.
-
-    Attributes
-    ----------
-    faces : ThermalState
-    rise : ndarray, shape (n_owned,)
-        Of the nodes over the ambient [K].
-    error : float
-        Relative imbalance of heat.
-    """
-
-    faces: ThermalState
-    rise: np.ndarray
-    error: float
-
-
-@dataclass(frozen=True)
-class HeatBalance:
-    """Heat from the start on.
-
-    Attributes
-    ----------
-    made, stored, lost : float
-        By friction, in the bodies, and to their surroundings [J].
-    """
-
-    made: float
-    stored: float
-    lost: float
-
-    @property
-    def error(self) -> float:
-        """What is missing, relative to the largest of them."""
-        scale = max(abs(self.made), abs(self.stored), abs(self.lost))
-        return abs(self.made - self.stored - self.lost) / scale if scale > 0 else 0.0
-
-
-class FrozenHeat:
-    """The first moment, in which no friction heat has flowed yet.
-
-    Attributes
-    ----------
-    stored : StoredHeat
-    initial : ThermalState
-        Of the faces.
-    """
-
-    def __init__(self, stored: StoredHeat, resting: Resting):
-        nothing = np.zeros(len(resting.rise[0]))
-        self.stored = stored
-        self.initial = ThermalState(resting.rise, (nothing, nothing))
-        self._resting = resting
-
-    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
-        return self.initial
-
-    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
-        opening, m = self._resting.opening, basis.shape[1]
-        assert opening is not None
-        return Coupling(np.zeros((m, m)), opening)
-
-    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
-        return True
 
 
 class FrictionHeat:
@@ -286,7 +56,7 @@ class FrictionHeat:
     def steady(self) -> ConductingStage:
         """Temperatures that do not change any more."""
         thermal = self._thermal
-        operators = HeatOperators(thermal.conduction, thermal.face, self)
+        operators = HeatOperators(thermal.conduction, thermal.face, self.condensed)
         still = np.zeros(len(thermal.conduction.fixed))
         resting = self._system.parts.get(
             "at rest",
@@ -434,4 +204,4 @@ class FrictionHeat:
                 steady.shift,
                 steady.partition,
             )
-        return HeatOperators(conduction, face, self)
+        return HeatOperators(conduction, face, self.condensed)

@@ -8,7 +8,9 @@ import numpy as np
 
 from .conditions import Conditions, Surroundings
 from .contact_method import Contact, ContactMethod, WearRates, newton_with_wear
-from .friction_heat import FrictionHeat, HeatBalance, HeatStage
+from .friction_heat import FrictionHeat
+from .heat_stages import HeatStage
+from .heat_states import HeatBalance
 from .self_consistent import Supposed, self_consistent
 from .state import ContactState
 from .steady import SteadyState

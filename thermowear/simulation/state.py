@@ -13,7 +13,7 @@ from ..contact.traces import vector_trace
 from ..laws.motions import translation
 from ..parallel import sum_over_ranks
 from .conditions import Conditions, Surroundings
-from .friction_heat import Warmth
+from .heat_states import Warmth
 from .system import System
 from .varying_heat import friction_heat
 

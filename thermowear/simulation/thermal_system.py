@@ -10,9 +10,10 @@ import numpy as np
 
 from ..bulk.advection import Passage
 from ..bulk.bodies import Bodies
-from ..bulk.conduction import Conduction, ThermalMaterial, conduction
+from ..bulk.conduction import Conduction
 from ..bulk.elasticity import Elasticity
 from ..bulk.field import lagrange_space
+from ..bulk.heat_equation import ThermalMaterial, conduction
 from ..bulk.kinematics import Model
 from ..bulk.varying import (
     VaryingConduction,

@@ -27,7 +27,9 @@ from ..contact.heat import (
 from ..errors import ComputationError
 from ..parallel import sum_over_ranks
 from .conditions import Conditions
-from .friction_heat import ConductedHeat, Coupling, FrictionHeat, HeatOperators, StoredHeat
+from .friction_heat import FrictionHeat
+from .heat_stages import ConductedHeat, Coupling, HeatOperators
+from .heat_states import StoredHeat
 from .system import System
 from .thermal_system import ThermalSystem
 
@@ -140,7 +142,7 @@ class TangentOperators(HeatOperators):
         heat: VaryingFrictionHeat,
         reference: np.ndarray,
     ):
-        super().__init__(conduction, face, heat)
+        super().__init__(conduction, face, heat.condensed)
         self.reference = reference
         self._varying = heat
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..contact.heat import ThermalState
 from .contact_method import Contact
-from .friction_heat import StoredHeat
+from .heat_states import StoredHeat
 
 _γ = 1 - 1 / np.sqrt(2)
 

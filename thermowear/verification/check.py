@@ -35,7 +35,7 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        return self.error <= self.allowed  # a NaN fails
+        return bool(self.error <= self.allowed)  # a NaN fails
 
     def as_row(self) -> dict:
         """For ``--json``."""

@@ -1,0 +1,146 @@
+"""Assembling the heat equation: conduction, cooling, storage, and heat carried along."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from petsc4py import PETSc
+
+import numpy as np
+import ufl
+from dolfinx import default_scalar_type, fem
+from dolfinx.fem.petsc import assemble_matrix
+
+from ..compat import exterior_facet_domain
+from .advection import Passage, advection
+from .bodies import Bodies
+from .compiled import compiled
+from .conduction import Conduction, factorised, multiply
+from .even_paths import EvenPaths
+from .field import owned
+from .kinematics import Model, section_measure
+
+
+@dataclass(frozen=True)
+class ThermalMaterial:
+    """Conductivity [W/(m K)] and, where it is known, the heat capacity of a volume [J/(m³ K)]."""
+
+    conductivity: float
+    capacity: float | None = None
+
+    def times(self, factor: float) -> ThermalMaterial:
+        """So many times the material in the same place."""
+        capacity = None if self.capacity is None else factor * self.capacity
+        return ThermalMaterial(factor * self.conductivity, capacity)
+
+
+def conduction(
+    bodies: Bodies,
+    model: Model,
+    space: fem.FunctionSpace,
+    materials: dict[str, ThermalMaterial],
+    cooling: dict[str, float],
+    given: dict[str, float],
+    bath: PETSc.Mat,
+    passage: Passage | None = None,
+) -> Conduction:
+    """Assemble and factorise.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    space : dolfinx.fem.FunctionSpace
+        Scalar.
+    materials : dict of str to ThermalMaterial
+        By part.
+    cooling : dict of str to float
+        Heat transfer coefficients by surface [W/(m² K)].
+    given : dict of str to float
+        Rise over the ambient by surface [K].
+    bath : petsc4py.PETSc.Mat
+        Added to the factorised matrix only: what the contact faces give to a heat bath at ambient
+        temperature. It keeps the matrix of an otherwise insulated body regular; the interface takes
+        it out again.
+    passage : Passage, optional
+        Of a body that moves through the frame.
+    """
+    mesh, degree = bodies.mesh, space.ufl_element().degree
+    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
+    conductivities = {part: material.conductivity for part, material in materials.items()}
+    capacities = {p: m.capacity for p, m in materials.items() if m.capacity is not None}
+    moving, even = None, None
+    if passage is not None and passage.spread:
+        even = EvenPaths(bodies, space, passage)
+    elif passage is not None:
+        moving = advection(bodies, model, space, passage, conductivities, capacities)
+    flow = bodies.per_body(conductivities) * ufl.inner(ufl.grad(T), ufl.grad(δT))
+    measure = section_measure(mesh, degree)
+    form = model.integral(mesh, flow, measure)
+    conductivity = _assembled(form)
+    cooled = conductivity.duplicate()
+    cooled.zeroEntries()
+    for surface, h in cooling.items():
+        _add_cooling(cooled, bodies, model, space, surface, h)
+    cooled.assemble()
+    structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+    conductivity.axpy(1.0, cooled, structure)
+    carried, test = None, δT
+    if moving is not None:
+        carried, test = _assembled(moving.carried), δT + moving.upwind
+        conductivity.axpy(1.0, carried, structure)
+    capacity = None
+    if len(capacities) == len(materials):
+        density = bodies.per_body(capacities) * T * test
+        capacity = _assembled(model.integral(mesh, density, measure))
+
+    fixed, values = _given(bodies, space, given)
+    if even is not None:
+        fixed, values = even.whole(fixed, values)
+    factor = factorised(space, conductivity, bath, fixed, carried is None, even)
+    lifted = -multiply(conductivity, values)
+    return Conduction(
+        space,
+        conductivity,
+        cooled,
+        carried,
+        capacity,
+        bath,
+        fixed,
+        values,
+        factor,
+        lifted,
+        moving,
+        even,
+        symmetric=carried is None,
+    )
+
+
+def _assembled(form) -> PETSc.Mat:
+    matrix = assemble_matrix(compiled(form))
+    matrix.assemble()
+    return matrix
+
+
+def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):
+    """Add ``∫ h T δT dS`` of one surface; all surfaces share one compiled form."""
+    mesh = bodies.mesh
+    rise, δrise = ufl.TrialFunction(space), ufl.TestFunction(space)
+    facets = exterior_facet_domain(mesh, bodies.facets(surface))
+    ds = ufl.Measure("ds", domain=mesh, subdomain_data=[(1, facets)])
+    coefficient = fem.Constant(mesh, default_scalar_type(h))
+    form = model.integral(mesh, coefficient * rise * δrise, ds(1))
+    assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on matrix
+
+
+def _given(bodies: Bodies, space, given: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Which owned values are fixed, and to what."""
+    count = owned(space)
+    fixed, values = np.zeros(count, dtype=bool), np.zeros(count)
+    for surface, rise in given.items():
+        dofs = fem.locate_dofs_topological(
+            space, bodies.mesh.topology.dim - 1, bodies.facets(surface)
+        )
+        mine = dofs[dofs < count]
+        fixed[mine], values[mine] = True, rise
+    return fixed, values

@@ -76,7 +76,11 @@ def _parser() -> argparse.ArgumentParser:
     run = _command(commands, "run", _run, "compute a case")
     _add_case(run)
     run.add_argument("-o", "--output", metavar="DIR", type=Path, help="default: results/<case>")
-    run.add_argument("--overwrite", action="store_true", help="replace results that are there")
+    existing = run.add_mutually_exclusive_group()
+    existing.add_argument("--overwrite", action="store_true", help="replace results that are there")
+    existing.add_argument(
+        "--resume", action="store_true", help="go on with the run that was stopped there"
+    )
     run.add_argument("--no-pictures", dest="pictures", action="store_false")
 
     sweep = _command(commands, "sweep", _sweep, "compute all combinations of values of keys")
@@ -115,12 +119,25 @@ def _parser() -> argparse.ArgumentParser:
     mesh.add_argument("-o", "--output", metavar="FILE", type=Path, required=True)
     mesh.add_argument("--overwrite", action="store_true")
 
+    shape = _command(commands, "shape", _shape, "write the steady worn shape of a contact face")
+    _add_case(shape)
+    shape.add_argument("-o", "--output", metavar="FILE", type=Path, required=True)
+    shape.add_argument("--body", metavar="NAME", help="whose face; default: the held body's")
+    shape.add_argument("--overwrite", action="store_true")
+
     verify = _command(commands, "verify", _verify, "hold the program against known solutions")
     verify.add_argument("ids", metavar="ID", nargs="*", help="default: all")
     verify.add_argument("--json", action="store_true", help="print a list of the checks")
 
     plot = _command(commands, "plot", _plot, "draw the pictures of a results folder again")
     plot.add_argument("folder", metavar="DIR", type=Path)
+
+    animate = _command(commands, "animate", _animate, "draw a run that has kept analysis.frames")
+    animate.add_argument("folder", metavar="DIR", type=Path)
+    animate.add_argument(
+        "-o", "--output", metavar="FILE", type=Path, help=".gif or .mp4; default: DIR/animation.gif"
+    )
+    animate.add_argument("--fps", metavar="N", type=_rate, default=8.0, help="frames a second")
 
     report = _command(commands, "report", _report, "write report.html of a results folder")
     report.add_argument("folder", metavar="DIR", type=Path)
@@ -130,6 +147,13 @@ def _parser() -> argparse.ArgumentParser:
 def _positive(text: str) -> int:
     number = int(text)
     if number < 1:
+        raise ValueError
+    return number
+
+
+def _rate(text: str) -> float:
+    number = float(text)
+    if not 0.1 <= number <= 50:
         raise ValueError
     return number
 
@@ -192,6 +216,22 @@ def _mesh(chosen) -> int:
     return 0
 
 
+def _shape(chosen) -> int:
+    if _launched_processes() > 1:
+        raise CaseError("shape: runs in one process; start it without mpirun")
+    from .shaping import check_format, shape, write_shape
+    from .workers import start_petsc
+
+    check_format(chosen.output)
+    start_petsc()
+    _guard(chosen.output, chosen.overwrite)
+    shaped = shape(chosen.case, chosen.body, tuple(chosen.overrides))
+    write_shape(shaped, chosen.output)
+    deepest = 1e6 * shaped.design.depth.max()
+    print(f"wrote {chosen.output}: face of {shaped.body}, up to {deepest:.4g} µm to be taken off")
+    return 0
+
+
 def _guard(path: Path, overwrite: bool) -> None:
     if os.path.exists(path) and not overwrite:  # unlike Path.exists, no error at odd names
         raise CaseError(f"{path}: exists; use --overwrite or another name")
@@ -208,6 +248,18 @@ def _plot(chosen) -> int:
         raise CaseError(str(error)) from None
     for problem in problems:
         print(f"note: {problem}", file=sys.stderr)
+    return 0
+
+
+def _animate(chosen) -> int:
+    from .output.pictures import make_animation
+
+    path = chosen.output or chosen.folder / "animation.gif"
+    try:
+        make_animation(chosen.folder, path, chosen.fps)
+    except (OSError, ValueError) as error:
+        raise CaseError(str(error)) from None
+    print(f"wrote {path}")
     return 0
 
 

@@ -21,3 +21,7 @@ class ComputationError(Exception):
     """The computation did not reach an answer (exit code 2)."""
 
     exit_code = 2
+
+
+class UnwritableError(ComputationError):
+    """Results cannot be written any more: a disk is full, or gone."""

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from . import load
-from .case import as_plain
-from .errors import CaseError, ComputationError
+from .case import Case, as_plain
+from .errors import CaseError, UnwritableError
+from .output.checkpoint import CHECKPOINT
 from .output.console import Progress, Terminal, print_summary
 from .output.folder import ResultsFolder
+from .output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from .parallel import on_root
-from .simulation import CycleRow, HeatRow, HistoryRow, Interface, LoadRow, Observer, run
+from .simulation import CycleRow, Frame, HeatRow, HistoryRow, Interface, LoadRow, Observer, run
+from .simulation.checkpoint import Checkpoint, pack
 from .simulation.phases import Phases
+from .simulation.saving import Saved
 
 
 class Recorder(Observer):
@@ -52,8 +57,34 @@ class Recorder(Observer):
     def output(self, time: float, interface: Interface, friction=None, track=None) -> None:
         self._save(lambda: self._folder.output(time, interface, friction, track))
 
+    def frame(self, frame: Frame) -> None:
+        self._save(lambda: self._folder.frame(frame))
+
+    def resumed(self, rows) -> None:
+        if isinstance(rows[0] if rows else None, HistoryRow | LoadRow):
+            self._steps = len(rows) - 1
+        self._save(lambda: self._folder.restore(rows))
+
     def _save(self, action) -> None:
         on_root(self._comm, lambda: _writing(action))
+
+
+class SavingRecorder(Recorder):
+    """Also keeps the states from which a run of a case can go on."""
+
+    def __init__(self, comm, folder, progress: Progress | None, case: Case):
+        super().__init__(comm, folder, progress)
+        self._case = case
+
+    def checkpoint(self, saved: Saved) -> None:
+        packed, time = pack(self._comm, saved), saved.progress.time
+
+        def write() -> None:
+            assert packed is not None  # on rank 0
+            about = about_checkpoint(self._case, time, packed.outlines)
+            self._folder.checkpoint(about, packed.arrays)
+
+        self._save(write)
 
 
 def run_session(chosen, comm, import_seconds: float) -> int:
@@ -66,17 +97,24 @@ def run_session(chosen, comm, import_seconds: float) -> int:
     """
     case = on_root(comm, lambda: load(chosen.case, tuple(chosen.overrides)))
     path = chosen.output or Path("results") / chosen.case.stem
-    folder = _on_root_kept(
-        comm, lambda: ResultsFolder(path, as_plain(case), comm.size, chosen.overwrite)
-    )
     plain = False if comm.size > 1 else None  # a launcher's pseudo-terminal ends in a file
     console = Terminal(highlight=False, quiet=comm.rank != 0, force_terminal=plain)
+    if chosen.resume and on_root(comm, lambda: is_finished(path, case)):
+        text = f"{path}: the run has come to its end, nothing is left to compute"
+        console.print(text, markup=False, soft_wrap=True)
+        return 0
+    saved = _saved(comm, path, case) if chosen.resume else None
+    folder = _on_root_kept(comm, lambda: _folder(path, case, comm.size, chosen, saved))
+    if chosen.resume:
+        since = "the beginning" if saved is None else f"{saved.progress.time:g} s"
+        console.print(f"goes on from {since}")
     try:
         with Progress(console) as progress:
-            recorder = Recorder(comm, folder, progress if comm.rank == 0 else None)
+            shown = progress if comm.rank == 0 else None
+            recorder = SavingRecorder(comm, folder, shown, case)
             phases = Phases(recorder.phase)
             phases.add("import", import_seconds)
-            result = run(case, comm, recorder, phases)
+            result = run(case, comm, recorder, phases, saved)
             with phases("write"):
                 on_root(comm, lambda: _writing(lambda: folder.finish(result, phases.seconds)))
             if chosen.pictures:
@@ -92,10 +130,30 @@ def run_session(chosen, comm, import_seconds: float) -> int:
         raise
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
-        _close(folder, "interrupted" if interrupted else "failed", str(error))
+        with suppress(UnwritableError):  # the disk may be what went wrong
+            _close(folder, "interrupted" if interrupted else "failed", str(error))
+        if isinstance(error, UnwritableError) and (path / CHECKPOINT).is_file():
+            room = "with more room, --resume goes on from the last checkpoint"
+            raise UnwritableError(f"{error}; {room}") from None
         raise
     _close(folder, "done")
     return 0
+
+
+def _saved(comm, path: Path, case: Case) -> Saved | None:
+    """What the run of a folder can go on with; None where it begins anew. Every rank calls."""
+    found = on_root(comm, lambda: last_checkpoint(path, case, comm.size))
+    if found is None:
+        return None
+    about, arrays = found
+    return Checkpoint(about["outlines"], arrays).state(comm.rank)
+
+
+def _folder(path: Path, case: Case, ranks: int, chosen, saved: Saved | None) -> ResultsFolder:
+    """The folder of a run that begins, or goes on with what was saved."""
+    if saved is None:
+        return ResultsFolder(path, as_plain(case), ranks, chosen.overwrite or chosen.resume)
+    return ResumedFolder(path, as_plain(case), ranks, saved.progress.time)
 
 
 def _on_root_kept(comm, action):
@@ -115,7 +173,7 @@ def _writing(action) -> None:
     try:
         action()
     except OSError as error:
-        raise ComputationError(f"results cannot be written: {error}") from None
+        raise UnwritableError(f"results cannot be written: {error}") from None
 
 
 def _draw(path: Path, console: Terminal) -> None:

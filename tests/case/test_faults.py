@@ -438,6 +438,30 @@ HISTORIES = [
     ),
     Bad("no cycle", {"analysis.cycles": 0}, "analysis.cycles", "at least 1", FRETTING),
     Bad("jump by nothing", {"analysis.jump": 0}, "analysis.jump", "at least 1", FRETTING),
+    Bad("jump by a word", {"analysis.jump": "far"}, "analysis.jump", '"auto" or a whole', FRETTING),
+    Bad(
+        "two numbers of cycles",
+        {"wear.cycles": 3, "analysis.cycles": 3},
+        "wear.cycles",
+        "only one of wear.cycles and analysis.cycles",
+        FRETTING,
+    ),
+    Bad(
+        "cycles of wear of loads that do not come back",
+        {"wear.cycles": 2, PUSH: ["0 N", "36 N", "-36 N", "30 N"]},
+        "wear.cycles",
+        "no instant of load.history has the loads of its last one",
+        FRETTING,
+    ),
+    Bad(
+        "largest jump of given ones",
+        {"wear.max_jump": 2, "analysis.jump": 3},
+        "wear.max_jump",
+        'is for analysis.jump = "auto"',
+        FRETTING,
+    ),
+    Bad("cycles of a running-in", {"wear.cycles": 3}, "wear.cycles", "not transient", RUNNING_IN),
+    Bad("jumps of a running-in", {"wear.max_jump": 3}, "wear.max_jump", "not trans", RUNNING_IN),
     Bad(
         "cycles of loads that do not come back",
         {"analysis.cycles": 2, PUSH: ["0 N", "36 N", "-36 N", "30 N"]},
@@ -517,6 +541,13 @@ TO_AND_FRO = [
     ),
     Bad("no end of strokes", ENDLESS, END, "needs end_time, cycles or until", RECIPROCATING),
     Bad("two ends", {END: "2000 s"}, "analysis.cycles", "only one of", RECIPROCATING),
+    Bad(
+        "cycles of wear and an end",
+        {"analysis": {"type": "reciprocating", "end_time": "1 s"}, "wear.cycles": 3},
+        "wear.cycles",
+        "only one of analysis.end_time and wear.cycles",
+        RECIPROCATING,
+    ),
     Bad(
         "output after the last cycle",
         {TIMES: ["1001 s"]},
@@ -745,8 +776,6 @@ HOLDERS = [
     Bad("spread nowhere", {"wear.punch.spread": "thin"}, "wear.punch.spread", "must be", STRIP),
     Bad("material of no part", {"bodies.bolt": {"like": "drum"}}, "bodies.bolt", "lining", DRUM),
     Bad("nitsche in space", {"contact.method": "nitsche"}, "contact.method", "sections", BOX),
-    Bad("shape in space", {"geometry.initial_shape": "a.csv"},
-        "geometry.initial_shape", "not for 3d", BOX),
     Bad("pad all the way and more", {"geometry.pad_angle": "400 deg"},
         "geometry.pad_angle", "at most 360 deg", PADS),
 ]  # fmt: skip

@@ -31,20 +31,28 @@ ALWAYS = {
     "summary.json", "run.json", "case.resolved.toml", "interface.csv", "profile.csv", "fields.vtu",
 }  # fmt: skip
 MORE = {
-    RUNNING_IN: {"history.csv", "interface_1.csv"},
+    RUNNING_IN: {"checkpoint.npz", "history.csv", "interface_1.csv"},
     FRETTING: {
+        "checkpoint.npz",
         "loads.csv",
         "cycles.csv",
         "friction.csv",
         *(f"{stem}_{time}.csv" for stem in ("friction", "interface") for time in (1, 2)),
     },
-    RECIPROCATING: {"history.csv", "track.csv", "track_1.csv", "interface_1.csv"},
+    RECIPROCATING: {
+        "checkpoint.npz",
+        "history.csv",
+        "track.csv",
+        "track_1.csv",
+        "interface_1.csv",
+    },  # fmt: skip
 }
 COARSE = ("mesh.degree=3", "mesh.elements=6")
 QUICK = {
     RUNNING_IN: ("analysis.end_time=2 s", 'analysis.output_times=["1 s"]'),
     FRETTING: ("mesh.degree=2", "mesh.elements=12", "analysis.increments=3"),
     RECIPROCATING: ("mesh.degree=2", "analysis.cycles=4", 'analysis.output_times=["1 s"]'),
+    "cylinder-fretting": ("mesh.degree=2", "wear.cycles=20", 'analysis.output_times=["1 s"]'),
 }
 HEADS = {
     "interface": "x_m,y_m,z_m,s_m,weight_m2,pressure_Pa,gap_m,shape_m,wear_1_m,wear_2_m,"
@@ -57,7 +65,7 @@ HEADS = {
     "max_pressure_Pa,contact_area_m2,stick_area_m2,dissipated_J,iterations,cycle,"
     "wear_volume_1_m3,wear_volume_2_m3",
     "cycles": "cycle,time_s,wear_volume_1_m3,wear_volume_2_m3,dissipated_J,max_wear_1_m,"
-    "max_wear_2_m,contact_area_m2,max_pressure_Pa",
+    "max_wear_2_m,contact_area_m2,max_pressure_Pa,jump,error",
     "track": "x_m,wear_2_m,wear_rate_2_m_per_s",
     "heat": "time_s,speed_m_per_s,normal_force_N,friction_power_W,heat_in_J,heat_stored_J,"
     "heat_lost_J,balance_relative_error,max_temperature_1_K,max_temperature_2_K,mean_temperature_1_K,"
@@ -104,9 +112,11 @@ def test_a_starter_leaves_its_files(finished):
     if analysis.type == "fretting":
         at = ("", *(f"_{time:g}" for time in analysis.output_times))
         more = {"loads.csv", "cycles.csv", *(f"friction{time}.csv" for time in at)}
+        more |= {"checkpoint.npz"}
         more |= {f"interface{time}.csv" for time in at}
     if analysis.type == "transient":
         more = {"history.csv", *(f"interface_{time:g}.csv" for time in analysis.output_times)}
+        more |= {"checkpoint.npz"}
         more |= {"heat.csv"} if heat is not None and heat.transient else set()
     if analysis.type == "stability":
         more = {"mode.csv"}
@@ -240,6 +250,7 @@ def test_another_analysis_leaves_nothing_of_fretting(fretting, tmp_path):
     found = {path.name for path in folder.iterdir()}
     assert found == ALWAYS | {
         "notes.txt",
+        "checkpoint.npz",
         "loads.csv",
         "cycles.csv",
         "friction.csv",

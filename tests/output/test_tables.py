@@ -58,6 +58,7 @@ def test_files_agree_with_each_other(folder):
         "interface_1.csv",
         "profile.csv",
         "history.csv",
+        "checkpoint.npz",
         "fields.vtu",
     }
     summary = json.loads((folder / "summary.json").read_text())

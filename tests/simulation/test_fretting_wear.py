@@ -27,6 +27,9 @@ def close(value, rel=1e-6):
     return pytest.approx(value, rel=rel, abs=0.0)
 
 
+STRONG = {"wear.cylinder": {"coefficient": "3e-7 1/MPa", "per": "pressure"}}
+
+
 def moved(amplitude="10 um", **more):
     """A cycle of displacement, beyond the limit of friction."""
     places = ["0 um", amplitude, "0 um", f"-{amplitude}", "0 um"]
@@ -46,12 +49,29 @@ def sliding():
     return solved(FRETTING, moved(), *SMALL, "analysis.cycles=60", "analysis.jump=20")
 
 
-@pytest.mark.parametrize("name", ["sticking", "sliding"])
+@pytest.fixture(scope="module")
+def every():
+    """All cycles of a contact that grows, one by one."""
+    return growing("analysis.jump=1").friction.cycles
+
+
+@pytest.fixture(scope="module")
+def adaptive():
+    return growing('analysis.jump="auto"')
+
+
+def growing(*settings, cycles=120, **more):
+    """A contact that is pushed farther than it sticks, and wears fast."""
+    return solved(FRETTING, moved(**STRONG | more), *SMALL, f"wear.cycles={cycles}", *settings)
+
+
+@pytest.mark.parametrize("name", ["sticking", "sliding", "adaptive"])
 def test_volumes_are_those_of_the_energy(name, request):
     """requirement: V = k/mu E for both bodies, at every increment; all tables agree."""
     result = request.getfixturevalue(name)
     i, rows, cycles = result.interface, result.friction.rows, result.friction.cycles
-    for body, k in enumerate(K, start=1):
+    strengths = (3e-13, K[1]) if name == "adaptive" else K
+    for body, k in enumerate(strengths, start=1):
         volumes = np.array([getattr(row, f"wear_volume_{body}") for row in rows])
         lost = np.array([row.dissipated for row in rows])
         np.testing.assert_allclose(volumes, k / FRICTION * lost, rtol=1e-9, atol=1e-9 * volumes[-1])
@@ -110,6 +130,63 @@ def test_jumps_change_little(sliding):
     coarse, fine = (result.friction.cycles[-1] for result in (sliding, fine))
     assert coarse.wear_volume_2 == close(fine.wear_volume_2, rel=5e-3)
     assert coarse.max_wear_2 == close(fine.max_wear_2, rel=5e-2)
+
+
+def test_adaptive_jumps_are_those_of_all_cycles(adaptive, every):
+    """requirement: depths and volumes of cycles one by one, from a few of them."""
+    jumps = adaptive.friction.cycles
+    assert [row.cycle for row in every] == list(range(1, 121))
+    assert sum(row.jump for row in jumps) == jumps[-1].cycle == 120
+    assert len(jumps) < 25
+    for row in jumps:
+        exact = every[row.cycle - 1]
+        assert row.time == exact.time
+        for name in ("wear_volume_1", "wear_volume_2", "dissipated"):
+            assert getattr(row, name) == close(getattr(exact, name), rel=2e-3)
+        for name in ("max_wear_1", "max_wear_2", "contact_area"):
+            assert getattr(row, name) == close(getattr(exact, name), rel=2e-2)
+        assert 0 <= row.error <= 1e-2
+
+
+def test_the_tolerance_of_jumps(every):
+    """requirement: errors go with it; where it is large, no jump is longer than told."""
+    errors = []
+    for tolerance in (4e-2, 1e-2, 2.5e-3):
+        rows = growing(f"analysis.tolerance={tolerance}").friction.cycles
+        errors.append(abs(rows[-1].max_wear_2 / every[-1].max_wear_2 - 1))
+        assert max(row.error for row in rows) <= tolerance
+    assert errors[2] < errors[0] / 3
+    rows = growing("analysis.tolerance=0.1", "wear.max_jump=9").friction.cycles
+    assert max(row.jump for row in rows) == 9
+    assert rows[-1].max_wear_2 == close(every[-1].max_wear_2, rel=1e-2)
+
+
+def test_adaptive_jumps_hit_output_times():
+    """requirement: exactly, and within a cycle the cycle is computed for itself."""
+    changes = {"analysis.output_times": ["81.5 s", "160 s"]}
+    result = growing(cycles=50, **changes)
+    rows = {row.cycle: row for row in result.friction.cycles}
+    assert set(result.outputs) == {81.5, 160.0}
+    assert rows[21].jump == 1
+    assert {20, 21, 40, 50} <= set(rows)
+    at = result.outputs[160.0]
+    assert at.weight @ at.wear_2 == close(rows[40].wear_volume_2, rel=1e-12)
+    inside = result.outputs[81.5]
+    assert rows[20].wear_volume_2 < inside.weight @ inside.wear_2 < rows[21].wear_volume_2
+
+
+def test_adaptive_jumps_where_the_middle_sticks(sticking):
+    """requirement: wear of partial slip, and none in the middle, however long the jumps."""
+    changes = BOTH | {"analysis.output_times": []}
+    result = solved(FRETTING, changes, *SMALL, "wear.cycles=100000")
+    last, known = result.friction.cycles[-1], sticking.friction.cycles[-1]
+    assert last.cycle == 100000
+    assert last.wear_volume_2 == close(known.wear_volume_2, rel=0.1)
+    i = result.interface
+    assert np.all(i.wear_2[np.abs(i.x) < 3e-5] == 0.0)
+    assert result.summary["wear_volume_2_m3"] == close(
+        K[1] / FRICTION * result.summary["dissipated_energy_J"], rel=1e-9
+    )
 
 
 def test_the_gap_is_closed_where_it_presses():

@@ -2,7 +2,7 @@
 
 from thermowear.case.analyses import Fretting
 from thermowear.case.history import History
-from thermowear.simulation.load_path import legs
+from thermowear.simulation.load_path import by_fixed_jumps, cycle_legs, first_pass, to_stop_at
 
 
 def history(*pushes, **keys):
@@ -10,12 +10,23 @@ def history(*pushes, **keys):
     return History(time=times, tangential_force=[f"{q} N" for q in pushes], **keys)
 
 
-def way(loads, **settings):
-    return list(legs(loads, Fretting(type="fretting", **settings)))
+def way(loads, cycles=1, jump=1, output_times=()):
+    settings = Fretting(type="fretting", output_times=output_times)
+    legs, before = list(first_pass(loads, settings.output_times)), 0
+    if loads.cycle is None:
+        return legs
+    for number in by_fixed_jumps(loads, settings, cycles, jump):
+        legs += cycle_legs(loads, settings.output_times, number, number - before)
+        before = number
+    return legs
 
 
 def ends(loads, **settings):
     return [(leg.end, leg.cycle, leg.repeats) for leg in way(loads, **settings)]
+
+
+def stops(loads, cycles, *output_times):
+    return to_stop_at(loads, Fretting(type="fretting", output_times=output_times), cycles)
 
 
 LOOP = history(0, 36, -36, 36)
@@ -76,6 +87,17 @@ def test_output_times_are_hit():
     assert outputs == [(0.5, 0.5, 0), (1.0, 1.0, 0), (4.25, 2.25, 2), (9.0, 3.0, 4)]
     computed = [(leg.cycle, leg.repeats) for leg in found if leg.ends_cycle]
     assert computed == [(1, 1), (2, 1), (4, 2), (5, 1), (10, 5)]
+
+
+def test_no_jump_passes_an_output_time():
+    """requirement: adaptive jumps end before a cycle that is left on its way, and at its end."""
+    assert stops(LOOP, 10) == [1, 10]
+    assert stops(LOOP, 10, "0.5 s", "1 s") == [1, 10]  # before the first cycle
+    assert stops(LOOP, 10, "2 s", "9 s") == [1, 4, 10]
+    assert stops(LOOP, 10, "4.25 s", "12.5 s") == [1, 2, 5, 6, 10]
+    short = History(time=["0 s", "0.1 s", "0.2 s"], tangential_force=["0 N", "1 N", "0 N"])
+    for count in range(2, 51):
+        assert stops(short, 60, f"{count / 5!r} s") == [1, count, 60]
 
 
 def test_ends_of_cycles_are_found_in_spite_of_rounding():

@@ -135,6 +135,21 @@ def test_output_times_are_hit(worn):
         assert volume == close(K * FORCE * SPEED * time, rel=1e-9)
 
 
+def test_cycles_and_jumps_of_the_wear_table(worn):
+    """requirement: wear.cycles ends it as analysis.cycles does; no step is longer than max_jump."""
+    settings = {"analysis": {"type": "reciprocating", "positions": 6}, "wear.cycles": 200}
+    small = ("mesh.degree=2", "mesh.elements=8")
+    same, short = (
+        solved(RECIPROCATING, settings | more, *small) for more in ({}, {"wear.max_jump": 9})
+    )
+    assert same.summary["time_s"] == 200 / FREQUENCY
+    assert same.summary["wear_volume_1_m3"] == close(worn.summary["wear_volume_1_m3"], rel=1e-3)
+    steps = [row.step for row in short.history]
+    assert max(steps) <= 9 / FREQUENCY * (1 + 1e-12)
+    assert max(row.step for row in same.history) > 18 / FREQUENCY
+    assert short.summary["wear_volume_1_m3"] == close(same.summary["wear_volume_1_m3"], rel=1e-3)
+
+
 def test_both_ways_are_mirror_images(worn):
     """requirement: what friction does one way, it undoes the other way."""
     track, i = worn.track.last, worn.interface

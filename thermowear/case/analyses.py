@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from . import units
 from .section import KeyFault, Number, Section
@@ -20,6 +20,10 @@ class Steady(Section):
     """Steady state of wear, directly."""
 
     type: Literal["steady"]
+
+
+_MINUTES = 120.0  # s; a state takes milliseconds to write
+Frames = Annotated[int, Field(ge=0, le=1000, strict=True)]
 
 
 def _all_different(output_times: tuple[float, ...]) -> None:
@@ -43,6 +47,10 @@ class Timed(Section):
         Times that get an interface file of their own [s].
     tolerance : float
         Allowed error of one step, relative to the largest pressure and to the largest depth worn.
+    frames : int
+        How many states on the way are kept for an animation, at most.
+    checkpoint_every : float
+        Time of computing after which the run is saved again, besides at output times [s].
     """
 
     type: str
@@ -52,6 +60,8 @@ class Timed(Section):
     output_times: tuple[units.Time, ...] = ()
     tolerance: Annotated[Number, Field(ge=1e-9, le=0.1)] = 1e-4
     max_steps: Annotated[int, Field(ge=1, strict=True)] = 10_000
+    frames: Frames = 0
+    checkpoint_every: units.Time = _MINUTES
 
     @model_validator(mode="after")
     def _outputs(self):
@@ -86,7 +96,7 @@ class Reciprocating(Timed):
     Attributes
     ----------
     cycles : float or None
-        How many of them, instead of an end time.
+        How many of them, instead of an end time; ``wear.cycles`` says the same.
     positions : int
         Places of body 1 in which contact is solved, between the ends of the stroke.
     """
@@ -101,8 +111,6 @@ class Reciprocating(Timed):
     def _ends(self):
         if self.end_time is not None and self.cycles is not None:
             raise KeyFault("cycles", "only one of end_time and cycles can be given")
-        if self.end_time is None and self.cycles is None and self.until is None:
-            raise KeyFault("end_time", 'missing; needs end_time, cycles or until = "steady"')
         return self
 
 
@@ -110,6 +118,13 @@ class Stability(Section):
     """Thermoelastic instability of the contact: the critical speed and the shape that grows."""
 
     type: Literal["stability"]
+
+
+def _jump(value: Any) -> Any:
+    whole = isinstance(value, int) and not isinstance(value, bool)
+    if value == "auto" or (whole and value >= 1):
+        return value
+    raise ValueError(f'found {value!r}; must be "auto" or a whole number, at least 1')
 
 
 class Fretting(Section):
@@ -121,17 +136,29 @@ class Fretting(Section):
         From each corner of the history to the next.
     output_times : tuple of float
         Times that get files of their own [s].
-    cycles : int
-        How often the cycle of the history goes on, see `History.cycle_start`.
-    jump : int
-        How many of them each computed cycle stands for: so many times it wears.
+    cycles : int or None
+        How often the cycle of the history goes on, see `History.cycle_start`; ``wear.cycles`` says
+        the same. Once by default.
+    jump : int or str
+        How many of them each computed cycle stands for: so many times it wears. ``"auto"``: as many
+        as the tolerance allows.
+    tolerance : float
+        Allowed error of one jump, relative to the largest depth worn.
+    frames : int
+        How many states on the way are kept for an animation, at most: ends of cycles, or of
+        increments where there is only one cycle.
+    checkpoint_every : float
+        Time of computing after which the run is saved again, besides at output times [s].
     """
 
     type: Literal["fretting"]
     increments: Annotated[int, Field(ge=1, strict=True)] = 20
     output_times: tuple[units.Instant, ...] = ()
-    cycles: Annotated[int, Field(ge=1, strict=True)] = 1
-    jump: Annotated[int, Field(ge=1, strict=True)] = 1
+    cycles: Annotated[int, Field(ge=1, strict=True)] | None = None
+    jump: Annotated[int | Literal["auto"], BeforeValidator(_jump)] = "auto"
+    tolerance: Annotated[Number, Field(ge=1e-9, le=0.1)] = 1e-2
+    frames: Frames = 0
+    checkpoint_every: units.Time = _MINUTES
 
     @model_validator(mode="after")
     def _outputs(self):

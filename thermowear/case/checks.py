@@ -14,7 +14,7 @@ from .courses import courses
 from .equilibrium import holder, load, motion
 from .heating import Need, heat, thermal_needs
 from .materials import resolve_like
-from .oscillation import fretting, reciprocating
+from .oscillation import counted, fretting, reciprocating
 from .varying import condensed_only, varying
 
 if TYPE_CHECKING:
@@ -157,8 +157,6 @@ def _in_space(case: Case) -> Iterator[Fault]:
     if case.contact.transverse_friction > 0 or case.contact.pressure_degree == "lobatto":
         key = "transverse_friction" if case.contact.transverse_friction > 0 else "pressure_degree"
         yield f"contact.{key}", "is for sections, not for 3d"
-    if case.geometry.initial_shape is not None:
-        yield "geometry.initial_shape", "is a curve along a section; not for 3d"
     if case.analysis.type in ("fretting", "reciprocating"):
         yield "analysis.type", f"{case.analysis.type!r} is for sections, not for 3d"
 
@@ -177,6 +175,16 @@ def _symmetry(case: Case) -> Iterator[Fault]:
         yield "geometry.half", "sliding friction is not symmetric; mesh the whole section"
 
 
+def _update(case: Case) -> Iterator[Fault]:
+    """Sizes of updates that are asked for where no meshes are moved."""
+    if case.wear.update in ("auto", "never"):
+        return
+    if case.analysis.type != "transient":
+        yield "wear.update", f"meshes are not moved in a {case.analysis.type} analysis"
+    elif case.model == "3d":
+        yield "wear.update", "meshes are moved in sections, not in 3d"
+
+
 _CHECKS = (
     _names,
     _model,
@@ -185,9 +193,11 @@ _CHECKS = (
     load,
     courses,
     motion,
+    counted,
     reciprocating,
     _sliding,
     _spread,
+    _update,
     fretting,
     heat,
     varying,

@@ -64,8 +64,8 @@ class Geometry(Section):
     slides_across : bool
         Whether body 1 may slide across its axis, as a ball does on a flat, or across its section.
     initial_shape : str or None
-        Table with the worn shape to start from (``profile.csv`` of an earlier run), relative to the
-        current directory.
+        File with the worn shape to start from (a design, as ``shape`` writes it, or ``profile.csv``
+        of an earlier run), relative to the current directory.
     """
 
     name: ClassVar[str]

@@ -6,7 +6,7 @@ import difflib
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, get_args, get_type_hints
 
 from pydantic import ValidationError
 
@@ -141,3 +141,4 @@ def _sections(annotation: Any) -> Iterator[type[Section]]:
             yield from _sections(kind)
         for field in annotation.model_fields.values():
             yield from _sections(field.annotation)
+        yield from _sections(get_type_hints(annotation).get("__pydantic_extra__"))

@@ -15,6 +15,24 @@ if TYPE_CHECKING:
 Fault = tuple[str, str]
 
 
+def cycles(case: Case) -> float | None:
+    """How many cycles of its loads or its motion a case asks for; None where it does not say."""
+    in_analysis = getattr(case.analysis, "cycles", None)
+    return case.wear.cycles if in_analysis is None else in_analysis
+
+
+def counted(case: Case) -> Iterator[Fault]:
+    """Cycles are given once, and to analyses that have them; given jumps have no limit."""
+    analysis, wear = case.analysis, case.wear
+    for key in ("cycles", "max_jump"):
+        if getattr(wear, key) is not None and not isinstance(analysis, Fretting | Reciprocating):
+            yield f"wear.{key}", f"is for fretting and reciprocating analyses, not {analysis.type}"
+    if wear.cycles is not None and getattr(analysis, "cycles", None) is not None:
+        yield "wear.cycles", "only one of wear.cycles and analysis.cycles can be given"
+    if isinstance(analysis, Fretting) and analysis.jump != "auto" and wear.max_jump is not None:
+        yield "wear.max_jump", 'is for analysis.jump = "auto"'
+
+
 def fretting(case: Case) -> Iterator[Fault]:
     """A history of loads and a fretting analysis need each other."""
     analysis, history = case.analysis, case.load.history
@@ -27,7 +45,7 @@ def fretting(case: Case) -> Iterator[Fault]:
     elif history.tangential and case.geometry.symmetry:
         yield "geometry.half", "tangential loads are not symmetric; mesh the whole section"
     else:
-        yield from _cycles(analysis, history)
+        yield from _cycles(case, analysis, history)
     if case.contact.method != "condensed":
         yield "contact.method", f"{case.contact.method!r} does not know sticking; use condensed"
     for table in ("heat", "motion"):
@@ -54,23 +72,37 @@ def reciprocating(case: Case) -> Iterator[Fault]:
     if analysis.until == "steady" and case.holder.free != ("z",):
         yield "analysis.until", "wear rates become uniform only under a holder that does not turn"
     if motion is not None:
-        yield from _to_and_fro(analysis, motion)
+        yield from _to_and_fro(case, analysis, motion)
+    yield from _ends(case, analysis)
 
 
-def _cycles(analysis: Fretting, history: History) -> Iterator[Fault]:
+def _cycles(case: Case, analysis: Fretting, history: History) -> Iterator[Fault]:
     """Cycles need loads that come back; output times lie in the history, or in its repetitions."""
-    end = history.time[-1]
+    end, count = history.time[-1], cycles(case) or 1
     if history.cycle is not None:
-        end += (analysis.cycles - 1) * (end - history.cycle[0])
-    elif analysis.cycles > 1:
-        yield "analysis.cycles", "no instant of load.history has the loads of its last one"
+        end += (count - 1) * (end - history.cycle[0])
+    elif count > 1:
+        yield _key(case), "no instant of load.history has the loads of its last one"
     late = [t for t in analysis.output_times if not history.time[0] <= t <= end]
     if late:
-        where = "load.history.time" if analysis.cycles == 1 else "the cycles"
+        where = "load.history.time" if count == 1 else "the cycles"
         yield "analysis.output_times", f"{late[0]:g} s lies outside {where}"
 
 
-def _to_and_fro(analysis: Reciprocating, motion: Motion) -> Iterator[Fault]:
+def _key(case: Case) -> str:
+    """Where the number of cycles stands."""
+    return "analysis.cycles" if case.wear.cycles is None else "wear.cycles"
+
+
+def _ends(case: Case, analysis: Reciprocating) -> Iterator[Fault]:
+    """A time, a number of cycles or the steady state ends it."""
+    if cycles(case) is None and analysis.end_time is None and analysis.until is None:
+        yield "analysis.end_time", 'missing; needs end_time, cycles or until = "steady"'
+    if case.wear.cycles is not None and analysis.end_time is not None:
+        yield "wear.cycles", "only one of analysis.end_time and wear.cycles can be given"
+
+
+def _to_and_fro(case: Case, analysis: Reciprocating, motion: Motion) -> Iterator[Fault]:
     """Amplitude and frequency, and nothing else; output times before the last cycle ends."""
     for key in ("amplitude", "frequency"):
         if getattr(motion, key) is None:
@@ -78,7 +110,8 @@ def _to_and_fro(analysis: Reciprocating, motion: Motion) -> Iterator[Fault]:
     for key in ("velocity", "angular_velocity"):
         if getattr(motion, key) is not None:
             yield f"motion.{key}", "does not fit; a reciprocating body has amplitude and frequency"
-    if analysis.cycles is not None and motion.frequency is not None:
-        late = [t for t in analysis.output_times if t > analysis.cycles / motion.frequency]
+    count = cycles(case)
+    if count is not None and motion.frequency is not None:
+        late = [t for t in analysis.output_times if t > count / motion.frequency]
         if late:
             yield "analysis.output_times", f"{late[0]:g} s lies after the last cycle"

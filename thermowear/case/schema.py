@@ -21,7 +21,7 @@ from .geometry import AnyGeometry, Pressing
 from .heat import Heat
 from .materials import Body, resolve_like
 from .section import Number, Section, Switch
-from .wear import Wear
+from .wear import WearTable
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
 Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
@@ -130,7 +130,7 @@ class Case(Section):
     load: Load
     motion: Motion | None = None
     contact: Contact = Contact()
-    wear: dict[str, Wear] = {}
+    wear: WearTable = WearTable()
     heat: Heat | None = None
     analysis: Annotated[
         Initial | Steady | Transient | Fretting | Reciprocating | Stability,

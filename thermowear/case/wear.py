@@ -1,11 +1,15 @@
-"""The wear table of a body: ``rate = coefficient · s^b · v^a``; s: friction stress or pressure."""
+"""The wear tables: ``rate = coefficient · s^b · v^a`` of each body; s: friction stress or pressure.
+
+Beside them stands how worn faces are followed.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from collections.abc import ItemsView, Iterator, KeysView, ValuesView
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
 
 from .factors import Factors
 from .section import KeyFault, Number, Section
@@ -82,3 +86,68 @@ class Wear(Section):
                 f" a = {a:g} and b = {b:g}; needs {rate}1/MPa^{b:.12g} or the like",
             )
         return float(self.coefficient.to_base_units().magnitude)
+
+
+def _update(value: Any) -> Any:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if value in ("auto", "never") or (number and 0.0 < value <= 1.0):
+        return value
+    raise ValueError(f'found {value!r}; must be "auto", "never", or a number up to 1')
+
+
+class WearTable(Section):
+    """Wear laws by body, and beside them how wear is followed: a mapping of bodies to `Wear`.
+
+    Attributes
+    ----------
+    update : str or float
+        When the meshes are moved to the worn faces. ``"auto"``: when the wear kept in the gap
+        exceeds `AUTOMATIC` of the sizes that it is held against; a number: that part of them;
+        ``"never"``: all wear stays in the gap.
+    cycles : int or None
+        Of an analysis of cycles: how many of them wear.
+    max_jump : int or None
+        The most cycles that a computed one may stand for.
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+    AUTOMATIC: ClassVar[float] = 0.01
+
+    __pydantic_extra__: dict[str, Wear]
+
+    update: Annotated[float | Literal["auto", "never"], BeforeValidator(_update)] = "auto"
+    cycles: Annotated[int, Field(ge=1, strict=True)] | None = None
+    max_jump: Annotated[int, Field(ge=1, strict=True)] | None = None
+
+    @property
+    def largest_kept(self) -> float:
+        """Part of the sizes of the bodies up to which wear is kept in the gap."""
+        if self.update == "never":
+            return math.inf
+        return self.AUTOMATIC if self.update == "auto" else float(self.update)
+
+    def __getitem__(self, body: str) -> Wear:
+        return self._laws[body]
+
+    def __contains__(self, body: object) -> bool:
+        return body in self._laws
+
+    def __iter__(self) -> Iterator[str]:  # type: ignore[override]
+        return iter(self._laws)
+
+    def __len__(self) -> int:
+        return len(self._laws)
+
+    def keys(self) -> KeysView[str]:
+        return self._laws.keys()
+
+    def values(self) -> ValuesView[Wear]:
+        return self._laws.values()
+
+    def items(self) -> ItemsView[str, Wear]:
+        return self._laws.items()
+
+    @property
+    def _laws(self) -> dict[str, Wear]:
+        return self.__pydantic_extra__

@@ -19,6 +19,7 @@ of equations with kinks; `coulomb_solver` solves it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -49,7 +50,7 @@ class CoulombProblem:
     force: np.ndarray
     friction: np.ndarray
 
-    @property
+    @cached_property
     def stiffness(self) -> np.ndarray:
         """c, one value for all tangential directions of a coefficient, shape (M,) [N/m⁵]."""
         blocks = np.diag(self.compliance).reshape(-1, len(self.friction)).copy()

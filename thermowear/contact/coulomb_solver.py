@@ -16,7 +16,9 @@ _SPRINGS = (1e-3, 1e-2, 1e-1, 1.0)  # parts of the contact's own stiffness, one 
 _SPRUNG_SOLUTIONS = 20
 
 
-def solve_directly(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolution | None:
+def solve_directly(
+    problem: CoulombProblem, closed: np.ndarray, near: np.ndarray | None = None
+) -> CoulombSolution | None:
     """Solve by Newton's method, which takes a few iterations; None where it fails.
 
     Parameters
@@ -24,7 +26,13 @@ def solve_directly(problem: CoulombProblem, closed: np.ndarray) -> CoulombSoluti
     problem : CoulombProblem
     closed : ndarray of bool, shape (m,)
         Coefficients that are expected to press; the first guess sticks there.
+    near : ndarray, shape (M + k,), optional
+        The unknowns of a similar problem: a guess before that.
     """
+    if near is not None:
+        solution = _newton(problem, near, damped=False)
+        if solution is not None and not violated(problem, solution):
+            return solution
     start = _sticking(problem, closed)
     return None if start is None else _from(problem, start)
 
@@ -62,7 +70,8 @@ def _from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
 def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> CoulombSolution | None:
     for iteration in range(_ITERATIONS + 1):
         error = residual(problem, unknowns)
-        if np.all(np.abs(error) <= _CONVERGED * scales(problem, unknowns)):
+        small = np.all(np.abs(error) <= _CONVERGED * scales(problem, unknowns))
+        if small and iteration > 0:  # a step at least: it leaves no more than rounding
             pressure, shear, sticking = problem.projection(unknowns)
             motion = unknowns[len(problem.offset) :]
             return CoulombSolution(pressure, shear, motion, sticking, iteration)

@@ -92,7 +92,12 @@ class Pairing:
 
 
 def pair(
-    face_1: Face | Surface, face_2: Face | Surface, model: Model, order: int, refine: bool = True
+    face_1: Face | Surface,
+    face_2: Face | Surface,
+    model: Model,
+    order: int,
+    refine: bool = True,
+    sliver: float = 1e-9,
 ) -> Pairing:
     """Pair two faces on their common refinement.
 
@@ -108,13 +113,15 @@ def pair(
         ``2 order - 3``.
     refine : bool
         False: the facets of body 1 are not cut, each has the points of one rule.
+    sliver : float
+        Part of a facet in a section: it is not cut so near to its ends.
 
     Raises
     ------
     CaseError
         If no point of body 1 faces body 2.
     """
-    on_1 = rule(face_1, face_2, order, refine)
+    on_1 = rule(face_1, face_2, order, refine, sliver)
     facet, t = on_1.facet, on_1.t
     if len(facet) == 0:
         raise CaseError("geometry: the contact faces do not lie opposite each other")

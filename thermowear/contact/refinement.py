@@ -38,19 +38,21 @@ class Rule:
     weight: np.ndarray
 
 
-def rule(face_1: Face | Surface, face_2: Face | Surface, order: int, refine: bool) -> Rule:
+def rule(
+    face_1: Face | Surface, face_2: Face | Surface, order: int, refine: bool, sliver: float
+) -> Rule:
     """Points and weights; parameters as in `pairing.pair`."""
     if isinstance(face_1, Surface):
         assert isinstance(face_2, Surface)
         return _on_parts(face_1, face_2, order) if refine else _on_facets(face_1, face_2, order)
     assert isinstance(face_2, Face)
-    return _on_pieces(face_1, face_2, order, refine)
+    return _on_pieces(face_1, face_2, order, refine, sliver)
 
 
-def _on_pieces(face_1: Face, face_2: Face, order: int, refine: bool) -> Rule:
+def _on_pieces(face_1: Face, face_2: Face, order: int, refine: bool, sliver: float) -> Rule:
     """A Gauss-Lobatto rule on each piece of the facets of a chain."""
     whole = [np.array([0.0, 1.0])] * len(face_1.nodes)
-    cuts = _cuts(face_1, face_2) if refine else whole
+    cuts = _cuts(face_1, face_2, sliver) if refine else whole
     x, w = lobatto(order)
     start = np.concatenate([c[:-1] for c in cuts])
     size = np.concatenate([np.diff(c) for c in cuts])
@@ -62,14 +64,14 @@ def _on_pieces(face_1: Face, face_2: Face, order: int, refine: bool) -> Rule:
     return _facing(face_1, face_2, pieces, order, inner)
 
 
-def _cuts(face_1: Face, face_2: Face) -> list[np.ndarray]:
+def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
     """Parameters at which each facet of body 1 is cut, its own ends included."""
     ends = np.concatenate([face_2.nodes[:, 0], face_2.nodes[-1:, -1]])
     facet, t, _ = project(face_1, ends)
     cuts = []
     for f in range(len(face_1.nodes)):
         inner = np.sort(t[facet == f])
-        inner = inner[(inner > 1e-9) & (inner < 1 - 1e-9)]
+        inner = inner[(inner > sliver) & (inner < 1 - sliver)]
         if len(inner):
             inner = inner[np.concatenate([[True], np.diff(inner) > 1e-9])]
         cuts.append(np.concatenate([[0.0], inner, [1.0]]))

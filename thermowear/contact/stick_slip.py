@@ -136,7 +136,7 @@ def advance(
         gap = contact.weighted.T @ contact.gap + mean @ (worn + lost)
         compliance = contact.compliance.copy()
         compliance[: len(slope), : len(slope)] += mean @ slope
-        return _solved(contact, friction, state, guess.pressure > 0, loads, compliance, gap)
+        return _solved(contact, friction, state, guess, loads, compliance, gap)
 
     nothing = np.zeros_like(mean)
     after = solve(state, nothing[0], nothing)
@@ -155,16 +155,22 @@ def _slid(state: StickSlipState, loads: Loads) -> float:
     return float(state.motion[1] if np.isnan(given) else given)
 
 
-def _solved(contact, friction, state, closed, loads: Loads, compliance, gap) -> StickSlipState:
-    """The state after one increment of bodies with an elastic and local compliance."""
+def _solved(contact, friction, state, guess, loads: Loads, compliance, gap) -> StickSlipState:
+    """The state after one increment of bodies with an elastic and local compliance.
+
+    The guess is the state before or one with the same loads.
+    """
     given = loads.motions
     free = np.isnan(given)
     fixed = np.where(free, 0.0, given)
     start = contact.stack(gap, -state.slip) - contact.modes @ fixed
     modes = contact.modes[:, free]
     problem = CoulombProblem(compliance, start, modes, loads.forces[free], friction)
-    closed = _expected(problem, closed, bool(free[0]))
-    solution = solve_directly(problem, closed)
+    closed = _expected(problem, guess.pressure > 0, bool(free[0]))
+    near = None
+    if guess is not state:
+        near = np.append(contact.stack(guess.pressure, guess.shear), guess.motion[free])
+    solution = solve_directly(problem, closed, near)
     if solution is None:
         if len(free) > 1 and free[1]:
             refuse_sliding(problem, bool(free[0]))

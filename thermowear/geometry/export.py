@@ -40,10 +40,17 @@ def check_ending(path: Path) -> None:
         raise CaseError(f"-o {path}: unknown ending; one of: {', '.join(_FORMATS)}")
 
 
-def write_mesh(mesh: TaggedMesh, path: Path) -> None:
+def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None = None) -> None:
     """Write bodies and named surfaces as physical groups (.msh), sets (.inp) or tags (.vtu, .xdmf).
 
     Cells of the third order are known to .msh only; elsewhere the second stands for it.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    path : Path
+    told : dict of str to ndarray, optional
+        Numbers or vectors at the points, of a mesh that the format knows as it is.
 
     Raises
     ------
@@ -68,7 +75,7 @@ def write_mesh(mesh: TaggedMesh, path: Path) -> None:
     # one numbering for both dimensions, so that a tag names one thing in every format
     tags = [mesh.cell_tags, mesh.facet_tags + n]
     points = np.pad(mesh.points, ((0, 0), (0, 3 - mesh.points.shape[1])))
-    result = meshio.Mesh(points, cells)
+    result = meshio.Mesh(points, cells, point_data=told)
     if path.suffix == ".inp":
         result.cell_sets = _sets(mesh)
     elif path.suffix == ".msh":

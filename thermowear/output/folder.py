@@ -6,6 +6,7 @@ import json
 import os
 import platform
 import re
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
@@ -15,16 +16,28 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
+from .checkpoint import write_checkpoint
+from .frames import FRAMES, remove_frames, write_frame
+from .lock import Lock
 from .quantities import CYCLES, FRICTION, HEAT, HISTORY, INTERFACE, LOADS, MODES, PROFILE, TRACK
+from .replacing import final_name, replacing
 from .report import is_report
 from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields
 
 _OURS = re.compile(
-    r"summary\.json|run\.json|case\.resolved\.toml|fields\.vtu|(history|heat|loads|cycles|profile|mode)\.csv"
-    r"|(interface|friction|track)(_[-+.0-9e]+)?\.csv"
+    r"summary\.json|checkpoint\.npz|run\.json|case\.resolved\.toml|fields\.vtu"
+    r"|(history|heat|loads|cycles|profile|mode)\.csv"
+    r"|frames|animation\.gif|(interface|friction|track)(_[-+.0-9e]+)?\.csv"
     r"|(interface|profile|wear|history|heat|friction|loads|cycles|track|mode|bodies|deformed)\.png"
 )
+
+_ROWS = {
+    "HistoryRow": ("history.csv", HISTORY),
+    "HeatRow": ("heat.csv", HEAT),
+    "LoadRow": ("loads.csv", LOADS),
+    "CycleRow": ("cycles.csv", CYCLES),
+}
 
 
 class ResultsFolder:
@@ -51,7 +64,7 @@ class ResultsFolder:
         self.path = path
         self._run = {
             "status": "running",
-            "started": datetime.now(UTC).isoformat(timespec="seconds"),
+            "started": now(),
             "ranks": ranks,
             "versions": versions(),
         }
@@ -59,23 +72,32 @@ class ResultsFolder:
         self._made = not os.path.exists(path)  # unlike Path.exists, no error at odd names
         try:
             path.mkdir(parents=True, exist_ok=True)
-            present = [entry for entry in path.iterdir() if is_ours(entry)]
-            if any(path.iterdir()) and not overwrite:
-                raise CaseError(
-                    f"-o {path}: exists and is not empty; use --overwrite or another folder"
-                )
-            if present and not (path / "run.json").is_file():
-                raise CaseError(
-                    f"-o {path}: holds {present[0].name} but no run.json, so it is no results "
-                    "folder; use another"
-                )
-            for entry in present:
-                if entry.name != "run.json":  # replaced at the end: until then the folder is ours
-                    entry.unlink()
-            (path / "case.resolved.toml").write_bytes(tomli_w.dumps(tables).encode())
+            self._lock = Lock(path)
+            self._claim(overwrite)
             self._write_run()
+            self._write("case.resolved.toml", tomli_w.dumps(tables))
         except OSError as error:
             raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
+
+    def _claim(self, overwrite: bool) -> None:
+        """Remove what is there, if that is allowed."""
+        path = self.path
+        present = [entry for entry in path.iterdir() if is_ours(entry)]
+        if any(path.iterdir()) and not overwrite:
+            raise CaseError(
+                f"-o {path}: exists and is not empty; use --overwrite or another folder"
+            )
+        whole = [entry for entry in present if final_name(entry) == entry.name]
+        if whole and not (path / "run.json").is_file():
+            raise CaseError(
+                f"-o {path}: holds {whole[0].name} but no run.json, so it is no results "
+                "folder; use another"
+            )
+        for entry in present:
+            if entry.name == FRAMES:
+                remove_frames(entry)
+            elif entry.name != "run.json":  # replaced at the end: until then the folder is ours
+                entry.unlink()
 
     def step(self, row) -> None:
         """Append a step of a transient run."""
@@ -93,6 +115,16 @@ class ResultsFolder:
         """Append a cycle of a fretting analysis."""
         self._add(row, "cycles.csv", CYCLES)
 
+    def restore(self, rows: Sequence) -> None:
+        """Begin a table with rows that were known before; those that it has are given up."""
+        if rows:
+            name, table = _ROWS[type(rows[0]).__name__]
+            self._rows[name] = RowWriter(self.path / name, table, rows)
+
+    def checkpoint(self, about: dict, arrays: dict) -> None:
+        """Keep a state from which the run can go on."""
+        write_checkpoint(self.path, about, arrays)
+
     def _add(self, row, name: str, table: dict) -> None:
         if name not in self._rows:
             self._rows[name] = RowWriter(self.path / name, table)
@@ -101,6 +133,10 @@ class ResultsFolder:
     def output(self, time: float, interface, friction=None, track=None) -> None:
         """Write the interface at an output time, how it sticks and slips, and a worn track."""
         self._points(time, interface, friction, track)
+
+    def frame(self, frame) -> None:
+        """Keep a `thermowear.simulation.Frame` for an animation."""
+        write_frame(self.path / FRAMES, frame)
 
     def _points(self, time: float | None, interface, friction, track) -> None:
         tables = {"interface": INTERFACE, "friction": FRICTION, "track": TRACK}
@@ -124,10 +160,11 @@ class ResultsFolder:
         """Record how the run ended: ``done``, ``failed`` or ``interrupted``."""
         self._run |= {
             "status": status,
-            "finished": datetime.now(UTC).isoformat(timespec="seconds"),
+            "finished": now(),
             **({"message": message} if message else {}),
         }
         self._write_run()
+        self._lock.release()
 
     def abandon(self) -> None:
         """Take back what was written; for a case that turns out wrong before it is computed."""
@@ -135,20 +172,29 @@ class ResultsFolder:
             (self.path / name).unlink(missing_ok=True)
         if self._made:
             self.path.rmdir()
+        self._lock.release()
 
     def _write_run(self) -> None:
         self._write_json("run.json", self._run)
 
     def _write_json(self, name: str, content: dict) -> None:
-        """Write beside and rename, so that a reader never sees half a file."""
-        draft = self.path / f".{name}.part"
-        draft.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", "utf-8")
-        os.replace(draft, self.path / name)
+        self._write(name, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+
+    def _write(self, name: str, text: str) -> None:
+        with replacing(self.path / name) as draft:
+            draft.write_text(text, "utf-8")
 
 
 def is_ours(path: Path) -> bool:
     """Whether a file is a result of this program; a report is known by what it says in its head."""
-    return bool(_OURS.fullmatch(path.name)) or (path.name == "report.html" and is_report(path))
+    if path.name == "report.html":
+        return is_report(path)
+    return bool(_OURS.fullmatch(final_name(path)))
+
+
+def now() -> str:
+    """The time of day, for `run.json`."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 @cache

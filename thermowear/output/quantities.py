@@ -153,4 +153,6 @@ CYCLES = {
     "max_wear_2": Quantity("max_wear_2_m", "largest wear depth, body 2", "µm", 1e6),
     "contact_area": LOADS["contact_area"],
     "max_pressure": LOADS["max_pressure"],
+    "jump": Quantity("jump", "cycles of the jump", "1"),
+    "error": Quantity("error", "error of the jump", "1"),
 }

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .quantities import Quantity
+from .replacing import replacing
 
 _NUMBER = "{:.15g}"
 
@@ -33,23 +34,34 @@ def write_points(path: Path, table: dict[str, Quantity], points) -> None:
 
 
 class RowWriter:
-    """``history.csv`` or ``loads.csv``, a row a step, on disk as soon as it is known."""
+    """``history.csv`` or ``loads.csv``, a row a step, on disk as soon as it is known.
 
-    def __init__(self, path: Path, table: dict[str, Quantity]):
+    Parameters
+    ----------
+    path : Path
+    table : dict of str to Quantity
+    rows : iterable, optional
+        That it begins with: each a `thermowear.simulation.HistoryRow` or `LoadRow`.
+    """
+
+    def __init__(self, path: Path, table: dict[str, Quantity], rows: Iterable = ()):
         self._path = path
         self._table = table
-        _write(path, table, [])
+        _write(path, table, map(self._values, rows))
 
     def add(self, row) -> None:
-        """Append a `thermowear.simulation.HistoryRow` or `LoadRow`."""
+        """Append a row."""
         with self._path.open("a", encoding="utf-8", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerow(
-                _NUMBER.format(getattr(row, name)) for name in self._table
-            )
+            csv.writer(file, lineterminator="\n").writerow(_texts(self._values(row)))
+
+    def _values(self, row) -> list[float]:
+        return [getattr(row, name) for name in self._table]
 
 
 def read(path: Path, table: dict[str, Quantity]) -> dict[str, np.ndarray]:
     """Columns of a CSV file by the names of its table, in SI.
+
+    A last row that was not written to its end is left out.
 
     Raises
     ------
@@ -57,7 +69,7 @@ def read(path: Path, table: dict[str, Quantity]) -> dict[str, np.ndarray]:
         If the file is not such a table.
     """
     with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.reader(file))
+        rows = list(csv.reader(line for line in file if line.endswith("\n")))
     headers = [quantity.header for quantity in table.values()]
     if not rows or rows[0] != headers:
         raise ValueError(f"{path}: does not begin with the columns {','.join(headers)}")
@@ -66,7 +78,11 @@ def read(path: Path, table: dict[str, Quantity]) -> dict[str, np.ndarray]:
 
 
 def _write(path: Path, table: dict[str, Quantity], rows: Iterable) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
+    with replacing(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(quantity.header for quantity in table.values())
-        writer.writerows([_NUMBER.format(value) for value in row] for row in rows)
+        writer.writerows(map(_texts, rows))
+
+
+def _texts(values: Iterable) -> list[str]:
+    return [_NUMBER.format(value) for value in values]

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .replacing import replacing
+
 _CELLS = {3: "triangle", 4: "quad", 8: "hexahedron"}
 
 
@@ -33,7 +35,8 @@ def write_fields(path: Path, fields) -> None:
     mesh = meshio.Mesh(
         _three(fields.points.reshape(-1, gdim)), [(_CELLS[corners], pieces)], data, {"body": [body]}
     )
-    mesh.write(path)
+    with replacing(path) as draft:
+        mesh.write(draft, file_format="vtu")
 
 
 def _three(vectors: np.ndarray) -> np.ndarray:

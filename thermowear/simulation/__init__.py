@@ -4,6 +4,7 @@ from .observer import Observer
 from .result import (
     BodyFields,
     CycleRow,
+    Frame,
     FrictionInterface,
     HeatRow,
     HistoryRow,
@@ -17,6 +18,7 @@ from .run import run
 __all__ = [
     "BodyFields",
     "CycleRow",
+    "Frame",
     "FrictionInterface",
     "HeatRow",
     "HistoryRow",

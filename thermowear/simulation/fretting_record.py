@@ -6,10 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..case.oscillation import cycles
 from ..contact.slip_wear import Profile
 from ..contact.stick_slip import StickSlipState
 from ..laws.motions import translation
-from .load_path import Leg
+from .checkpoint import can_be_packed
+from .cycle_jump import Instant, Jump
+from .film import Film, Shown
 from .observer import Observer
 from .recording import interface_at
 from .result import CycleRow, FrictionHistory, FrictionInterface, Interface, LoadRow
@@ -19,23 +22,29 @@ from .system import System
 _SLIDES = 1 - 1e-6  # of friction's limit
 
 
+@can_be_packed
 @dataclass(frozen=True)
-class Instant:
-    """The end of an increment.
+class Fretted:
+    """How far a fretting analysis has come: all that it needs to go on.
 
     Attributes
     ----------
-    time : float
-        [s]
-    leg : Leg
-    ends_leg : bool
-    state : StickSlipState
+    last : Instant
+        From which it can go on.
+    per_cycle : ndarray, shape (2, n)
+        Depths that a cycle of it wears off both bodies [m].
+    rows : list of LoadRow
+    cycles : list of CycleRow
     """
 
-    time: float
-    leg: Leg
-    ends_leg: bool
-    state: StickSlipState
+    last: Instant
+    per_cycle: np.ndarray
+    rows: list[LoadRow]
+    cycles: list[CycleRow]
+
+    @property
+    def time(self) -> float:
+        return self.last.time
 
 
 class FrettingRecord:
@@ -66,11 +75,32 @@ class FrettingRecord:
         self._translations = translations
         self._profiles = profiles
         self._observer = observer
+        self._film = Film(system.case, observer)
         self._rows: list[LoadRow] = []
         self._cycles: list[CycleRow] = []
         self._frictions: dict[float, FrictionInterface] = {}
         self._now: list[Instant] = []  # of the cycle that is computed
+        self._turn: Instant | None = None  # where the last jump ended
+        self._begin: tuple[Instant, int] | None = None  # to go on from, and its number of rows
         self._per_cycle = np.zeros((2, len(system.weights)))
+
+    def go_on(self, before: Fretted) -> Instant:
+        """Take up what was kept before."""
+        last = before.last
+        self._turn = None if last.jump is None else last
+        self._now, self.last, self._begin = [last], last.state, (last, len(before.rows))
+        self._rows, self._cycles = before.rows, before.cycles
+        self._per_cycle = before.per_cycle
+        for rows in (self._rows, self._cycles):
+            self._observer.resumed(rows)
+        return last
+
+    def progress(self) -> Fretted | None:
+        """To where it can go on from: not the middle of a leg, or of a jump."""
+        if self._begin is None:
+            return None
+        last, count = self._begin
+        return Fretted(last, self._per_cycle, self._rows[:count], self._cycles)
 
     def keep(self, instant: Instant) -> None:
         """Take up the end of an increment."""
@@ -81,14 +111,28 @@ class FrettingRecord:
         if self._now and self._now[-1].leg.cycle != leg.cycle:
             self._now = self._now[-1:]  # where the cycle begins
         self._now.append(instant)
-        if instant.ends_leg and leg.ends_cycle:
-            self._cycles.append(self._cycle())
+        if instant.behind is not None:
+            self._begin = instant, len(self._rows)
+        if instant.jump is not None:
+            self._cycles.append(self._cycle(instant.jump))
             self._observer.cycle(self._cycles[-1])
-        if instant.ends_leg and leg.is_output:
+        if instant.is_output:
             with self._system.phases("output"):
                 self._frictions[leg.end] = self._friction()
                 self.outputs[leg.end] = self.interface()[2]
                 self._observer.output(leg.end, self.outputs[leg.end], self._frictions[leg.end])
+        self._keep_frame(instant)
+
+    def _keep_frame(self, instant: Instant) -> None:
+        """Show ends of cycles, or of increments where there is but one cycle."""
+        one = (cycles(self._system.case) or 1) == 1
+        if one or instant.jump is not None:
+            number = len(self._rows if one else self._cycles) - 1
+            self._film.take(self._system, number, instant.time, self._shown)
+
+    def _shown(self) -> Shown:
+        contact, bodies, interface = self.interface()
+        return contact, translation(self.last.motion @ self._translations), bodies, interface
 
     def interface(self) -> tuple[ContactState, BodyState, Interface]:
         """Contact, bodies and interface in the last state; wear rates are means of its cycle."""
@@ -162,11 +206,12 @@ class FrettingRecord:
             wear_volume_2=float(volumes[1]),
         )
 
-    def _cycle(self) -> CycleRow:
-        """The cycle that has ended just now."""
+    def _cycle(self, jump: Jump) -> CycleRow:
+        """The cycle that has ended just now, the last of a jump."""
         w, last = self._system.weights, self._now[-1]
-        start, end = (self._depths(instant.state) for instant in (self._now[0], last))
-        self._per_cycle = (end - start) / last.leg.repeats
+        turn = self._turn or self._now[0]
+        start, end = (self._depths(instant.state) for instant in (turn, last))
+        self._per_cycle, self._turn = (end - start) / jump.cycles, last
         pressures = np.array([i.state.pressure for i in self._now]) @ self._system.basis.T
         return CycleRow(
             cycle=last.leg.cycle,
@@ -178,6 +223,8 @@ class FrettingRecord:
             max_wear_2=float(end[1].max()),
             contact_area=float(w[(pressures > 0).any(axis=0)].sum()),
             max_pressure=float(pressures.max()),
+            jump=jump.cycles,
+            error=jump.error,
         )
 
     def _sticking(self, state: StickSlipState) -> np.ndarray:

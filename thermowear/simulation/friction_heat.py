@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -85,6 +87,29 @@ class FrictionHeat:
         largest = float(np.abs(resting.rise).max())
         return FrozenHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(2), largest), resting)
 
+    def at_moment(self, stored: StoredHeat) -> FrozenHeat:
+        """A later moment, of which the temperatures are known; every rank calls."""
+        return FrozenHeat(stored, self.at_rest(stored.rise))
+
+    def take_over(self, former: FrictionHeat, stored: StoredHeat, rise: np.ndarray) -> StoredHeat:
+        """Heat of bodies whose mesh was another one; every rank calls.
+
+        What they have lost with the worn material counts as lost.
+
+        Parameters
+        ----------
+        former : FrictionHeat
+            Of the former mesh.
+        stored : StoredHeat
+            On it.
+        rise : ndarray, shape (n_owned,)
+            The same temperatures on this mesh [K].
+        """
+        content = self._thermal.conduction.stored(rise)
+        same = replace(stored, rise=rise, content=content)
+        taken = former.balance(stored).stored - self.balance(same).stored
+        return replace(same, turnover=stored.turnover + np.array([0.0, taken]))
+
     def stored(
         self,
         before: StoredHeat,
@@ -116,6 +141,13 @@ class FrictionHeat:
         largest = max(before.largest, float(np.abs(faces.rise).max()))
         turnover = before.turnover + step * np.array([made, lost])
         return StoredHeat(rise, content, turnover, largest)
+
+    def memory(self) -> Any:
+        """What its answers depend on beside what it is asked; nothing where heat is linear."""
+        return None
+
+    def recall(self, memory: Any) -> None:
+        """Answer as another one did that had this memory."""
 
     def lasting(self, conditions: Conditions, pressure: np.ndarray) -> Warmth:
         """Temperatures that do not change any more, under a pressure (n,) [Pa]."""

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import TypeVar
 
-from ..errors import ComputationError
+from ..errors import ComputationError, UnwritableError
 from .interrupt import StopRequest
+from .observer import Observer
+from .saving import Record, Saving
 from .system import System
 
 State = TypeVar("State")
 
 
 def go_through(
-    system: System, phase: str, states: Iterable[State], keep: Callable[[State], None]
+    system: System,
+    phase: str,
+    states: Iterable[State],
+    record: Record,
+    observer: Observer,
+    last: State | None = None,
 ) -> tuple[State, BaseException | None]:
-    """Keep one state after the other; those before an error or Ctrl-C are not lost.
+    """Keep and save one state after the other; those before an error or Ctrl-C are not lost.
 
     Parameters
     ----------
@@ -23,9 +30,11 @@ def go_through(
     phase : str
         Name of the phase that it counts for.
     states : iterable
-        At least one.
-    keep : callable
-        Told each state.
+        At least one, unless it goes on from a last one.
+    record : Record
+    observer : Observer
+    last : object, optional
+        State that it goes on from.
 
     Returns
     -------
@@ -38,17 +47,26 @@ def go_through(
     ------
     ComputationError
         If there was no first state.
+    UnwritableError
+        If results cannot be written any more.
     """
-    passed: list[State] = []
+    saving = Saving(system, record, observer)
+    stopped: BaseException | None = None
     with system.phases(phase), StopRequest() as stop:
         try:
             for state in states:
-                keep(state)
-                passed[:] = [state]
+                record.keep(state)
+                last = state
                 if stop.agreed(system.comm):
-                    return state, KeyboardInterrupt()
+                    stopped = KeyboardInterrupt()
+                    break
+                saving.passed(state)
+        except UnwritableError:
+            raise
         except ComputationError as reason:
-            if not passed:
+            if last is None:
                 raise
-            return passed[0], reason
-    return passed[0], None
+            stopped = reason
+        assert last is not None
+        saving.save()
+    return last, stopped

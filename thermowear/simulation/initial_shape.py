@@ -1,4 +1,4 @@
-"""A worn shape to start from: that of an earlier run."""
+"""A worn shape to start from: a design of either face, or that of an earlier run."""
 
 from __future__ import annotations
 
@@ -7,24 +7,28 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
+from ..contact.pairing import Pairing
 from ..errors import CaseError
+from ..geometry.design import CARRIERS, from_table, read_table
 from ..parallel import on_root
 
 _KEY = "geometry.initial_shape"
 _BEYOND = 1e-6  # of the length of the face
 
 
-def initial_depth(comm, path: str, position: np.ndarray) -> np.ndarray:
-    """Depth that a shape lacks of an unworn face, at positions along it. Every rank calls.
+def initial_gap(comm, path: str, pairing: Pairing) -> np.ndarray:
+    """Gap of faces one of which has a worn shape, unloaded. Every rank calls.
 
     Parameters
     ----------
     comm : mpi4py.MPI.Comm
     path : str
-        A ``profile.csv`` (or ``interface.csv``) of an earlier run, or any table with its columns
-        ``s_m`` and ``shape_m``.
-    position : ndarray, shape (n,)
-        Lengths along the face [m].
+        A design of either face, in any format (see `geometry.design`): its depth is added to the
+        gap of the faces as they are drawn. Or a ``profile.csv`` (``interface.csv``)
+        of an earlier run, or any table with its columns ``s_m`` and ``shape_m``: that shape is all
+        of the gap.
+    pairing : Pairing
+        Of the faces as they are drawn.
 
     Returns
     -------
@@ -33,9 +37,23 @@ def initial_depth(comm, path: str, position: np.ndarray) -> np.ndarray:
     Raises
     ------
     CaseError
-        If the file holds no shape, or that of a shorter face.
+        If the file holds no shape, or that of another face.
     """
-    s, shape = on_root(comm, lambda: _read(Path(path)))
+    table = on_root(comm, lambda: _checked(path, lambda: read_table(Path(path))))
+    gdim = pairing.points.shape[1]
+    if table is not None:
+        design = _checked(path, lambda: from_table(table, gdim))
+        side = pairing.sides[design.body - 1]
+        points = side.face.points(side.facet, side.t)
+        return pairing.gap + _checked(path, lambda: design.depth_at(points))
+    if gdim == 3 or Path(path).suffix in CARRIERS:
+        raise CaseError(f"{_KEY}: {path} carries no design (the command shape writes them)")
+    return _gap_along(path, on_root(comm, lambda: _read(path)), pairing.position)
+
+
+def _gap_along(path: str, table: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Gap that a shape given along the face leaves [m]."""
+    s, shape = _curve(path, table)
     beyond = _BEYOND * position[-1]
     if s[0] > position[0] + beyond or s[-1] < position[-1] - beyond:
         raise CaseError(
@@ -46,11 +64,7 @@ def initial_depth(comm, path: str, position: np.ndarray) -> np.ndarray:
     return height.max() - height
 
 
-def _read(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    try:
-        table = np.genfromtxt(path, delimiter=",", names=True)
-    except (OSError, ValueError) as error:
-        raise CaseError(f"{_KEY}: {path} cannot be read: {error}") from None
+def _curve(path: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     names = table.dtype.names or ()
     if not {"s_m", "shape_m"} <= set(names) or table.size < 2:
         raise CaseError(f"{_KEY}: {path} has no columns s_m and shape_m with numbers")
@@ -59,3 +73,20 @@ def _read(path: Path) -> tuple[np.ndarray, np.ndarray]:
     if len(s) < 2 or not (np.isfinite(s).all() and np.isfinite(shape).all()):
         raise CaseError(f"{_KEY}: {path} has entries that are no numbers")
     return s, shape
+
+
+def _read(path: str) -> np.ndarray:
+    try:
+        return np.genfromtxt(path, delimiter=",", names=True)
+    except (OSError, ValueError) as error:
+        reason = " ".join(str(error).split())[:200]
+        raise CaseError(f"{_KEY}: {path} cannot be read: {reason}") from None
+
+
+def _checked(path: str, action):
+    """What an action returns; an error of the file is one of the case."""
+    try:
+        return action()
+    except (OSError, ValueError) as error:
+        reason = f"cannot be read: {error.strerror}" if isinstance(error, OSError) else error
+        raise CaseError(f"{_KEY}: {path} {reason}") from None

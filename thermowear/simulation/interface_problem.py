@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from .conditions import Conditions, Surroundings
 from .contact_method import Contact, ContactMethod, WearRates, newton_with_wear
 from .friction_heat import FrictionHeat
-from .heat_stages import HeatStage
+from .heat_stages import FrozenHeat, HeatStage
 from .heat_states import HeatBalance
 from .self_consistent import Supposed, self_consistent
 from .state import ContactState
@@ -65,16 +66,19 @@ class InterfaceProblem:
         ComputationError
             If the set of touching points, or what depends on the state, does not settle.
         """
-        nothing = self._nothing()
+        return self._lasting(self._nothing(), 0.0)
+
+    def _lasting(self, worn: np.ndarray, time: float) -> WornContact:
+        """Contact of faces with given wear, at the temperatures that its friction leads to."""
         heat = None if self._heat is None else self._heat.steady
 
         def respond(conditions: Conditions) -> WornContact:
-            contact = self._contact(nothing, 0.0, conditions, heat, None)
+            contact = self._contact(worn, 0.0, conditions, heat, None)
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
-            return WornContact(nothing, contact, faces=faces)
+            return WornContact(worn, contact, faces=faces)
 
         start = Supposed(self._guess.pressure, None if heat is None else heat.unheated)
-        return self_consistent(self._surroundings, 0.0, start, respond, _UNWORN)[1]
+        return self_consistent(self._surroundings, time, start, respond, _UNWORN)[1]
 
     def worn(self, depth: np.ndarray, guess: Contact | None = None) -> Contact:
         """Contact of faces from which a depth (n,) is worn, without heat [m]."""
@@ -86,11 +90,45 @@ class InterfaceProblem:
         if not self._transient:
             return self.unworn()
         assert self._heat is not None
-        frozen = self._heat.frozen
-        guess = WornContact(self._nothing(), self._guess)
-        guess = replace(guess, faces=frozen.initial)
-        contact = self._contact(guess.worn, 0.0, self.conditions(guess, 0.0), frozen, None)
-        return replace(guess, contact=contact, stored=frozen.stored)
+        return self._frozen(self._nothing(), self._heat.frozen, 0.0)
+
+    def take_over(
+        self,
+        former: InterfaceProblem,
+        state: WornContact,
+        worn: np.ndarray,
+        rise: np.ndarray | None,
+        time: float,
+    ) -> WornContact:
+        """A state of a problem of the same bodies before their meshes were moved.
+
+        Parameters
+        ----------
+        former : InterfaceProblem
+        state : WornContact
+            Of that problem.
+        worn : ndarray, shape (n_wearing, n)
+            Its depths at the points of this problem [m].
+        rise : ndarray or None, shape (n_owned,)
+            Its temperatures at the nodes of this problem, where they are followed in time [K].
+        time : float
+            [s]
+        """
+        if state.stored is None:
+            found = self._lasting(worn, time)
+        else:
+            assert self._heat is not None
+            assert former._heat is not None
+            assert rise is not None
+            stored = self._heat.take_over(former._heat, state.stored, rise)
+            found = self._frozen(worn, self._heat.at_moment(stored), time)
+        return replace(found, peak=state.largest)
+
+    def _frozen(self, worn: np.ndarray, heat: FrozenHeat, time: float) -> WornContact:
+        """Contact at a moment of which the temperatures are known."""
+        guess = WornContact(worn, self._guess, faces=heat.initial)
+        contact = self._contact(worn, 0.0, self.conditions(guess, time), heat, None)
+        return replace(guess, contact=contact, stored=heat.stored)
 
     def stage(
         self, before: WornContact, step: float, time: float, guess: WornContact
@@ -144,6 +182,15 @@ class InterfaceProblem:
         assert self._heat is not None
         assert state.stored is not None
         return self._heat.balance(state.stored)
+
+    def memory(self) -> Any:
+        """What the next states depend on beside the last one; see `recall`."""
+        return None if self._heat is None else self._heat.memory()
+
+    def recall(self, memory: Any) -> None:
+        """Be as another problem of the same system was when it had this memory."""
+        if self._heat is not None:
+            self._heat.recall(memory)
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end at which loads or speed change their course [s]."""

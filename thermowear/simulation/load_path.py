@@ -8,10 +8,12 @@ from dataclasses import dataclass
 
 from ..case.analyses import Fretting
 from ..case.history import History
+from .checkpoint import can_be_packed
 
 _SAME = 1e-9  # of the history: instants so near to each other are one
 
 
+@can_be_packed
 @dataclass(frozen=True)
 class Leg:
     """A straight line of the loads.
@@ -40,36 +42,73 @@ class Leg:
     ends_cycle: bool
 
 
-def legs(history: History, settings: Fretting) -> Iterator[Leg]:
-    """All legs, one after the other.
+def first_pass(history: History, output_times: tuple[float, ...]) -> Iterator[Leg]:
+    """The legs before the first cycle.
 
-    The first one has no duration: it loads the bodies at the first instant. Time goes on through
-    all cycles. Of those that are jumped the last is computed and stands for them all. The first
-    one, which begins unlike the others, and cycles with output times are always computed.
+    The first one has no duration: it loads the bodies at the first instant.
     """
-    first, last = history.time[0], history.time[-1]
-    begin = last if history.cycle is None else history.cycle[0]
-    outputs = settings.output_times
-    start = first
-    for instant, time, is_output in _corners(history, -math.inf, begin, 0.0, outputs):
+    begin = history.time[-1] if history.cycle is None else history.cycle[0]
+    start = history.time[0]
+    for instant, time, is_output in _corners(history, -math.inf, begin, 0.0, output_times):
         yield Leg(start, time, instant, 0, 1, is_output, False)
         start = time
-    before = 0
-    for cycle in () if history.cycle is None else _computed(settings, begin, last - begin):
-        shift = (cycle - 1) * (last - begin)
-        start = begin + shift
-        for instant, time, is_output in _corners(history, begin, last, shift, outputs):
-            yield Leg(start, time, instant, cycle, cycle - before, is_output, instant == last)
-            start = time
-        before = cycle
 
 
-def _computed(settings: Fretting, begin: float, period: float) -> list[int]:
-    """Numbers of the cycles that are computed."""
-    by_jump = range(settings.jump, settings.cycles, settings.jump)
-    passed = [(time - begin) / period for time in settings.output_times]
-    of_outputs = {math.ceil(cycles - _SAME) for cycles in passed if cycles > _SAME}
-    return sorted({1, *by_jump, *of_outputs, settings.cycles})
+def cycle_legs(
+    history: History, output_times: tuple[float, ...], number: int, repeats: int = 1
+) -> Iterator[Leg]:
+    """The legs of a cycle of a history that has one; time goes on through all cycles.
+
+    Parameters
+    ----------
+    history : History
+    output_times : tuple of float
+        Those that fall into it are hit [s].
+    number : int
+        Of the cycle, from 1 on.
+    repeats : int
+        How many cycles it stands for: the last of them.
+    """
+    assert history.cycle is not None
+    begin, last = history.cycle
+    shift = (number - 1) * (last - begin)
+    start = begin + shift
+    for instant, time, is_output in _corners(history, begin, last, shift, output_times):
+        yield Leg(start, time, instant, number, repeats, is_output, instant == last)
+        start = time
+
+
+def by_fixed_jumps(history: History, settings: Fretting, cycles: int, jump: int) -> list[int]:
+    """Numbers of the cycles that are computed, each for all since the one before.
+
+    Those are the first one, which begins unlike the others, and all with output times.
+    """
+    by_jump = range(jump, cycles, jump)
+    of_outputs = {math.ceil(passed) for passed in _passed(history, settings)}
+    return sorted({1, *by_jump, *of_outputs, cycles})
+
+
+def to_stop_at(history: History, settings: Fretting, cycles: int) -> list[int]:
+    """Numbers of the cycles that no jump may pass.
+
+    A cycle with an output time before its end is computed for itself.
+    """
+    found = {1, cycles}
+    for passed in _passed(history, settings):
+        found |= {math.floor(passed), math.ceil(passed)}
+    return sorted(found - {0})
+
+
+def _passed(history: History, settings: Fretting) -> Iterator[float]:
+    """How many cycles are over at the output times, those after the first pass."""
+    if history.cycle is None:
+        return
+    begin, last = history.cycle
+    for time in settings.output_times:
+        passed = (time - begin) / (last - begin)
+        if passed > _SAME:
+            near = round(passed)
+            yield near if abs(passed - near) <= _SAME else passed
 
 
 def _corners(

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from .result import (
     CycleRow,
+    Frame,
     FrictionInterface,
     HeatRow,
     HistoryRow,
@@ -11,6 +15,9 @@ from .result import (
     LoadRow,
     WornTrack,
 )
+
+if TYPE_CHECKING:
+    from .saving import Saved
 
 
 class Observer:
@@ -42,3 +49,12 @@ class Observer:
         track: WornTrack | None = None,
     ) -> None:
         """An output time was reached."""
+
+    def checkpoint(self, saved: Saved) -> None:
+        """The analysis could go on from here later; what is saved differs from rank to rank."""
+
+    def resumed(self, rows: Sequence[HistoryRow | HeatRow | LoadRow | CycleRow]) -> None:
+        """Rows of one kind that were known before the analysis went on."""
+
+    def frame(self, frame: Frame) -> None:
+        """A state of an animation was reached."""

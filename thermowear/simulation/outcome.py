@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from ..laws.motions import RigidMotion
 from .result import FrictionHistory, HeatRow, HistoryRow, Interface, Modes, TrackHistory
 from .state import BodyState, ContactState
+from .system import System
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,8 @@ class Outcome:
     stopped : BaseException or None
     modes : Modes or None
         Of a stability analysis.
+    system : System or None
+        That it ends with, if its meshes have been moved on the way.
     """
 
     contact: ContactState
@@ -47,3 +50,4 @@ class Outcome:
     heat: list[HeatRow] = field(default_factory=list)
     stopped: BaseException | None = None
     modes: Modes | None = None
+    system: System | None = None

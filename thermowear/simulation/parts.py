@@ -51,6 +51,11 @@ class Inputs:
     elasticity: tuple
     conduction: tuple
 
+    @property
+    def zone(self) -> tuple[float, float] | None:
+        """Range of x that the bodies are meshed for."""
+        return self.mesh[-1]
+
 
 def inputs(case: Case, zone: tuple[float, float] | None = None) -> Inputs:
     """What the parts of a case are made from, meshed for a zone (by default the expected one)."""

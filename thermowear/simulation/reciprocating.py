@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..case.analyses import Reciprocating
+from ..case.oscillation import cycles
 from ..case.schema import Case
 from ..laws.motions import RigidMotion, combined
+from .checkpoint import can_be_packed
 from .drives import reference_point
+from .film import Film
 from .guarded import go_through
 from .observer import Observer
 from .outcome import Outcome
@@ -16,17 +21,43 @@ from .reciprocating_problem import ReciprocatingProblem
 from .recording import interface_at
 from .result import HistoryRow, Interface, TrackHistory, WornTrack
 from .state import BodyState, ContactState, contact_state
+from .step_sizes import AnySize, StepSizes
 from .stroke import positions
 from .system import System
 from .transient import Moment, moments
 
 
-def reciprocating(system: System, observer: Observer) -> Outcome:
-    """Wear averaged over cycles. What was computed before an error or Ctrl-C is kept."""
+@can_be_packed
+@dataclass(frozen=True)
+class Reciprocated:
+    """How far a reciprocating analysis has come: all that it needs to go on.
+
+    Attributes
+    ----------
+    moment : Moment
+    rows : list of HistoryRow
+    """
+
+    moment: Moment
+    rows: list[HistoryRow]
+
+    @property
+    def time(self) -> float:
+        return self.moment.time
+
+
+def reciprocating(
+    system: System, observer: Observer, before: Reciprocated | None = None
+) -> Outcome:
+    """Wear averaged over cycles, from the start or from where it has come to.
+
+    What was computed before an error or Ctrl-C is kept.
+    """
     problem = ReciprocatingProblem(system, positions(system))
     record = _Record(system, problem, observer)
-    run = moments(problem, _in_time(system.case), None)
-    _, stopped = go_through(system, "time stepping", run, record.keep)
+    last = None if before is None else record.go_on(before)
+    run = moments(problem, _in_time(system.case), None, _sizes(system.case), last)
+    _, stopped = go_through(system, "time stepping", run, record, observer, last)
     with system.phases("bodies"):
         contact, motion, state, interface = record.in_the_middle()
     return Outcome(
@@ -43,12 +74,18 @@ def reciprocating(system: System, observer: Observer) -> Outcome:
 
 
 def _in_time(case: Case) -> Reciprocating:
-    """The settings, with an end time instead of a number of cycles."""
-    settings = case.analysis
+    """Settings with an end time where there is a number of cycles."""
+    settings, count = case.analysis, cycles(case)
     assert isinstance(settings, Reciprocating)
-    if settings.cycles is None:
+    if count is None:
         return settings
-    return settings.model_copy(update={"end_time": settings.cycles / _frequency(case)})
+    return settings.model_copy(update={"end_time": count / _frequency(case)})
+
+
+def _sizes(case: Case) -> StepSizes:
+    """Of steps over at most so many cycles as one may stand for."""
+    longest = case.wear.max_jump
+    return AnySize() if longest is None else AnySize(longest / _frequency(case))
 
 
 def _frequency(case: Case) -> float:
@@ -70,6 +107,16 @@ class _Record:
         self._system = system
         self._problem = problem
         self._observer = observer
+        self._film = Film(system.case, observer)
+
+    def go_on(self, before: Reciprocated) -> Moment:
+        """Take up what was kept before."""
+        self.last, self.rows = before.moment, before.rows
+        self._observer.resumed(self.rows)
+        return self.last
+
+    def progress(self) -> Reciprocated:
+        return Reciprocated(self.last, self.rows)
 
     def keep(self, moment: Moment) -> None:
         """Take up a step."""
@@ -82,6 +129,8 @@ class _Record:
                 self.outputs[time] = self.in_the_middle()[3]
                 self.tracks[time] = self.worn_track()
                 self._observer.output(time, self.outputs[time], track=self.tracks[time])
+        number, shown = len(self.rows) - 1, self.in_the_middle
+        self._film.take(self._system, number, moment.time, shown, self.worn_track)
 
     def in_the_middle(self) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
         """Contact, motion of the holder, bodies and interface where body 1 passes the middle."""

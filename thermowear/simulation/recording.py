@@ -94,8 +94,7 @@ def profile(system: System, interface: Interface) -> Profile:
     """The worn shape of an interface, along its normals and along the press."""
     points, normals = system.pairing.points, np.zeros((len(interface.s), 3))
     normals[:, : points.shape[1]] = system.pairing.normals
-    along = system.pairing.normals @ system.press
-    along = np.where(along > _STEEPEST, along, np.nan)
+    along = along_press(system)
     lost = system.pairing.gap + interface.wear_1 + interface.wear_2
     lost = (interface.shape.max() - interface.shape + lost.min()) / along
     rate = interface.wear_rate_1 + interface.wear_rate_2
@@ -112,3 +111,9 @@ def profile(system: System, interface: Interface) -> Profile:
         wear_rate=rate,
         wear_rate_along_press=rate / along,
     )
+
+
+def along_press(system: System) -> np.ndarray:
+    """Cosines between normals and press, shape (n,); NaN where the face is too steep for one."""
+    along = system.pairing.normals @ system.press
+    return np.where(along > _STEEPEST, along, np.nan)

@@ -135,7 +135,8 @@ class LoadRow:
 class CycleRow:
     """A cycle of a history of loads at its end; names and units are those of ``cycles.csv``.
 
-    Area and largest pressure are those of the whole cycle.
+    Area and largest pressure are those of the whole cycle. It ends a jump over so many cycles,
+    whose error is relative to the largest depth worn; NaN where it was not estimated.
     """
 
     cycle: int
@@ -147,6 +148,8 @@ class CycleRow:
     max_wear_2: float
     contact_area: float
     max_pressure: float
+    jump: int
+    error: float
 
 
 @dataclass(frozen=True)
@@ -236,6 +239,33 @@ class BodyFields:
     displacement: np.ndarray
     temperature: np.ndarray | None
     von_mises: np.ndarray
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A state on the way, for an animation.
+
+    Attributes
+    ----------
+    number : int
+        Of the step that ends in it.
+    every : int
+        Earlier frames whose number is no multiple of this are given up.
+    time : float
+        [s]
+    interface : Interface
+    fields : BodyFields or None
+        On rank 0.
+    track : WornTrack or None
+        Of a reciprocating analysis.
+    """
+
+    number: int
+    every: int
+    time: float
+    interface: Interface
+    fields: BodyFields | None
+    track: WornTrack | None = None
 
 
 @dataclass(frozen=True)

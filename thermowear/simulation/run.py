@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +22,8 @@ from .preparation import interface_problem, prepare
 from .reciprocating import reciprocating
 from .recording import interface_at, profile, record
 from .result import BodyFields, Result
-from .running_in import running_in
+from .running_in import RunningIn, running_in
+from .saving import Saved
 from .stability import stability
 from .state import body_state
 from .steady import SteadyState, least_worn, steady_state
@@ -40,7 +42,11 @@ _VELOCITIES = {
 
 
 def run(
-    case: Case, comm=None, observer: Observer | None = None, phases: Phases | None = None
+    case: Case,
+    comm=None,
+    observer: Observer | None = None,
+    phases: Phases | None = None,
+    saved: Saved | None = None,
 ) -> Result:
     """Compute a case. Every rank calls.
 
@@ -52,6 +58,9 @@ def run(
     observer : Observer, optional
     phases : Phases, optional
         Clock that has been running already.
+    saved : Saved, optional
+        What `Observer.checkpoint` was told on this rank by an earlier run, to go on with; the
+        result has the whole history, and the outputs from there on.
 
     Returns
     -------
@@ -70,14 +79,16 @@ def run(
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
     system = prepare(case, comm, phases)
-    outcome = analyse(system, observer)
+    outcome = analyse(system, observer, saved)
     with phases("fields"):
-        fields = sample(system, outcome.state, outcome.motion)
+        fields = sample(outcome.system or system, outcome.state, outcome.motion)
     return conclude(system, outcome, fields)
 
 
-def analyse(system: System, observer: Observer) -> Outcome:
+def analyse(system: System, observer: Observer, saved: Saved | None = None) -> Outcome:
     """The analysis that the case of a system asks for; what is odd about it is said.
+
+    It begins, or goes on with what was saved of an analysis of the same system.
 
     Every rank calls.
     """
@@ -87,8 +98,9 @@ def analyse(system: System, observer: Observer) -> Outcome:
             f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
             "stays out of the contact"
         )
-    outcome = _ANALYSES[system.case.analysis.type](system, observer)
-    if _outgrown(system, outcome.contact.pressure):
+    before = () if saved is None else (saved.of(system),)
+    outcome = _ANALYSES[system.case.analysis.type](system, observer, *before)
+    if _outgrown(outcome.system or system, outcome.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
@@ -98,6 +110,7 @@ def analyse(system: System, observer: Observer) -> Outcome:
 
 def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:
     """What a run returns."""
+    system = outcome.system or system
     return Result(
         outcome.interface,
         profile(system, outcome.interface),
@@ -218,12 +231,18 @@ def _wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, flo
     return found
 
 
-def _transient(system: System, observer: Observer) -> Outcome:
+def _transient(system: System, observer: Observer, before: RunningIn | None = None) -> Outcome:
     """Running-in, with what the steady state that it tends to adds to the summary."""
     settings = system.case.analysis
     assert isinstance(settings, Transient)
-    steady = _principle(system, settings)
-    outcome = running_in(system, _problem(system, observer), steady, observer)
+    steady = None
+
+    def principle(system: System) -> SteadyState | None:
+        nonlocal steady
+        steady = _principle(system, settings)
+        return steady
+
+    outcome = running_in(system, _problem(system, observer), principle, observer, before)
     velocity = _wear_velocity(system, None if steady is None else steady.wear.velocity)
     return replace(outcome, extra=outcome.extra | velocity)
 
@@ -237,7 +256,7 @@ def _stability(system: System, observer: Observer) -> Outcome:
     return stability(system, _unworn(system, cold), observer)
 
 
-_ANALYSES = {
+_ANALYSES: dict[str, Callable[..., Outcome]] = {
     "initial": _initial,
     "steady": _steady,
     "transient": _transient,

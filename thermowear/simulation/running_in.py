@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..case.analyses import Transient
 from ..errors import ComputationError
 from ..laws.motions import RigidMotion, combined
+from .checkpoint import can_be_packed
 from .conditions import Conditions
 from .drives import reference_point
+from .film import Film
 from .guarded import go_through
 from .interface_problem import InterfaceProblem
 from .observer import Observer
 from .outcome import Outcome
+from .outer_loop import OuterLoop, Principle
 from .recording import interface_at
 from .result import HeatRow, HistoryRow, Interface
 from .state import BodyState, ContactState
 from .step_sizes import AnySize, FewSizes
 from .summary import normal_force
 from .system import System
-from .transient import Moment, moments, times_to_hit
+from .transient import Moment, times_to_hit
+from .worn_geometry import WornGeometry
 
 _MELTED = 5000.0  # K; no solid is as hot
 _STEEPER = 3.0  # heating now to heating so far; a load and a speed that grow evenly make 2.5 of it
@@ -31,23 +37,66 @@ _UNSTABLE = (
 )
 
 
-def running_in(system: System, problem: InterfaceProblem, steady, observer: Observer) -> Outcome:
+@can_be_packed
+@dataclass(frozen=True)
+class RunningIn:
+    """How far a running-in has come: all that it needs to go on.
+
+    Attributes
+    ----------
+    moment : Moment
+    memory : object
+        Of the problem.
+    speed : float
+        Mean sliding speed [m/s].
+    rows : list of HistoryRow
+    heat : list of HeatRow
+    worn : WornGeometry or None
+        Where the meshes have been moved to the worn faces.
+    kept : tuple of float
+        The largest wear kept in the gap so far, and how much of it is allowed, see `OuterLoop`.
+    """
+
+    moment: Moment
+    memory: Any
+    speed: float
+    rows: list[HistoryRow]
+    heat: list[HeatRow]
+    worn: WornGeometry | None
+    kept: tuple[float, float]
+
+    @property
+    def time(self) -> float:
+        return self.moment.time
+
+
+def running_in(
+    system: System,
+    problem: InterfaceProblem,
+    principle: Principle,
+    observer: Observer,
+    before: RunningIn | None = None,
+) -> Outcome:
     """Follow contact in time. What was computed before an error or Ctrl-C is kept.
 
     Parameters
     ----------
     system : System
     problem : InterfaceProblem
-    steady : SteadyState or None
-        That it tends to, where there is one.
+    principle : callable
+        The steady state that a system tends to; None where there is none.
     observer : Observer
+    before : RunningIn, optional
+        Go on from there.
     """
     settings = system.case.analysis
     assert isinstance(settings, Transient)
     sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
-    record = _Record(system, problem, observer)
-    passing = record.watched(moments(problem, settings, steady, sizes))
-    last, stopped = go_through(system, "time stepping", passing, record.keep)
+    loop = OuterLoop(system, problem, principle, sizes, observer)
+    record = _Record(loop, observer)
+    begun = None if before is None else record.go_on(before)
+    passing = record.watched(loop.moments(begun))
+    last, stopped = go_through(system, "time stepping", passing, record, observer, begun)
     with system.phases("bodies"):
         contact, motion, state, interface = record.bodies(last)
     return Outcome(
@@ -55,11 +104,12 @@ def running_in(system: System, problem: InterfaceProblem, steady, observer: Obse
         motion=motion,
         state=state,
         interface=interface,
-        extra=record.extra(steady),
+        extra=record.extra(),
         history=record.rows,
         outputs=record.outputs,
         heat=record.heat,
         stopped=stopped,
+        system=loop.system,
     )
 
 
@@ -68,27 +118,51 @@ class _Record:
 
     Parameters
     ----------
-    system : System
-    problem : InterfaceProblem
+    loop : OuterLoop
+        Which knows the system and the problem of the last moment.
     observer : Observer
     """
 
-    def __init__(self, system: System, problem: InterfaceProblem, observer: Observer):
+    def __init__(self, loop: OuterLoop, observer: Observer):
         self.rows: list[HistoryRow] = []
         self.heat: list[HeatRow] = []
         self.outputs: dict[float, Interface] = {}
-        self._system = system
-        self._problem = problem
+        self._loop = loop
         self._observer = observer
+        self._film = Film(loop.system.case, observer)
         self._speed = 0.0
-        self._distance_from_steady = float("nan")
+        self._last: Moment
+
+    def go_on(self, before: RunningIn) -> Moment:
+        """Take up what was kept before."""
+        self._last, self._speed = before.moment, before.speed
+        self.rows, self.heat = before.rows, before.heat
+        if before.worn is not None:
+            self._loop.go_on(before.worn, *before.kept)
+        self._problem.recall(before.memory)
+        for rows in (self.rows, self.heat):
+            self._observer.resumed(rows)
+        return self._last
+
+    def progress(self) -> RunningIn:
+        memory = self._problem.memory()
+        worn, kept = self._system.worn, (self._loop.largest_kept, self._loop.allowed)
+        return RunningIn(self._last, memory, self._speed, self.rows, self.heat, worn, kept)
+
+    @property
+    def _system(self) -> System:
+        return self._loop.system
+
+    @property
+    def _problem(self) -> InterfaceProblem:
+        return self._loop.problem
 
     def keep(self, moment: Moment) -> None:
         """Take up a step."""
         conditions = self._problem.conditions(moment.state, moment.time)
         speed = self._mean(conditions.speed)
         slid = moment.step * (self._speed + speed) / 2  # no step passes a corner of the speed
-        self._speed, self._distance_from_steady = speed, moment.distance
+        self._speed, self._last = speed, moment
         self.rows.append(self._row(moment, slid))
         self._observer.step(self.rows[-1], moment.distance)
         if self._problem.stores_heat:
@@ -98,6 +172,8 @@ class _Record:
             with self._system.phases("output"):
                 self.outputs[moment.time] = self.bodies(moment)[3]
                 self._observer.output(moment.time, self.outputs[moment.time])
+        number = len(self.rows) - 1
+        self._film.take(self._system, number, moment.time, lambda: self.bodies(moment))
 
     def watched(self, passing: Iterator[Moment]) -> Iterator[Moment]:
         """The moments, until the faces are hotter than any solid can be.
@@ -127,12 +203,13 @@ class _Record:
         worn = self._by_body(moment.state.worn)
         return contact, motion, *interface_at(self._system, contact, motion, worn)
 
-    def extra(self, steady) -> dict:
+    def extra(self) -> dict:
         """What the analysis adds to the summary."""
         result = {
             "steps": len(self.rows) - 1,
             "time_s": self.rows[-1].time,
-            "distance_from_steady": None if steady is None else self._distance_from_steady,
+            "distance_from_steady": None if self._loop.steady is None else self._last.distance,
+            **self._loop.summary(),
         }
         if not self.heat:
             return result

@@ -21,10 +21,19 @@ class StepSizes(Protocol):
 
 
 class AnySize:
-    """Steps as large as they may be, but none that leaves a tiny one over."""
+    """Steps as large as they may be, but none that leaves a tiny one over.
+
+    Parameters
+    ----------
+    longest : float, optional
+        Step that there may be [s].
+    """
+
+    def __init__(self, longest: float = math.inf):
+        self._longest = longest
 
     def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
-        left = end - time
+        left, wanted = end - time, min(wanted, self._longest)
         return left if ends(wanted, left) else min(wanted, max(left / 2, 0.1 * wanted))
 
 
@@ -56,6 +65,27 @@ class FewSizes:
         if way == math.inf or round(way / measure).bit_count() <= _FEW:
             return measure
         return way
+
+
+class Limited:
+    """Sizes that others choose, up to a limit that may change from step to step.
+
+    Parameters
+    ----------
+    sizes : StepSizes
+
+    Attributes
+    ----------
+    largest : float
+        [s]
+    """
+
+    def __init__(self, sizes: StepSizes):
+        self.largest = math.inf
+        self._sizes = sizes
+
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        return self._sizes.at_most(min(wanted, self.largest), time, begin, end)
 
 
 def ends(step: float, left: float) -> bool:

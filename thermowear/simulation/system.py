@@ -13,21 +13,27 @@ from ..bulk.elasticity import Elasticity
 from ..bulk.kinematics import Model, section_model
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, influence
-from ..contact.face import gather_face
+from ..contact.face import Face, gather_face
 from ..contact.holder import Holder, hold
 from ..contact.pairing import Pairing, pair
 from ..contact.pressure import pressure_basis
 from ..contact.sliding import Sliding, sliding
 from ..contact.traces import vector_trace
+from ..geometry.tagged import TaggedMesh
 from ..laws import WearLaw
+from ..laws.motions import RigidMotion
 from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
 from ..parallel import on_root, sum_over_ranks
 from .drives import drives
 from .elastic_system import dead_load, elastic_system
-from .initial_shape import initial_depth
+from .initial_shape import initial_gap
 from .parts import Inputs, Parts, inputs
 from .phases import Phases
 from .thermal_system import ThermalSystem, thermal_system
+from .worn_geometry import WornGeometry
+
+_SLIVER = 1e-3
+"""Of a facet: so near to its ends, facets that matched when they were new meet worn ones."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +65,9 @@ class System:
         Those that it shares with the systems of other cases.
     inputs : Inputs
         What they are made from.
+    worn : WornGeometry or None
+        Where the meshes have been moved to the worn faces. The gap of the pairing is even then that
+        of the unworn bodies: that of the moved ones without the depths that they have lost.
     """
 
     case: Case
@@ -76,6 +85,7 @@ class System:
     phases: Phases
     parts: Parts
     inputs: Inputs
+    worn: WornGeometry | None = None
 
     @property
     def comm(self):
@@ -138,10 +148,19 @@ class System:
 
     def worn_volumes(self, worn: np.ndarray) -> np.ndarray:
         """Volumes lost by the bodies, all of their tracks, from depths (2, n), shape (2,) [m³]."""
-        volumes = worn @ self.weights
+        volumes = (worn - self.moved) @ self.weights
+        if self.worn is not None:
+            volumes = volumes + self.worn.lost
         for index, spread in self.spreads.items():
             volumes[index] /= coverage(spread)
         return volumes
+
+    @cached_property
+    def moved(self) -> np.ndarray:
+        """Depths off both bodies that the meshes have lost at the points, shape (2, n) [m]."""
+        if self.worn is None:
+            return np.zeros((2, len(self.weights)))
+        return self.worn.carried(self.worn.depth, self.pairing)
 
     @cached_property
     def contact(self) -> CondensedContact:
@@ -186,6 +205,7 @@ def build(
     phases: Phases,
     zone: tuple[float, float] | None = None,
     parts: Parts | None = None,
+    worn: WornGeometry | None = None,
 ) -> System:
     """Mesh, pair and assemble a case. Every rank calls.
 
@@ -198,6 +218,8 @@ def build(
         Range of x to mesh for, by default where the case expects contact [m].
     parts : Parts, optional
         Of systems built before on the same ranks; what this one can share is not made again.
+    worn : WornGeometry, optional
+        Where the nodes of the mesh are now; none of the parts may be of other places.
 
     Raises
     ------
@@ -208,10 +230,10 @@ def build(
     geometry = case.geometry
     model = section_model(case.model, geometry.thickness_factor, geometry.sector)
     with phases("mesh"):
-        bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(case, comm, zone))
+        bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(case, comm, zone, worn))
     with phases("pair"):
         pairing, basis = parts.get(
-            "points", made_from.mesh, lambda: _paired(case, comm, model, bodies)
+            "points", made_from.mesh, lambda: _paired(case, comm, model, bodies, worn)
         )
     with phases("assemble elasticity"):
         elastic, trace = parts.get(
@@ -243,16 +265,30 @@ def build(
         phases=phases,
         parts=parts,
         inputs=made_from,
+        worn=worn,
     )
 
 
-def _meshed(case: Case, comm, zone: tuple[float, float] | None) -> Bodies:
-    return distribute(on_root(comm, lambda: case.tagged_mesh(zone)), comm)
+def _meshed(
+    case: Case, comm, zone: tuple[float, float] | None, worn: WornGeometry | None
+) -> Bodies:
+    def mesh() -> TaggedMesh:
+        unworn = case.tagged_mesh(zone)
+        return unworn if worn is None else replace(unworn, points=worn.points)
+
+    return distribute(on_root(comm, mesh), comm)
 
 
-def _paired(case: Case, comm, model: Model, bodies: Bodies) -> tuple[Pairing, np.ndarray]:
+def _paired(
+    case: Case, comm, model: Model, bodies: Bodies, worn: WornGeometry | None
+) -> tuple[Pairing, np.ndarray]:
     faces = [gather_face(bodies, surface) for surface in case.geometry.contact]
-    return contact_points(case, comm, model, *faces)
+    if worn is None:
+        return contact_points(case, comm, model, *faces)
+    upper, lower = faces
+    assert isinstance(upper, Face)
+    assert isinstance(lower, Face)
+    return worn_contact_points(case, model, worn, upper, lower)
 
 
 def _exchanging(thermal: ThermalSystem, case: Case) -> ThermalSystem:
@@ -273,14 +309,40 @@ def _sliding(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
 
 def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pairing, np.ndarray]:
     """Contact points, with the shape that body 1 starts from, and pressure space Ψ."""
+    pairing, basis = _points(case, model, face_1, face_2)
+    if case.geometry.initial_shape is not None:
+        gap = initial_gap(comm, case.geometry.initial_shape, pairing)
+        pairing = replace(pairing, gap=gap)
+    return pairing, basis
+
+
+def worn_contact_points(
+    case: Case, model: Model, worn: WornGeometry, face_1: Face, face_2: Face
+) -> tuple[Pairing, np.ndarray]:
+    """The same of worn faces, paired where body 1 has got to; the gap is that of unworn faces."""
+    moved, turned = worn.holder
+    motion = RigidMotion(moved, turned, np.zeros(3))
+    closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
+    pairing, basis = _points(case, model, closer, face_2, _SLIVER)
+    first, second = pairing.sides
+    points = face_1.points(first.facet, first.t)
+    apart = np.einsum("ni,ni->n", pairing.normals, motion.at(points))
+    unworn = worn.carried(worn.lacking - worn.depth.sum(axis=0), pairing)
+    return replace(
+        pairing,
+        points=points,
+        gap=pairing.gap + apart + unworn,
+        sides=(replace(first, face=face_1), second),
+    ), basis
+
+
+def _points(
+    case: Case, model: Model, face_1, face_2, sliver: float = 1e-9
+) -> tuple[Pairing, np.ndarray]:
+    """Contact points of two faces, and pressure space Ψ."""
     degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree
     if pressure_degree == "lobatto":  # point by point, at the nodes of body 1's facets
         pairing = pair(face_1, face_2, model, degree + 1, refine=False)
-        basis = np.eye(len(pairing.weights))
-    else:
-        pairing = pair(face_1, face_2, model, degree + 2)
-        basis = pressure_basis(pairing, pressure_degree or max(degree - 1, 1))
-    if case.geometry.initial_shape is not None:
-        depth = initial_depth(comm, case.geometry.initial_shape, pairing.position)
-        pairing = replace(pairing, gap=pairing.gap + depth)
-    return pairing, basis
+        return pairing, np.eye(len(pairing.weights))
+    pairing = pair(face_1, face_2, model, degree + 2, sliver=sliver)
+    return pairing, pressure_basis(pairing, pressure_degree or max(degree - 1, 1))

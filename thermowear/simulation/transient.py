@@ -10,15 +10,17 @@ import numpy as np
 
 from ..case.analyses import Timed
 from ..errors import ComputationError
+from .checkpoint import can_be_packed
 from .step_sizes import AnySize, StepSizes, ends
 from .wear_step import WearProblem, WornContact, advance_with_error, next_step
 
 _SMALLEST = 1e-12  # of the time that has passed
 
 
+@can_be_packed
 @dataclass(frozen=True)
 class Moment:
-    """A state of the running-in.
+    """A state of the running-in, and all that its time loop needs to go on from it.
 
     Attributes
     ----------
@@ -31,6 +33,12 @@ class Moment:
         Whether this is one of the output times.
     distance : float
         From the steady state, see `WearProblem`; NaN without one.
+    number : int
+        Of the step.
+    begin : float
+        Last time that was hit exactly [s].
+    wanted : float
+        Size of the next step, as far as its error allows [s].
     """
 
     time: float
@@ -39,10 +47,17 @@ class Moment:
     error: float
     is_output: bool
     distance: float
+    number: int
+    begin: float
+    wanted: float
 
 
 def moments(
-    problem: WearProblem, settings: Timed, steady, sizes: StepSizes | None = None
+    problem: WearProblem,
+    settings: Timed,
+    steady,
+    sizes: StepSizes | None = None,
+    last: Moment | None = None,
 ) -> Iterator[Moment]:
     """The moments of a running-in, from the unworn contact on.
 
@@ -54,6 +69,8 @@ def moments(
         The steady state that the problem tends to, as it takes it; None without one.
     sizes : StepSizes, optional
         Any by default.
+    last : Moment, optional
+        Go on from this one; it is not passed again.
 
     Raises
     ------
@@ -61,28 +78,57 @@ def moments(
         If the step has become too small or the steps too many. What was yielded stays valid.
     """
     sizes = sizes or AnySize()
-    state = problem.start()
     steady = None if steady is None else problem.steady(steady)
-    distance = problem.distance(state, steady)
-    time, begin, wanted = 0.0, 0.0, problem.first_step(state)
-    targets = times_to_hit(settings, problem)
-    yield Moment(0.0, 0.0, state, 0.0, False, distance)
-    for _ in range(settings.max_steps):
-        if not targets or _is_steady(settings, distance):
-            return
-        way = partial(sizes.at_most, time=time, begin=begin, end=targets[0])
-        state, step, error, following = _accept(problem, state, way, wanted, time, settings)
-        hits = ends(step, targets[0] - time)
-        time = targets[0] if hits else time + step
-        distance = problem.distance(state, steady)
-        wanted = max(following, wanted) if hits else following
-        begin, reached = (time, targets.pop(0)) if hits else (begin, None)
-        yield Moment(time, step, state, error, reached in settings.output_times, distance)
-    if targets and not _is_steady(settings, distance):
-        raise ComputationError(
-            f"{settings.type}: {settings.max_steps} steps were not enough (analysis.max_steps), "
-            f"the run stands at {time:g} s"
-        )
+    if last is None:
+        last = _first(problem, steady)
+        yield last
+    targets = [time for time in times_to_hit(settings, problem) if time > last.time]
+    while not is_over(settings, problem, last):
+        if last.number == settings.max_steps:
+            raise ComputationError(
+                f"{settings.type}: {settings.max_steps} steps were not enough "
+                f"(analysis.max_steps), the run stands at {last.time:g} s"
+            )
+        last = _next(problem, settings, steady, sizes, targets[0], last)
+        if last.time == targets[0]:
+            targets.pop(0)
+        yield last
+
+
+def is_over(settings: Timed, problem: WearProblem, last: Moment) -> bool:
+    """Whether a running-in ends with this moment."""
+    end = times_to_hit(settings, problem)[-1]
+    return last.time >= end or _is_steady(settings, last.distance)
+
+
+def _first(problem: WearProblem, steady: np.ndarray | None) -> Moment:
+    """The unworn contact."""
+    state = problem.start()
+    distance, wanted = problem.distance(state, steady), problem.first_step(state)
+    return Moment(0.0, 0.0, state, 0.0, False, distance, 0, 0.0, wanted)
+
+
+def _next(
+    problem: WearProblem, settings: Timed, steady, sizes: StepSizes, target: float, last: Moment
+) -> Moment:
+    """The end of a step towards a time that must be hit [s]."""
+    way = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
+    state, step, error, following = _accept(
+        problem, last.state, way, last.wanted, last.time, settings
+    )
+    hits = ends(step, target - last.time)
+    time = target if hits else last.time + step
+    return Moment(
+        time=time,
+        step=step,
+        state=state,
+        error=error,
+        is_output=hits and target in settings.output_times,
+        distance=problem.distance(state, steady),
+        number=last.number + 1,
+        begin=target if hits else last.begin,
+        wanted=max(following, last.wanted) if hits else following,
+    )
 
 
 def _accept(problem, state, way, wanted, time, settings):

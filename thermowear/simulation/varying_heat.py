@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +27,7 @@ from ..contact.heat import (
 )
 from ..errors import ComputationError
 from ..parallel import sum_over_ranks
+from .checkpoint import can_be_packed
 from .conditions import Conditions
 from .friction_heat import FrictionHeat
 from .heat_stages import ConductedHeat, Coupling, HeatOperators
@@ -49,6 +51,23 @@ def friction_heat(system: System) -> FrictionHeat | None:
     return (VaryingFrictionHeat if thermal.varies else FrictionHeat)(system, thermal)
 
 
+@can_be_packed
+@dataclass(frozen=True)
+class LastTangents:
+    """Where the operators that are at hand were made: Newton's method goes its way by them.
+
+    Attributes
+    ----------
+    steps : dict of float to (ndarray or None)
+        Rise (n_owned,) by size of step, the one that was used last at the end [K].
+    steady : tuple or None
+        Likewise of the steady state, its last temperatures, and by how much they changed.
+    """
+
+    steps: dict[float, np.ndarray | None]
+    steady: tuple[np.ndarray | None, np.ndarray, float] | None
+
+
 class VaryingFrictionHeat(FrictionHeat):
     """Friction heat of bodies whose properties change; parameters as in `FrictionHeat`."""
 
@@ -57,10 +76,13 @@ class VaryingFrictionHeat(FrictionHeat):
         assert isinstance(thermal.conduction, VaryingConduction)
         self._conduction = thermal.conduction
         self._tangents: OrderedDict[float, Tangents] = OrderedDict()
+        self._lasting: VaryingHeat | None = None
 
-    @cached_property
+    @property
     def steady(self) -> VaryingHeat:
-        return VaryingHeat(self, Tangents(self, None), None, self._conduction.given)
+        if self._lasting is None:
+            self._lasting = VaryingHeat(self, Tangents(self, None), None, self._conduction.given)
+        return self._lasting
 
     def after(self, before: StoredHeat, step: float) -> VaryingHeat:
         if step not in self._tangents:
@@ -69,6 +91,18 @@ class VaryingFrictionHeat(FrictionHeat):
                 self._tangents.popitem(last=False)
         self._tangents.move_to_end(step)
         return VaryingHeat(self, self._tangents[step], before.content / step, before.rise)
+
+    def memory(self) -> LastTangents:
+        steps = {step: tangents.reference for step, tangents in self._tangents.items()}
+        return LastTangents(steps, None if self._lasting is None else self._lasting.memory())
+
+    def recall(self, memory: LastTangents) -> None:
+        for step, reference in memory.steps.items():
+            self._tangents[step] = Tangents(self, step, reference)
+        if memory.steady is not None:
+            reference, rise, change = memory.steady
+            tangents = Tangents(self, None, reference)
+            self._lasting = VaryingHeat(self, tangents, None, rise, change)
 
     def at_rest(self, rise: np.ndarray) -> Resting:
         faces = at_rest(rise, self._thermal.face.traces, self._system.comm).rise
@@ -164,20 +198,32 @@ class Tangents:
     heat : VaryingFrictionHeat
     step : float or None
         [s]
+    reference : ndarray, optional, shape (n_owned,)
+        Rise that the first ones are made for [K].
+
+    Attributes
+    ----------
+    reference : ndarray or None
+        That of the last ones.
     """
 
-    def __init__(self, heat: VaryingFrictionHeat, step: float | None):
+    reference: np.ndarray | None
+
+    def __init__(
+        self, heat: VaryingFrictionHeat, step: float | None, reference: np.ndarray | None = None
+    ):
+        self.reference = reference
         self._heat = heat
         self._step = step
         self._last: TangentOperators | None = None
 
     def near(self, rise: np.ndarray) -> TangentOperators:
         """Those at hand; made for a rise (n_owned,) where there are none."""
-        return self._last or self.at(rise)
+        return self._last or self.at(rise if self.reference is None else self.reference)
 
     def at(self, rise: np.ndarray) -> TangentOperators:
         """New ones for a rise."""
-        self._last = self._heat.tangent(rise, self._step)
+        self.reference, self._last = rise, self._heat.tangent(rise, self._step)
         return self._last
 
 
@@ -192,6 +238,8 @@ class VaryingHeat:
         Nodal heat that the bodies have stored before, per time [W]; None in a steady state.
     rise : ndarray, shape (n_owned,)
         To start from [K].
+    change : float, optional
+        By how much it has changed, see `VaryingFrictionHeat.far`.
     """
 
     def __init__(
@@ -200,13 +248,18 @@ class VaryingHeat:
         tangents: Tangents,
         stored: np.ndarray | None,
         rise: np.ndarray,
+        change: float = np.inf,
     ):
         self._heat = heat
         self._tangents = tangents
         self._stored = stored
         self._rise = rise
-        self._last = np.inf
+        self._last = change
         self._linear = heat.about(tangents.near(rise), stored, rise)
+
+    def memory(self) -> tuple[np.ndarray | None, np.ndarray, float]:
+        """Where its tangents were made, its temperatures, and their last change."""
+        return self._tangents.reference, self._rise, self._last
 
     @property
     def unheated(self) -> ThermalState:

@@ -3,8 +3,11 @@
 from . import (
     annular_punch,
     beam_shakedown,
+    block_on_ring,
     braking_stop,
+    deep_wear,
     flat_punch,
+    fretting_cylinder,
     fretting_wear,
     fuel_fretting,
     growing_cylinder,
@@ -16,7 +19,9 @@ from . import (
     mindlin,
     minimality,
     moving_band,
+    optimal_shape,
     patch,
+    pin_on_disc,
     pressure_conductance,
     reciprocating,
     running_in,
@@ -41,8 +46,12 @@ CASES: dict[str, Checks] = special_cases.CHECKS | {
         mindlin,
         growing_cylinder,
         growing_sphere,
+        block_on_ring,
+        pin_on_disc,
+        deep_wear,
         beam_shakedown,
         fretting_wear,
+        fretting_cylinder,
         fuel_fretting,
         reciprocating,
         moving_band,
@@ -54,6 +63,7 @@ CASES: dict[str, Checks] = special_cases.CHECKS | {
         braking_stop,
         sliding_rod,
         half_plane_instability,
+        optimal_shape,
     )
 }
 """Verification cases by id; each yields its checks."""

@@ -14,16 +14,12 @@ from matplotlib.figure import Figure
 
 from .. import tables
 from ..quantities import INTERFACE
-from .solids import color_limits, draw_solids
+from .solids import draw_solids
+from .windows import FLAT, Extent, around_contact, color_limits, is_small, whole, within
 
 _DEFORMED_PART = 0.06  # of the bodies' size: how far the largest displacement is drawn
 _PIXELS = 1400  # of the longer side of a rendered picture
 _BEHIND = 1e-3  # of the bodies' size: how far body 1 is set back
-_SMALL = 0.15  # of the bodies' size: contacts smaller than that get panels of their own
-_FLAT = 0.55  # height over width: windows lower than that have their scale of colours below
-_AROUND = 3.0  # sizes of the contact that such a panel shows
-
-Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]
 
 
 def draw_bodies(folder: Path) -> None:
@@ -39,7 +35,8 @@ def draw_bodies(folder: Path) -> None:
     if in_space:
         draw_solids(folder / "bodies.png", grid, fields, "", _middle(folder))
     else:
-        _draw(folder / "bodies.png", grid, fields, "", _contact(folder))
+        table = tables.read(folder / "interface.csv", INTERFACE)
+        _draw(folder / "bodies.png", grid, fields, "", around_contact([table]))
     largest = float(np.linalg.norm(grid["displacement_m"], axis=1).max()) * 1e3
     size = float(np.ptp(grid.points, axis=0).max())
     factor = _round(_DEFORMED_PART * size / largest) if largest > 0 else 1.0
@@ -57,33 +54,19 @@ def _middle(folder: Path) -> float:
     return float((y.min() + y.max()) / 2)
 
 
-def _contact(folder: Path) -> Extent | None:
-    """What lies around the contact, where there is one."""
-    table = tables.read(folder / "interface.csv", INTERFACE)
-    pressed = table["pressure"] > 0
-    if not pressed.any():
-        return None
-    ends = [(v[pressed].min() * 1e3, v[pressed].max() * 1e3) for v in (table["x"], table["y"])]
-    reach = _AROUND / 2 * max(high - low for low, high in ends)
-    x, y = (sum(pair) / 2 for pair in ends)
-    return x - reach, x + reach, y - reach, y + reach
-
-
 def _draw(path: Path, grid, fields: list[tuple[str, str]], note: str, contact=None) -> None:
     """One panel a field, side by side, and another for the surroundings of a small contact.
 
     That one is beside the panel of a single field, else below.
     """
-    x0, x1, y0, y1 = np.array(grid.bounds)[:4]
-    margin = 0.02 * max(x1 - x0, y1 - y0)
-    windows: list[Extent] = [(x0 - margin, x1 + margin, y0 - margin, y1 + margin)]
-    if contact is not None and (contact[1] - contact[0]) < _AROUND * _SMALL * (x1 - x0):
-        windows.append((max(contact[0], x0), min(contact[1], x1), *contact[2:]))
+    windows = [whole(grid.points)]
+    if contact is not None and is_small(contact, grid.points):
+        windows.append(within(contact, grid.points))
     shapes = [(upper - lower) / (right - left) for left, right, lower, upper in windows]
     beside = len(fields) == 1
     rows, columns = (1, len(windows)) if beside else (len(windows), len(fields))
     tall = max(shapes) if beside else sum(shapes)
-    flat_rows = sum(shape < _FLAT for shape in shapes)
+    flat_rows = sum(shape < FLAT for shape in shapes)
     size = (
         5.2 * columns,
         min(3.45 * tall, 6.0 * rows) + 0.7 * (rows + flat_rows) + (0.3 if note else 0.0),
@@ -110,7 +93,7 @@ def _panel(figure, axis, grid, name: str, colors: str, extent: Extent) -> None:
     axis.set_xlim(extent[:2])
     axis.set_ylim(extent[2:])
     over = np.nanmax(grid[name][inside]) > limits[1] * (1 + 1e-9)
-    flat = extent[3] - extent[2] < _FLAT * (extent[1] - extent[0])
+    flat = extent[3] - extent[2] < FLAT * (extent[1] - extent[0])
     figure.colorbar(
         scale,
         ax=axis,

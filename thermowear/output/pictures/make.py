@@ -8,7 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from ...errors import CaseError
+from ...errors import CaseError, ComputationError
+from .animation import FPS, check_film, has_frames
 from .curves import draw_history, draw_interface, draw_wear
 from .friction import draw_cycles, draw_friction, draw_loads
 from .heat import draw_heat
@@ -18,10 +19,11 @@ from .profile import draw_profile
 from .track import draw_track
 
 _TIMEOUT = 180.0  # seconds for the rendering process
+_LONG = 1800.0  # for that of an animation
 
 
 def make_pictures(folder: Path) -> list[str]:
-    """Draw the curves here and the bodies in a process of their own.
+    """Draw the curves here, the bodies and their animation in processes of their own.
 
     Rendering needs graphics libraries that can take a process down with them; whatever happens
     there, the curves are drawn and the caller goes on.
@@ -54,13 +56,45 @@ def make_pictures(folder: Path) -> list[str]:
     draw_modes(folder)
     if not (folder / "fields.vtu").is_file():
         return [f"{folder}: no fields.vtu, so no pictures of the bodies"]
-    reason = _render(folder)
-    return [f"the bodies could not be drawn: {reason}"] if reason else []
+    reasons = {"the bodies": _render("bodies", str(folder))}
+    if has_frames(folder):
+        reasons["the animation"] = _animate(folder, folder / "animation.gif", FPS)
+    return [f"{what} could not be drawn: {why}" for what, why in reasons.items() if why]
 
 
-def _render(folder: Path) -> str:
-    """Render the bodies; the reason why not, empty on success."""
-    command = [sys.executable, "-m", f"{__package__}.bodies", str(folder)]
+def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
+    """Draw the states on the way of a run with ``analysis.frames``.
+
+    Parameters
+    ----------
+    folder : Path
+        Of results.
+    path : Path
+        Ends in ``.gif`` or ``.mp4``.
+    fps : float
+        Frames a second.
+
+    Raises
+    ------
+    CaseError
+        If there are no frames, or if an MP4 is wanted without ffmpeg.
+    ComputationError
+        If it cannot be drawn.
+    """
+    check_film(folder, path)
+    reason = _animate(folder, path, fps)
+    if reason:
+        raise ComputationError(f"{path}: could not be drawn: {reason}")
+
+
+def _animate(folder: Path, path: Path, fps: float) -> str:
+    """Draw an animation; the reason why not, empty on success."""
+    return _render("animation.make", str(folder), str(path), str(fps), timeout=_LONG)
+
+
+def _render(module: str, *arguments: str, timeout: float = _TIMEOUT) -> str:
+    """Draw with a module that renders; the reason why not, empty on success."""
+    command = [sys.executable, "-m", f"{__package__}.{module}", *arguments]
     package_root = str(Path(__file__).parents[3])
     path = os.pathsep.join(filter(None, [package_root, os.environ.get("PYTHONPATH")]))
     environment = os.environ | {"PYTHONPATH": path, "PYVISTA_OFF_SCREEN": "true"}
@@ -74,7 +108,7 @@ def _render(folder: Path) -> str:
                 env=environment,
                 capture_output=True,
                 text=True,
-                timeout=_TIMEOUT,
+                timeout=timeout,
                 check=False,
             )
         except (OSError, subprocess.TimeoutExpired) as error:

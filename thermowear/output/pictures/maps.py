@@ -14,7 +14,7 @@ from .. import tables
 from ..quantities import HISTORY, INTERFACE, Quantity
 from .curves import STYLE
 
-_COLORS = {"pressure": "viridis", "temperature": "inferno", "shape": "cividis", "wear": "magma_r"}
+COLORS = {"pressure": "viridis", "temperature": "inferno", "shape": "cividis", "wear": "magma_r"}
 _LONGER = 4.6  # inches of the face's longer side
 _LINES = 8
 _FLAT = 1e-12  # m
@@ -63,7 +63,7 @@ def _draw(path: Path, data: dict[str, np.ndarray], names: list[str], title: str 
         figure = Figure(figsize=size, layout=layout, dpi=150)
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for axis, name in zip(axes, names, strict=False):
-            drawn, colors = INTERFACE[name].drawn(data[name]), _COLORS[name.split("_")[0]]
+            drawn, colors = INTERFACE[name].drawn(data[name]), COLORS[name.split("_")[0]]
             _map(figure, axis, triangles, INTERFACE[name], drawn, colors)
         for axis in axes[len(names) :]:
             axis.set_visible(False)

@@ -8,7 +8,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-_PIXELS = (1400, 1100)
+from .windows import color_limits
+
+PIXELS = (1400, 1100)
 _FROM = (0.55, -1.0, 0.6)  # where the camera is, as seen from the bodies
 _APART = 1e-6  # of the bodies' size
 _BEHIND = 1e-3
@@ -30,15 +32,15 @@ def draw_solids(path, grid, fields: list[tuple[str, str]], note: str, y: float) 
     y : float
         What lies before it is cut off [mm].
     """
-    cut = _cut(grid, y)
-    values = {name: np.concatenate([part[name] for part in cut]) for name, _ in fields}
-    height = 5.2 * _PIXELS[1] / _PIXELS[0] + 0.5
+    parts = cut(grid, y)
+    values = {name: np.concatenate([part[name] for part in parts]) for name, _ in fields}
+    height = 5.2 * PIXELS[1] / PIXELS[0] + 0.5
     figure = Figure(figsize=(6.2 * len(fields), height), layout="constrained", dpi=150)
     for axis, (name, colors) in zip(
         figure.subplots(1, len(fields), squeeze=False)[0], fields, strict=True
     ):
         limits = color_limits(values[name])
-        axis.imshow(_render(cut, name, colors, limits), interpolation="antialiased")
+        axis.imshow(render(parts, name, colors, limits), interpolation="antialiased")
         scale = ScalarMappable(Normalize(*limits), colors)
         over = np.nanmax(values[name]) > limits[1] * (1 + 1e-9)
         figure.colorbar(scale, ax=axis, label=name, shrink=0.8, extend="max" if over else "neither")
@@ -47,13 +49,7 @@ def draw_solids(path, grid, fields: list[tuple[str, str]], note: str, y: float) 
     figure.savefig(path, bbox_inches="tight")
 
 
-def color_limits(values: np.ndarray) -> tuple[float, float]:
-    """Colour range without the few samples beside singular edges."""
-    low, high = float(values.min()), float(np.percentile(values, 99.5))
-    return (low, high) if high > low else (low - 0.5, low + 0.5)
-
-
-def _cut(grid, y: float) -> list:
+def cut(grid, y: float) -> list:
     """Surfaces of what lies behind a plane across y, of body 2 and of body 1.
 
     Body 1 is set a little further back: what has been worn off it does not show.
@@ -70,9 +66,9 @@ def _cut(grid, y: float) -> list:
     return surfaces
 
 
-def _render(surfaces: list, name: str, colors: str, limits) -> np.ndarray:
+def render(surfaces: list, name: str, colors: str, limits) -> np.ndarray:
     """Picture of surfaces and their edges."""
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(_PIXELS))
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
     plotter.set_background("white")  # type: ignore[arg-type]
     for surface in surfaces:
         plotter.add_mesh(

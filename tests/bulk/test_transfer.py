@@ -1,0 +1,47 @@
+"""Carrying a field over to a mesh whose nodes have moved."""
+
+from dataclasses import replace
+
+from mpi4py import MPI
+
+import numpy as np
+
+from thermowear.bulk.bodies import distribute
+from thermowear.bulk.field import lagrange_space
+from thermowear.bulk.transfer import transferred
+from thermowear.verification.starter import starter
+
+
+def _carried(amount):
+    """A smooth field after the nodes of the punch have gone up, those of its face the most."""
+    case = starter("annular-punch", "mesh.elements=8")
+    mesh = case.tagged_mesh()
+    points = mesh.points.copy()
+    punch = np.unique(mesh.cells[mesh.cell_tags == 1])
+    points[punch, 1] += amount * (1 - mesh.points[punch, 1] / 0.05)
+    old, new = (distribute(m, MPI.COMM_WORLD) for m in (mesh, replace(mesh, points=points)))
+    spaces = [lagrange_space(bodies.mesh, 6) for bodies in (old, new)]
+
+    def field(space):
+        r, z, _ = space.tabulate_dof_coordinates().T
+        # a jump between the bodies, for they meet
+        bodies = old if space is spaces[0] else new
+        above = np.zeros(len(r), dtype=bool)
+        above[np.unique(space.dofmap.list[bodies.cell_tags.find(1)])] = True
+        return np.sin(40 * r) * np.exp(20 * z) + 5.0 * above
+
+    found, error = transferred(field(spaces[0]), *spaces, old, new, [("punch",), ("plate",)])
+    return found, field(spaces[1]), error
+
+
+def test_the_field_stays_where_it_is_in_space():
+    """requirement: B12, temperatures do not travel with the nodes, nor from body to body."""
+    for amount in (1e-3, 2e-2):
+        found, expected, error = _carried(amount)
+        assert np.abs(found - expected).max() < 1e-4
+        assert 0.0 < error < 1e-4
+
+
+def test_nodes_that_stay_keep_their_values():
+    found, expected, _ = _carried(0.0)
+    assert np.array_equal(found, expected)

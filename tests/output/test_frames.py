@@ -1,0 +1,87 @@
+"""States on the way in a results folder: always whole, and never more than asked for."""
+
+import meshio
+import numpy as np
+import pytest
+
+from thermowear.cli import main
+from thermowear.output.frames import FRAMES, frame_files, remove_frames
+from thermowear.output.quantities import HISTORY, INTERFACE
+from thermowear.output.tables import read
+
+from ..conftest import COLD_RUNNING_IN
+
+SMALL = [
+    "--no-pictures",
+    "--set=mesh.degree=2",
+    "--set=mesh.elements=4",
+    "--set=analysis.end_time=5 s",
+    "--set=analysis.output_times=[]",
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A short running-in with at most eight frames."""
+    path = tmp_path_factory.mktemp("frames") / "run"
+    assert (
+        main(["run", str(COLD_RUNNING_IN), "-o", str(path), *SMALL, "--set=analysis.frames=8"]) == 0
+    )
+    return path
+
+
+def test_index_and_files_agree(folder):
+    """requirement: every frame is named with the time of its step, nothing else is left."""
+    frames = frame_files(folder / FRAMES)
+    times = read(folder / "history.csv", HISTORY)["time"]
+    assert 4 <= len(frames) <= 8
+    assert len(set(np.diff([frame.number for frame in frames]))) == 1
+    assert len(times) > 8
+    assert [frame.time for frame in frames] == [times[frame.number] for frame in frames]
+    expected = {f.name for frame in frames for f in (frame.fields, frame.interface)}
+    assert {path.name for path in (folder / FRAMES).iterdir()} == expected | {"frames.pvd"}
+
+
+def test_fields_are_those_of_the_step(folder):
+    """requirement: the contact's largest pressure is the history's; stress in single precision."""
+    largest = read(folder / "history.csv", HISTORY)["max_pressure"]
+    for frame in frame_files(folder / FRAMES):
+        pressure = read(frame.interface, INTERFACE)["pressure"]
+        assert pressure.max() == pytest.approx(largest[frame.number], rel=1e-9)
+        mesh = meshio.read(frame.fields)
+        assert mesh.point_data["von_mises_Pa"].dtype == np.float32
+        assert mesh.point_data["von_mises_Pa"].max() > 1e6
+
+
+def test_without_the_key_there_are_none(tmp_path):
+    """requirement: ordinary runs write what they always did."""
+    assert main(["run", str(COLD_RUNNING_IN), "-o", str(tmp_path / "run"), *SMALL]) == 0
+    assert not (tmp_path / "run" / FRAMES).exists()
+
+
+def test_overwriting_removes_them(folder, tmp_path):
+    import shutil
+
+    copy = tmp_path / "copy"
+    shutil.copytree(folder, copy)
+    assert main(["run", str(COLD_RUNNING_IN), "-o", str(copy), *SMALL, "--overwrite"]) == 0
+    assert not (copy / FRAMES).exists()
+
+
+def test_only_ours_is_removed(folder, tmp_path):
+    import shutil
+
+    copy = tmp_path / FRAMES
+    shutil.copytree(folder / FRAMES, copy)
+    (copy / "notes.txt").write_text("mine", encoding="utf-8")
+    remove_frames(copy)
+    assert [path.name for path in copy.iterdir()] == ["notes.txt"]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "<a><DataSet/></a>", '<a><DataSet timestep="x" file="y"/></a>']
+)
+def test_a_broken_index_is_said(text, tmp_path):
+    (tmp_path / "frames.pvd").write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=r"frames\.pvd"):
+        frame_files(tmp_path)

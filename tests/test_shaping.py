@@ -1,0 +1,114 @@
+"""The command ``shape``."""
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from thermowear.case.starters import starter_text
+from thermowear.cli import main
+from thermowear.geometry.gmsh_session import gmsh_model
+
+SMALL = ("--set", "mesh.degree=2", "--set", "mesh.elements=4")
+
+
+@pytest.fixture(autouse=True)
+def _place(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("annular-punch", "drum-brake", "rectangular-punch", "cylinder-stick-slip"):
+        Path(f"{name}.toml").write_text(starter_text(name), encoding="utf-8")
+
+
+def run(*words: str) -> int:
+    return main(["shape", *words, *SMALL])
+
+
+@pytest.mark.parametrize("ending", ["csv", "msh", "vtu", "step"])
+@pytest.mark.parametrize("name", ["annular-punch", "drum-brake", "rectangular-punch"])
+def test_every_format_begins_a_run(name, ending, capsys):
+    """requirement: ring, section and solid in all formats; a run can start from each of them."""
+    assert run(f"{name}.toml", "-o", f"d.{ending}") == 0
+    assert capsys.readouterr().out.startswith(f"wrote d.{ending}: face of ")
+    words = ["run", f"{name}.toml", "-o", "first", "--no-pictures", *SMALL]
+    more = ["--set", "analysis={type='initial'}", "--set", f"geometry.initial_shape=d.{ending}"]
+    assert main([*words, *more]) == 0
+    assert main(["run", f"{name}.toml", "-o", "steady", "--no-pictures", *SMALL]) == 0
+    first, steady = (
+        np.genfromtxt(f"{place}/interface.csv", delimiter=",", names=True)["pressure_Pa"]
+        for place in ("first", "steady")
+    )
+    assert np.median(np.abs(first / steady - 1)) < 0.03  # a coarse mesh
+
+
+def test_step_is_in_millimetres():
+    """requirement: the unit that CAD expects; the ring less what is worn off."""
+    assert run("annular-punch.toml", "-o", "ring.step") == 0
+    assert "SI_UNIT(.MILLI.,.METRE.)" in Path("ring.step").read_text("utf-8")
+    with gmsh_model("read") as gmsh:
+        ((dim, solid),) = gmsh.model.occ.importShapes("ring.step")
+        gmsh.model.occ.synchronize()
+        volume = gmsh.model.occ.getMass(dim, solid)
+    assert run("annular-punch.toml", "-o", "ring.csv") == 0
+    found = np.genfromtxt("ring.csv", delimiter=",", names=True)
+    worn = 1e9 * np.trapezoid(2 * np.pi * found["x_m"] * found["depth_m"], found["x_m"])
+    assert volume == pytest.approx(np.pi * (120**2 - 20**2) * 50 - worn, rel=1e-5)
+
+
+def test_a_mesh_other_programs_read():
+    """requirement: gmsh reads it with its names and how far its nodes were moved."""
+    assert run("annular-punch.toml", "-o", "plate.msh", "--body", "plate") == 0
+    assert set(meshio.read("plate.msh").field_data) == {
+        "plate",
+        "plate_face",
+        "plate_bottom",
+        "plate_side",
+    }
+    with gmsh_model("read") as gmsh:
+        gmsh.merge("plate.msh")
+        assert len(gmsh.view.getTags()) == 1
+
+
+def test_files_are_not_overwritten():
+    """requirement: a file that is there is kept unless it is said so."""
+    Path("d.csv").write_text("mine", encoding="utf-8")
+    assert run("annular-punch.toml", "-o", "d.csv") == 1
+    assert Path("d.csv").read_text(encoding="utf-8") == "mine"
+    assert run("annular-punch.toml", "-o", "d.csv", "--overwrite") == 0
+    assert Path("d.csv").read_text(encoding="utf-8").startswith("body,x_m")
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (("annular-punch.toml", "-o", "d.stl"), "-o d.stl: unknown ending; one of: .csv, .msh"),
+        (("annular-punch.toml", "-o", "none/d.csv"), "cannot be written"),
+        (("annular-punch.toml", "-o", "none/d.msh"), "cannot be written"),
+        (("annular-punch.toml", "-o", "none/d.vtu"), "cannot be written"),
+        (("annular-punch.toml", "-o", "none/d.step"), "cannot be written"),
+        (("annular-punch.toml", "-o", "d.csv", "--body", "disk"), "one of: punch, plate"),
+        (("drum-brake.toml", "-o", "d.csv", "--body", "drum"), "slides past under shoe"),
+        (("annular-punch.toml",), "-o/--output"),
+        (("none.toml", "-o", "d.csv"), "none.toml"),
+    ],
+)
+def test_bad_words(words, text, capsys):
+    """requirement: exit code 1 and one line."""
+    assert run(*words) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert text in line
+    assert not list(Path().glob("d.*"))
+
+
+def test_a_case_without_steady_state(capsys):
+    """requirement: exit code 1, with why there is none."""
+    assert main(["shape", "cylinder-stick-slip.toml", "-o", "d.csv"]) == 1
+    assert "for a transient or fretting analysis, not for steady" in capsys.readouterr().err
+
+
+def test_one_process(monkeypatch, capsys):
+    """requirement: ranks of a launcher would write over each other."""
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    monkeypatch.setattr("time.sleep", lambda _: None)
+    assert run("annular-punch.toml", "-o", "d.csv") == 1
+    assert not Path("d.csv").exists()

@@ -1,0 +1,173 @@
+"""A field of one mesh on another one of the same bodies, whose nodes have moved a little."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import basix
+import numpy as np
+from dolfinx import fem
+
+from ..compat import coordinate_element, geometry_dofmap
+from .bodies import Bodies
+from .field import as_function, reference_element
+
+_STEPS = 20
+_BETWEEN = 0.76
+"""Of the way from the first corner of a cell to its middle."""
+_ROOM = 1e-6
+"""Of a cell: a point that lies so little outside is looked for in it, too."""
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """Cells of one body, of all ranks.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n_cells, n_nodes, gdim)
+        Of their geometry [m].
+    values : ndarray, shape (n_cells, n_dofs)
+        Of the field.
+    """
+
+    nodes: np.ndarray
+    values: np.ndarray
+
+
+def transferred(
+    values: np.ndarray,
+    old: fem.FunctionSpace,
+    new: fem.FunctionSpace,
+    old_bodies: Bodies,
+    new_bodies: Bodies,
+    groups: list[tuple[str, ...]],
+) -> tuple[np.ndarray, float]:
+    """A scalar field at the nodes of another mesh, body by body. Every rank calls.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_owned,)
+        Of the field.
+    old, new : dolfinx.fem.FunctionSpace
+        Of the same degree, on meshes that differ in the places of their nodes alone.
+    old_bodies, new_bodies : Bodies
+    groups : list of tuple of str
+        Names of the parts of each body.
+
+    Returns
+    -------
+    values : ndarray, shape (n_owned,)
+        At the nodes of the new space.
+    error : float
+        Largest difference of both fields between the nodes, at one point of each new cell.
+    """
+    function = as_function(old, values, "field")
+    count, gdim = len(values), old.mesh.geometry.dim
+    result, error = values.copy(), 0.0
+    places = new.tabulate_dof_coordinates()[:count, :gdim]
+    stays = np.all(places == old.tabulate_dof_coordinates()[:count, :gdim], axis=1)
+    field = _Field(old)
+    for parts in groups:
+        cells = _gathered(old_bodies, function, parts)
+        mine = _cells_of(new_bodies, parts)
+        nodes = np.unique(new.dofmap.list[mine])
+        nodes = nodes[nodes < count]
+        nodes = nodes[~stays[nodes]]
+        result[nodes] = field.at(cells, places[nodes])
+    moved = as_function(new, result, "field")
+    for parts in groups:
+        cells, again = _gathered(old_bodies, function, parts), _gathered(new_bodies, moved, parts)
+        at, found = field.between_nodes(again)
+        error = max(error, float(np.abs(field.at(cells, at) - found).max(initial=0.0)))
+    return result, error
+
+
+class _Field:
+    """Evaluates fields of a space in its cells.
+
+    Parameters
+    ----------
+    space : dolfinx.fem.FunctionSpace
+    """
+
+    def __init__(self, space: fem.FunctionSpace):
+        mesh = space.mesh
+        self._element = reference_element(mesh, space.ufl_element().degree)
+        kind = self._element.cell_type
+        self._geometry = basix.create_element(
+            basix.ElementFamily.P,
+            kind,
+            coordinate_element(mesh).degree,
+            basix.LagrangeVariant.equispaced,
+        )
+        self._middle = np.asarray(basix.geometry(kind)).mean(axis=0)
+        self._simplex = kind in (basix.CellType.triangle, basix.CellType.tetrahedron)
+
+    def between_nodes(self, cells: _Cells) -> tuple[np.ndarray, np.ndarray]:
+        """A point of each cell that is no node of any degree, and the values there."""
+        place = _BETWEEN * self._middle[None]
+        shape, values = (e.tabulate(0, place)[0, 0, :, 0] for e in self._elements)
+        return np.einsum("k,cki->ci", shape, cells.nodes), cells.values @ values
+
+    def at(self, cells: _Cells, points: np.ndarray) -> np.ndarray:
+        """Values at points, in the cell that each lies in, or outside of which it lies least."""
+        low, high = cells.nodes.min(axis=1), cells.nodes.max(axis=1)
+        room = _ROOM * (high - low).max(axis=1, keepdims=True)
+        near = np.ones((len(points), len(low)), dtype=bool)
+        for k in range(points.shape[1]):
+            near &= points[:, k, None] >= (low - room)[:, k]
+            near &= points[:, k, None] <= (high + room)[:, k]
+        lost = np.flatnonzero(~near.any(axis=1))
+        centres = cells.nodes.mean(axis=1)
+        for point in lost:
+            near[point, np.linalg.norm(centres - points[point], axis=1).argmin()] = True
+        which, cell = np.nonzero(near)
+        place = self._places(cells.nodes[cell], points[which])
+        inside, outside = self._clipped(place)
+        order = np.lexsort((outside, which))
+        _, first = np.unique(which[order], return_index=True)
+        best = order[first]
+        if not len(best):
+            return np.empty(0)
+        values = self._element.tabulate(0, inside[best])[0, :, :, 0]
+        return np.einsum("nk,nk->n", values, cells.values[cell[best]])
+
+    @property
+    def _elements(self):
+        return self._geometry, self._element
+
+    def _places(self, nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Reference coordinates of points in a cell each, by Newton's method."""
+        place = np.tile(self._middle, (len(points), 1))
+        for _ in range(_STEPS if len(points) else 0):
+            table = np.asarray(self._geometry.tabulate(1, place))[..., 0]
+            off = np.einsum("nk,nki->ni", table[0], nodes) - points
+            tangents = np.einsum("dnk,nki->nid", table[1:], nodes)
+            step = np.linalg.solve(tangents, off[..., None])[..., 0]
+            place = np.clip(place - step, -1.0, 2.0)
+            if np.abs(step).max() < 1e-13:
+                break
+        return place
+
+    def _clipped(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The nearest places inside, and how far they are."""
+        inside = np.clip(place, 0.0, 1.0)
+        if self._simplex:
+            inside = inside / np.maximum(inside.sum(axis=1, keepdims=True), 1.0)
+        return inside, np.linalg.norm(place - inside, axis=1)
+
+
+def _cells_of(bodies: Bodies, parts: tuple[str, ...]) -> np.ndarray:
+    """Cells of a body that this rank owns."""
+    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
+    return cells[cells < bodies.mesh.topology.index_map(bodies.mesh.topology.dim).size_local]
+
+
+def _gathered(bodies: Bodies, function: fem.Function, parts: tuple[str, ...]) -> _Cells:
+    """The cells of a body and a field in them, from all ranks."""
+    mesh, cells = bodies.mesh, _cells_of(bodies, parts)
+    nodes = mesh.geometry.x[geometry_dofmap(mesh)[cells]][..., : mesh.geometry.dim]
+    values = function.x.array[function.function_space.dofmap.list[cells]]
+    gathered = mesh.comm.allgather((nodes, values))
+    return _Cells(*(np.concatenate([part[k] for part in gathered]) for k in (0, 1)))

@@ -1,0 +1,5 @@
+"""Animations of a results folder whose analysis has kept frames."""
+
+from .make import FPS, check_film, draw_animation, has_frames
+
+__all__ = ["FPS", "check_film", "draw_animation", "has_frames"]

@@ -1,0 +1,167 @@
+"""Panels of an animation with fixed axes: curves along the contact, and the way so far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from ...quantities import HISTORY, INTERFACE, Quantity
+from ..curves import BODIES, abscissa, wrapped
+from .states import Film, State
+
+_ROOM = 1.06  # of the largest value: where an axis ends
+_SINGULAR, _MOST = 3.0, 0.9
+"""A peak is cut off where it is so many times higher than what most points have."""
+_FAINT = {"color": "0.6", "linewidth": 1.2}
+
+Curve = Callable[[State], tuple[np.ndarray, np.ndarray]]
+
+
+class PressureCurve:
+    """Contact pressure along the face; in grey at the start and at the end."""
+
+    def __init__(self, film: Film):
+        self._film = film
+
+    def prepare(self, _, axis) -> None:
+        """Draw what stays."""
+        states, self._curve = self._film.states, _along("pressure")
+        ends = {"--": (states[0], "start"), "-": (states[-1], self._name_of_end())}
+        for style, (state, name) in ends.items():
+            if state.interface["pressure"].max() > 0:
+                axis.plot(*self._curve(state), style, label=name, **_FAINT)
+        (self._line,) = axis.plot(*self._curve(states[0]), color="tab:red", label="now")
+        axis.set_ylim(0.0, _ROOM * max(top(self._curve(state)[1]) for state in states))
+        axis.set_xlim(_span(self._curve(state)[0] for state in states))
+        axis.set_ylabel(wrapped(INTERFACE["pressure"]))
+        axis.set_xlabel(abscissa(states[-1].interface)[0])
+        _legend(axis)
+
+    def show(self, state: State) -> None:
+        """Replace what changes."""
+        self._line.set_data(*self._curve(state))
+
+    def _name_of_end(self) -> str:
+        return "steady" if self._film.ends_steady else "end"
+
+
+class WearCurves:
+    """Depth worn off each body that wears, downwards, in grey at the end."""
+
+    def __init__(self, film: Film):
+        self._film = film
+        self._lines: dict[str, Line2D] = {}
+        self._curves = {
+            name: curve
+            for name, curve in (("wear_1", _along("wear_1")), ("wear_2", _of_body_2))
+            if curve(film.states[-1])[1].max() > 0
+        }
+
+    @property
+    def shows_something(self) -> bool:
+        """Whether a body wears at all."""
+        return bool(self._curves)
+
+    def prepare(self, _, axis) -> None:
+        """Draw what stays."""
+        states, values, places = self._film.states, [], []
+        for (name, curve), (color, line) in zip(self._curves.items(), self._styles(), strict=True):
+            axis.plot(*curve(states[-1]), label="_" if self._lines else "end", **_FAINT)
+            (self._lines[name],) = axis.plot(
+                *curve(states[0]), color=color, linestyle=line, label=f"body {name[-1]}"
+            )
+            places += [curve(state)[0] for state in states]
+            values += [curve(state)[1] for state in states]
+        deepest = max(v.max() for v in values)
+        axis.set_ylim(_ROOM * deepest, (1 - _ROOM) * deepest)
+        axis.set_xlim(_span(places))
+        axis.set_ylabel(f"depth worn off\n[{INTERFACE['wear_1'].unit}]")
+        axis.set_xlabel(abscissa(states[-1].interface)[0])
+        _legend(axis)
+
+    def show(self, state: State) -> None:
+        """Replace what changes."""
+        for name, curve in self._curves.items():
+            self._lines[name].set_data(*curve(state))
+
+    def _styles(self) -> list[tuple[str, str]]:
+        """Colour and kind of line by the body: two that wear alike both show."""
+        kinds = tuple(zip(BODIES, ("-", "--"), strict=True))
+        return [kinds[int(name[-1]) - 1] for name in self._curves]
+
+
+class Course:
+    """The way of the largest temperature or pressure, with a mark at the present time."""
+
+    def __init__(self, film: Film):
+        self._name = "max_temperature" if _is_hot(film) else "max_pressure"
+        self._time, self._values = film.course["time"], film.course[self._name]
+        self._even = film.even
+        if not film.even:  # a logarithmic axis has no start
+            self._time, self._values = self._time[1:], self._values[1:]
+
+    def prepare(self, _, axis) -> None:
+        """Draw what stays."""
+        quantity: Quantity = HISTORY[self._name]
+        self._drawn = quantity.drawn(self._values)
+        axis.plot(self._time, self._drawn, color="0.45")
+        if not self._even:
+            axis.set_xscale("log")
+        axis.set_xlim(self._time[0], self._time[-1])
+        if self._name == "max_pressure":
+            axis.set_ylim(0.0, _ROOM * self._drawn.max())
+        axis.set_xlabel(HISTORY["time"].axis + ("" if self._even else ", logarithmic"))
+        axis.set_ylabel(wrapped(quantity))
+        self._mark = axis.axvline(self._time[0], color="tab:red", linewidth=1.2)
+        (self._dot,) = axis.plot([], [], "o", color="tab:red", markersize=6, clip_on=False)
+
+    def show(self, state: State) -> None:
+        """Replace what changes."""
+        time = max(state.time, self._time[0])
+        self._mark.set_xdata([time, time])
+        self._dot.set_data([time], [np.interp(time, self._time, self._drawn)])
+
+
+def top(values: np.ndarray) -> float:
+    """Where an axis for a state ends: singular corners of unworn faces are cut off."""
+    pressed = values[values > 0]
+    if not len(pressed):
+        return 1.0
+    peak, usual = pressed.max(), np.quantile(pressed, _MOST)
+    return float(1.5 * usual if peak > _SINGULAR * usual else peak)
+
+
+def _legend(axis) -> None:
+    """Above the panel, where no curve passes."""
+    if len(axis.get_legend_handles_labels()[0]) > 1:
+        where = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.0}
+        axis.legend(fontsize="small", ncols=4, handlelength=1.5, **where)
+
+
+def _is_hot(film: Film) -> bool:
+    return bool(np.isfinite(film.course.get("max_temperature", np.array([np.nan]))).all())
+
+
+def _along(name: str) -> Curve:
+    """A column of ``interface.csv`` along the contact, in the units of drawings."""
+    quantity = INTERFACE[name]
+    return lambda state: (
+        abscissa(state.interface)[1],
+        quantity.drawn(state.interface[name]),
+    )
+
+
+def _of_body_2(state: State) -> tuple[np.ndarray, np.ndarray]:
+    """Its depths along the contact, or along the whole track where body 1 slides to and fro."""
+    if state.track is None:
+        return _along("wear_2")(state)
+    x, depth = (INTERFACE[name].drawn(state.track[name]) for name in ("x", "wear_2"))
+    return x, depth
+
+
+def _span(places) -> tuple[float, float]:
+    """From the first to the last place."""
+    every = np.concatenate(list(places))
+    return float(every.min()), float(every.max())

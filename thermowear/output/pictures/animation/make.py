@@ -1,0 +1,81 @@
+"""Draw the animation of a results folder; run as a process of its own."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from ....errors import CaseError
+from ...frames import FRAMES, frame_files
+from ..maps import is_surface
+from .curves import Course, PressureCurve, WearCurves
+from .palette import common_palette
+from .scene import Panel, Scene
+from .section import Section
+from .states import Film, read_film
+from .writers import GIF, MP4, ffmpeg, write_gif, write_mp4
+
+FPS = 8.0
+
+
+def has_frames(folder: Path) -> bool:
+    """Whether a results folder has states on the way."""
+    return bool(frame_files(folder / FRAMES))
+
+
+def check_film(folder: Path, path: Path) -> None:
+    """Refuse what cannot be drawn.
+
+    Raises
+    ------
+    CaseError
+    """
+    if path.suffix not in (GIF, MP4):
+        raise CaseError(f"-o {path}: ends in {path.suffix or 'nothing'}; must end in .gif or .mp4")
+    if not path.parent.is_dir():
+        raise CaseError(f"-o {path}: there is no folder {path.parent}")
+    if not (folder / "interface.csv").is_file():
+        raise CaseError(f"{folder}: holds no interface.csv; not a results folder of a finished run")
+    if not has_frames(folder):
+        raise CaseError(f"{folder}: has no frames; run the case with --set analysis.frames=60")
+    if path.suffix == MP4:
+        ffmpeg()
+
+
+def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
+    """Draw bodies, pressure and depth while they wear.
+
+    Parameters
+    ----------
+    folder : Path
+        Of results whose analysis has kept frames.
+    path : Path
+        Ends in ``.gif`` or ``.mp4``.
+    fps : float
+        Frames a second.
+    """
+    film = read_film(folder)
+    scene = _in_space(film) if is_surface(folder) else _in_a_plane(film)
+    states = film.states
+    pictures = (scene.picture(state) for state in states)
+    if path.suffix == MP4:
+        write_mp4(path, pictures, fps)
+        return
+    some = [scene.picture(state) for state in (states[0], states[len(states) // 2], states[-1])]
+    write_gif(path, pictures, fps, common_palette(some, scene.colors))
+
+
+def _in_a_plane(film: Film) -> Scene:
+    wear = WearCurves(film)
+    beside: list[Panel] = [PressureCurve(film)]
+    return Scene(film, Section(film), beside + [wear] * wear.shows_something, Course(film))
+
+
+def _in_space(film: Film) -> Scene:
+    from .solid import Solid, face_maps  # pyvista is slow to start
+
+    return Scene(film, Solid(film), face_maps(film), Course(film))
+
+
+if __name__ == "__main__":
+    draw_animation(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]))

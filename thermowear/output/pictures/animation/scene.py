@@ -1,0 +1,90 @@
+"""One picture of an animation: which panels it has, and what they show at a time."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from ..curves import STYLE
+from .states import Film, State
+
+_DPI = 100
+_WIDTH, _HEIGHT = 9.0, 5.6  # inches
+_FLAT = 0.4  # height over width: flatter bodies lie above the curves, others stand beside them
+_SCALE = 1.5  # inches that the scale of colours and the labels of the bodies take
+_STYLE = STYLE | {"font.size": 9}
+
+
+class Panel(Protocol):
+    """What draws in a part of the picture."""
+
+    def prepare(self, figure: Figure, axis) -> None:
+        """Draw what stays."""
+
+    def show(self, state: State) -> None:
+        """Replace what changes."""
+
+
+class Scene:
+    """A figure whose layout and axes stay as they are, from the first frame to the last.
+
+    Parameters
+    ----------
+    film : Film
+    bodies : Panel
+        Which has a `shape`, height over width, and `colors`, the name of its colour map.
+    beside : list of Panel
+        Along the contact: one or two.
+    course : Panel
+        Over time.
+    """
+
+    def __init__(self, film: Film, bodies, beside: list[Panel], course: Panel):
+        self.colors = bodies.colors
+        self._panels = {"bodies": bodies, "course": course}
+        self._panels |= {f"beside {k}": panel for k, panel in enumerate(beside)}
+        with mpl.rc_context(_STYLE):
+            self._figure = Figure(figsize=(_WIDTH, _HEIGHT), dpi=_DPI, layout="constrained")
+            self._canvas = FigureCanvasAgg(self._figure)
+            plan, ratios = _plan(len(beside), bodies.shape)
+            axes = self._figure.subplot_mosaic(plan, **ratios)
+            self._figure.suptitle(film.title, fontsize="large")
+            for name, panel in self._panels.items():
+                panel.prepare(self._figure, axes[name])
+            self._time = axes["bodies"].set_title("", loc="left", fontsize="large", color="tab:red")
+        self._fill(film.states[-1])
+        self._figure.draw_without_rendering()
+        self._figure.set_layout_engine("none")
+
+    def picture(self, state: State) -> np.ndarray:
+        """Colours of the pixels at a time, shape (height, width, 3)."""
+        self._fill(state)
+        self._canvas.draw()
+        return np.asarray(self._canvas.buffer_rgba())[..., :3].copy()
+
+    def _fill(self, state: State) -> None:
+        with mpl.rc_context(_STYLE):
+            for panel in self._panels.values():
+                panel.show(state)
+            self._time.set_text(f"after {duration(state.time)}")
+
+
+def duration(time: float) -> str:
+    """A time in seconds with three digits."""
+    return f"{float(f'{time:.3g}'):g} s"
+
+
+def _plan(beside: int, shape: float) -> tuple[list[Any], dict[str, Any]]:
+    """Places of the panels and their sizes, by height over width of the bodies."""
+    curves = [f"beside {k}" for k in range(beside)]
+    if shape < _FLAT:
+        tall = np.clip(shape * (_WIDTH - _SCALE), 1.2, 2.2)
+        return [["bodies"] * beside, curves, ["course"] * beside], {"height_ratios": (tall, 1.3, 1)}
+    rows = [["bodies", curve] for curve in curves]
+    wide = np.clip(3.0 / shape + _SCALE, 0.3 * _WIDTH, 0.55 * _WIDTH)
+    sizes = {"width_ratios": (wide, _WIDTH - wide)}
+    return [*rows, ["course"] * 2], sizes | {"height_ratios": (*[3.2 / beside] * beside, 1)}

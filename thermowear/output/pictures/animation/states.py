@@ -1,0 +1,138 @@
+"""The frames of a results folder, with its end."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+from ... import tables
+from ...frames import FRAMES, frame_files
+from ...quantities import CYCLES, HISTORY, INTERFACE, LOADS, TRACK
+
+_CORNERS = {"triangle": [[0, 1, 2]], "quad": [[0, 1, 2], [0, 2, 3]]}
+_STEADY = 1e-2  # distance from the steady state at which the end stands for it
+
+
+@dataclass(frozen=True)
+class State:
+    """What is known at one time.
+
+    Attributes
+    ----------
+    time : float
+        [s]
+    interface : dict of str to ndarray
+        Columns of ``interface.csv``.
+    track : dict of str to ndarray or None
+        Columns of ``track.csv``, of a reciprocating analysis.
+    file : Path
+        With the fields.
+    """
+
+    time: float
+    interface: dict[str, np.ndarray]
+    track: dict[str, np.ndarray] | None
+    file: Path
+
+
+@dataclass(frozen=True)
+class Film:
+    """All states, the last one is the end of the run.
+
+    Attributes
+    ----------
+    states : list of State
+    title : str
+        Of the case.
+    course : dict of str to ndarray
+        Columns of ``history.csv``, or of ``cycles.csv`` or ``loads.csv``.
+    even : bool
+        Whether time is shown evenly: where loads or temperatures have a course of their own;
+        running-in is fast at first and then ever slower.
+    hot : bool
+        Whether the faces have temperatures.
+    ends_steady : bool
+    """
+
+    states: list[State]
+    title: str
+    course: dict[str, np.ndarray]
+    even: bool
+    hot: bool
+    ends_steady: bool
+
+
+def read_film(folder: Path) -> Film:
+    """Read all but the fields.
+
+    Raises
+    ------
+    ValueError
+        If a file is not what its name says.
+    """
+    states = [
+        State(f.time, tables.read(f.interface, INTERFACE), _track(f.track), f.fields)
+        for f in frame_files(folder / FRAMES)
+    ]
+    name, table = next((n, t) for n, t in _COURSES.items() if (folder / n).is_file())
+    course = tables.read(folder / name, table)
+    end = float(course["time"][-1])
+    states = [state for state in states if state.time < end]
+    last = tables.read(folder / "interface.csv", INTERFACE)
+    states.append(State(end, last, _track(folder / "track.csv"), folder / "fields.vtu"))
+    distance = _json(folder / "summary.json").get("distance_from_steady")
+    return Film(
+        states=states,
+        title=_title(folder),
+        course=course,
+        even=name != "history.csv" or (folder / "heat.csv").is_file(),
+        hot=bool(np.isfinite(last["temperature_1"]).all()),
+        ends_steady=distance is not None and distance <= _STEADY,
+    )
+
+
+def read_fields(state: State, hot: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Fields of plane bodies as triangles, each corner a point of its own cell.
+
+    Returns
+    -------
+    tuple of ndarray
+        Points where they are now, shape (n, 2) [mm]; triangles, shape (m, 3); numbers of their
+        bodies, shape (m,); values at the points, see `field_label`.
+    """
+    mesh = meshio.read(state.file)
+    block, body = mesh.cells[0], mesh.cell_data["body"][0]
+    corners = np.array(_CORNERS[block.type])
+    triangles = block.data[:, corners].reshape(-1, 3)
+    points = 1e3 * (mesh.points + mesh.point_data["displacement_m"])[:, :2]
+    name, scale, offset = field_of(hot)[1:]
+    values = scale * mesh.point_data[name] + offset
+    return points, triangles, np.repeat(body, len(corners)), values
+
+
+def field_of(hot: bool) -> tuple[str, str, float, float]:
+    """Label, name, scale and offset of the field that is shown."""
+    if hot:
+        return "temperature [°C]", "temperature_K", 1.0, -273.15
+    return "von Mises stress [MPa]", "von_mises_Pa", 1e-6, 0.0
+
+
+_COURSES = {"history.csv": HISTORY, "cycles.csv": CYCLES, "loads.csv": LOADS}
+
+
+def _track(path: Path) -> dict[str, np.ndarray] | None:
+    return tables.read(path, TRACK) if path.is_file() else None
+
+
+def _json(path: Path) -> dict:
+    return json.loads(path.read_text("utf-8")) if path.is_file() else {}
+
+
+def _title(folder: Path) -> str:
+    import tomllib
+
+    return tomllib.loads((folder / "case.resolved.toml").read_text("utf-8")).get("title", "")

@@ -1,0 +1,98 @@
+"""Pictures one after the other in a file: GIF by Pillow, MP4 by ffmpeg."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import chain
+from pathlib import Path
+from tempfile import TemporaryFile
+
+import numpy as np
+from PIL import Image  # matplotlib does not come without it
+
+from ....errors import CaseError
+from ...replacing import replacing
+
+GIF, MP4 = ".gif", ".mp4"
+_REST = 1.5  # s: how long the end is shown
+
+
+def ffmpeg() -> str:
+    """Where ffmpeg is.
+
+    Raises
+    ------
+    CaseError
+    """
+    found = shutil.which("ffmpeg")
+    if found is None:
+        raise CaseError("MP4 needs ffmpeg, which is not installed; write a .gif instead")
+    return found
+
+
+def write_gif(path: Path, pictures: Iterator[np.ndarray], fps: float, palette: np.ndarray) -> None:
+    """Write a GIF; with the same colours in all pictures nothing flickers.
+
+    Parameters
+    ----------
+    path : Path
+        Replaced once the film is whole.
+    pictures : iterator of ndarray of uint8, shape (height, width, 3)
+    fps : float
+        Pictures a second.
+    palette : ndarray of uint8, shape (k, 3)
+    """
+    colors = Image.new("P", (1, 1))
+    colors.putpalette(palette.tobytes())
+    frames = [
+        Image.fromarray(picture).quantize(palette=colors, dither=Image.Dither.NONE)
+        for picture in pictures
+    ]
+    shown = [1 / fps] * (len(frames) - 1) + [max(_REST, 1 / fps)]
+    with replacing(path) as draft:
+        frames[0].save(
+            draft,
+            format="GIF",
+            save_all=True,
+            append_images=frames[1:],
+            duration=[round(100 * seconds) * 10 for seconds in shown],  # it counts hundredths
+            loop=0,
+        )
+
+
+def write_mp4(path: Path, pictures: Iterator[np.ndarray], fps: float) -> None:
+    """Write an MP4, as `write_gif` does.
+
+    Raises
+    ------
+    CaseError
+        If there is no ffmpeg.
+    OSError
+        If ffmpeg does not take the pictures.
+    """
+    first = next(pictures)
+    height, width = (n - n % 2 for n in first.shape[:2])  # the encoder wants even numbers
+    stream = f"-f rawvideo -pix_fmt rgb24 -s {width}x{height} -r {fps:g} -i -".split()
+    rest = [
+        "-vf",
+        f"tpad=stop_mode=clone:stop_duration={_REST:g}",
+        "-pix_fmt",
+        "yuv420p",
+        "-f",
+        "mp4",
+    ]
+    with replacing(path) as draft, TemporaryFile() as said:
+        command = [ffmpeg(), "-y", "-loglevel", "error", *stream, *rest, str(draft)]
+        encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said)
+        assert encoder.stdin is not None
+        with suppress(BrokenPipeError):  # it says itself why it has gone
+            for picture in chain([first], pictures):
+                encoder.stdin.write(picture[:height, :width].tobytes())
+            encoder.stdin.close()
+        if encoder.wait() != 0:
+            said.seek(0)
+            lines = said.read().decode(errors="replace").strip().splitlines()
+            raise OSError(f"ffmpeg: {lines[-1] if lines else f'exit code {encoder.returncode}'}")

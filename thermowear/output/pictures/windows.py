@@ -1,0 +1,66 @@
+"""What of the bodies a picture shows, and in which range of colours."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+FLAT = 0.55
+"""Height over width: windows lower than that have their scale of colours below."""
+_SMALL = 0.15  # of the bodies' size: contacts smaller than that get windows of their own
+_AROUND = 3.0  # sizes of the contact that such a window shows
+_MARGIN = 0.02
+_LEAST = 99.5  # percent of the samples that colours must tell apart
+
+Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]
+
+
+def whole(points: np.ndarray) -> Extent:
+    """A window on all points, shape (n, 2 or 3) [mm]."""
+    (x0, y0), (x1, y1) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    margin = _MARGIN * max(x1 - x0, y1 - y0)
+    return x0 - margin, x1 + margin, y0 - margin, y1 + margin
+
+
+def around_contact(interfaces: Sequence[dict[str, np.ndarray]]) -> Extent | None:
+    """What lies around all points that press in one of the states, where there are any.
+
+    Parameters
+    ----------
+    interfaces : sequence of dict
+        Columns of ``interface.csv``.
+    """
+    pressed = [table["pressure"] > 0 for table in interfaces]
+    if not any(p.any() for p in pressed):
+        return None
+    x, y = (
+        1e3 * np.concatenate([t[axis][p] for t, p in zip(interfaces, pressed, strict=True)])
+        for axis in "xy"
+    )
+    reach = _AROUND / 2 * max(np.ptp(x), np.ptp(y))
+    x, y = (v.min() + np.ptp(v) / 2 for v in (x, y))
+    return x - reach, x + reach, y - reach, y + reach
+
+
+def is_small(contact: Extent, points: np.ndarray) -> bool:
+    """Whether a contact has its own window, as it is small on bodies with these points."""
+    return bool(contact[1] - contact[0] < _AROUND * _SMALL * np.ptp(points[:, 0]))
+
+
+def within(contact: Extent, points: np.ndarray) -> Extent:
+    """The window, not wider than bodies with these points."""
+    x = points[:, 0]
+    return max(contact[0], x.min()), min(contact[1], x.max()), *contact[2:]
+
+
+def color_limits(values: np.ndarray) -> tuple[float, float]:
+    """Colour range without the few samples beside singular edges."""
+    low, high = float(values.min()), float(np.percentile(values, _LEAST))
+    return (low, high) if high > low else (low - 0.5, low + 0.5)
+
+
+def common_limits(states: Sequence[np.ndarray]) -> tuple[float, float]:
+    """Colour range of several states."""
+    lows, highs = zip(*(color_limits(values) for values in states), strict=True)
+    return min(lows), max(highs)

@@ -1,0 +1,127 @@
+"""Results folders whose run goes on."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..case import Case, as_plain, load
+from ..case.comparison import forbidden_changes, irrelevant_changes_only
+from ..errors import CaseError
+from .checkpoint import read_checkpoint
+from .folder import ResultsFolder, now, versions
+
+_ANEW = "--overwrite starts it from the beginning"
+
+
+class ResumedFolder(ResultsFolder):
+    """A folder with the results of a run that was stopped.
+
+    Parameters
+    ----------
+    path : Path
+    tables : dict
+        The case with every default written out.
+    ranks : int
+    time : float
+        From which the run goes on [s].
+
+    Raises
+    ------
+    CaseError
+        If the folder cannot be used.
+    """
+
+    def __init__(self, path: Path, tables: dict, ranks: int, time: float):
+        self._before, self._time = read_run(path), time
+        super().__init__(path, tables, ranks, overwrite=True)
+
+    def _claim(self, overwrite: bool) -> None:
+        """Take it as it is, and remember how often it was taken."""
+        resumes = [*self._before.get("resumes", []), {"at": now(), "from_s": self._time}]
+        self._run |= {"started": self._before["started"], "resumes": resumes}
+
+    def abandon(self) -> None:
+        """Be as if nobody had tried to go on."""
+        self._run = self._before
+        self._write_run()
+        self._lock.release()
+
+
+def read_run(path: Path) -> dict[str, Any]:
+    """How far the run of a folder has come.
+
+    Raises
+    ------
+    CaseError
+        If there is none.
+    """
+    try:
+        return json.loads((path / "run.json").read_text("utf-8"))
+    except (OSError, ValueError):
+        raise CaseError(f"-o {path}: there is no run to resume") from None
+
+
+def is_finished(path: Path, case: Case) -> bool:
+    """Whether the run of a folder has come to the end of a case.
+
+    Raises
+    ------
+    CaseError
+        If there is no run.
+    """
+    ended = read_run(path)["status"] == "done" and (path / "summary.json").is_file()
+    return ended and irrelevant_changes_only(load(path / "case.resolved.toml"), case)
+
+
+def last_checkpoint(
+    path: Path, case: Case, ranks: int
+) -> tuple[dict[str, Any], dict[str, np.ndarray]] | None:
+    """The checkpoint from which a case can go on; None where nothing was computed yet.
+
+    Raises
+    ------
+    CaseError
+        If it is not one of this case on so many ranks, or none although there are results.
+    """
+    found = read_checkpoint(path)
+    if found is None:
+        if (path / "summary.json").is_file():
+            raise CaseError(f"-o {path}: its run has left no checkpoint; {_ANEW}")
+        return None
+    about = found[0]
+    changed = forbidden_changes(load(about["case"]), case, about["time"])
+    if changed:
+        raise CaseError(
+            f"--resume: differs from the case of the checkpoint in {', '.join(changed)}; undo "
+            f"that, or {_ANEW}"
+        )
+    if about["ranks"] != ranks:
+        raise CaseError(
+            f"--resume: the checkpoint was made by {about['ranks']} processes, not by {ranks}; "
+            f"use mpirun -n {about['ranks']}, or {_ANEW}"
+        )
+    return found
+
+
+def about_checkpoint(case: Case, time: float, outlines: list[str]) -> dict[str, Any]:
+    """What a checkpoint says of itself.
+
+    Parameters
+    ----------
+    case : Case
+    time : float
+        Of the run [s].
+    outlines : list of str
+        What the arrays of each process mean.
+    """
+    return {
+        "case": as_plain(case),
+        "ranks": len(outlines),
+        "time": time,
+        "outlines": outlines,
+        "versions": versions(),
+    }

@@ -1,0 +1,161 @@
+"""The outer loop of a running-in: where much is worn off, the meshes are moved to the worn faces.
+
+Contact, heat and wear march in time on meshes that stay, with the wear since their last update kept
+in the gap. When that is too much, measured against the sizes of the bodies, the meshes are moved
+and time goes on from there. How much is too much follows from what the last update has changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ..case.analyses import Transient
+from .checkpoint import can_be_packed
+from .geometry_update import updated
+from .interface_problem import InterfaceProblem
+from .kept_wear import KeptWear
+from .observer import Observer
+from .parts import Parts
+from .preparation import interface_problem
+from .steady import SteadyState
+from .step_sizes import Limited, StepSizes
+from .system import System, build
+from .transient import Moment, is_over, moments
+from .worn_geometry import WornGeometry
+
+_CHANGE = 5e-3
+"""Of pressure and temperatures by an update: aimed at where updates are automatic."""
+_OVER = 0.1
+"""Of the fraction that is allowed: so much more may be kept."""
+_ROOM = 5.0
+"""Times the automatic fraction: so much may be kept where that changes little."""
+
+Principle = Callable[[System], SteadyState | None]
+"""The steady state that a system tends to; None where there is none."""
+
+can_be_packed(WornGeometry)
+
+
+class OuterLoop:
+    """Goes through the moments of a running-in and moves the meshes between them.
+
+    Parameters
+    ----------
+    system : System
+        Of the unworn bodies.
+    problem : InterfaceProblem
+    principle : callable
+        The steady state that a system tends to; None where there is none.
+    sizes : StepSizes
+    observer : Observer
+
+    Attributes
+    ----------
+    system : System
+        Of the last moment.
+    problem : InterfaceProblem
+        Likewise.
+    steady : SteadyState or None
+        Likewise.
+    largest_kept : float
+        Largest fraction of the sizes of the bodies that was kept in the gap so far.
+    allowed : float
+        How much of them may be kept now.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        problem: InterfaceProblem,
+        principle: Principle,
+        sizes: StepSizes,
+        observer: Observer,
+    ):
+        self.system, self.problem, self.steady = system, problem, principle(system)
+        self.largest_kept = 0.0
+        self.allowed = system.case.wear.largest_kept
+        self._principle = principle
+        self._sizes = Limited(sizes)
+        self._observer = observer
+
+    def go_on(self, worn: WornGeometry, largest_kept: float, allowed: float) -> None:
+        """Take up an earlier loop after its last update."""
+        self.largest_kept, self.allowed = largest_kept, allowed
+        unworn = self.system
+        inputs = unworn.case, unworn.comm, unworn.phases, unworn.inputs.zone
+        self.system = build(*inputs, Parts(), worn)
+        self.problem, self.steady = interface_problem(self.system), self._principle(self.system)
+
+    def moments(self, last: Moment | None = None) -> Iterator[Moment]:
+        """The moments, see `transient.moments`."""
+        system, problem, steady = self.system, self.problem, self.steady
+        settings = system.case.analysis
+        assert isinstance(settings, Transient)
+        while True:
+            kept = KeptWear(system) if self._moves else None
+            fraction = 0.0
+            for moment in moments(problem, settings, steady, self._sizes, last):
+                self.system, self.problem, self.steady = system, problem, steady
+                if kept is not None:
+                    before, fraction = fraction, kept.fraction(kept.depth(moment.state.worn))
+                    self._look_ahead(fraction, fraction - before, moment.step)
+                yield moment
+                last = moment
+                if kept is None or is_over(settings, problem, moment):
+                    continue
+                if fraction > self.allowed and self._exceeds(kept, moment):
+                    break
+            else:
+                return
+            assert kept is not None
+            assert last is not None
+            system, problem, last = self._update(system, problem, kept, last)
+            steady = self._principle(system)
+
+    def summary(self) -> dict[str, float | int]:
+        """What the updates add to the summary; nothing where there are none."""
+        worn = self.system.worn
+        if worn is None:
+            return {}
+        return {
+            "geometry_updates": worn.updates,
+            "geometry_largest_kept": self.largest_kept,
+            "geometry_smallest_scaled_jacobian": worn.quality,
+            "geometry_volume_1_m3": float(worn.lost[0]),
+            "geometry_volume_2_m3": float(worn.lost[1]),
+            "geometry_volume_error": worn.volume_error,
+            "geometry_change": worn.change,
+            "geometry_temperature_error": worn.heat_error,
+        }
+
+    @property
+    def _moves(self) -> bool:
+        """Whether meshes can be moved at all."""
+        return bool(np.isfinite(self.allowed)) and self.system.case.model != "3d"
+
+    def _exceeds(self, kept: KeptWear, moment: Moment) -> bool:
+        """Whether even what the nodes can take up of the wear is too much to be kept."""
+        depth = kept.depth(moment.state.worn)
+        return kept.fraction(kept.movable(depth)) > self.allowed
+
+    def _look_ahead(self, fraction: float, grown: float, step: float) -> None:
+        """Choose steps so that little more is kept than is allowed."""
+        self.largest_kept = max(self.largest_kept, fraction)
+        self._sizes.largest = np.inf
+        if grown > 0.0:
+            left = self.allowed - fraction
+            left = self.allowed if left <= 0.0 else max(left, _OVER * self.allowed)
+            self._sizes.largest = step * left / grown
+
+    def _update(self, system, problem, kept, last: Moment):
+        """System and problem on meshes that are moved, and the same moment of them."""
+        new = updated(system, problem, kept, last.state, last.time)
+        change = new.change
+        automatic = system.case.wear.largest_kept
+        if system.case.wear.update == "auto" and change > 0.0:
+            wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
+            self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
+        return new.system, new.problem, replace(last, state=new.state)

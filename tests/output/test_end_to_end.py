@@ -45,7 +45,7 @@ MORE = {
         "track.csv",
         "track_1.csv",
         "interface_1.csv",
-    },  # fmt: skip
+    },
 }
 COARSE = ("mesh.degree=3", "mesh.elements=6")
 QUICK = {

@@ -19,6 +19,7 @@ PACKAGES = [
 ]
 # modules that come with a package of another name
 PACKAGE_OF = dict.fromkeys(["basix", "ffcx", "ufl"], "python3-dolfinx") | {
+    "PIL": "python3-pil",
     "vtkmodules": "python3-pyvista",
     "xdist": "python3-pytest-xdist",
 }

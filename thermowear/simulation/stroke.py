@@ -17,7 +17,8 @@ from ..contact.track import Track
 from ..errors import CaseError
 from .drives import drives
 from .parts import Parts
-from .system import System, contact_points
+from .contact_points import contact_points
+from .system import System
 
 _UNPAIRED = 1e-6
 

@@ -15,25 +15,20 @@ from ..case.schema import Case
 from ..contact.condensation import CondensedContact, influence
 from ..contact.face import Face, gather_face
 from ..contact.holder import Holder, hold
-from ..contact.pairing import Pairing, pair
-from ..contact.pressure import pressure_basis
+from ..contact.pairing import Pairing
 from ..contact.sliding import Sliding, sliding
 from ..contact.traces import vector_trace
 from ..geometry.tagged import TaggedMesh
 from ..laws import WearLaw
-from ..laws.motions import RigidMotion
 from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
 from ..parallel import on_root, sum_over_ranks
+from .contact_points import contact_points, worn_contact_points
 from .drives import drives
 from .elastic_system import dead_load, elastic_system
-from .initial_shape import initial_gap
 from .parts import Inputs, Parts, inputs
 from .phases import Phases
 from .thermal_system import ThermalSystem, thermal_system
 from .worn_geometry import WornGeometry
-
-_SLIVER = 1e-3
-"""Of a facet: so near to its ends, facets that matched when they were new meet worn ones."""
 
 
 @dataclass(frozen=True)
@@ -305,44 +300,3 @@ def _sliding(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
         pairing.points, case.motion.one_way, geometry.rotation_center, geometry.slides_across
     )
     return sliding(velocity, pairing.normals, geometry.press_direction)
-
-
-def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pairing, np.ndarray]:
-    """Contact points, with the shape that body 1 starts from, and pressure space Ψ."""
-    pairing, basis = _points(case, model, face_1, face_2)
-    if case.geometry.initial_shape is not None:
-        gap = initial_gap(comm, case.geometry.initial_shape, pairing)
-        pairing = replace(pairing, gap=gap)
-    return pairing, basis
-
-
-def worn_contact_points(
-    case: Case, model: Model, worn: WornGeometry, face_1: Face, face_2: Face
-) -> tuple[Pairing, np.ndarray]:
-    """The same of worn faces, paired where body 1 has got to; the gap is that of unworn faces."""
-    moved, turned = worn.holder
-    motion = RigidMotion(moved, turned, np.zeros(3))
-    closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
-    pairing, basis = _points(case, model, closer, face_2, _SLIVER)
-    first, second = pairing.sides
-    points = face_1.points(first.facet, first.t)
-    apart = np.einsum("ni,ni->n", pairing.normals, motion.at(points))
-    unworn = worn.carried(worn.lacking - worn.depth.sum(axis=0), pairing)
-    return replace(
-        pairing,
-        points=points,
-        gap=pairing.gap + apart + unworn,
-        sides=(replace(first, face=face_1), second),
-    ), basis
-
-
-def _points(
-    case: Case, model: Model, face_1, face_2, sliver: float = 1e-9
-) -> tuple[Pairing, np.ndarray]:
-    """Contact points of two faces, and pressure space Ψ."""
-    degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree
-    if pressure_degree == "lobatto":  # point by point, at the nodes of body 1's facets
-        pairing = pair(face_1, face_2, model, degree + 1, refine=False)
-        return pairing, np.eye(len(pairing.weights))
-    pairing = pair(face_1, face_2, model, degree + 2, sliver=sliver)
-    return pairing, pressure_basis(pairing, pressure_degree or max(degree - 1, 1))

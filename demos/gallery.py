@@ -12,6 +12,7 @@ import argparse
 import io
 import json
 import shlex
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -19,7 +20,8 @@ import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
-from PIL import Image  # matplotlib does not come without it
+from films import FILMS, Film, draw_film
+from PIL import Image
 from slides import SLIDES, Slide, draw_slide
 from studies import STUDIES, Study, draw_study
 
@@ -56,6 +58,11 @@ COMPARISONS = """# One thing varied
 Runs of the cases above with some keys changed; `slides.py` says which.
 """
 
+MOTION = """# In motion
+
+Runs of the cases above that keep states on the way, each as far from the last as the steps go.
+"""
+
 SWEEPS = """# Distortion by heat
 
 Sweeps of the cases above over the speed: one command each computes all variants, and what they
@@ -82,7 +89,10 @@ def main() -> int:
     for study in STUDIES:
         print(f"{study.name} …", flush=True)
         draw_study(study, results, results / f"{study.name}.png")
-    write_gallery(HERE, cases, results, SLIDES, STUDIES)
+    for film in FILMS:
+        print(f"{film.name} …", flush=True)
+        draw_film(film, results, results / f"{film.name}.gif")
+    write_gallery(HERE, cases, results, SLIDES, STUDIES, FILMS)
     return 0
 
 
@@ -98,6 +108,7 @@ def write_gallery(
     results: Path,
     slides: Sequence[Slide] = (),
     studies: Sequence[Study] = (),
+    films: Sequence[Film] = (),
 ) -> None:
     """Write ``README.md`` and ``pictures/`` from the results of the cases.
 
@@ -107,13 +118,15 @@ def write_gallery(
         Where they are written; pictures of earlier galleries are removed.
     cases : list of Path
     results : Path
-        Holds a results folder for each case, named like it, and a picture for each slide and study.
+        Holds a results folder for each case, named like it, a picture for each slide and study,
+        and a GIF for each film.
     slides : sequence of Slide
     studies : sequence of Study
+    films : sequence of Film
     """
     pictures = place / "pictures"
     pictures.mkdir(exist_ok=True)
-    for old in pictures.glob("*.png"):
+    for old in (*pictures.glob("*.png"), *pictures.glob("*.gif")):
         old.unlink()
     entries = [_entry(case, results / case.stem, pictures) for case in cases]
     for head, drawn in ((COMPARISONS, slides), (SWEEPS, studies)):
@@ -123,6 +136,8 @@ def write_gallery(
             lines = [f"## {one.title}", "", *textwrap.wrap(one.text, 100), ""]
             lines += [*command_of(one), ""] if isinstance(one, Study) else []
             entries.append("\n".join([*lines, f"![{one.title}](pictures/{one.name}.png)", ""]))
+    entries += [MOTION] if films else []
+    entries += [_film(one, results, pictures) for one in films]
     (place / "README.md").write_text("\n".join([HEAD, *entries]), encoding="utf-8")
 
 
@@ -188,6 +203,17 @@ def _entry(case: Path, folder: Path, pictures: Path) -> str:
         for name in drawn[:1]:
             (pictures / f"{case.stem}-{name}.png").write_bytes(small_png(folder / f"{name}.png"))
             lines += [f"![{case.stem}: {name}](pictures/{case.stem}-{name}.png)", ""]
+    return "\n".join(lines)
+
+
+def _film(film: Film, results: Path, pictures: Path) -> str:
+    """The part of the page for a film, which is put in its place."""
+    shown = f"pictures/{film.name}.gif"
+    shutil.copyfile(results / f"{film.name}.gif", pictures / f"{film.name}.gif")
+    sets = " ".join(f"--set {shlex.quote(text)}" for text in film.sets)
+    run = f"    python3 -m thermowear run demos/{film.case}.toml -o results/film {sets}"
+    lines = [f"## {film.title}", "", *textwrap.wrap(film.text, 100), "", run]
+    lines += ["    python3 -m thermowear animate results/film", "", f"![{film.title}]({shown})", ""]
     return "\n".join(lines)
 
 

@@ -126,7 +126,10 @@ def _parser() -> argparse.ArgumentParser:
     shape.add_argument("--overwrite", action="store_true")
 
     verify = _command(commands, "verify", _verify, "hold the program against known solutions")
-    verify.add_argument("ids", metavar="ID", nargs="*", help="default: all")
+    verify.add_argument("ids", metavar="ID", nargs="*", help="default: all but the slow ones")
+    verify.add_argument(
+        "--slow", action="store_true", help="with those that take more than two minutes"
+    )
     verify.add_argument("--json", action="store_true", help="print a list of the checks")
 
     plot = _command(commands, "plot", _plot, "draw the pictures of a results folder again")
@@ -272,16 +275,22 @@ def _report(chosen) -> int:
 
 def _verify(chosen) -> int:
     from .output.console import Terminal, print_checks
-    from .verification import CASES
+    from .verification import CASES, SLOW
 
     unknown = [name for name in chosen.ids if name not in CASES]
     if unknown:
         raise CaseError(f"verify {unknown[0]}: no such case; one of: {', '.join(CASES)}")
-    checks = [check for name in chosen.ids or CASES for check in CASES[name]()]
+    left_out = [] if chosen.ids or chosen.slow else [name for name in CASES if name in SLOW]
+    names = chosen.ids or [name for name in CASES if name not in left_out]
+    checks = [check for name in names for check in CASES[name]()]
     if chosen.json:
         print(json.dumps([check.as_row() for check in checks], indent=2, ensure_ascii=False))
     else:
         print_checks(Terminal(highlight=False), checks)
+    if left_out:
+        print(
+            f"note: left out as slow: {', '.join(left_out)} (--slow, or by name)", file=sys.stderr
+        )
     return 0 if all(check.passed for check in checks) else ComputationError.exit_code
 
 

@@ -16,7 +16,7 @@ from .parallel import on_root
 from .simulation import CycleRow, Frame, HeatRow, HistoryRow, Interface, LoadRow, Observer, run
 from .simulation.checkpoint import Checkpoint, pack
 from .simulation.phases import Phases
-from .simulation.saving import Saved
+from .simulation.saved import Saved
 
 
 class Recorder(Observer):

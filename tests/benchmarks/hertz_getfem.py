@@ -47,9 +47,9 @@ from thermowear.case import load
 from thermowear.case.starters import starter_text
 from thermowear.geometry.nodes import reference_nodes
 from thermowear.reference.hertz import contact_modulus
+from thermowear.simulation.building import build
 from thermowear.simulation.phases import Phases
 from thermowear.simulation.preparation import interface_problem, prepare
-from thermowear.simulation.system import build
 
 gf = importlib.import_module("getfem")  # not in scripts/packages: it serves here only
 

@@ -15,10 +15,10 @@ import numpy as np
 
 import thermowear as tw
 from thermowear.bulk.factor import Factor
+from thermowear.simulation.building import build
 from thermowear.simulation.phases import Phases
 from thermowear.simulation.preparation import interface_problem
 from thermowear.simulation.steady import steady_state
-from thermowear.simulation.system import build
 from thermowear.simulation.transient import moments
 
 

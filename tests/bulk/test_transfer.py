@@ -45,3 +45,25 @@ def test_the_field_stays_where_it_is_in_space():
 def test_nodes_that_stay_keep_their_values():
     found, expected, _ = _carried(0.0)
     assert np.array_equal(found, expected)
+
+
+def test_a_field_on_cells_of_another_number():
+    """Body by body, as both meshes touch at z = 0 where the field jumps."""
+    old, new = (
+        distribute(starter("annular-punch", f"mesh.elements={n}").tagged_mesh(), MPI.COMM_WORLD)
+        for n in (8, 11)
+    )
+    spaces = [lagrange_space(bodies.mesh, 6) for bodies in (old, new)]
+
+    def field(space, bodies):
+        r, z, _ = space.tabulate_dof_coordinates().T
+        above = np.zeros(len(r), dtype=bool)
+        above[np.unique(space.dofmap.list[bodies.cell_tags.find(1)])] = True
+        return np.sin(40 * r) * np.exp(20 * z) + 5.0 * above
+
+    values = field(spaces[0], old)
+    found, error = transferred(values, *spaces, old, new, [("punch",), ("plate",)])
+    expected = field(spaces[1], new)
+    assert len(expected) != len(values)
+    assert np.abs(found - expected).max() < 1e-4
+    assert 0.0 < error < 1e-4

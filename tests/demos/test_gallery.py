@@ -149,6 +149,22 @@ def test_studies_on_the_page(two, gallery):
     assert [path.name for path in (two / "pictures").iterdir()] == ["bent.png"]
 
 
+def test_films_on_the_page(two, gallery):
+    """requirement: a film, and the two commands that make it."""
+    film = gallery.Film("one", "Goes", "It goes.", 7)
+    (two / "results" / "one-film.gif").write_bytes(b"GIF89a")
+    (two / "pictures" / "old-film.gif").write_bytes(b"")
+    gallery.write_gallery(two, [], two / "results", films=[film])
+    page = (two / "README.md").read_text(encoding="utf-8")
+    _, block = page.split("\nIt goes.\n\n")
+    run, show, *_ = (shlex.split(line) for line in block.splitlines())
+    assert run[:5] == ["python3", "-m", "thermowear", "run", "demos/one.toml"]
+    assert run[5:] == ["-o", "results/film", "--set", "analysis.frames=7"]
+    assert show == ["python3", "-m", "thermowear", "animate", "results/film"]
+    assert "![Goes](pictures/one-film.gif)" in page
+    assert [path.name for path in (two / "pictures").iterdir()] == ["one-film.gif"]
+
+
 def test_a_case_that_fails_ends_the_gallery(two, gallery, monkeypatch, capfd):
     """requirement: nothing is skipped: the exit code of the run, and no page."""
     monkeypatch.setattr(gallery, "HERE", two)

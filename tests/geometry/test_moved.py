@@ -58,6 +58,25 @@ def test_sides_are_found():
     assert len(first.nodes) == 5  # two elements of order 2, up to the top
 
 
+def test_nodes_of_a_face_do_not_cross():
+    """A round face between upright sides: its ends go up, as all of it does, by what it turns."""
+    mesh = two_blocks(inner=-0.02, outer=0.02, columns=(40, 3), order=2)
+    x, y = mesh.points.T
+    above = np.isin(np.arange(len(y)), mesh.cells[mesh.cell_tags == 1])
+    bent = np.column_stack([x, y + np.where(above, np.sqrt(0.04**2 - x**2) - 0.04, 0.0)])
+    mesh = replace(mesh, points=bent)
+    facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index("upper_face") + 1]
+    nodes = np.unique(facets)
+    face = bent[nodes[np.argsort(bent[nodes, 0])]]
+    body = MovableBody(mesh, ("upper",), face)
+    normals = -np.column_stack([face[:, 0], face[:, 1] + 0.04]) / 0.04  # of the circle
+    directions, held = body.ways(normals)
+    assert not held.any()
+    assert directions == pytest.approx(np.tile((0.0, -1.0), (len(face), 1)), abs=1e-3)
+    moved = replace(mesh, points=body.displaced(-3e-3 * directions))
+    assert scaled_jacobians(moved).min() > 0.7
+
+
 @pytest.mark.parametrize("triangles", [False, True])
 def test_shapes_of_cells(triangles):
     """Against an independent formula, before and after a face has become slanted."""

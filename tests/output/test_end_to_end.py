@@ -182,10 +182,13 @@ def test_the_profile_is_that_of_the_interface(finished):
     assert rates == pytest.approx(profile["wear_rate"], rel=1e-12, abs=0.0)
     # how much lies above the deepest point is known from the shape, the rest is gap and wear
     pairing = prepare(tw.load(folder / "case.resolved.toml"), MPI.COMM_WORLD, Phases()).pairing
-    least = (pairing.gap + i["wear_1"] + i["wear_2"]).min()
-    lost = i["shape"].max() - i["shape"] + least
+    unlike = pairing.gap + i["wear_1"] + i["wear_2"]
+    lost = i["shape"].max() - i["shape"] + unlike.min()
     heights = (lost / along).max() - lost / along
-    assert profile["shape_along_press"] == pytest.approx(heights, abs=1e-12 * np.ptp(i["shape"]))
+    # a mesh moved to its worn face is tilted: depths add up along normals that turn on the way
+    tilt = np.abs(normals[: len(press)].T - pairing.normals).max()
+    allowed = 1e-12 * np.ptp(i["shape"]) + tilt**2 * unlike.max() * np.ptp(1 / along)
+    assert profile["shape_along_press"] == pytest.approx(heights, abs=allowed)
 
 
 def test_a_starter_carries_its_load(finished):

@@ -66,7 +66,7 @@ def folders(tmp_path_factory):
 
 
 def test_every_picture_shows_something(folders):
-    """requirement: R1 in space."""
+    """requirement: pictures of a body in space exist, with something drawn on each."""
     expected = {
         "punch": {"interface", "wear", "history", "bodies", "deformed"},
         "brake": {"interface", "bodies", "deformed"},

@@ -28,7 +28,7 @@ def folders(tmp_path_factory):
 
 
 def test_every_picture_shows_something(folders):
-    """requirement: R1, the PNG exists, is large enough, and more than 1 % of it is drawn."""
+    """requirement: the PNG exists, is large enough, and more than 1 % of it is drawn."""
     assert make_pictures(folders / "hot") == []
     assert make_pictures(folders / "cold") == []
     expected = {
@@ -52,7 +52,7 @@ STARTERS = {
 
 @pytest.mark.parametrize(("name", "expected"), STARTERS.items(), ids=STARTERS)
 def test_pictures_of_curved_faces(name, expected, tmp_path):
-    """requirement: R1 for a plane half model and for a history of loads, drawn by the run."""
+    """requirement: those of a plane half model and of a history of loads, drawn by the run."""
     file, folder = tmp_path / "case.toml", tmp_path / "results"
     file.write_text(starter_text(name), encoding="utf-8")
     small = ["--set=mesh.degree=3", "--set=mesh.elements=12"]
@@ -67,7 +67,7 @@ def test_pictures_of_curved_faces(name, expected, tmp_path):
 
 
 def test_temperatures_in_time(tmp_path):
-    """requirement: R1, three panels, curves from the first step to the last; none for one row."""
+    """requirement: three panels, curves from the first step to the last; none for one row."""
     file, folder = tmp_path / "case.toml", tmp_path / "results"
     file.write_text(starter_text("disk-brake-stop"), encoding="utf-8")
     small = ["--no-pictures", "--set=mesh.degree=2", "--set=mesh.elements=4"]

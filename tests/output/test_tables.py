@@ -1,6 +1,7 @@
 """The files of the results folder."""
 
 import json
+import resource
 
 import meshio
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from thermowear.cli import main
 from thermowear.output import tables
 from thermowear.output.quantities import HISTORY, INTERFACE
+from thermowear.simulation import HistoryRow
 
 from ..conftest import COLD_RUNNING_IN
 
@@ -127,3 +129,21 @@ def test_a_table_of_another_kind_is_refused(tmp_path):
     (tmp_path / "x.csv").write_text("a,b\n1,2\n")
     with pytest.raises(ValueError, match="does not begin"):
         tables.read(tmp_path / "x.csv", HISTORY)
+
+
+def test_a_row_that_the_disk_does_not_take_leaves_no_trace(tmp_path):
+    """requirement: tables are whole when the disk is full, and go on when it is not any more."""
+    path = tmp_path / "history.csv"
+    rows = [HistoryRow(*np.full(10, value).tolist()) for value in (1 / 3, 2 / 3, 4 / 3)]
+    writer = tables.RowWriter(path, HISTORY, rows[:1])
+    whole = path.read_bytes()
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(whole) + 30, hard))  # for less than a row
+    try:
+        with pytest.raises(OSError, match="too large"):
+            writer.add(rows[1])
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_bytes() == whole
+    writer.add(rows[2])
+    assert tables.read(path, HISTORY)["time"] == pytest.approx([1 / 3, 4 / 3])

@@ -73,8 +73,9 @@ def assert_the_same(one, other):
             id="heat-in-time-varying",
         ),
         pytest.param(
-            COLD_RUNNING_IN,
-            ("mesh.degree=2", "wear.update=0.02", "analysis.end_time=2000 s"),
+            DEMOS / "annular_punch_deep.toml",
+            ("mesh.degree=3", "mesh.elements=2", "analysis.end_time=30 h")
+            + ("analysis.output_times=[]",),
             id="moved-meshes",
         ),
         pytest.param(
@@ -106,7 +107,7 @@ def test_an_analysis_goes_on_bitwise(case, overrides):
     whole = run(case, None, watched)
     last = len(watched.checkpoints) - 1
     assert last >= 5
-    for number in (0, last // 3, last - 1, last):
+    for number in (0, last // 3, 2 * last // 3, last - 1, last):
         again = Watched()
         saved = watched.checkpoints[number].state(rank=0)
         assert_the_same(whole, run(case, None, again, None, saved))
@@ -155,3 +156,24 @@ def test_other_bodies_are_refused():
     for name, other in others.items():
         with pytest.raises(tw.CaseError, match="meshed bodies"):
             run(case, None, None, None, dataclasses.replace(saved, **{name: other}))
+
+
+@pytest.mark.parametrize("jump", ["auto", 100])
+def test_more_cycles_are_those_of_a_longer_run(jump):
+    """requirement: a finished run of cycles may go on for more of them, within its tolerance."""
+    few, many = (
+        tw.load(
+            DEMOS / "tube_in_support.toml",
+            ("mesh.elements=16", "analysis.output_times=[]", f"analysis.jump={jump}")
+            + (f"analysis.cycles={count}", "analysis.increments=4"),
+        )
+        for count in (300, 700)
+    )
+    watched = Watched()
+    run(few, None, watched)
+    longer = run(many, None, None, None, watched.checkpoints[-1].state(0)).summary
+    known = run(many).summary
+    assert longer["cycles"] == known["cycles"] == 700
+    assert longer["time_s"] == pytest.approx(known["time_s"], rel=1e-12)
+    for quantity in ("wear_volume_1_m3", "wear_volume_2_m3", "dissipated_energy_J"):
+        assert longer[quantity] == pytest.approx(known[quantity], rel=1e-3, abs=0.0)

@@ -10,7 +10,8 @@ import pytest
 from thermowear.contact.full_sliding import FullSliding
 from thermowear.contact.stick_slip import StickSlipState
 from thermowear.errors import ComputationError
-from thermowear.simulation.cycle_jump import Behind, Instant, adaptive_jumps, fixed_jumps
+from thermowear.simulation.cycle_jump import adaptive_jumps, fixed_jumps
+from thermowear.simulation.instants import Behind, Instant
 from thermowear.simulation.load_path import Leg
 
 RATES = np.array([[1.0, 3.0, 0.0]])

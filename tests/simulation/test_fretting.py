@@ -12,8 +12,8 @@ import tomli_w
 
 import thermowear as tw
 from thermowear.cli import main
+from thermowear.simulation.building import build
 from thermowear.simulation.phases import Phases
-from thermowear.simulation.system import build
 
 from ..case.starter import FRETTING, SPHERE, solved, tables
 
@@ -102,7 +102,7 @@ def test_shear_opposes_the_push(starter):
 
 
 def test_the_bodies_are_in_balance(starter):
-    """requirement: V13 with shear in the contact."""
+    """requirement: forces balance to 1e-9 with shear in the contact too."""
     summary = starter.summary
     assert summary["equilibrium_relative_error"] < 1e-9
     assert summary["normal_force_N"] == pytest.approx(120.0, rel=1e-9)
@@ -268,7 +268,9 @@ def test_a_sphere_is_pressed_to_and_fro():
 
 
 def test_full_sliding_from_the_command_line(tmp_path, capsys):
-    """requirement: exit code 2, one line, and the results up to there with status failed."""
+    """requirement: exit code 2, one line, the results up to there with status failed, and what a
+    longer history could go on from.
+    """
     history = {"time": ["0 s", "1 s"], "tangential_force": ["0 N", "100 N"]}
     file, folder = tmp_path / "case.toml", tmp_path / "results"
     changes = {"load.history": history, "analysis.output_times": ["0.2 s"]}
@@ -285,6 +287,7 @@ def test_full_sliding_from_the_command_line(tmp_path, capsys):
     assert {path.name for path in folder.iterdir()} == {
         "summary.json",
         "run.json",
+        "checkpoint.npz",
         "case.resolved.toml",
         "fields.vtu",
         "interface.csv",

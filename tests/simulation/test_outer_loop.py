@@ -22,14 +22,14 @@ def worn_ring():
 
 
 def test_the_mesh_loses_what_is_worn_off(worn_ring):
-    """requirement: 5d, the volume of the mesh and the integral of the wear."""
+    """requirement: the volume of the mesh and the integral of the wear."""
     summary, interface = worn_ring.summary, worn_ring.interface
     assert summary["geometry_updates"] >= 8
     assert summary["geometry_volume_error"] < 1e-9
     assert summary["geometry_smallest_scaled_jacobian"] > 0.9
     lost, worn = summary["geometry_volume_1_m3"], summary["wear_volume_1_m3"]
     assert worn == pytest.approx(interface.weight @ interface.wear_1, rel=1e-8)
-    assert 0.0 < worn - lost < 0.012 * 0.05 * AREA  # what is still in the gap
+    assert lost == pytest.approx(worn, rel=1e-8)  # in the end nothing is left in the gap
     # Archard's law: k F s, with the mean radius of the steady pressure
     assert worn == pytest.approx(0.05e-12 * 50e6 * AREA * 10 * 0.07 * 3000, rel=0.15)
 
@@ -38,7 +38,7 @@ def test_the_face_of_the_mesh_is_where_it_was_worn_to(worn_ring):
     """The points of the interface are those of the worn face, above the unworn one at z = 0."""
     interface, lost = worn_ring.interface, worn_ring.summary["geometry_volume_1_m3"]
     assert interface.weight @ interface.y == pytest.approx(lost, rel=1e-6)
-    assert np.all(interface.y <= interface.wear_1 + 1e-9)
+    assert interface.y == pytest.approx(interface.wear_1, abs=1e-3 * interface.wear_1.max())
     assert interface.x.min() == pytest.approx(0.02)
     assert interface.x.max() == pytest.approx(0.12)
 
@@ -55,7 +55,7 @@ def test_little_wear_moves_nothing():
 
 
 def test_it_ends_in_the_steady_state_of_the_height_that_is_left():
-    """requirement: 5d, heat that takes a shorter way, without stepping through all of it."""
+    """requirement: heat that takes a shorter way, without stepping through all of it."""
     hot = "annular-punch", "mesh.degree=6", "mesh.elements=4"
     transient = 'analysis={type="transient", end_time="1.2e5 s", tolerance=1e-3}'
     worn = run_starter(*hot, transient, "wear.update=0.01", "analysis.end_time=300000 s")
@@ -105,29 +105,19 @@ def pin():
 
 
 def test_a_curved_face_grows_flat(pin):
-    """requirement: 5c at 640 mm, Argatov, Wear 271 (2011) 1147."""
+    """requirement: a pin after 640 mm, Argatov, Wear 271 (2011) 1147."""
     law = growing_point(10.385, 50e-3, 115.385e9, 1.33e-13)
     assert worn_half_width(pin.interface, 3) / law.start == pytest.approx(3.2543, rel=0.01)
     assert pin.interface.wear_1[0] == pytest.approx(2.3829e-6, rel=0.02)
 
 
 def test_the_volume_of_the_pin_is_that_of_archard(pin):
-    """requirement: 5c, ``k P s`` by the volume of the mesh itself to 1e-4."""
+    """requirement: ``k P s`` by the volume of the mesh itself to 1e-4."""
     summary = pin.summary
     assert summary["geometry_updates"] >= 3
     assert summary["geometry_volume_error"] < 1e-9
     assert summary["wear_volume_1_m3"] == pytest.approx(1.33e-13 * 10.385 * 0.64, rel=1e-4)
-    assert summary["geometry_volume_1_m3"] > 0.6 * summary["wear_volume_1_m3"]
+    assert summary["geometry_volume_1_m3"] == pytest.approx(1.33e-13 * 10.385 * 0.64, rel=1e-4)
     # the mesh's face is flat up to the edge of the contact: lower in the middle than it was
     flat = pin.interface.x < 0.3e-3
     assert np.ptp(pin.interface.y[flat]) < 0.35 * (0.3e-3) ** 2 / (2 * 50e-3)
-
-
-def test_cells_that_become_too_slanted_are_refused():
-    """The run says so and keeps what it has."""
-    steep = ("mesh.degree=2", "mesh.elements=60", "geometry.punch_height=2 mm")
-    result = run_starter(
-        "annular-punch-running-in", *steep, 'analysis.end_time="2e4 s"', "analysis.output_times=[]"
-    )
-    assert result.stopped is not None
-    assert len(result.history) > 2

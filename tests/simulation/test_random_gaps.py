@@ -8,10 +8,10 @@ import pytest
 import thermowear as tw
 from thermowear.case.starters import starter_text
 from thermowear.parallel import sum_over_ranks
+from thermowear.simulation.building import build
 from thermowear.simulation.conditions import Surroundings
 from thermowear.simulation.phases import Phases
 from thermowear.simulation.preparation import interface_problem
-from thermowear.simulation.system import build
 
 TRIES = 200
 

@@ -65,8 +65,12 @@ def test_pads_take_up_a_sector_of_their_disk():
     result = cold(PADS, *both)
     assert result.interface.wear_rate_2 == pytest.approx(result.interface.wear_rate_1 / 6)
     end = "analysis={type='transient', end_time='1e5 s'}"
-    worn = cold(PADS, *both, end).summary
-    assert worn["wear_volume_2_m3"] == pytest.approx(worn["wear_volume_1_m3"], rel=1e-9, abs=0.0)
+    worn = cold(PADS, *both, end)
+    volumes = worn.summary["wear_volume_1_m3"], worn.summary["wear_volume_2_m3"]
+    # once the pads' mesh is moved, depths of the disk are summed up over the pads' slanted face
+    slant = np.abs(np.gradient(worn.interface.wear_1, worn.interface.x)).max()
+    assert 0.0 < slant < 2e-4
+    assert volumes[1] == pytest.approx(volumes[0], rel=slant**2 / 2, abs=0.0)
 
 
 def test_the_whole_disk_cools_what_the_pads_heat():

@@ -82,9 +82,9 @@ def test_second_order_in_time():
     """requirement: V19, the error of the wear step falls with the square of its size."""
     from mpi4py import MPI
 
+    from thermowear.simulation.building import build
     from thermowear.simulation.phases import Phases
     from thermowear.simulation.preparation import interface_problem
-    from thermowear.simulation.system import build
     from thermowear.simulation.wear_step import advance
 
     case = tw.load(COLD_RUNNING_IN, ("mesh.degree=3", "mesh.elements=8"))

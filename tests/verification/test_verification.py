@@ -7,10 +7,12 @@ import pytest
 
 from thermowear import verification
 from thermowear.cli import main
-from thermowear.verification import CASES, Check, compare
+from thermowear.verification import CASES, SLOW, Check, compare
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in CASES]
+)
 def test_case(name):
     """requirement: every quantity within what is allowed of its reference."""
     checks = list(CASES[name]())
@@ -45,6 +47,31 @@ def test_json(monkeypatch, capsys):
         "id", "quantity", "computed", "reference", "error", "allowed", "source", "passed",
     ]  # fmt: skip
     assert row["passed"] is True
+
+
+@pytest.mark.parametrize(
+    ("words", "run"),
+    [
+        ([], ["quick"]),
+        (["--slow"], ["quick", "long"]),
+        (["long"], ["long"]),
+        (["quick"], ["quick"]),
+    ],
+)
+def test_slow_cases_are_asked_for(words, run, monkeypatch, capsys):
+    """requirement: ``--slow`` or their names; what was left out is said, apart from the list."""
+    by_error = {1e-4: "quick", 2e-4: "long"}
+    cases = {name: fake(error) for error, name in by_error.items()}
+    monkeypatch.setattr(verification, "CASES", cases)
+    monkeypatch.setattr(verification, "SLOW", {"long"})
+    assert main(["verify", "--json", *words]) == 0
+    heard = capsys.readouterr()
+    assert [by_error[row["error"]] for row in json.loads(heard.out)] == run
+    assert ("long" in heard.err) == (words == [])
+
+
+def test_slow_cases_are_cases():
+    assert set(CASES) > SLOW
 
 
 def test_unknown_id(capsys):

@@ -1,4 +1,4 @@
-"""A field of one mesh on another one of the same bodies, whose nodes have moved a little."""
+"""A field of one mesh on another one of the same bodies, moved a little or meshed anew."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from .field import as_function, reference_element
 _STEPS = 20
 _BETWEEN = 0.76
 """Of the way from the first corner of a cell to its middle."""
+_AT_ONCE = 2_000_000
+"""Pairs of points and cells that are looked at together."""
 _ROOM = 1e-6
 """Of a cell: a point that lies so little outside is looked for in it, too."""
 
@@ -50,7 +52,7 @@ def transferred(
     values : ndarray, shape (n_owned,)
         Of the field.
     old, new : dolfinx.fem.FunctionSpace
-        Of the same degree, on meshes that differ in the places of their nodes alone.
+        Of the same degree, on meshes of cells of one kind.
     old_bodies, new_bodies : Bodies
     groups : list of tuple of str
         Names of the parts of each body.
@@ -63,10 +65,12 @@ def transferred(
         Largest difference of both fields between the nodes, at one point of each new cell.
     """
     function = as_function(old, values, "field")
-    count, gdim = len(values), old.mesh.geometry.dim
-    result, error = values.copy(), 0.0
+    count, gdim = new.dofmap.index_map.size_local, old.mesh.geometry.dim
+    result, stays, error = np.zeros(count), np.zeros(count, dtype=bool), 0.0
     places = new.tabulate_dof_coordinates()[:count, :gdim]
-    stays = np.all(places == old.tabulate_dof_coordinates()[:count, :gdim], axis=1)
+    if _alike(old, new):
+        stays = np.all(places == old.tabulate_dof_coordinates()[:count, :gdim], axis=1)
+        result[stays] = values[stays]
     field = _Field(old)
     for parts in groups:
         cells = _gathered(old_bodies, function, parts)
@@ -81,6 +85,12 @@ def transferred(
         at, found = field.between_nodes(again)
         error = max(error, float(np.abs(field.at(cells, at) - found).max(initial=0.0)))
     return result, error
+
+
+def _alike(old: fem.FunctionSpace, new: fem.FunctionSpace) -> bool:
+    """Whether the meshes differ in the places of their nodes alone, on all ranks."""
+    same = np.array_equal(old.dofmap.list, new.dofmap.list)
+    return all(new.mesh.comm.allgather(same))
 
 
 class _Field:
@@ -112,6 +122,11 @@ class _Field:
 
     def at(self, cells: _Cells, points: np.ndarray) -> np.ndarray:
         """Values at points, in the cell that each lies in, or outside of which it lies least."""
+        chunk = max(1, _AT_ONCE // len(cells.nodes))
+        parts = [self._at(cells, points[i : i + chunk]) for i in range(0, len(points), chunk)]
+        return np.concatenate([np.empty(0), *parts])
+
+    def _at(self, cells: _Cells, points: np.ndarray) -> np.ndarray:
         low, high = cells.nodes.min(axis=1), cells.nodes.max(axis=1)
         room = _ROOM * (high - low).max(axis=1, keepdims=True)
         near = np.ones((len(points), len(low)), dtype=bool)
@@ -128,8 +143,6 @@ class _Field:
         order = np.lexsort((outside, which))
         _, first = np.unique(which[order], return_index=True)
         best = order[first]
-        if not len(best):
-            return np.empty(0)
         values = self._element.tabulate(0, inside[best])[0, :, :, 0]
         return np.einsum("nk,nk->n", values, cells.values[cell[best]])
 

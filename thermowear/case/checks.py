@@ -181,8 +181,6 @@ def _update(case: Case) -> Iterator[Fault]:
         return
     if case.analysis.type != "transient":
         yield "wear.update", f"meshes are not moved in a {case.analysis.type} analysis"
-    elif case.model == "3d":
-        yield "wear.update", "meshes are moved in sections, not in 3d"
 
 
 _CHECKS = (

@@ -18,6 +18,9 @@ from .facets import lagrange, lagrange_slopes, owned_facets
 from .quadrature import lobatto
 from .surface import Surface, gather_surface
 
+_ONWARD = (1.0, 0.3)
+"""Along x; faces that stand upright begin at their lower end, even when it has worn a little."""
+
 
 @dataclass(frozen=True)
 class Face:
@@ -144,8 +147,8 @@ def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarra
     loose = [v for v, facets in enumerate(at) if len(facets) == 1]
     if len(loose) != 2:
         raise CaseError(f"geometry: the contact face {surface} is not one connected open curve")
-    where = {v: tuple(nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1]) for v in loose}
-    vertex = min(loose, key=where.__getitem__)
+    where = {v: nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1] for v in loose}
+    vertex = min(loose, key=lambda v: float(where[v] @ _ONWARD))
     order, flip, facet = [], np.zeros(len(ends), dtype=bool), at[vertex][0]
     while True:
         order.append(facet)

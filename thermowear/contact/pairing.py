@@ -27,7 +27,7 @@ from ..bulk.kinematics import Model
 from ..errors import CaseError
 from .face import Face
 from .projection import project
-from .refinement import rule
+from .refinement import BESIDE, Rule, rule
 from .surface import Surface
 
 _SAME = 1e-10
@@ -70,6 +70,8 @@ class Pairing:
         On body 1 and body 2.
     unpaired : float
         Part of the face of body 1 that has nothing opposite and cannot touch.
+    pieces : Rule
+        Where the points come from: those of all pieces of the facets of body 1, one by one.
     """
 
     points: np.ndarray
@@ -79,6 +81,7 @@ class Pairing:
     gap: np.ndarray
     sides: tuple[Side, Side]
     unpaired: float
+    pieces: Rule
 
     @property
     def extent(self) -> float:
@@ -98,6 +101,7 @@ def pair(
     order: int,
     refine: bool = True,
     sliver: float = 1e-9,
+    beside: float = BESIDE,
 ) -> Pairing:
     """Pair two faces on their common refinement.
 
@@ -115,21 +119,28 @@ def pair(
         False: the facets of body 1 are not cut, each has the points of one rule.
     sliver : float
         Part of a facet in a section: it is not cut so near to its ends.
+    beside : float
+        Part of the face's size in a section: so far beside body 2 it is taken to go on straight.
 
     Raises
     ------
     CaseError
         If no point of body 1 faces body 2.
     """
-    on_1 = rule(face_1, face_2, order, refine, sliver)
-    facet, t = on_1.facet, on_1.t
-    if len(facet) == 0:
+    pieces = rule(face_1, face_2, order, refine, sliver, beside)
+    if len(pieces.facet) == 0:
         raise CaseError("geometry: the contact faces do not lie opposite each other")
+    return paired(face_1, face_2, model, pieces)
+
+
+def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces: Rule) -> Pairing:
+    """Pair two faces at given points of the face of body 1; those that coincide are one."""
+    facet, t = pieces.facet, pieces.t
     points, normals = face_1.points(facet, t), face_1.normals(facet, t)
-    weights = on_1.weight * face_1.stretch(facet, t) * model.area_factor(points)
+    weights = pieces.weight * face_1.stretch(facet, t) * model.area_factor(points)
     other, other_t, offset = project(face_2, points)
     gap = np.einsum("ni,ni->n", offset, normals)
-    covered = np.bincount(facet, on_1.weight, minlength=len(face_1.sizes))
+    covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
     group, first = _groups(points, _SAME * face_1.extent)
     weights = np.bincount(group, weights)
@@ -137,7 +148,16 @@ def pair(
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     sides = (Side(face_1, facet[first], t[first]), Side(face_2, other[first], other_t[first]))
     position = face_1.position(facet, t)[first]
-    return Pairing(points[first], position, weights, normals, gap[first], sides, max(unpaired, 0.0))
+    return Pairing(
+        points=points[first],
+        position=position,
+        weights=weights,
+        normals=normals,
+        gap=gap[first],
+        sides=sides,
+        unpaired=max(unpaired, 0.0),
+        pieces=pieces,
+    )
 
 
 def _groups(points: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:

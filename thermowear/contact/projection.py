@@ -13,6 +13,9 @@ _TRIALS = 4
 """Facets in space that are tried for each point: the nearest ones, as if they were flat."""
 _AT_ONCE = 1_000_000
 """Pairs of points and facets that are looked at together."""
+_PASSES = 10
+_FLATTEST = 0.3
+"""Cosine between a way and a normal of the face that it meets; steeper is taken for so much."""
 
 
 def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -34,11 +37,47 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
     return facet, t, face.points(facet, t) - points
 
 
+def ahead(
+    face: Face | Surface, points: np.ndarray, directions: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points of a face that lie ahead of others, or behind them.
+
+    Beyond the ends of the face its outermost points, as if it went on straight from there.
+
+    Parameters
+    ----------
+    face : Face or Surface
+    points : ndarray, shape (n, gdim) [m]
+    directions : ndarray, shape (n, gdim)
+        Unit vectors against the outward normals of the face.
+
+    Returns
+    -------
+    facet : ndarray, shape (n,)
+    t : ndarray, shape (n,) or (n, 2)
+    way : ndarray, shape (n,)
+        Along the directions, less than 0 behind the points [m].
+    """
+    way = np.zeros(len(points))
+    for _ in range(_PASSES):
+        facet, t, offset = project(face, points + way[:, None] * directions)
+        normals = face.normals(facet, t)
+        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_FLATTEST)
+        missed = np.einsum("ni,ni->n", offset, normals) / against
+        way += missed
+        if np.abs(missed).max() <= _SETTLED * face.extent:
+            break
+    return facet, t, way
+
+
 def beside(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
     """How far points lie beside their closest points: more than 0 beyond the face's edge [m]."""
     tangents = face.tangents(facet, t).reshape(len(facet), -1, offset.shape[1])
     across = np.linalg.qr(np.moveaxis(tangents, 1, 2))[0]
-    return np.linalg.norm(np.einsum("nik,ni->nk", across, offset), axis=1)
+    result = np.linalg.norm(np.einsum("nik,ni->nk", across, offset), axis=1)
+    if isinstance(face, Face):  # offsets from a corner between two facets lean to both of them
+        result[(facet + t > 0.0) & (facet + t < len(face.nodes))] = 0.0
+    return result
 
 
 def _on_chain(face: Face, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -16,7 +16,7 @@ from .projection import beside, project
 from .quadrature import gauss, lobatto, square
 from .surface import Surface
 
-_BESIDE = 1e-9
+BESIDE = 1e-9
 """Of the face's size: points that lie further beside body 2 have nothing opposite."""
 
 
@@ -39,17 +39,24 @@ class Rule:
 
 
 def rule(
-    face_1: Face | Surface, face_2: Face | Surface, order: int, refine: bool, sliver: float
+    face_1: Face | Surface,
+    face_2: Face | Surface,
+    order: int,
+    refine: bool,
+    sliver: float,
+    beside: float = BESIDE,
 ) -> Rule:
     """Points and weights; parameters as in `pairing.pair`."""
     if isinstance(face_1, Surface):
         assert isinstance(face_2, Surface)
         return _on_parts(face_1, face_2, order) if refine else _on_facets(face_1, face_2, order)
     assert isinstance(face_2, Face)
-    return _on_pieces(face_1, face_2, order, refine, sliver)
+    return _on_pieces(face_1, face_2, order, refine, sliver, beside)
 
 
-def _on_pieces(face_1: Face, face_2: Face, order: int, refine: bool, sliver: float) -> Rule:
+def _on_pieces(
+    face_1: Face, face_2: Face, order: int, refine: bool, sliver: float, beside: float
+) -> Rule:
     """A Gauss-Lobatto rule on each piece of the facets of a chain."""
     whole = [np.array([0.0, 1.0])] * len(face_1.nodes)
     cuts = _cuts(face_1, face_2, sliver) if refine else whole
@@ -61,7 +68,7 @@ def _on_pieces(face_1: Face, face_2: Face, order: int, refine: bool, sliver: flo
     pieces = Rule(np.repeat(facet, order), t, (size[:, None] * w).ravel())
     # whole pieces: the end of one outside the contact is a point of the next one inside
     inner = np.arange(1, order - 1) if order > 2 else np.arange(order)
-    return _facing(face_1, face_2, pieces, order, inner)
+    return _facing(face_1, face_2, pieces, order, inner, beside)
 
 
 def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
@@ -108,12 +115,12 @@ def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
     whole = Rule(facet, np.tile(places, (count, 1)), np.tile(weights, count))
     within = np.flatnonzero(np.all((places > 0) & (places < 1), axis=1))
     inner = within if len(within) else np.arange(len(weights))
-    return _facing(face_1, face_2, whole, len(weights), inner)
+    return _facing(face_1, face_2, whole, len(weights), inner, BESIDE)
 
 
-def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray) -> Rule:
+def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed: float) -> Rule:
     """Those pieces, of so many points each, whose inner points have body 2 opposite."""
     points = face_1.points(pieces.facet, pieces.t)
     off = beside(face_2, *project(face_2, points)).reshape(-1, count)[:, inner]
-    kept = np.repeat(off.max(axis=1) <= _BESIDE * face_1.extent, count)
+    kept = np.repeat(off.max(axis=1) <= allowed * face_1.extent, count)
     return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])

@@ -7,22 +7,29 @@ those at the ends of a face go along the sides of its body.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
 
 from .face import Face
 from .facets import lagrange
 from .pairing import Pairing
+from .surface import Surface
+
+_ROUGH = 1e-8
+"""How much less differences between neighbours count: they decide for nodes hardly seen alone."""
 
 
 @dataclass(frozen=True)
 class Paths:
-    """Ways of the nodes of a face, in order along it.
+    """Ways of the nodes of a face, in the order of `nodes_of`.
 
     Attributes
     ----------
-    directions : ndarray, shape (n_nodes, 2)
+    directions : ndarray, shape (n_nodes, gdim)
         Unit vectors out of the unworn body.
     held : ndarray of bool, shape (n_nodes,)
         Nodes that stay where they are.
@@ -32,32 +39,34 @@ class Paths:
     held: np.ndarray
 
 
-def nodes_of(face: Face) -> np.ndarray:
-    """Geometry nodes in order along the face, shape (n_nodes, 2) [m]."""
-    order = face.nodes.shape[1] - 1
-    return (
-        np.concatenate([face.nodes[:, :-1].reshape(-1, 2), face.nodes[-1:, -1]])
-        if order
-        else face.nodes
-    )
+def nodes_of(face: Face | Surface) -> np.ndarray:
+    """Geometry nodes, in a section in order along the face, shape (n_nodes, gdim) [m]."""
+    number, gdim = _numbers(face), face.nodes.shape[-1]
+    result = np.empty((number.max() + 1, gdim))
+    result[number] = face.nodes.reshape(*number.shape, gdim)
+    return result
 
 
-def node_normals(face: Face) -> np.ndarray:
-    """Outward unit normals at the nodes, means where facets meet, shape (n_nodes, 2)."""
-    count, order = len(face.nodes), face.nodes.shape[1] - 1
-    facet = np.repeat(np.arange(count), order + 1)
-    normals = face.normals(facet, np.tile(np.linspace(0.0, 1.0, order + 1), count))
-    number = face.numbers(order).ravel()
-    summed = np.column_stack([np.bincount(number, n) for n in normals.T])
+def node_normals(face: Face | Surface) -> np.ndarray:
+    """Outward unit normals at the nodes, means where facets meet, shape (n_nodes, gdim)."""
+    number = _numbers(face).ravel()
+    normals = _at(face, face.normals, np.linspace(0.0, 1.0, _order(face) + 1))
+    summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
     return summed / np.linalg.norm(summed, axis=1, keepdims=True)
 
 
-def curvatures(face: Face) -> np.ndarray:
-    """Of each facet: how far its normal turns, by its length, shape (n_facets,) [1/m]."""
-    every = np.arange(len(face.nodes))
-    first, last = (face.normals(every, np.full(len(every), t)) for t in (0.0, 1.0))
-    turn = np.arccos(np.clip(np.einsum("ni,ni->n", first, last), -1.0, 1.0))
-    return turn / face.sizes
+def curvatures(face: Face | Surface) -> np.ndarray:
+    """Largest of each facet, of circles through two of its corners, shape (n_facets,) [1/m]."""
+    ends = np.array([0.0, 1.0])
+    points, normals = _at(face, face.points, ends), _at(face, face.normals, ends)
+    pairs = np.array(list(itertools.combinations(range(points.shape[1]), 2))).T
+    chord, turn = (np.subtract(*v[:, pairs].swapaxes(0, 1)) for v in (points, normals))
+    return (np.linalg.norm(turn, axis=2) / np.linalg.norm(chord, axis=2)).max(axis=1)
+
+
+def lengths(face: Face | Surface) -> np.ndarray:
+    """Sizes of the facets, on a surface the sides of squares of their areas, (n_facets,) [m]."""
+    return face.sizes ** (1 / _dimension(face))
 
 
 class WornFace:
@@ -73,35 +82,34 @@ class WornFace:
 
     def __init__(self, pairing: Pairing, index: int, paths: Paths):
         side = pairing.sides[index]
-        assert isinstance(side.face, Face)
-        self.face = side.face
         self._paths = paths
-        order = side.face.nodes.shape[1] - 1
         out = pairing.normals if index == 0 else -pairing.normals
-        numbers = side.face.numbers(order)[side.facet]
-        shape = np.zeros((len(side.t), len(paths.directions)))
-        np.put_along_axis(shape, numbers, lagrange(order, side.t), axis=1)
+        node = _numbers(side.face)[side.facet]
+        values = _polynomials(_order(side.face), side.t)
+        values = values * np.einsum("ni,nki->nk", out, paths.directions[node])
+        point = np.broadcast_to(np.arange(len(node))[:, None], node.shape)
+        shape = len(node), len(paths.directions)
+        # depths at the points, by amounts of the nodes
+        self._depths = sp.csr_matrix((values.ravel(), (point.ravel(), node.ravel())), shape=shape)
         self._weights = pairing.weights
-        self._depths = shape * (out @ paths.directions.T)  # at the points, by amounts of the nodes
+        share = pairing.weights.sum() / side.face.sizes[np.unique(side.facet)].sum()
+        self._smoothing = _ROUGH * share * _roughness(side.face)
 
     def amounts(self, depth: np.ndarray) -> np.ndarray:
         """How far the nodes go so that the face loses a depth (n,), shape (n_nodes,) [m].
 
-        Nearest to it in the mean of squares over the area, with the same volume.
+        Nearest to it in the mean of squares over the area, with the same volume. Nodes that the
+        points hardly see go with their neighbours, those that they do not see at all stay.
         """
-        weighted = self._weights[:, None] * self._depths
-        free = ~self._paths.held & (np.abs(weighted).sum(axis=0) > 0.0)
-        matrix = weighted[:, free].T @ self._depths[:, free]
-        volume = weighted[:, free].sum(axis=0)
-        n = len(volume)
-        bordered = np.zeros((n + 1, n + 1))
-        scale = np.abs(matrix).max()
-        volume_scale = np.abs(volume).max()
-        bordered[:n, :n] = matrix / scale
-        bordered[:n, n] = bordered[n, :n] = volume / volume_scale
-        right = np.append(weighted[:, free].T @ depth / scale, self._weights @ depth / volume_scale)
+        weighted = sp.diags(self._weights) @ self._depths
+        volume = weighted.sum(axis=0).A1
+        free = ~self._paths.held & (abs(weighted).sum(axis=0).A1 > 0.0)
+        weighted, depths, volume = weighted[:, free], self._depths[:, free], volume[free]
+        factor = splu((weighted.T @ depths + self._smoothing[free][:, free]).tocsc())
+        nearest, fuller = factor.solve(weighted.T @ depth), factor.solve(volume)
+        lacking = self._weights @ depth - volume @ nearest
         result = np.zeros(len(free))
-        result[free] = np.linalg.lstsq(bordered, right, rcond=1e-13)[0][:n]
+        result[free] = nearest + lacking / (volume @ fuller) * fuller
         return result
 
     def depths(self, amounts: np.ndarray) -> np.ndarray:
@@ -109,10 +117,49 @@ class WornFace:
         return self._depths @ amounts
 
     def displacement(self, amounts: np.ndarray) -> np.ndarray:
-        """Of the nodes, into the body, shape (n_nodes, 2) [m]."""
+        """Of the nodes, into the body, shape (n_nodes, gdim) [m]."""
         return -amounts[:, None] * self._paths.directions
 
-    def tilt(self, amounts: np.ndarray) -> float:
-        """Largest difference of the depth between the ends of a facet, by its length."""
-        order = self.face.nodes.shape[1] - 1
-        return float((np.abs(np.diff(amounts[::order])) / self.face.sizes).max())
+
+def _dimension(face: Face | Surface) -> int:
+    return face.nodes.ndim - 2
+
+
+def _order(face: Face | Surface) -> int:
+    return face.nodes.shape[1] - 1
+
+
+def _numbers(face: Face | Surface) -> np.ndarray:
+    """Of the nodes of each facet, shape (n_facets, nodes_per_facet)."""
+    return face.numbers(_order(face)).reshape(len(face.nodes), -1)
+
+
+def _roughness(face: Face | Surface) -> sp.csr_matrix:
+    """Squared differences between neighbouring nodes times the facets' sizes, as a matrix."""
+    numbers = face.numbers(_order(face))
+    a, b = (
+        np.concatenate([np.delete(numbers, k, axis).ravel() for axis in range(1, numbers.ndim)])
+        for k in (0, -1)
+    )
+    size = np.repeat(face.sizes, numbers[0].size - numbers[0].shape[0] ** (numbers.ndim - 2))
+    size = np.tile(size, numbers.ndim - 1)
+    values = np.concatenate([size, size, -size, -size])
+    where = np.concatenate([a, b, a, b]), np.concatenate([a, b, b, a])
+    return sp.csr_matrix((values, where), shape=(numbers.max() + 1,) * 2)
+
+
+def _at(face: Face | Surface, values, knots: np.ndarray) -> np.ndarray:
+    """Values of a face's method on a grid of parameters of each facet, (n_facets, n_places, …)."""
+    dim, count = _dimension(face), len(face.nodes)
+    grid = np.array(list(itertools.product(knots, repeat=dim)))
+    facet, t = np.repeat(np.arange(count), len(grid)), np.tile(grid, (count, 1))
+    return values(facet, t if dim > 1 else t[:, 0]).reshape(count, len(grid), -1)
+
+
+def _polynomials(order: int, t: np.ndarray) -> np.ndarray:
+    """Those of the nodes of a facet at parameters (n,) or (n, 2), shape (n, nodes_per_facet)."""
+    values = np.ones((len(t), 1))
+    for along in t.reshape(len(t), -1).T:
+        values = values[:, :, None] * lagrange(order, along)[:, None]
+        values = values.reshape(len(t), -1)
+    return values

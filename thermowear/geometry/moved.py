@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -58,11 +58,37 @@ class MovableBody:
     def __init__(self, mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray):
         tags = [mesh.bodies.index(part) + 1 for part in parts]
         self._mesh = mesh
+        self.parts = parts
         self._cells = np.isin(mesh.cell_tags, tags)
         own = np.unique(mesh.cells[self._cells])
         self.face = own[cKDTree(mesh.points[own]).query(face)[1]]
         self._edges = _outline(mesh, mesh.cells[self._cells])
         self.sides = tuple(self._side(ends) for ends in (self.face[:2], self.face[-2:][::-1]))
+
+    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Directions out of the body that the nodes of the face go along, and which of them stay.
+
+        Its ends go along the sides, or stay where the outline goes on smoothly. From the normals
+        the others lean as much less as they are nearer to the other end, and do not cross.
+
+        Parameters
+        ----------
+        normals : ndarray, shape (n, 2)
+            Outward, at the nodes of the face.
+
+        Returns
+        -------
+        directions : ndarray, shape (n, 2)
+        held : ndarray of bool, shape (n,)
+        """
+        held, turn = np.zeros(len(normals), dtype=bool), np.zeros(2)
+        for k, side in enumerate(self.sides):
+            held[-k] = not side.is_corner
+            if side.is_corner:
+                turn[k] = _angle(normals[-k], -side.inward)
+        steps = np.linalg.norm(np.diff(self._mesh.points[self.face], axis=0), axis=1)
+        part = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+        return _turned(normals, (1 - part) * turn[0] + part * turn[1]), held
 
     def displaced(self, displacement: np.ndarray) -> np.ndarray:
         """Coordinates of all nodes of the mesh after the face has moved, shape (n_points, 2) [m].
@@ -102,20 +128,12 @@ class MovableBody:
         """
         edges = self._edges[np.any(outlined[self._edges] != 0.0, axis=(1, 2))]
         points = self._mesh.points[edges]
-        return _enclosed(points, factor) - _enclosed(points + outlined[edges], factor)
+        return enclosed(points, factor) - enclosed(points + outlined[edges], factor)
 
     def followed(self, outlined: np.ndarray) -> np.ndarray:
         """Coordinates of all nodes of the mesh when the outline has moved, (n_points, 2) [m]."""
-        mesh, given = self._mesh, outlined.copy()
-        matrices, nodes = stiffness(mesh, self._cells)
-        count, size = len(mesh.points), nodes.shape[1]
-        rows, columns = np.repeat(nodes, size, axis=1).ravel(), np.tile(nodes, size).ravel()
-        whole = sp.coo_matrix((matrices.ravel(), (rows, columns)), shape=(count, count)).tocsr()
-        inner = np.setdiff1d(np.unique(nodes), np.unique(self._edges))
-        if len(inner):
-            solved = spsolve(whole[inner][:, inner].tocsc(), -(whole[inner] @ given))
-            given[inner] = solved.reshape(len(inner), -1)
-        return mesh.points + given
+        known = np.unique(self._edges)
+        return self._mesh.points + extended(self._mesh, self._cells, known, outlined)
 
     def _slid(self, side: Side, way: float) -> np.ndarray:
         """How far the nodes of a side go along it when its first one goes so far [m]."""
@@ -155,9 +173,34 @@ class MovableBody:
         return Side(along, inward, bool(inward @ from_face < _CORNER))
 
 
-def with_points(mesh: TaggedMesh, points: np.ndarray) -> TaggedMesh:
-    """The same mesh with its nodes elsewhere."""
-    return replace(mesh, points=np.ascontiguousarray(points))
+def extended(
+    mesh: TaggedMesh, cells: np.ndarray, known: np.ndarray, given: np.ndarray
+) -> np.ndarray:
+    """A displacement of the nodes of some cells that is harmonic between known ones.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    cells : ndarray of bool, shape (n_cells,)
+    known : ndarray of int
+        Nodes whose displacement is given.
+    given : ndarray, shape (n_points, 2)
+        It, zero elsewhere [m].
+
+    Returns
+    -------
+    ndarray, shape (n_points, 2) [m]
+    """
+    result = given.copy()
+    matrices, nodes = stiffness(mesh, cells)
+    count, size = len(mesh.points), nodes.shape[1]
+    rows, columns = np.repeat(nodes, size, axis=1).ravel(), np.tile(nodes, size).ravel()
+    whole = sp.coo_matrix((matrices.ravel(), (rows, columns)), shape=(count, count)).tocsr()
+    inner = np.setdiff1d(np.unique(nodes), known)
+    if len(inner):
+        solved = spsolve(whole[inner][:, inner].tocsc(), -(whole[inner] @ given))
+        result[inner] = solved.reshape(len(inner), -1)
+    return result
 
 
 def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
@@ -176,7 +219,7 @@ def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
     return edges
 
 
-def _enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
+def enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
     """What edges (n, n_nodes, 2) add to ``∮ G dy``, G the integral of a factor along x."""
     order = edges.shape[1] - 1
     t, w = np.polynomial.legendre.leggauss(2 * order + 1)
@@ -189,6 +232,18 @@ def _enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> 
     x, rise = points[..., 0].ravel(), np.einsum("qk,nk->nq", slopes, edges[..., 1]).ravel()
     halfway = np.column_stack([x / 2, points[..., 1].ravel()])
     return float(np.tile(w, len(edges)) @ (factor(halfway) * x * rise))
+
+
+def _angle(first: np.ndarray, second: np.ndarray) -> float:
+    """From one plane vector to another, anticlockwise."""
+    return float(np.arctan2(first[0] * second[1] - first[1] * second[0], first @ second))
+
+
+def _turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Plane vectors (n, 2) turned anticlockwise."""
+    cos, sin = np.cos(angles), np.sin(angles)
+    x, y = vectors.T
+    return np.column_stack([cos * x - sin * y, sin * x + cos * y])
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

@@ -40,11 +40,27 @@ def shape_functions(cell_type: str, order: int, points: np.ndarray) -> np.ndarra
     )
 
 
+def slopes(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
+    """Derivatives of the Lagrange polynomials, shape (n, dim, n_nodes)."""
+    powers = _exponents(cell_type, order)
+    along = [
+        power * np.prod(points[:, None] ** np.maximum(powers - unit, 0), axis=2)
+        for power, unit in zip(powers.T, np.eye(powers.shape[1], dtype=int), strict=True)
+    ]
+    return np.stack(along, axis=1) @ np.linalg.inv(
+        _monomials(cell_type, order, reference_nodes(cell_type, order))
+    )
+
+
 def _monomials(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
-    powers = np.indices([order + 1] * points.shape[1]).reshape(points.shape[1], -1).T
-    if cell_type == "triangle":
-        powers = powers[powers.sum(axis=1) <= order]
-    return np.prod(points[:, None] ** powers, axis=2)
+    return np.prod(points[:, None] ** _exponents(cell_type, order), axis=2)
+
+
+def _exponents(cell_type: str, order: int) -> np.ndarray:
+    """Of the monomials that the polynomials of a cell are made of, shape (n_nodes, dim)."""
+    dim = reference_nodes(cell_type, 1).shape[1]
+    powers = np.indices([order + 1] * dim).reshape(dim, -1).T
+    return powers[powers.sum(axis=1) <= order] if cell_type == "triangle" else powers
 
 
 def quadratic(mesh: TaggedMesh) -> TaggedMesh:

@@ -1,37 +1,31 @@
-"""Shape functions on cells of any order, and how well the cells are shaped."""
+"""How well cells of any order are shaped, and integrals over them."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from .nodes import reference_nodes
-from .orders import shape_functions
+from .orders import shape_functions, slopes
 from .tagged import TaggedMesh
 
-_PLACES = 7
-"""Along each side of a cell, at which its shape is looked at."""
-
-
-def slopes(kind: str, order: int, places: np.ndarray) -> np.ndarray:
-    """Derivatives of the Lagrange polynomials of a plane cell, shape (n_places, 2, n_nodes)."""
-    nodes, powers = reference_nodes(kind, order), _powers(kind, order)
-    matrix = np.stack([nodes[:, 0] ** i * nodes[:, 1] ** j for i, j in powers], axis=1)
-    x, y = places.T
-    along = np.stack([i * x ** max(i - 1, 0) * y**j for i, j in powers], axis=1)
-    across = np.stack([j * x**i * y ** max(j - 1, 0) for i, j in powers], axis=1)
-    return np.stack([along, across], axis=1) @ np.linalg.inv(matrix)
+_PLACES = {2: 7, 3: 4}
+"""Along each side of a cell of the plane or in space, at which its shape is looked at."""
+_AT_ONCE = 500
+"""Cells whose matrices are made together."""
 
 
 def scaled_jacobians(mesh: TaggedMesh) -> np.ndarray:
-    """Smallest sine of the angle between the grid lines of each plane cell; negative if inverted.
+    """Smallest determinant of the unit vectors along the grid lines of each cell.
 
-    Shape (n_cells,).
+    In the plane the sine of the angle between them; negative where a cell is inverted. Shape
+    (n_cells,).
     """
-    places = np.array(
-        [(x, y) for y in np.linspace(0, 1, _PLACES) for x in np.linspace(0, 1, _PLACES)]
-    )
+    dim = mesh.points.shape[1]
+    places = np.array(list(itertools.product(np.linspace(0, 1, _PLACES[dim]), repeat=dim)))
     if mesh.cell_type == "triangle":
         places = places[places.sum(axis=1) < 1.01]
     tangents = np.einsum(
@@ -41,6 +35,13 @@ def scaled_jacobians(mesh: TaggedMesh) -> np.ndarray:
     return (np.linalg.det(tangents) / lengths).min(axis=1)
 
 
+def quality(mesh: TaggedMesh, parts: tuple[str, ...]) -> float:
+    """Smallest scaled Jacobian of some parts of a mesh; -1 where cells have vanished."""
+    of_parts = np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])
+    found = scaled_jacobians(replace(mesh, cells=mesh.cells[of_parts]))
+    return float(np.nan_to_num(found, nan=-1.0).min())
+
+
 def volume(
     mesh: TaggedMesh, cells: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]
 ) -> float:
@@ -48,7 +49,7 @@ def volume(
 
     `cells` as in `stiffness`.
     """
-    places, weights = _rule(mesh.cell_type, mesh.order + 2)
+    places, weights = gauss_rule(mesh.cell_type, mesh.order + 2)
     nodes = mesh.points[mesh.cells[cells]]
     tangents = np.einsum("qdk,cki->cqdi", slopes(mesh.cell_type, mesh.order, places), nodes)
     values = shape_functions(mesh.cell_type, mesh.order, places)
@@ -58,7 +59,7 @@ def volume(
 
 
 def stiffness(mesh: TaggedMesh, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Matrices of ``∫ grad u·grad v`` of plane cells, and the integrals' places in the whole.
+    """Matrices of ``∫ grad u·grad v`` of cells, and the integrals' places in the whole.
 
     Parameters
     ----------
@@ -71,27 +72,44 @@ def stiffness(mesh: TaggedMesh, cells: np.ndarray) -> tuple[np.ndarray, np.ndarr
     matrices : ndarray, shape (n, nodes_per_cell, nodes_per_cell)
     nodes : ndarray of int, shape (n, nodes_per_cell)
     """
-    places, weights = _rule(mesh.cell_type, mesh.order + 2)
     nodes = mesh.cells[cells]
-    derivatives = slopes(mesh.cell_type, mesh.order, places)
-    tangents = np.einsum("qdk,cki->cqdi", derivatives, mesh.points[nodes])
-    gradients = np.linalg.solve(
-        tangents, np.broadcast_to(derivatives, (len(nodes), *derivatives.shape))
-    )
-    areas = np.abs(np.linalg.det(tangents)) * weights
-    return np.einsum("cq,cqik,cqil->ckl", areas, gradients, gradients), nodes
+    return laplacians(mesh.cell_type, mesh.order, mesh.points[nodes]), nodes
 
 
-def _powers(kind: str, order: int) -> list[tuple[int, int]]:
-    n = range(order + 1)
-    return [(i, j) for i in n for j in n if kind != "triangle" or i + j <= order]
+def laplacians(kind: str, order: int, nodes: np.ndarray) -> np.ndarray:
+    """Matrices of ``∫ grad u·grad v`` of cells, also of lines and surfaces in space.
+
+    Parameters
+    ----------
+    kind : str
+    order : int
+    nodes : ndarray, shape (n, nodes_per_cell, gdim) [m]
+
+    Returns
+    -------
+    ndarray, shape (n, nodes_per_cell, nodes_per_cell)
+    """
+    places, weights = gauss_rule(kind, order + 2)
+    derivatives = slopes(kind, order, places)
+    result = np.empty((len(nodes), derivatives.shape[2], derivatives.shape[2]))
+    for first in range(0, len(nodes), _AT_ONCE):
+        some = slice(first, first + _AT_ONCE)
+        tangents = np.einsum("qdk,cki->cqdi", derivatives, nodes[some])
+        metric = tangents @ tangents.mT
+        sizes = np.sqrt(np.linalg.det(metric)) * weights
+        along = np.linalg.solve(metric, derivatives) * sizes[..., None, None]
+        shape = len(along), -1, derivatives.shape[2]
+        result[some] = derivatives.reshape(shape[1:]).T @ along.reshape(shape)
+    return result
 
 
-def _rule(kind: str, count: int) -> tuple[np.ndarray, np.ndarray]:
+def gauss_rule(kind: str, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss points and weights of the cell of unit sides."""
     roots, weights = np.polynomial.legendre.leggauss(count)
-    x, y = np.meshgrid((roots + 1) / 2, (roots + 1) / 2, indexing="ij")
-    areas = np.outer(weights, weights) / 4
+    dim = reference_nodes(kind, 1).shape[1]
+    places = np.array(list(itertools.product((roots + 1) / 2, repeat=dim)))
+    sizes = np.prod(list(itertools.product(weights / 2, repeat=dim)), axis=1)
     if kind == "triangle":
-        areas, y = areas * (1 - x), y * (1 - x)
-    return np.column_stack([x.ravel(), y.ravel()]), areas.ravel()
+        x, y = places.T
+        places, sizes = np.column_stack([x, y * (1 - x)]), sizes * (1 - x)
+    return places, sizes

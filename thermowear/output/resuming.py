@@ -95,10 +95,9 @@ def last_checkpoint(
     about = found[0]
     changed = forbidden_changes(load(about["case"]), case, about["time"])
     if changed:
-        raise CaseError(
-            f"--resume: differs from the case of the checkpoint in {', '.join(changed)}; undo "
-            f"that, or {_ANEW}"
-        )
+        first, *others = changed
+        also = "".join(f", {change.key} differs too" for change in others)
+        raise CaseError(f"--resume: not the case of the run: {first}{also}; undo that, or {_ANEW}")
     if about["ranks"] != ranks:
         raise CaseError(
             f"--resume: the checkpoint was made by {about['ranks']} processes, not by {ranks}; "

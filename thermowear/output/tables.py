@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -50,9 +51,14 @@ class RowWriter:
         _write(path, table, map(self._values, rows))
 
     def add(self, row) -> None:
-        """Append a row."""
-        with self._path.open("a", encoding="utf-8", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerow(_texts(self._values(row)))
+        """Append a row; nothing of it where the disk is full."""
+        whole = self._path.stat().st_size
+        try:
+            with self._path.open("a", encoding="utf-8", newline="") as file:
+                csv.writer(file, lineterminator="\n").writerow(_texts(self._values(row)))
+        except OSError:
+            os.truncate(self._path, whole)
+            raise
 
     def _values(self, row) -> list[float]:
         return [getattr(row, name) for name in self._table]

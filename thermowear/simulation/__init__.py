@@ -1,18 +1,8 @@
 """The analyses: initial contact, steady state, running-in, fretting."""
 
 from .observer import Observer
-from .result import (
-    BodyFields,
-    CycleRow,
-    Frame,
-    FrictionInterface,
-    HeatRow,
-    HistoryRow,
-    Interface,
-    LoadRow,
-    Result,
-    WornTrack,
-)
+from .result import BodyFields, Frame, FrictionInterface, Interface, Result, WornTrack
+from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
 from .run import run
 
 __all__ = [

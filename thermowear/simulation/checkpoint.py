@@ -20,7 +20,7 @@ from ..contact.stick_slip import StickSlipState
 from ..errors import CaseError
 from .contact_method import Contact
 from .heat_states import StoredHeat
-from .result import CycleRow, HeatRow, HistoryRow, LoadRow
+from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
 from .wear_step import WornContact
 
 Kind = TypeVar("Kind")

@@ -9,14 +9,19 @@ import numpy as np
 from ..bulk.kinematics import Model
 from ..case.schema import Case
 from ..contact.face import Face
-from ..contact.pairing import Pairing, pair
+from ..contact.pairing import Pairing, pair, paired
 from ..contact.pressure import pressure_basis
+from ..contact.projection import ahead
+from ..contact.refinement import BESIDE
+from ..contact.surface import Surface
 from ..laws.motions import RigidMotion
 from .initial_shape import initial_gap
 from .worn_geometry import WornGeometry
 
 _SLIVER = 1e-3
 """Of a facet: so near to its ends, facets that matched when they were new meet worn ones."""
+_ALONG = 0.05
+"""Of a face: so far a holder may take it along the other one, past its end."""
 
 
 def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pairing, np.ndarray]:
@@ -29,32 +34,56 @@ def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pair
 
 
 def worn_contact_points(
-    case: Case, model: Model, worn: WornGeometry, face_1: Face, face_2: Face
+    case: Case, model: Model, worn: WornGeometry, face_1: Face | Surface, face_2: Face | Surface
 ) -> tuple[Pairing, np.ndarray]:
-    """The same of worn faces, paired where body 1 has got to; the gap is that of unworn faces."""
+    """The same of worn faces, paired where body 1 has got to; the gap is that of unworn faces.
+
+    It is measured straight along the normals. The closest point will not do here: where a face
+    cannot follow the edge of its wear, the faces overlap by what is kept of it, on a slope.
+    """
     moved, turned = worn.holder
     motion = RigidMotion(moved, turned, np.zeros(3))
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
-    pairing, basis = _points(case, model, closer, face_2, _SLIVER)
+    if worn.pieces is None:
+        pairing, basis = _points(case, model, closer, face_2, _SLIVER, _beside(worn, face_1))
+    else:
+        pairing = paired(closer, face_2, model, worn.pieces)
+        basis = _basis(case, pairing)
     first, second = pairing.sides
     points = face_1.points(first.facet, first.t)
-    apart = np.einsum("ni,ni->n", pairing.normals, motion.at(points))
-    unworn = worn.carried(worn.lacking - worn.depth.sum(axis=0), pairing)
-    return replace(
-        pairing,
-        points=points,
-        gap=pairing.gap + apart + unworn,
-        sides=(replace(first, face=face_1), second),
-    ), basis
+    to = motion.at(points)
+    apart = np.einsum("ni,ni->n", pairing.normals, to)
+    facet, t, gap = ahead(face_2, points + to, pairing.normals)
+    sides = replace(first, face=face_1), replace(second, facet=facet, t=t)
+    worn_pairing = replace(pairing, points=points, sides=sides)
+    unworn = worn.carried(worn.lacking, pairing) - worn.moved(worn_pairing).sum(axis=0)
+    return replace(worn_pairing, gap=gap + apart + unworn), basis
+
+
+def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:
+    """How far a face may get beside the other one, of its size.
+
+    Not at all where it has reached beyond it from the beginning. Where it has not, it is its holder
+    that has taken it along, over a body that goes on.
+    """
+    opposite = worn.at[0] == 0.0 and worn.at[-1] == len(face_1.nodes)
+    return _ALONG if opposite else BESIDE
 
 
 def _points(
-    case: Case, model: Model, face_1, face_2, sliver: float = 1e-9
+    case: Case, model: Model, face_1, face_2, sliver: float = 1e-9, beside: float = BESIDE
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points of two faces, and pressure space Ψ."""
     degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree
     if pressure_degree == "lobatto":  # point by point, at the nodes of body 1's facets
         pairing = pair(face_1, face_2, model, degree + 1, refine=False)
         return pairing, np.eye(len(pairing.weights))
-    pairing = pair(face_1, face_2, model, degree + 2, sliver=sliver)
-    return pairing, pressure_basis(pairing, pressure_degree or max(degree - 1, 1))
+    pairing = pair(face_1, face_2, model, degree + 2, sliver=sliver, beside=beside)
+    return pairing, _basis(case, pairing)
+
+
+def _basis(case: Case, pairing: Pairing) -> np.ndarray:
+    """Pressure space Ψ, by default a degree below the displacement."""
+    degree = case.contact.pressure_degree
+    assert degree != "lobatto"
+    return pressure_basis(pairing, degree or max(case.mesh.degree - 1, 1))

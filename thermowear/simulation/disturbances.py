@@ -18,10 +18,11 @@ from ..laws.stability import (
     load_free,
     static_modes,
 )
+from .building import build
 from .conditions import Conditions
 from .friction_heat import FrictionHeat
 from .growth import Growing, GrowthModel
-from .system import System, build
+from .system import System
 
 _KINDS = 24
 """Disturbances that heat acts on most: a growing one is made up of them, see `leading`."""

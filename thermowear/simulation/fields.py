@@ -20,6 +20,9 @@ _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
 def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields | None:
     """Displacement (holder's motion included), temperature and von Mises stress.
 
+    Body 1 is where it was when its mesh was last moved to the worn face: a body that has become
+    lower stands on the other one.
+
     Every rank calls; ranks other than 0 get None. Cells come in the order of the mesh file.
     """
     mesh, elastic = system.bodies.mesh, system.elastic
@@ -52,6 +55,10 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
     body, points, displacement, mises, *temperature = (
         np.concatenate([part[k] for part in parts])[order] for k in range(1, len(parts[0]))
     )
+    if system.worn is not None:
+        placed = RigidMotion(*system.worn.holder, np.zeros(3)).at(points[body == 1])
+        points[body == 1] += placed
+        displacement[body == 1] -= placed
     absolute = temperature[0][..., 0] + ambient if temperature else None
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 

@@ -16,9 +16,10 @@ from ..contact.slip_wear import Profile, SlipWear, profile
 from ..contact.stick_slip import StickSlipState, advance, follow, unloaded
 from ..contact.tangential import FrictionalContact, condense_tangential
 from ..laws.motions import translation
-from .cycle_jump import Behind, Instant, adaptive_jumps, fixed_jumps
+from .cycle_jump import adaptive_jumps, fixed_jumps
 from .fretting_record import Fretted, FrettingRecord
 from .guarded import go_through
+from .instants import Behind, Instant
 from .load_path import Leg, by_fixed_jumps, cycle_legs, first_pass, to_stop_at
 from .observer import Observer
 from .outcome import Outcome

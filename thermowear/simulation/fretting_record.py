@@ -11,15 +11,15 @@ from ..contact.slip_wear import Profile
 from ..contact.stick_slip import StickSlipState
 from ..laws.motions import translation
 from .checkpoint import can_be_packed
-from .cycle_jump import Instant, Jump
 from .film import Film, Shown
+from .fretting_tables import FrettingTables
+from .instants import Instant, Jump
 from .observer import Observer
 from .recording import interface_at
-from .result import CycleRow, FrictionHistory, FrictionInterface, Interface, LoadRow
+from .result import FrictionHistory, FrictionInterface, Interface
+from .rows import CycleRow, LoadRow
 from .state import BodyState, ContactState, contact_state
 from .system import System
-
-_SLIDES = 1 - 1e-6  # of friction's limit
 
 
 @can_be_packed
@@ -72,6 +72,7 @@ class FrettingRecord:
     ):
         self.outputs: dict[float, Interface] = {}
         self._system = system
+        self._tables = FrettingTables(system)
         self._translations = translations
         self._profiles = profiles
         self._observer = observer
@@ -106,7 +107,7 @@ class FrettingRecord:
         """Take up the end of an increment."""
         leg = instant.leg
         self.last = instant.state
-        self._rows.append(self._row(instant))
+        self._rows.append(self._tables.row(instant))
         self._observer.load_step(self._rows[-1])
         if self._now and self._now[-1].leg.cycle != leg.cycle:
             self._now = self._now[-1:]  # where the cycle begins
@@ -118,7 +119,7 @@ class FrettingRecord:
             self._observer.cycle(self._cycles[-1])
         if instant.is_output:
             with self._system.phases("output"):
-                self._frictions[leg.end] = self._friction()
+                self._frictions[leg.end] = self._tables.friction(self.last)
                 self.outputs[leg.end] = self.interface()[2]
                 self._observer.output(leg.end, self.outputs[leg.end], self._frictions[leg.end])
         self._keep_frame(instant)
@@ -144,7 +145,7 @@ class FrettingRecord:
         begin, end = history.cycle or (0.0, np.inf)
         rates = self._per_cycle / (end - begin)
         contact = contact_state(system, pressure, shear)
-        bodies, found = interface_at(system, contact, moved, self._depths(state), rates)
+        bodies, found = interface_at(system, contact, moved, self._tables.depths(state), rates)
         return contact, bodies, replace(found, gap=found.gap + system.basis @ self._slid_along())
 
     def _slid_along(self) -> np.ndarray:
@@ -157,7 +158,9 @@ class FrettingRecord:
 
     def history(self) -> FrictionHistory:
         """All of it."""
-        return FrictionHistory(self._rows, self._cycles, self._friction(), self._frictions)
+        return FrictionHistory(
+            self._rows, self._cycles, self._tables.friction(self.last), self._frictions
+        )
 
     def extra(self) -> dict:
         """What a fretting analysis adds to the summary."""
@@ -178,74 +181,9 @@ class FrettingRecord:
             "wear_volume_per_cycle_2_m3": per_cycle[1],
         }
 
-    def _depths(self, state: StickSlipState) -> np.ndarray:
-        """Depths worn off both bodies at the points, shape (2, n) [m]."""
-        system = self._system
-        both = np.zeros((2, len(system.weights)))
-        both[list(system.laws)] = state.worn @ system.basis.T
-        return both
-
-    def _row(self, instant: Instant) -> LoadRow:
-        system, state = self._system, instant.state
-        w, pressure = system.weights, system.basis @ state.pressure
-        forces, motions = (np.append(v, [0.0, 0.0]) for v in (state.force, state.motion))
-        volumes = self._depths(state) @ w
-        return LoadRow(
-            time=instant.time,
-            normal_force=float(forces[0]),
-            approach=float(motions[0]),
-            tangential_force=float(forces[1]),
-            tangential_displacement=float(motions[1]),
-            max_pressure=float(pressure.max()),
-            contact_area=float(w[pressure > 0].sum()),
-            stick_area=float(w[self._sticking(state)].sum()),
-            dissipated=float(w @ state.dissipated),
-            iterations=state.iterations,
-            cycle=instant.leg.cycle,
-            wear_volume_1=float(volumes[0]),
-            wear_volume_2=float(volumes[1]),
-        )
-
     def _cycle(self, jump: Jump) -> CycleRow:
         """The cycle that has ended just now, the last of a jump."""
-        w, last = self._system.weights, self._now[-1]
-        turn = self._turn or self._now[0]
-        start, end = (self._depths(instant.state) for instant in (turn, last))
+        turn, last = self._turn or self._now[0], self._now[-1]
+        start, end = (self._tables.depths(instant.state) for instant in (turn, last))
         self._per_cycle, self._turn = (end - start) / jump.cycles, last
-        pressures = np.array([i.state.pressure for i in self._now]) @ self._system.basis.T
-        return CycleRow(
-            cycle=last.leg.cycle,
-            time=last.time,
-            wear_volume_1=float(end[0] @ w),
-            wear_volume_2=float(end[1] @ w),
-            dissipated=float(w @ last.state.dissipated),
-            max_wear_1=float(end[0].max()),
-            max_wear_2=float(end[1].max()),
-            contact_area=float(w[(pressures > 0).any(axis=0)].sum()),
-            max_pressure=float(pressures.max()),
-            jump=jump.cycles,
-            error=jump.error,
-        )
-
-    def _sticking(self, state: StickSlipState) -> np.ndarray:
-        """Points whose shear is below friction's limit, shape (n,)."""
-        basis = self._system.basis
-        pressure, shear = basis @ state.pressure, basis @ state.shear[:, 0]
-        return np.abs(shear) < _SLIDES * self._system.friction * pressure
-
-    def _friction(self) -> FrictionInterface:
-        """Sticking and slipping in the last state."""
-        system, state = self._system, self.last
-        points, pressure = system.pairing.points, system.basis @ state.pressure
-        status = np.where(pressure > 0, np.where(self._sticking(state), 1, 2), 0)
-        return FrictionInterface(
-            x=points[:, 0],
-            y=points[:, 1],
-            s=system.pairing.position,
-            weight=system.weights,
-            pressure=pressure,
-            shear=system.basis @ state.shear[:, 0],
-            slip=state.point_slip[:, 0],
-            dissipated=state.dissipated,
-            status=status,
-        )
+        return self._tables.cycle(self._now, jump)

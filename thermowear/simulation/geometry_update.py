@@ -10,22 +10,28 @@ from ..bulk.kinematics import section_model
 from ..bulk.transfer import transferred
 from ..contact.worn_face import WornFace
 from ..errors import ComputationError
+from ..geometry.moved import MovableBody
+from ..geometry.new_face import NewFace
 from ..geometry.shapes import scaled_jacobians
+from ..geometry.tagged import TaggedMesh
 from ..laws.motions import combined
 from ..parallel import on_root
+from .building import build
 from .interface_problem import InterfaceProblem
 from .kept_wear import KeptWear, movable_body
+from .meshing_anew import FLOOR, carrying_error, improved, on_new_faces
 from .parts import Parts
 from .preparation import interface_problem
-from .system import System, build
+from .system import System
 from .wear_step import WornContact
-from .worn_geometry import WornGeometry, along, carried
+from .worn_geometry import WornGeometry, along
+from .worn_in import worn_in
 
-_FLOOR = 0.1
-"""Scaled Jacobian below which cells are no good any more."""
 _SETTLED = 1e-10
 """Of a volume."""
 _PASSES = 20
+_FADED = 0.1
+"""Of the largest pressure so far: changes of lower ones are held against so much."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +64,12 @@ def updated(
         If cells would become too thin or too slanted.
     """
     with system.phases("move meshes"):
-        worn = _moved(system, kept, state)
+        state = replace(state, worn=worn_in(system, problem, state, time))
+        worn, renewed = _moved(system, kept, state)
     following = build(system.case, system.comm, system.phases, system.inputs.zone, Parts(), worn)
-    rows = carried(state.worn, along(system.pairing), along(following.pairing))
+    rows, missed = _carried_wear(system, following, state.worn)
+    error = max(missed, carrying_error(worn, following.pairing)) if renewed else 0.0
+    worn = replace(worn, carrying_error=max(worn.carrying_error, error))
     after = interface_problem(following)
     rise = None
     if state.stored is not None:
@@ -70,41 +79,64 @@ def updated(
         worn = replace(worn, heat_error=max(worn.heat_error, error / largest))
     with system.phases("contact"):
         found = after.take_over(problem, state, rows, rise, time)
-    change = _change(system, following, state, found)
+    change = _change(following, state, found)
     worn = replace(worn, change=max(worn.change, change))
     return Updated(replace(following, worn=worn), after, found, change)
 
 
-def _change(before: System, after: System, state: WornContact, found: WornContact) -> float:
+def _change(after: System, state: WornContact, found: WornContact) -> float:
     """How much an update has changed the pressure and, relative to their rise, temperatures.
 
-    In the mean over the area.
+    In the mean over the area; pressures that vanish in the end count for no more than `_FADED`.
     """
-    fields = [(state.pressure, found.pressure)]
+    fields = [(state.pressure, found.pressure, _FADED * state.largest)]
     if state.faces is not None and found.faces is not None:
-        fields += zip(state.faces.rise, found.faces.rise, strict=True)
-    places = along(before.pairing), along(after.pairing)
+        rises = zip(state.faces.rise, found.faces.rise, strict=True)
+        fields += [(old, new, 0.0) for old, new in rises]
+    assert after.worn is not None
     changes = [0.0]
-    for old, new in fields:
-        expected = carried(old, *places)
-        scale = float(after.weights @ np.abs(expected))
+    for old, new, least in fields:
+        expected = after.worn.carried(old, after.pairing)
+        scale = float(after.weights @ np.maximum(np.abs(expected), least))
         if scale > 0.0:
             changes.append(float(after.weights @ np.abs(new - expected)) / scale)
     return max(changes)
 
 
-def _moved(system: System, kept: KeptWear, state: WornContact) -> WornGeometry:
-    """Where the nodes go."""
-    before, faces, depth = kept.geometry, kept.faces, kept.depth(state.worn)
+def _carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.ndarray, float]:
+    """Depths worn off (n_wearing, n) at the points of the moved mesh, of the same volumes [m].
+
+    And what of these volumes has to be put right for that.
+    """
+    assert after.worn is not None
+    bodies = list(after.laws)
+    gone = after.worn.depth[bodies]
+    # what is left in the gap is little and matters most: errors of the rest are none of the gap
+    left = after.worn.carried(worn - gone, after.pairing)
+    rows = after.worn.carried(gone, after.pairing) + left
+    lost = np.zeros(2) if before.worn is None else before.worn.lost
+    error = 0.0
+    for row, body, depth in zip(rows, bodies, worn, strict=True):
+        had = (depth - before.moved[body]) @ before.weights + lost[body]
+        has = (row - after.moved[body]) @ after.weights + after.worn.lost[body]
+        if had > 0.0:
+            row *= 1.0 + (had - has) / (row @ after.weights)
+            error = max(error, abs(had - has) / had)
+    return rows, error
+
+
+def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeometry, bool]:
+    """Where the nodes go, and whether bodies have been meshed anew."""
+    before, faces, depth = kept.geometry, kept.faces, kept.due(kept.depth(state.worn))
     amounts = {index: face.amounts(depth[index]) for index, face in faces.items()}
-    points, lost, quality = on_root(
+    mesh, lost, quality, renewed = on_root(
         system.comm,
-        lambda: _points(system, before.points, faces, amounts, depth @ system.weights),
+        lambda: _followed(system, before, faces, amounts, depth @ system.weights),
     )
-    if not quality >= _FLOOR:  # not a number where cells have vanished
+    if not quality >= FLOOR:  # not a number where cells have vanished
         raise ComputationError(
             f"geometry update: cells of the worn bodies become too slanted (scaled Jacobian "
-            f"{quality:.2g}, at least {_FLOOR:g}); use fewer or more even elements along the "
+            f"{quality:.2g}, at least {FLOOR:g}); use fewer or more even elements along the "
             'contact (mesh.elements, mesh.grading), or wear.update = "never"'
         )
     taken = np.zeros_like(depth)
@@ -113,9 +145,10 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> WornGeometry:
     motion = combined(system.holder.motions, state.contact.motion)
     due = np.array([taken[index] @ system.weights for index in faces])
     errors = np.abs(lost[list(faces)] - due) / np.abs(due).max()
-    return replace(
+    worn = replace(
         before,
-        points=points,
+        mesh=mesh,
+        renewed={},
         at=along(system.pairing),
         depth=system.moved + taken,
         lacking=before.carried(before.lacking, system.pairing),
@@ -125,26 +158,27 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> WornGeometry:
         quality=min(before.quality, quality),
         volume_error=max(before.volume_error, float(errors.max())),
     )
+    return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
 
 
-def _points(
+def _followed(
     system: System,
-    points: np.ndarray,
+    worn: WornGeometry,
     faces: dict[int, WornFace],
     amounts: dict[int, np.ndarray],
     volumes: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Nodes of the mesh after its faces have moved, volumes lost (2,), and its worst cell.
+) -> tuple[TaggedMesh, np.ndarray, float, dict[int, NewFace]]:
+    """The mesh after its faces have moved, volumes lost (2,), its worst cell, and faces made anew.
 
     Faces go a little further or less far than the depth worn off them, so that the meshes lose
     the worn volumes: that of a curved layer is not quite its area times its depth.
     """
-    case = system.case
-    mesh = replace(case.tagged_mesh(system.inputs.zone), points=points)
+    case, mesh = system.case, worn.mesh
     factor = section_model(
         case.model, case.geometry.thickness_factor, case.geometry.sector
     ).area_factor
     lost = np.zeros(2)
+    renewed: dict[int, NewFace] = {}
     for index, face in faces.items():
         body, part = movable_body(system, mesh, index), 1.0
         for _ in range(_PASSES):
@@ -154,7 +188,11 @@ def _points(
                 break
             part *= volumes[index] / lost[index]
         mesh = replace(mesh, points=body.followed(outlined))
-    return mesh.points, lost, float(scaled_jacobians(mesh).min())
+        if isinstance(body, MovableBody):
+            wanted = worn.sizes[index], factor, worn.best[index]
+            mesh, new = improved(mesh, body.parts, body.face, *wanted)
+            renewed |= {} if new is None else {index: new}
+    return mesh, lost, float(scaled_jacobians(mesh).min()), renewed
 
 
 def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:

@@ -5,18 +5,22 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..compat import geometry_dofmap
-from ..contact.face import Face
-from ..contact.worn_face import Paths, WornFace, curvatures, node_normals, nodes_of
+from ..contact.surface import Surface
+from ..contact.worn_face import Paths, WornFace, curvatures, lengths, node_normals, nodes_of
 from ..geometry.moved import MovableBody
-from ..geometry.shapes import scaled_jacobians
+from ..geometry.moved_solid import MovableSolid
+from ..geometry.shapes import quality, scaled_jacobians
 from ..geometry.tagged import TaggedMesh
 from ..laws.spreading import InPlace
 from ..parallel import on_root
 from .system import System
 from .worn_geometry import WornGeometry, along
 
+_STEEPEST = 0.2
+"""Slope of the walls of a groove in a mesh."""
 _TILT = 0.1
 """A tilt counts for so much: of two ends of an element, against its size."""
 
@@ -56,9 +60,21 @@ class KeptWear:
 
     def movable(self, depth: np.ndarray) -> np.ndarray:
         """What the nodes of the faces can take up of a depth (2, n) [m]."""
-        result = np.zeros_like(depth)
+        result, due = np.zeros_like(depth), self.due(depth)
         for index, face in self.faces.items():
-            result[index] = face.depths(face.amounts(depth[index]))
+            result[index] = face.depths(face.amounts(due[index]))
+        return result
+
+    def due(self, depth: np.ndarray) -> np.ndarray:
+        """What of a depth (2, n) the faces should take up [m].
+
+        All of it, but for the walls of a groove: where a face goes on beside the contact its end
+        stays, and from there it goes down no steeper than cells can follow.
+        """
+        result = np.zeros_like(depth)
+        for index in self.bodies:
+            room = _STEEPEST * self._from_held_end(index) - self._system.moved[index]
+            result[index] = np.minimum(depth[index], room)
         return result
 
     def fraction(self, depth: np.ndarray) -> float:
@@ -69,12 +85,23 @@ class KeptWear:
         """
         return max((self._of_body(index, depth[index]) for index in self.bodies), default=0.0)
 
+    def _from_held_end(self, index: int) -> np.ndarray:
+        """How far the points are from where the face ends and stays, shape (n,) [m]."""
+        side, held = self._system.pairing.sides[index], self.geometry.held[index]
+        if isinstance(side.face, Surface):
+            stays = cKDTree(nodes_of(side.face)[held])  # infinitely far where none stays
+            return stays.query(side.face.points(side.facet, side.t))[0]
+        before = side.face.position(side.facet, side.t)
+        ways = before, side.face.sizes.sum() - before
+        far = [np.where(stays, way, np.inf) for stays, way in zip(held[[0, -1]], ways, strict=True)]
+        return np.minimum(*far)
+
     def _of_body(self, index: int, depth: np.ndarray) -> float:
         side = self._system.pairing.sides[0]
         largest = float(np.abs(depth).max())
         facets, first = np.unique(side.facet, return_index=True)
         low, high = (f.reduceat(depth, first) for f in (np.minimum, np.maximum))
-        tilt = float(((high - low) / side.face.sizes[facets]).max())
+        tilt = float(((high - low) / lengths(side.face)[facets]).max())
         curved = largest * max(self._curvature)
         return max(largest / self._thickness[index], curved, _TILT * tilt)
 
@@ -85,11 +112,13 @@ def _unworn(system: System) -> WornGeometry:
     second = pairing.sides[1]
     apart = second.face.points(second.facet, second.t) - pairing.points
     mesh, paths = on_root(comm, lambda: _ways(system))
-    nothing = np.zeros(3)
+    nothing, geometry = np.zeros(3), system.case.geometry
     return WornGeometry(
-        points=mesh.points,
+        mesh=mesh,
         directions=tuple(path.directions for path in paths),
         held=tuple(path.held for path in paths),
+        sizes=tuple(side.face.sizes for side in pairing.sides),
+        best=np.array([quality(mesh, geometry.parts_of(body)) for body in geometry.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
         lacking=pairing.gap - np.einsum("ni,ni->n", pairing.normals, apart),
@@ -98,6 +127,7 @@ def _unworn(system: System) -> WornGeometry:
         updates=0,
         quality=float(scaled_jacobians(mesh).min()),
         volume_error=0.0,
+        pieces=pairing.pieces if isinstance(pairing.sides[0].face, Surface) else None,
     )
 
 
@@ -106,28 +136,20 @@ def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
     mesh = system.case.tagged_mesh(system.inputs.zone)
     paths = []
     for index, side in enumerate(system.pairing.sides):
-        assert isinstance(side.face, Face)
-        directions = node_normals(side.face)
-        held = np.zeros(len(directions), dtype=bool)
         body = movable_body(system, mesh, index)
-        for end, outline in zip((0, -1), body.sides, strict=True):
-            held[end] = not outline.is_corner
-            if outline.is_corner:
-                directions[end] = -outline.inward
-        paths.append(Paths(directions, held))
+        paths.append(Paths(*body.ways(node_normals(side.face))))
     return mesh, paths
 
 
-def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody:
+def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody | MovableSolid:
     """A body of the mesh of a system."""
     geometry, face = system.case.geometry, system.pairing.sides[index].face
-    assert isinstance(face, Face)
-    return MovableBody(mesh, geometry.parts_of(geometry.bodies[index]), nodes_of(face))
+    movable = MovableSolid if isinstance(face, Surface) else MovableBody
+    return movable(mesh, geometry.parts_of(geometry.bodies[index]), nodes_of(face))
 
 
 def _curvature(face) -> float:
     """The largest of a face [1/m]."""
-    assert isinstance(face, Face)
     return float(curvatures(face).max())
 
 

@@ -3,21 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from .result import (
-    CycleRow,
-    Frame,
-    FrictionInterface,
-    HeatRow,
-    HistoryRow,
-    Interface,
-    LoadRow,
-    WornTrack,
-)
-
-if TYPE_CHECKING:
-    from .saving import Saved
+from .result import Frame, FrictionInterface, Interface, WornTrack
+from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from .saved import Saved
 
 
 class Observer:

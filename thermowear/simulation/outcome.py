@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ..laws.motions import RigidMotion
-from .result import FrictionHistory, HeatRow, HistoryRow, Interface, Modes, TrackHistory
+from .result import FrictionHistory, Interface, Modes, TrackHistory
+from .rows import HeatRow, HistoryRow
 from .state import BodyState, ContactState
 from .system import System
 

@@ -13,6 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..case.analyses import Transient
+from ..contact.refinement import Rule
+from ..geometry.new_face import NewFace
+from ..geometry.tagged import TaggedMesh
+from .building import build
 from .checkpoint import can_be_packed
 from .geometry_update import updated
 from .interface_problem import InterfaceProblem
@@ -22,8 +26,9 @@ from .parts import Parts
 from .preparation import interface_problem
 from .steady import SteadyState
 from .step_sizes import Limited, StepSizes
-from .system import System, build
+from .system import System
 from .transient import Moment, is_over, moments
+from .wear_step import advance_with_error
 from .worn_geometry import WornGeometry
 
 _CHANGE = 5e-3
@@ -37,6 +42,9 @@ Principle = Callable[[System], SteadyState | None]
 """The steady state that a system tends to; None where there is none."""
 
 can_be_packed(WornGeometry)
+can_be_packed(TaggedMesh)
+can_be_packed(NewFace)
+can_be_packed(Rule)
 
 
 class OuterLoop:
@@ -81,9 +89,16 @@ class OuterLoop:
         self._sizes = Limited(sizes)
         self._observer = observer
 
-    def go_on(self, worn: WornGeometry, largest_kept: float, allowed: float) -> None:
-        """Take up an earlier loop after its last update."""
-        self.largest_kept, self.allowed = largest_kept, allowed
+    @property
+    def kept(self) -> tuple[float, float, float]:
+        """The largest fraction so far, what is allowed, and the largest step that may follow."""
+        return self.largest_kept, self.allowed, self._sizes.largest
+
+    def go_on(self, worn: WornGeometry | None, kept: tuple[float, float, float]) -> None:
+        """Take up an earlier loop, after its last update if there has been one."""
+        self.largest_kept, self.allowed, self._sizes.largest = kept
+        if worn is None:
+            return
         unworn = self.system
         inputs = unworn.case, unworn.comm, unworn.phases, unworn.inputs.zone
         self.system = build(*inputs, Parts(), worn)
@@ -94,26 +109,29 @@ class OuterLoop:
         system, problem, steady = self.system, self.problem, self.steady
         settings = system.case.analysis
         assert isinstance(settings, Transient)
+        kept, fraction = KeptWear(system) if self._moves else None, 0.0
+        if kept is not None and last is not None:
+            fraction = kept.fraction(kept.depth(last.state.worn))
         while True:
-            kept = KeptWear(system) if self._moves else None
-            fraction = 0.0
+            if kept is not None and last is not None and self._is_due(kept, fraction, last):
+                system, problem, last = self._update(system, problem, kept, last)
+                steady = self._principle(system)
+                kept, fraction = KeptWear(system), 0.0
             for moment in moments(problem, settings, steady, self._sizes, last):
-                self.system, self.problem, self.steady = system, problem, steady
                 if kept is not None:
                     before, fraction = fraction, kept.fraction(kept.depth(moment.state.worn))
                     self._look_ahead(fraction, fraction - before, moment.step)
+                    if system.worn is not None and is_over(settings, problem, moment):
+                        assert last is not None
+                        system, problem, moment = self._end(system, problem, kept, last, moment)
+                        steady = self._principle(system)
+                self.system, self.problem, self.steady = system, problem, steady
                 yield moment
                 last = moment
-                if kept is None or is_over(settings, problem, moment):
-                    continue
-                if fraction > self.allowed and self._exceeds(kept, moment):
+                if kept is not None and self._is_due(kept, fraction, last):
                     break
             else:
                 return
-            assert kept is not None
-            assert last is not None
-            system, problem, last = self._update(system, problem, kept, last)
-            steady = self._principle(system)
 
     def summary(self) -> dict[str, float | int]:
         """What the updates add to the summary; nothing where there are none."""
@@ -129,17 +147,25 @@ class OuterLoop:
             "geometry_volume_error": worn.volume_error,
             "geometry_change": worn.change,
             "geometry_temperature_error": worn.heat_error,
+            "geometry_meshed_anew": worn.meshed_anew,
+            "geometry_remeshing_error": worn.carrying_error,
         }
 
     @property
     def _moves(self) -> bool:
         """Whether meshes can be moved at all."""
-        return bool(np.isfinite(self.allowed)) and self.system.case.model != "3d"
+        return bool(np.isfinite(self.allowed))
 
-    def _exceeds(self, kept: KeptWear, moment: Moment) -> bool:
-        """Whether even what the nodes can take up of the wear is too much to be kept."""
-        depth = kept.depth(moment.state.worn)
-        return kept.fraction(kept.movable(depth)) > self.allowed
+    def _is_due(self, kept: KeptWear, fraction: float, moment: Moment) -> bool:
+        """Whether even what the nodes can take up of the wear is too much to be kept.
+
+        Not at the end of the run.
+        """
+        settings = self.system.case.analysis
+        assert isinstance(settings, Transient)
+        if fraction <= self.allowed or is_over(settings, self.problem, moment):
+            return False
+        return kept.fraction(kept.movable(kept.depth(moment.state.worn))) > self.allowed
 
     def _look_ahead(self, fraction: float, grown: float, step: float) -> None:
         """Choose steps so that little more is kept than is allowed."""
@@ -149,6 +175,23 @@ class OuterLoop:
             left = self.allowed - fraction
             left = self.allowed if left <= 0.0 else max(left, _OVER * self.allowed)
             self._sizes.largest = step * left / grown
+
+    def _end(self, system, problem, kept, before: Moment, last: Moment):
+        """What `_update` gives at the end of a run: moved meshes leave it as they are worn then.
+
+        Where moving them has disturbed the pressure, the step that ends the run is taken again, in
+        which that wears in; not where temperatures are followed in time, known of its end alone.
+        """
+        pressure, grown = last.state.pressure, last.state.worn - before.state.worn
+        system, problem, last = self._update(system, problem, kept, last)
+        grown, expected = (system.worn.carried(v, system.pairing) for v in (grown, pressure))
+        disturbed = float(np.abs(last.state.pressure - expected).max())
+        allowed = system.case.analysis.tolerance * float(expected.max())
+        if last.state.stored is not None or disturbed <= allowed:
+            return system, problem, last
+        start = replace(last.state, worn=last.state.worn - grown)
+        state, _ = advance_with_error(problem, start, before.time, last.step)
+        return system, problem, replace(last, state=state)
 
     def _update(self, system, problem, kept, last: Moment):
         """System and problem on meshes that are moved, and the same moment of them."""

@@ -7,11 +7,13 @@ import numpy as np
 from ..case.schema import Case
 from ..contact.zones import contact_zones
 from ..errors import ComputationError
+from .building import build
 from .condensed_method import CondensedMethod
 from .full_method import FullMethod
 from .interface_problem import InterfaceProblem
+from .observer import Observer
 from .phases import Phases
-from .system import System, build
+from .system import System
 from .varying_heat import friction_heat
 
 _PASSES = 12
@@ -28,6 +30,14 @@ def interface_problem(system: System) -> InterfaceProblem:
     with system.phases("contact operators"):
         method = FullMethod(system)
     return InterfaceProblem(system, method, heat)
+
+
+def noted_problem(system: System, observer: Observer) -> InterfaceProblem:
+    """The interface problem; what is odd about its settings is said. Every rank calls."""
+    problem = interface_problem(system)
+    if problem.note is not None:
+        observer.note(problem.note)
+    return problem
 
 
 def prepare(case: Case, comm, phases: Phases) -> System:

@@ -19,7 +19,8 @@ from .outcome import Outcome
 from .preparation import interface_problem
 from .reciprocating_problem import ReciprocatingProblem
 from .recording import interface_at
-from .result import HistoryRow, Interface, TrackHistory, WornTrack
+from .result import Interface, TrackHistory, WornTrack
+from .rows import HistoryRow
 from .state import BodyState, ContactState, contact_state
 from .step_sizes import AnySize, StepSizes
 from .stroke import positions

@@ -1,28 +1,16 @@
-"""Saving an analysis on its way, and going on with it."""
+"""Saving an analysis on its way."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
 from ..case.analyses import Fretting, Timed
-from ..errors import CaseError
-from .checkpoint import can_be_packed
 from .observer import Observer
+from .saved import Progress, Saved
 from .system import System
-
-_ROUNDING = 1e-9  # of the contact's length
-
-
-class Progress(Protocol):
-    """How far an analysis has come."""
-
-    @property
-    def time(self) -> float:
-        """[s]"""
 
 
 class Record(Protocol):
@@ -33,62 +21,6 @@ class Record(Protocol):
 
     def progress(self) -> Progress | None:
         """All that is needed to go on, made of what `checkpoint.pack` knows; None if not yet."""
-
-
-@can_be_packed
-@dataclass(frozen=True)
-class Saved:
-    """An analysis on its way, on one rank.
-
-    Attributes
-    ----------
-    points : ndarray, shape (n, gdim)
-        Contact points of the bodies that it began with [m].
-    gap : ndarray, shape (n,)
-        And the gap between them [m].
-    nodes : int
-        Of this rank.
-    moment : ndarray, shape (gdim,)
-        Sum of their coordinates [m].
-    progress : Progress
-    """
-
-    points: np.ndarray
-    gap: np.ndarray
-    nodes: int
-    moment: np.ndarray
-    progress: Any
-
-    @classmethod
-    def now(cls, system: System, progress: Progress) -> Saved:
-        """An analysis that began with a system."""
-        pairing, nodes = system.pairing, system.elastic.nodes()
-        return cls(pairing.points, pairing.gap, len(nodes), nodes.sum(axis=0), progress)
-
-    def of(self, system: System) -> Any:
-        """The progress, of an analysis of a system.
-
-        Raises
-        ------
-        CaseError
-            If its bodies are not those that the analysis began with.
-        """
-        if not all(system.comm.allgather(self._began_with(system))):
-            raise CaseError(
-                "--resume: the meshed bodies are not those of the checkpoint; a mesh file, an "
-                "initial shape or the version of a library is another one"
-            )
-        return self.progress
-
-    def _began_with(self, system: System) -> bool:
-        """But for rounding: on several ranks a mesh that was positioned is not bitwise the same."""
-        other, near = Saved.now(system, self.progress), _ROUNDING * system.pairing.extent
-        if (self.nodes, self.gap.shape) != (other.nodes, other.gap.shape):
-            return False
-        pairs = (self.points, other.points), (self.gap, other.gap)
-        errors = [np.abs(one - another).max() for one, another in pairs]
-        errors.append(np.abs(self.moment - other.moment).max() / max(self.nodes, 1))
-        return max(errors) <= near
 
 
 class Saving:

@@ -15,9 +15,9 @@ from ..contact.sliding import sliding
 from ..contact.traces import gap_trace
 from ..contact.track import Track
 from ..errors import CaseError
+from .contact_points import contact_points
 from .drives import drives
 from .parts import Parts
-from .contact_points import contact_points
 from .system import System
 
 _UNPAIRED = 1e-6

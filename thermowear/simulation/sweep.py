@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..case.schema import Case
+from .building import build
 from .observer import Observer
 from .parts import Parts, inputs
 from .phases import Phases
 from .preparation import prepare
 from .result import Result
 from .run import analyse, conclude
-from .system import System, build
+from .system import System
 
 
 class Series:

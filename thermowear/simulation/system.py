@@ -8,26 +8,20 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from ..bulk.bodies import Bodies, distribute
+from ..bulk.bodies import Bodies
 from ..bulk.elasticity import Elasticity
-from ..bulk.kinematics import Model, section_model
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, influence
-from ..contact.face import Face, gather_face
 from ..contact.holder import Holder, hold
 from ..contact.pairing import Pairing
-from ..contact.sliding import Sliding, sliding
+from ..contact.sliding import Sliding
 from ..contact.traces import vector_trace
-from ..geometry.tagged import TaggedMesh
 from ..laws import WearLaw
 from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
-from ..parallel import on_root, sum_over_ranks
-from .contact_points import contact_points, worn_contact_points
-from .drives import drives
-from .elastic_system import dead_load, elastic_system
-from .parts import Inputs, Parts, inputs
+from ..parallel import sum_over_ranks
+from .parts import Inputs, Parts
 from .phases import Phases
-from .thermal_system import ThermalSystem, thermal_system
+from .thermal_system import ThermalSystem
 from .worn_geometry import WornGeometry
 
 
@@ -155,7 +149,7 @@ class System:
         """Depths off both bodies that the meshes have lost at the points, shape (2, n) [m]."""
         if self.worn is None:
             return np.zeros((2, len(self.weights)))
-        return self.worn.carried(self.worn.depth, self.pairing)
+        return self.worn.moved(self.pairing)
 
     @cached_property
     def contact(self) -> CondensedContact:
@@ -192,111 +186,3 @@ class System:
         n, gdim = self.pull.shape
         units = (np.tile(unit, (n, 1)) for unit in np.eye(gdim))
         return [vector_trace(self.elastic.space, self.pairing, unit) for unit in units]
-
-
-def build(
-    case: Case,
-    comm,
-    phases: Phases,
-    zone: tuple[float, float] | None = None,
-    parts: Parts | None = None,
-    worn: WornGeometry | None = None,
-) -> System:
-    """Mesh, pair and assemble a case. Every rank calls.
-
-    Parameters
-    ----------
-    case : Case
-    comm : mpi4py.MPI.Comm
-    phases : Phases
-    zone : tuple of float, optional
-        Range of x to mesh for, by default where the case expects contact [m].
-    parts : Parts, optional
-        Of systems built before on the same ranks; what this one can share is not made again.
-    worn : WornGeometry, optional
-        Where the nodes of the mesh are now; none of the parts may be of other places.
-
-    Raises
-    ------
-    CaseError
-        If the geometry cannot be meshed or paired.
-    """
-    parts, made_from = Parts() if parts is None else parts, inputs(case, zone)
-    geometry = case.geometry
-    model = section_model(case.model, geometry.thickness_factor, geometry.sector)
-    with phases("mesh"):
-        bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(case, comm, zone, worn))
-    with phases("pair"):
-        pairing, basis = parts.get(
-            "points", made_from.mesh, lambda: _paired(case, comm, model, bodies, worn)
-        )
-    with phases("assemble elasticity"):
-        elastic, trace = parts.get(
-            "elasticity", made_from.elasticity, lambda: elastic_system(case, model, bodies, pairing)
-        )
-    slides = _sliding(case, model, pairing)
-    pull, speed = pairing.normals, np.zeros(len(pairing.weights))
-    if slides is not None:
-        friction = case.contact.friction, case.contact.transverse_friction
-        pull, speed = slides.pull(pairing.normals, *friction), slides.speed
-    thermal = parts.get(
-        "conduction",
-        made_from.conduction,
-        lambda: thermal_system(case, bodies, model, pairing, elastic, basis, phases),
-    )
-    return System(
-        case=case,
-        bodies=bodies,
-        pairing=pairing,
-        elastic=elastic,
-        trace=trace,
-        basis=basis,
-        holder=hold(pairing, pull, drives(case, pairing)),
-        slides=slides,
-        pull=pull,
-        speed=speed,
-        dead_load=dead_load(case, elastic),
-        thermal=None if thermal is None else _exchanging(thermal, case),
-        phases=phases,
-        parts=parts,
-        inputs=made_from,
-        worn=worn,
-    )
-
-
-def _meshed(
-    case: Case, comm, zone: tuple[float, float] | None, worn: WornGeometry | None
-) -> Bodies:
-    def mesh() -> TaggedMesh:
-        unworn = case.tagged_mesh(zone)
-        return unworn if worn is None else replace(unworn, points=worn.points)
-
-    return distribute(on_root(comm, mesh), comm)
-
-
-def _paired(
-    case: Case, comm, model: Model, bodies: Bodies, worn: WornGeometry | None
-) -> tuple[Pairing, np.ndarray]:
-    faces = [gather_face(bodies, surface) for surface in case.geometry.contact]
-    if worn is None:
-        return contact_points(case, comm, model, *faces)
-    upper, lower = faces
-    assert isinstance(upper, Face)
-    assert isinstance(lower, Face)
-    return worn_contact_points(case, model, worn, upper, lower)
-
-
-def _exchanging(thermal: ThermalSystem, case: Case) -> ThermalSystem:
-    """The same bodies with the partition of this case."""
-    return replace(thermal, face=replace(thermal.face, partition=case.partition()))
-
-
-def _sliding(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
-    """How body 1 slides; None where nothing does."""
-    if case.motion is None:
-        return None
-    geometry = case.geometry
-    velocity = model.sliding(
-        pairing.points, case.motion.one_way, geometry.rotation_center, geometry.slides_across
-    )
-    return sliding(velocity, pairing.normals, geometry.press_direction)

@@ -1,38 +1,26 @@
 """Friction heat in bodies whose conductivity or expansion change with temperature.
 
 Newton's method: contact sees linear bodies, those of small changes about the last temperatures.
-Their operators cost a factorisation; they are kept as long as the steps go on getting smaller.
 """
 
 from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from ..bulk.conduction import Conduction
 from ..bulk.varying import VaryingConduction, VaryingExpansion
-from ..contact.heat import (
-    InterfaceHeat,
-    Resting,
-    ThermalDistortion,
-    ThermalState,
-    at_rest,
-    condense_distortion,
-    condense_heat,
-    gap_per_rise,
-)
+from ..contact.heat import Resting, ThermalState, at_rest, condense_heat, gap_per_rise
 from ..errors import ComputationError
 from ..parallel import sum_over_ranks
-from .checkpoint import can_be_packed
 from .conditions import Conditions
 from .friction_heat import FrictionHeat
-from .heat_stages import ConductedHeat, Coupling, HeatOperators
+from .heat_stages import ConductedHeat, Coupling
 from .heat_states import StoredHeat
 from .system import System
+from .tangents import LastTangents, TangentOperators, Tangents
 from .thermal_system import ThermalSystem
 
 _TURNS = 60
@@ -49,23 +37,6 @@ def friction_heat(system: System) -> FrictionHeat | None:
     if thermal is None:
         return None
     return (VaryingFrictionHeat if thermal.varies else FrictionHeat)(system, thermal)
-
-
-@can_be_packed
-@dataclass(frozen=True)
-class LastTangents:
-    """Where the operators that are at hand were made: Newton's method goes its way by them.
-
-    Attributes
-    ----------
-    steps : dict of float to (ndarray or None)
-        Rise (n_owned,) by size of step, the one that was used last at the end [K].
-    steady : tuple or None
-        Likewise of the steady state, its last temperatures, and by how much they changed.
-    """
-
-    steps: dict[float, np.ndarray | None]
-    steady: tuple[np.ndarray | None, np.ndarray, float] | None
 
 
 class VaryingFrictionHeat(FrictionHeat):
@@ -155,76 +126,6 @@ class VaryingFrictionHeat(FrictionHeat):
         """Expansions that change, and the weak gap per nodal rise of their parts alone."""
         contact = self._system.contact
         return [(part, gap_per_rise(part.matrix, contact)) for part in self._thermal.expansions]
-
-
-class TangentOperators(HeatOperators):
-    """Conduction of small changes of the temperature, condensed to the interface.
-
-    Parameters
-    ----------
-    conduction : Conduction
-    face : InterfaceHeat
-    heat : VaryingFrictionHeat
-    reference : ndarray, shape (n_owned,)
-        The rise that they are changes of [K].
-    """
-
-    def __init__(
-        self,
-        conduction: Conduction,
-        face: InterfaceHeat,
-        heat: VaryingFrictionHeat,
-        reference: np.ndarray,
-    ):
-        super().__init__(conduction, face, heat.condensed)
-        self.reference = reference
-        self._varying = heat
-
-    @cached_property
-    def per_rise(self) -> np.ndarray:
-        """Weak gap per nodal rise, shape (n_owned, m) [m³/K]."""
-        return self._varying.gap_per_rise(self.reference)
-
-    @cached_property
-    def distortion(self) -> ThermalDistortion:
-        return condense_distortion(self.conduction, self.per_rise, self.face)
-
-
-class Tangents:
-    """The operators that were used last, for one size of step or for a steady state.
-
-    Parameters
-    ----------
-    heat : VaryingFrictionHeat
-    step : float or None
-        [s]
-    reference : ndarray, optional, shape (n_owned,)
-        Rise that the first ones are made for [K].
-
-    Attributes
-    ----------
-    reference : ndarray or None
-        That of the last ones.
-    """
-
-    reference: np.ndarray | None
-
-    def __init__(
-        self, heat: VaryingFrictionHeat, step: float | None, reference: np.ndarray | None = None
-    ):
-        self.reference = reference
-        self._heat = heat
-        self._step = step
-        self._last: TangentOperators | None = None
-
-    def near(self, rise: np.ndarray) -> TangentOperators:
-        """Those at hand; made for a rise (n_owned,) where there are none."""
-        return self._last or self.at(rise if self.reference is None else self.reference)
-
-    def at(self, rise: np.ndarray) -> TangentOperators:
-        """New ones for a rise."""
-        self.reference, self._last = rise, self._heat.tangent(rise, self._step)
-        return self._last
 
 
 class VaryingHeat:

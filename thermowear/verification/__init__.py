@@ -68,4 +68,7 @@ CASES: dict[str, Checks] = special_cases.CHECKS | {
 }
 """Verification cases by id; each yields its checks."""
 
-__all__ = ["CASES", "Check", "compare"]
+SLOW = frozenset({deep_wear.ID})
+"""Of them, those that take more than two minutes."""
+
+__all__ = ["CASES", "SLOW", "Check", "compare"]

@@ -14,6 +14,8 @@ from .curves import STYLE, abscissa
 
 _SAME = 1e-3
 """On a level face both shapes are one."""
+_EVEN = 1e-2
+"""Rates that differ by less along the face have no range to speak of."""
 _PAIRS = (
     ("shape", "shape_along_press", "height of the unloaded face"),
     ("wear_rate", "wear_rate_along_press", "wear rate"),
@@ -42,4 +44,5 @@ def draw_profile(folder: Path) -> None:
 
 
 def _differ(along_normal: np.ndarray, along_press: np.ndarray) -> bool:
-    return float(np.nanmax(np.abs(along_press - along_normal))) > _SAME * np.ptp(along_normal)
+    size = max(float(np.ptp(along_normal)), _EVEN * float(np.abs(along_normal).max()))
+    return float(np.nanmax(np.abs(along_press - along_normal))) > _SAME * size

@@ -5,7 +5,7 @@ from __future__ import annotations
 import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import to_rgb
-from PIL import Image  # matplotlib does not come without it
+from PIL import Image
 
 from ..curves import BODIES
 

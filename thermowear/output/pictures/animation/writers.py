@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 import numpy as np
-from PIL import Image  # matplotlib does not come without it
+from PIL import Image
 
 from ....errors import CaseError
 from ...replacing import replacing

@@ -1,0 +1,128 @@
+"""A worn face divided anew on a B-spline through its nodes; its body keeps its volume."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import Akima1DInterpolator
+
+from .moved import enclosed
+
+_STEPS = 6
+"""Of Newton's method to the volume; it is almost in proportion to the way of the face."""
+
+
+@dataclass(frozen=True)
+class NewFace:
+    """A worn face before and after it was divided anew; lengths are those along chords [m].
+
+    Attributes
+    ----------
+    former, edges : ndarray, shape (n, order + 1, 2)
+        Nodes of its edges in order along it, before and after [m].
+    former_place, place : ndarray, shape (n_nodes,)
+        Lengths along the former face up to its nodes, and up to the new ones.
+    """
+
+    former: np.ndarray
+    edges: np.ndarray
+    former_place: np.ndarray
+    place: np.ndarray
+
+    def on_curve(self, number: np.ndarray) -> np.ndarray:
+        """Points (n, 2) of the smooth curve that the face is on, by edge plus parameter [m]."""
+        after = np.arange(len(self.place)) / self._order
+        return curve(self.former_place, _nodes(self.former))(np.interp(number, after, self.place))
+
+    def at(self, former: np.ndarray) -> np.ndarray:
+        """Edge plus parameter of points that are given so on the former face."""
+        before, after = (np.arange(len(p)) / self._order for p in (self.former_place, self.place))
+        return np.interp(np.interp(former, before, self.former_place), self.place, after)
+
+    def carried(self, values: np.ndarray) -> np.ndarray:
+        """Values (n_nodes, …) of the former nodes at the new ones."""
+        columns = values.reshape(len(values), -1).T
+        found = [np.interp(self.place, self.former_place, column) for column in columns]
+        return np.column_stack(found).reshape(-1, *values.shape[1:])
+
+    def cut(self, edges: np.ndarray, ends: np.ndarray) -> NewFace:
+        """The same with other edges that end at some numbers and fractions of the present ones."""
+        count = np.arange(len(edges) * self._order + 1) / self._order
+        number = np.interp(count, np.arange(len(ends)), ends)
+        place = np.interp(number, np.arange(len(self.place)) / self._order, self.place)
+        return replace(self, edges=edges, place=place)
+
+    @property
+    def sizes(self) -> np.ndarray:
+        """Lengths of the new edges, shape (n,) [m]."""
+        return np.diff(_lengths(_nodes(self.edges))[:: self._order])
+
+    @property
+    def _order(self) -> int:
+        return self.edges.shape[1] - 1
+
+
+def divided(
+    nodes: np.ndarray,
+    order: int,
+    sizes: np.ndarray,
+    factor: Callable[[np.ndarray], np.ndarray],
+) -> NewFace:
+    """Divide a face into edges in proportion to the lengths asked for.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n_nodes, 2)
+        In order along it [m].
+    order : int
+        Of its edges.
+    sizes : ndarray, shape (n_edges,)
+        Lengths that its present edges should have [m].
+    factor : callable
+        From area to volume at points of shape (n, 2); the volume behind the face stays.
+    """
+    place = _lengths(nodes)
+    wanted = np.concatenate([[0.0], np.cumsum(np.diff(place[::order]) / sizes)])
+    number = np.linspace(0.0, wanted[-1], max(1, round(wanted[-1])) + 1)
+    ends = np.interp(number, wanted, place[::order])
+    count = len(ends) - 1
+    new = np.interp(np.arange(count * order + 1) / order, np.arange(count + 1), ends)
+    through = curve(place, nodes)
+    found, slope = through(new), through.derivative()(new)
+    found[[0, -1]] = nodes[[0, -1]]
+    across = np.column_stack([-slope[:, 1], slope[:, 0]])
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    across[[0, -1]] = 0.0
+    former = _edges(nodes, order)
+    due, far = enclosed(former, factor), 1e-3 * place[-1] / count
+    per_way = enclosed(_edges(found + far * across, order), factor)
+    per_way = (per_way - enclosed(_edges(found - far * across, order), factor)) / (2 * far)
+    for _ in range(_STEPS):
+        found = found + (due - enclosed(_edges(found, order), factor)) / per_way * across
+    return NewFace(former, _edges(found, order), place, new)
+
+
+def curve(place: np.ndarray, nodes: np.ndarray) -> Akima1DInterpolator:
+    """A cubic B-spline through nodes (n, 2) at places along it, its knots double (Akima, modified).
+
+    It does not overshoot: where a face begins to be worn it has a corner.
+    """
+    return Akima1DInterpolator(place, nodes, method="makima")
+
+
+def _edges(nodes: np.ndarray, order: int) -> np.ndarray:
+    """Nodes edge by edge, shape (n_edges, order + 1, 2)."""
+    first = np.arange(0, len(nodes) - 1, order)
+    return nodes[first[:, None] + np.arange(order + 1)]
+
+
+def _nodes(edges: np.ndarray) -> np.ndarray:
+    """The inverse of `_edges`."""
+    return np.concatenate([edges[:, :-1].reshape(-1, 2), edges[-1:, -1]])
+
+
+def _lengths(nodes: np.ndarray) -> np.ndarray:
+    """Lengths along chords up to each node [m]."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1))])

@@ -51,9 +51,9 @@ FILMS = (
         "the cooled top gets shorter.",
     ),
     Film(
-        "cylinder_on_block_growing",
-        "A contact that grows",
-        "From Hertz's zone to one six times as wide, under ever less pressure.",
+        "block_on_ring",
+        "A groove of the ring's radius",
+        "From a line to a groove 2.7 mm wide, under ever less pressure.",
     ),
     Film(
         "disk_brake_stop",

@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 
 from .face import Face
 from .facets import lagrange
-from .pairing import Pairing
+from .pairing import Pairing, Side
 from .surface import Surface
 
 _ROUGH = 1e-8
@@ -53,6 +53,13 @@ def node_normals(face: Face | Surface) -> np.ndarray:
     normals = _at(face, face.normals, np.linspace(0.0, 1.0, _order(face) + 1))
     summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
     return summed / np.linalg.norm(summed, axis=1, keepdims=True)
+
+
+def ways_at(side: Side, directions: np.ndarray) -> np.ndarray:
+    """Ways of the points of a face between those of its nodes, unit vectors (n, gdim)."""
+    values = _polynomials(_order(side.face), side.t)
+    ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])
+    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
 
 
 def curvatures(face: Face | Surface) -> np.ndarray:

@@ -14,6 +14,7 @@ from ..contact.pressure import pressure_basis
 from ..contact.projection import ahead
 from ..contact.refinement import BESIDE
 from ..contact.surface import Surface
+from ..contact.worn_face import ways_at
 from ..laws.motions import RigidMotion
 from .initial_shape import initial_gap
 from .worn_geometry import WornGeometry
@@ -53,11 +54,25 @@ def worn_contact_points(
     points = face_1.points(first.facet, first.t)
     to = motion.at(points)
     apart = np.einsum("ni,ni->n", pairing.normals, to)
-    facet, t, gap = ahead(face_2, points + to, pairing.normals)
+    ways = _ways(worn, pairing)
+    facet, t, way = ahead(face_2, points + to, ways)
+    gap = way * np.einsum("ni,ni->n", pairing.normals, ways)
     sides = replace(first, face=face_1), replace(second, facet=facet, t=t)
     worn_pairing = replace(pairing, points=points, sides=sides)
     unworn = worn.carried(worn.lacking, pairing) - worn.moved(worn_pairing).sum(axis=0)
     return replace(worn_pairing, gap=gap + apart + unworn), basis
+
+
+def _ways(worn: WornGeometry, pairing: Pairing) -> np.ndarray:
+    """Ways of the nodes of body 1 against those of body 2, unit vectors at the points (n, gdim).
+
+    Each counts by how far its nodes have gone.
+    """
+    gone = np.abs(worn.depth).max(axis=1)
+    ways = (ways_at(*both) for both in zip(pairing.sides, worn.directions, strict=True))
+    outward, inward = ways
+    summed = gone[0] * outward - gone[1] * inward
+    return summed / np.linalg.norm(summed, axis=1, keepdims=True)
 
 
 def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:

@@ -99,9 +99,7 @@ class Tangents:
 
     reference: np.ndarray | None
 
-    def __init__(
-        self, heat: ChangingHeat, step: float | None, reference: np.ndarray | None = None
-    ):
+    def __init__(self, heat: ChangingHeat, step: float | None, reference: np.ndarray | None = None):
         self.reference = reference
         self._heat = heat
         self._step = step

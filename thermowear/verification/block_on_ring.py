@@ -19,16 +19,6 @@ from .starter import run_starter
 ID = "block-on-ring"
 PRESS, RADIUS, COEFFICIENT = 10_833.0, 20e-3, 2e-15
 DISTANCES = (400.0, 800.0, 1600.0, 2400.0, 3600.0)
-KEYS = (
-    'geometry.radius="20 mm"',
-    'geometry.block_width="60 mm"',
-    'geometry.block_height="30 mm"',
-    'geometry.zone="1.45 mm"',
-    'load.force="10.833 N"',
-    'wear.block.coefficient="2e-9 1/MPa"',
-    "wear.update=0.005",
-    "mesh.elements=90",
-)
 CIRCLE = "a circle of the radius of the ring"
 
 
@@ -36,11 +26,10 @@ def checks() -> Iterator[Check]:
     """Half-width and depth against the closed form, the worn face against the ring."""
     law = growing_line(PRESS, RADIUS, MODULUS, COEFFICIENT)
     times = [s / SPEED for s in DISTANCES]
-    outputs = ", ".join(f'"{t!r} s"' for t in times[:-1])
-    keys = f'analysis.end_time="{times[-1]!r} s"', f"analysis.output_times=[{outputs}]"
-    result = run_starter("cylinder-on-block-growing", *KEYS, *keys)
+    result = run_starter(ID)
+    states = result.outputs | {times[-1]: result.interface}
     for s, t in zip(DISTANCES, times, strict=True):
-        yield from _state(law, s, result.outputs.get(t, result.interface))
+        yield from _state(law, s, states[t])
     summary, volume = result.summary, COEFFICIENT * PRESS * 1e-3 * DISTANCES[-1]
     found = summary["geometry_volume_2_m3"]
     yield compare(ID, "volume lost by the mesh [m³]", found, volume, 1e-3, ARCHARD)

@@ -22,7 +22,7 @@ def numbers(summary):
 
 @pytest.mark.parametrize("demo", ["hot_steady", "running_in"])
 def test_summary_is_the_known_one(demo, request):
-    """requirement: G1, every number of the summary within 1e-7 on dolfinx 0.9 to 0.11."""
+    """requirement: every number of the summary within 1e-7 on dolfinx 0.9 to 0.11."""
     known = json.loads(GOLDEN.read_text())[demo]
     found = numbers(request.getfixturevalue(demo).summary)
     assert set(found) == set(known)

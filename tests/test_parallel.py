@@ -58,7 +58,7 @@ def summaries(tmp_path, case, *overrides):
     ],
 )
 def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):
-    """requirement: P1, every number of the summary to 1e-8 of the serial run."""
+    """requirement: every number of the summary to 1e-8 of the serial run."""
     (serial, folder), (parallel, other) = summaries(tmp_path, case, *overrides)
     noise = {"seconds", "heat_balance_relative_error", "equilibrium_relative_error"}
     for key in serial.keys() - noise:
@@ -116,7 +116,7 @@ def test_the_rank_that_speaks_is_waited_for():
 
 
 def test_a_failed_computation_ends_all_ranks(tmp_path):
-    """requirement: C3, exit code 2 and a readable run.json."""
+    """requirement: exit code 2 and a readable run.json."""
     done = thermowear(
         2,
         "run",

@@ -53,7 +53,7 @@ def imports(path):
 
 @pytest.mark.parametrize("room", ORDER)
 def test_rooms_import_only_from_above(room):
-    """requirement: I1, one-way flow; only bulk, contact and simulation know dolfinx."""
+    """requirement: one-way flow; only bulk, contact and simulation know dolfinx."""
     below = set(ORDER[ORDER.index(room) + 1 :]) | BARE.get(room, set())
     for path in (ROOT / room).rglob("*.py"):
         for name in imports(path):
@@ -82,7 +82,7 @@ def run_python(code):
 
 
 def test_import_is_light_and_clean():
-    """requirement: I1, ``import thermowear`` warns of nothing and loads no heavy library."""
+    """requirement: ``import thermowear`` warns of nothing and loads no heavy library."""
     heavy = {"dolfinx", "gmsh", "matplotlib", "pyvista", "mpi4py", "pint", "meshio"}
     done = run_python(f"import sys, thermowear; print({heavy} & set(sys.modules))")
     assert done.returncode == 0, done.stderr

@@ -68,7 +68,7 @@ def test_cylinder_shell():
 
 
 def test_outflow_equals_the_heat_put_in():
-    """requirement: V13, what goes in goes out by cooling and given temperatures, to 1e-10."""
+    """requirement: what goes in goes out by cooling and given temperatures, to 1e-10."""
     conducting = build(5, {"upper_end": 300.0}, {"lower_end": 12.0})
     heat = interpolated(conducting.space, lambda x: np.exp(10 * x[0] + 20 * x[1]))
     heat = np.where(conducting.fixed, 0.0, heat)

@@ -62,7 +62,7 @@ def hooke(model, e):
 @pytest.mark.parametrize(("triangles", "order"), CELLS)
 @pytest.mark.parametrize("model", PLANE, ids=lambda m: m.name)
 def test_linear_patch_on_curved_cells(model, triangles, order):
-    """requirement: V3, forces of a linear field are its tractions to 1e-12, degree >= the order."""
+    """requirement: forces of a linear field are its tractions to 1e-12, degree >= the order."""
     elastic = build(model, max(order, 2), triangles, order, ("upper_end",))
     gradient = np.array([[1e-3, -4e-4], [2e-4, 7e-4]])
     strain = (gradient + gradient.T) / 2
@@ -77,7 +77,7 @@ def test_linear_patch_on_curved_cells(model, triangles, order):
 
 @pytest.mark.parametrize("model", PLANE, ids=lambda m: m.name)
 def test_free_expansion_is_free_of_stress(model):
-    """requirement: V4, uniform heat moves a free body without stress, by α T or (1 + ν) α T."""
+    """requirement: uniform heat moves a free body without stress, by α T or (1 + ν) α T."""
     elastic = build(model, 2, clamped=("upper_end",))
     rise, stretch = 80.0, 1.0 if isinstance(model, PlaneStress) else 1 + ν
     expanded = nodal(elastic, lambda x: stretch * α * rise * x[:2])

@@ -35,7 +35,7 @@ def _carried(amount):
 
 
 def test_the_field_stays_where_it_is_in_space():
-    """requirement: B12, temperatures do not travel with the nodes, nor from body to body."""
+    """requirement: temperatures do not travel with the nodes, nor from body to body."""
     for amount in (1e-3, 2e-2):
         found, expected, error = _carried(amount)
         assert np.abs(found - expected).max() < 1e-4

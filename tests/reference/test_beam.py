@@ -74,7 +74,7 @@ def test_pressure_dies_out_exponentially():
 
 
 def test_time_steps_are_of_second_order():
-    """requirement: V19, the error of the last pressure falls with the square of the steps."""
+    """requirement: the error of the last pressure falls with the square of the steps."""
     beam = replace(EXAMPLE, elements=60)
     found = [beam.states([12.0, 60.0], n)[-1].pressure.max() for n in (200, 400, 800, 3200)]
     errors = np.abs(np.array(found[:3]) / found[3] - 1)

@@ -61,7 +61,7 @@ def fastest(pair, speed, degree=40, waves=1.6):
 
 
 def test_critical_speed():
-    """requirement: 4e, ``2 k m/(mu α (1 + ν) E*)``; nothing grows there, and above it does."""
+    """requirement: ``2 k m/(mu α (1 + ν) E*)``; nothing grows there, and above it does."""
     v = PAIR.critical_speed
     assert v == pytest.approx(4 * np.pi * 50 * (1 - ν) / (0.02 * 0.3 * 1.2e-5 * E), rel=1e-12)
     scale = PAIR.conductivity / PAIR.capacity * PAIR.wave_number**2

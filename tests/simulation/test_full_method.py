@@ -67,7 +67,7 @@ def test_running_in_is_that_of_condensed_contact(method, condensed_running_in):
 
 @pytest.mark.parametrize("method", ["condensed", *FULL])
 def test_worn_volume_is_archards(method):
-    """requirement: V16, V = k F s exactly where all points slide alike, friction included."""
+    """requirement: V = k F s exactly where all points slide alike, friction included."""
     changes = {
         "motion": {"velocity": "-1 m/s"},
         "contact": {"friction": 0.3},

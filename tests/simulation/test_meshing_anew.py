@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from thermowear.geometry.shapes import quality
-from thermowear.simulation import Observer, meshing_anew
+from thermowear.simulation import Observer, geometry_update, meshing_anew
 from thermowear.simulation.checkpoint import pack
 from thermowear.simulation.run import run
 from thermowear.verification.starter import run_starter, starter
@@ -199,3 +199,15 @@ def test_two_ranks_give_the_serial_numbers():
     assert parallel["geometry_remeshing_error"] == pytest.approx(
         serial["geometry_remeshing_error"], rel=1e-5
     )
+
+
+def test_cells_that_no_mesh_mends_stop_the_run(monkeypatch):
+    """requirement: never a cell below the floor; what was computed before is kept."""
+    monkeypatch.setattr(geometry_update, "FLOOR", 1.5)  # that no cell reaches
+    result = run_starter("annular-punch-running-in", *COLD, "mesh.degree=4", "mesh.elements=3")
+    assert "cells of the worn bodies become too slanted" in str(result.stopped)
+    worn = result.summary["wear_volume_1_m3"]
+    height = 0.05 * np.pi * (0.12**2 - 0.02**2)
+    assert 0.009 * height < worn < 0.012 * height  # up to the first update
+    assert len(result.history) == result.summary["steps"] + 1 > 10
+    assert np.isfinite(result.interface.pressure).all()

@@ -53,7 +53,7 @@ def test_the_guide_pushes_body_1_where_it_slides(to_the_right, to_the_left):
 
 
 def test_the_other_way_is_the_mirror_image(to_the_right, to_the_left):
-    """requirement: P4, mirrored velocity gives the mirrored pressure."""
+    """requirement: mirrored velocity gives the mirrored pressure."""
     one, other = to_the_right.interface, to_the_left.interface
     np.testing.assert_allclose(one.x, -other.x[::-1], atol=1e-12)
     assert relative(one.pressure, other.pressure[::-1]) < 1e-8
@@ -235,7 +235,7 @@ def test_friction_heat_is_shared_and_kept(model, way):
 
 
 def test_heat_of_both_ways_is_mirrored():
-    """requirement: P4 with friction heat."""
+    """requirement: with friction heat."""
     one, other = (solved(PUNCH, way | HOT, *SMALL).interface for way in (SLIDING, BACKWARDS))
     assert relative(one.pressure, other.pressure[::-1]) < 1e-8
     assert relative(one.temperature_2, other.temperature_2[::-1]) < 1e-8
@@ -246,7 +246,7 @@ WEAR = {"wear": {"punch": {"coefficient": "1e-7 1/MPa"}}}
 
 @pytest.mark.parametrize("hot", [{}, HOT], ids=["cold", "hot"])
 def test_steady_pressure_of_a_translation_is_uniform(hot):
-    """requirement: V8, equal speed everywhere gives equal pressure, whatever friction and heat."""
+    """requirement: equal speed everywhere gives equal pressure, whatever friction and heat."""
     changes = SLIDING | WEAR | hot | {"analysis": {"type": "steady"}}
     result = solved(PUNCH, changes, *SMALL)
     i, summary = result.interface, result.summary

@@ -33,7 +33,7 @@ def random_problem(system, rng):
 
 @pytest.mark.parametrize("method", ["condensed", "nitsche", "penalty"])
 def test_no_wrong_pressure_is_returned(tables, method):
-    """requirement: V10 and V12 from 200 random starts, re-checked with bodies solved anew."""
+    """requirement: from 200 random starts, re-checked with bodies solved anew."""
     changes = ("contact.positioning=false", f"contact.method={method}", "mesh.degree=3")
     case = tw.load(tables, (*changes, "load={force='1 N'}"))
     system = build(case, MPI.COMM_WORLD, Phases())

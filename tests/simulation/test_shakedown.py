@@ -23,7 +23,7 @@ def depth(result):
 
 
 def test_a_run_goes_on_when_nothing_presses_any_more():
-    """requirement: V19, rounding is not taken for an error of the steps; pressure and wear rest."""
+    """requirement: rounding is not taken for an error of the steps; pressure and wear rest."""
     minute = beam()
     long = beam("analysis.end_time=1 h")
     assert long.stopped is None

@@ -139,7 +139,7 @@ def test_fields_fill_the_bodies():
 
 
 def test_two_ranks_give_the_serial_numbers(tmp_path):
-    """requirement: P1 in space, every number of the summary to 1e-8 of the serial run."""
+    """requirement: in space, every number of the summary to 1e-8 of the serial run."""
     case = tmp_path / "case.toml"
     ending = {"type": "transient", "end_time": "1000 s"}
     other = {"analysis": ending, "mesh.bodies": {"block": {"elements": 3}}}

@@ -25,7 +25,7 @@ def shape_at(interface, radii=reference.RADII):
 
 
 def test_balances(hot_steady):
-    """requirement: V12 and V13, heat and forces balance to 1e-9; friction power in closed form."""
+    """requirement: heat and forces balance to 1e-9; friction power in closed form."""
     summary = hot_steady.summary
     assert summary["heat_balance_relative_error"] < 1e-9
     assert summary["equilibrium_relative_error"] < 1e-9
@@ -95,7 +95,7 @@ def test_both_bodies_wear():
 
 
 def test_units_do_not_matter():
-    """requirement: P3, the case in mm, N and MPa or in SI gives the same result."""
+    """requirement: the case in mm, N and MPa or in SI gives the same result."""
     tables = cold_tables()
     si = tw.run(tw.load(tables, ("mesh.degree=3",)))
     geometry = tables["geometry"]

@@ -34,7 +34,7 @@ def test_output_times_are_hit_exactly(running_in):
 
 
 def test_wear_never_goes_back_and_contact_stays_admissible(running_in):
-    """requirement: V10 and V18, p >= 0 at every point, wear grows, no penetration to 1e-3 of it."""
+    """requirement: p >= 0 at every point, wear grows, no penetration to 1e-3 of it."""
     ordered = [state for _, state in sorted(states(running_in).items())]
     for before, after in itertools.pairwise(ordered):
         assert np.all(after.wear_1 >= before.wear_1)
@@ -45,7 +45,7 @@ def test_wear_never_goes_back_and_contact_stays_admissible(running_in):
 
 
 def test_volume_follows_archard(running_in):
-    """requirement: V16, V = k ∫∫ p v dA dt; the rate at the end is that of the steady state."""
+    """requirement: V = k ∫∫ p v dA dt; the rate at the end is that of the steady state."""
     i = running_in.interface
     volume = np.array([row.wear_volume_1 for row in running_in.history])
     time = np.array([row.time for row in running_in.history])
@@ -56,7 +56,7 @@ def test_volume_follows_archard(running_in):
 
 
 def test_tolerance_rules_the_error():
-    """requirement: V19, a tighter tolerance moves the result by no more than promised."""
+    """requirement: a tighter tolerance moves the result by no more than promised."""
 
     def pressures(tolerance):
         case = tw.load(
@@ -79,7 +79,7 @@ def test_tolerance_rules_the_error():
 
 
 def test_second_order_in_time():
-    """requirement: V19, the error of the wear step falls with the square of its size."""
+    """requirement: the error of the wear step falls with the square of its size."""
     from mpi4py import MPI
 
     from thermowear.simulation.building import build

@@ -37,7 +37,7 @@ def stop():
 
 
 def test_heat_is_kept_in_every_step(stop):
-    """requirement: 4g, friction heat is stored or lost, to rounding, at every moment."""
+    """requirement: friction heat is stored or lost, to rounding, at every moment."""
     made, stored, lost = (column(stop.heat, f"heat_{what}") for what in ("in", "stored", "lost"))
     np.testing.assert_allclose(stored + lost, made, rtol=1e-10, atol=1e-9)
     assert column(stop.heat, "balance_error").max() < 1e-10
@@ -48,7 +48,7 @@ def test_heat_is_kept_in_every_step(stop):
 
 
 def test_hottest_before_the_end_of_the_stop(stop):
-    """requirement: 4g, the peak comes before the car stands; then the brake only cools."""
+    """requirement: the peak comes before the car stands; then the brake only cools."""
     summary, time = stop.summary, column(stop.history, "time")
     hottest = column(stop.history, "max_temperature")
     assert 1.0 < summary["peak_temperature_time_s"] < 3.0
@@ -135,7 +135,7 @@ def test_tolerance_rules_the_error():
 
 
 def test_second_order():
-    """requirement: 4c, order >= 1.9 with contact, wear and heat together, in steps of one size."""
+    """requirement: order >= 1.9 with contact, wear and heat together, in steps of one size."""
     case = tw.load(tables(STOP), (*COARSE, "mesh.degree=2"))
     problem = interface_problem(prepare(case, MPI.COMM_WORLD, Phases()))
 

@@ -46,7 +46,7 @@ def violations(problem, solution):
 @settings(max_examples=200, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), skew=st.sampled_from([0.0, 0.01]))
 def test_every_solution_satisfies_the_conditions(seed, n, skew):
-    """requirement: V10, no penetration, no tension, equilibrium, from any start."""
+    """requirement: no penetration, no tension, equilibrium, from any start."""
     problem = random_problem(seed, n, skew)
     start = np.random.default_rng(seed).random(n) < 0.5
     solution = solve_contact(*problem, start=start)
@@ -56,7 +56,7 @@ def test_every_solution_satisfies_the_conditions(seed, n, skew):
 @settings(max_examples=200, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), far=st.sampled_from([0.0, 50.0]))
 def test_a_given_approach_needs_no_modes(seed, n, far):
-    """requirement: V10 under displacement control, from any start; from far nothing touches."""
+    """requirement: under displacement control, from any start; from far nothing touches."""
     compliance, gap, modes, _ = random_problem(seed, n)
     problem = compliance, gap + far, modes[:, :0], np.zeros(0)
     start = np.random.default_rng(seed).random(n) < 0.5
@@ -72,7 +72,7 @@ def test_a_given_approach_needs_no_modes(seed, n, far):
 @settings(max_examples=200, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40))
 def test_friction_in_the_section_enters_equilibrium(seed, n):
-    """requirement: V10 with forces that work on other modes than those that close the gap."""
+    """requirement: with forces that work on other modes than those that close the gap."""
     compliance, gap, modes, _ = random_problem(seed, n, 0.01)
     rng = np.random.default_rng(seed)
     forces = modes + 0.1 * rng.uniform(size=modes.shape)
@@ -99,7 +99,7 @@ def test_lemke_agrees_with_the_active_set(seed, n):
 
 @pytest.mark.parametrize("wrong", ["tension", "penetration", "open but pressing", "imbalance"])
 def test_every_wrong_pressure_is_caught(wrong):
-    """requirement: V10, the check after convergence sees each kind of violation."""
+    """requirement: the check after convergence sees each kind of violation."""
     compliance, gap = np.eye(3), np.zeros(3)
     modes, load = np.ones((3, 1)), np.array([3.0])
     λ, d = np.ones(3), 1.0
@@ -161,7 +161,7 @@ def test_load_that_no_pressure_carries():
 
 
 def test_indefinite_compliance_is_reported():
-    """requirement: V10, beyond the instability the solver says so instead of returning."""
+    """requirement: beyond the instability the solver says so instead of returning."""
     with pytest.raises(ComputationError, match="instability"):
         solve_contact(-np.eye(6) - 0.2, np.linspace(0, 1, 6), np.ones((6, 1)), np.ones(1))
 

@@ -60,7 +60,7 @@ def test_compliance_is_the_bodies_own(degree, columns):
 @pytest.mark.parametrize("columns", [(3, 3), (3, 4), (5, 2)])
 @pytest.mark.parametrize("degree", [1, 2, 4])
 def test_uniform_pressure(degree, columns):
-    """requirement: V5, contact patch test. With ν = 0 two pressed blocks carry a uniform pressure,
+    """requirement: contact patch test. With ν = 0 two pressed blocks carry a uniform pressure,
     whether their faces match or not.
     """
     _, pairing, _, contact = condensed(degree, columns, poisson_ratio=0.0)

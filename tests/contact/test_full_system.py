@@ -91,7 +91,7 @@ def condensed(case, degree, gap, load, friction_trace=None):
 @pytest.mark.parametrize("degree", [1, 2, 5])
 @pytest.mark.parametrize(("name", "rollers"), [("axisymmetric", ()), ("plane-strain", SIDES)])
 def test_uniform_pressure(name, rollers, degree, columns, kind):
-    """requirement: V5, contact patch test. A uniform pressure is found exactly by Nitsche's method,
+    """requirement: contact patch test. A uniform pressure is found exactly by Nitsche's method,
     whether faces match or not, and by a uniform penalty with the approach it adds.
     """
     ν = 0.3 if rollers else 0.0
@@ -114,7 +114,7 @@ def hertz():
 
 @pytest.mark.parametrize("kind", METHODS)
 def test_cylinder_against_the_condensed_solution(hertz, kind):
-    """requirement: V10, the methods agree with the condensed solution to 1e-3 of the peak away
+    """requirement: the methods agree with the condensed solution to 1e-3 of the peak away
     from the edges, from a cold start in at most 10 iterations.
     """
     case, load = hertz, np.array([3e4])
@@ -386,7 +386,7 @@ def numbers():
 
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 def test_two_ranks_give_the_serial_pressure():
-    """requirement: P1, the same numbers on any number of ranks."""
+    """requirement: the same numbers on any number of ranks."""
     script = (
         "import json; from tests.contact.test_full_system import COMM, numbers; found = numbers()\n"
         "if COMM.rank == 0: print(json.dumps(found.tolist()))"

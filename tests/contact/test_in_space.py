@@ -65,7 +65,7 @@ def patch(divisions, order, maps, degree):
 @pytest.mark.parametrize("degree", [1, 2, 3])
 @pytest.mark.parametrize(("divisions", "order", "place"), EXACT)
 def test_uniform_pressure_is_exact(divisions, order, place, degree):
-    """requirement: V5 in space. Two blocks carry a uniform pressure: matching faces of any shape
+    """requirement: in space. Two blocks carry a uniform pressure: matching faces of any shape
     exactly, others where the facets of body 1 are parallelograms.
     """
     errors = patch(divisions, order, (place, place), max(degree, order))

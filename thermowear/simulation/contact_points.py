@@ -39,8 +39,10 @@ def worn_contact_points(
 ) -> tuple[Pairing, np.ndarray]:
     """The same of worn faces, paired where body 1 has got to; the gap is that of unworn faces.
 
-    It is measured straight along the normals. The closest point will not do here: where a face
-    cannot follow the edge of its wear, the faces overlap by what is kept of it, on a slope.
+    It is measured between points that lie opposite along the ways on which the nodes have gone:
+    meshes that move open it by just the depths that they lose, even where the faces are slanted
+    against each other. They are where a mesh cannot follow the edge of its wear: they overlap by
+    what is kept of it. Closest points or those along the normals would change the gap there.
     """
     moved, turned = worn.holder
     motion = RigidMotion(moved, turned, np.zeros(3))
@@ -64,15 +66,17 @@ def worn_contact_points(
 
 
 def _ways(worn: WornGeometry, pairing: Pairing) -> np.ndarray:
-    """Ways of the nodes of body 1 against those of body 2, unit vectors at the points (n, gdim).
+    """Ways on which body 2 lies opposite, unit vectors at the points, shape (n, gdim).
 
-    Each counts by how far its nodes have gone.
+    Those out of body 1 and into body 2 of the nodes, by how far each face has gone.
     """
-    gone = np.abs(worn.depth).max(axis=1)
-    ways = (ways_at(*both) for both in zip(pairing.sides, worn.directions, strict=True))
-    outward, inward = ways
-    summed = gone[0] * outward - gone[1] * inward
-    return summed / np.linalg.norm(summed, axis=1, keepdims=True)
+    out_1, out_2 = (
+        ways_at(side, directions)
+        for side, directions in zip(pairing.sides, worn.directions, strict=True)
+    )
+    gone_1, gone_2 = np.abs(worn.depth).max(axis=1)
+    ways = gone_1 * out_1 - gone_2 * out_2
+    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
 
 
 def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:

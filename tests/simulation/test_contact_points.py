@@ -1,0 +1,87 @@
+"""Contact points of worn faces: what the meshes lose is what opens the gap between them."""
+
+from dataclasses import replace
+
+from mpi4py import MPI
+
+import numpy as np
+import pytest
+
+from thermowear.simulation.building import build
+from thermowear.simulation.kept_wear import KeptWear, movable_body
+from thermowear.simulation.parts import Parts
+from thermowear.simulation.phases import Phases
+from thermowear.simulation.worn_geometry import along
+from thermowear.verification.starter import run_starter, starter
+
+RADIUS = 2e-3
+CYLINDER = (
+    "cylinder-on-block-growing",
+    "geometry.radius=2 mm",
+    "geometry.block_width=12 mm",
+    "geometry.block_height=6 mm",
+    "geometry.zone=1 mm",
+    "mesh.elements=30",
+    "wear.block.coefficient=2e-6 1/MPa",
+    "analysis.output_times=[]",
+    "wear.update=0.02",
+)
+
+
+def grooved(depth):
+    """The system whose block has lost a depth at the abscissae of the contact points."""
+    system = build(starter(*CYLINDER), MPI.COMM_SELF, Phases())
+    kept = KeptWear(system)
+    face, body = kept.faces[1], movable_body(system, kept.geometry.mesh, 1)
+    amounts = face.amounts(depth(system.pairing.points[:, 0]))
+    points = body.followed(body.outlined(face.displacement(amounts)))
+    worn = replace(
+        kept.geometry,
+        mesh=replace(kept.geometry.mesh, points=points),
+        at=along(system.pairing),
+        depth=np.stack([np.zeros(len(system.weights)), face.depths(amounts)]),
+        updates=1,
+    )
+    return build(system.case, MPI.COMM_SELF, Phases(), None, Parts(), worn)
+
+
+def test_the_unworn_gap_stays_where_faces_are_slanted():
+    """The cylinder is up to 0.3 from the block's normals; far more is worn off than it presses."""
+    wide, deep = 0.6e-3, 40e-6
+    after = grooved(lambda x: deep * np.maximum(1 - x / wide, 0.0)).pairing
+    near = after.points[:, 0] < wide
+    assert after.normals[near, 0].max() > 0.25
+    assert after.sides[1].face.nodes[0, 0, 1] == pytest.approx(-deep, rel=0.01)
+    cos = np.sqrt(1 - (after.points[:, 0] / RADIUS) ** 2)
+    unworn = RADIUS * (1 - cos) * cos  # of a circle above a plane, along its normals
+    assert after.gap[near] == pytest.approx(unworn[near], abs=2e-4 * deep)
+
+
+def test_pressures_go_on_after_an_update_of_a_steep_contact():
+    """requirement: uniform over the contact, but for its edge; updates change next to nothing."""
+    result = run_starter(*CYLINDER, "analysis.end_time=50 s")
+    summary, i = result.summary, result.interface
+    assert summary["geometry_updates"] >= 4
+    assert summary["geometry_change"] < 4e-3
+    half = i.x[i.pressure > 0].max()
+    assert half > 0.3 * RADIUS
+    mean = 20.0 / (2 * half * 1e-3)
+    assert summary["max_pressure_Pa"] == pytest.approx(mean, rel=0.3)
+
+
+def test_a_ring_whose_groove_has_coarse_walls_goes_on():
+    """Where the plate cannot follow the edge of the ring, the faces overlap on a slope."""
+    result = run_starter(
+        "annular-punch-running-in",
+        "mesh.degree=6",
+        "mesh.elements=8",
+        "wear.plate.coefficient=1e-7 1/MPa",
+        "analysis.tolerance=1e-3",
+        "analysis.end_time=3000 s",
+        "analysis.output_times=[]",
+        "analysis.max_steps=60",
+    )
+    i = result.interface
+    assert result.stopped is None
+    assert result.summary["geometry_updates"] >= 2
+    assert i.pressure * i.x == pytest.approx(50e6 * 0.07, rel=1e-3)  # Páczelt and Mróz

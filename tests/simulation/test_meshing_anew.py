@@ -21,6 +21,8 @@ from thermowear.simulation.checkpoint import pack
 from thermowear.simulation.run import run
 from thermowear.verification.starter import run_starter, starter
 
+from .hot_ring import HEAT
+
 COLD = (
     "mesh.degree=6",
     "mesh.elements=4",
@@ -28,19 +30,6 @@ COLD = (
     'analysis.end_time="3000 s"',
     "analysis.output_times=[]",
     "wear.update=0.01",
-)
-HEAT = (
-    "mesh.degree=6",
-    "mesh.elements=4",
-    'bodies.punch.density="7800 kg/m^3"',
-    'bodies.punch.specific_heat="460 J/(kg K)"',
-    "heat.transient=true",
-    'heat.initial="30 degC"',
-    "motion.angular_velocity=1 rad/s",
-    "wear.punch.coefficient=2e-5 1/MPa",
-    "load.mean_pressure=5 MPa",
-    "wear.update=0.002",
-    'analysis={type="transient", end_time="200 s", tolerance=1e-3}',
 )
 SMALL = (*HEAT, "mesh.degree=3", "mesh.elements=2", "analysis.end_time=120 s")
 RADII = (0.022, 0.03, 0.045, 0.07, 0.09, 0.11, 0.118)

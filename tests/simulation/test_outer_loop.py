@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from thermowear.reference.growing_contact import growing_point
-from thermowear.simulation.run import run
 from thermowear.verification.growing import worn_half_width
-from thermowear.verification.starter import run_starter, starter
+from thermowear.verification.starter import run_starter
+
+from .hot_ring import HEAT
 
 PUNCH = ("mesh.degree=6", "mesh.elements=4", "analysis.tolerance=1e-3")
 END = 'analysis.end_time="3000 s"'
@@ -73,20 +74,7 @@ def test_it_ends_in_the_steady_state_of_the_height_that_is_left():
 
 def test_heat_of_bodies_that_lose_material_is_accounted_for():
     """What goes with the worn material counts as lost; the balance holds at each step."""
-    case = starter(
-        "annular-punch",
-        *PUNCH[:2],
-        'bodies.punch.density="7800 kg/m^3"',
-        'bodies.punch.specific_heat="460 J/(kg K)"',
-        "heat.transient=true",
-        'heat.initial="30 degC"',
-        "motion.angular_velocity=1 rad/s",
-        "wear.punch.coefficient=2e-5 1/MPa",
-        "load.mean_pressure=5 MPa",
-        "wear.update=0.002",
-        'analysis={type="transient", end_time="200 s", tolerance=1e-3}',
-    )
-    result = run(case)
+    result = run_starter("annular-punch", *HEAT)
     assert result.summary["geometry_updates"] >= 2
     assert 0.0 < result.summary["geometry_temperature_error"] < 1e-4
     assert max(row.balance_error for row in result.heat) < 1e-8

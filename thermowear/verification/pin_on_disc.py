@@ -1,4 +1,10 @@
-"""A pin with a spherical end on a disc, whose mesh follows its worn end."""
+"""A pin with a spherical end on a disc, whose mesh follows its worn end.
+
+The published depths are those of the cap that a flat cuts off the sphere, a²/(2 R) of the published
+radii. In the middle of bodies that yield less is worn, see `reference.growing_contact`: by 2.1 %
+after 320 mm and 1.2 % after 640 mm (finite elements refined until these digits stay: 2.17 % and
+1.20 %). So depths in the middle are held against that, and the later one against both.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +22,6 @@ FIRST, LAST = 0.32, 0.64
 PUBLISHED = {FIRST: (2.7426, 1.6924e-6), LAST: (3.2543, 2.3829e-6)}
 """Radius over that of Hertz's contact, and depth [m], by sliding distance [m]."""
 CAP = f"{RIGID}: the cap that a flat cuts off a sphere"
-ALLOWED = {FIRST: 3e-2, LAST: 2e-2}
-"""Of the depth in the middle, from which elasticity takes 2.1 % and 1.2 % on half-spaces under an
-even pressure, see `reference.growing_contact`, and 2.17 % and 1.20 % on finite elements that are
-refined until these digits stay (120 elements of degree 4)."""
 KEYS = ("mesh.elements=60", "wear.update=0.0005")
 
 
@@ -38,7 +40,8 @@ def checks() -> Iterator[Check]:
         cap = radius**2 / (2 * RADIUS)
         yield compare(ID, f"depth {place}, by the radius of the scar [m]", cap, depth, 2e-2, CAP)
         name, dented = f"depth {place}, in the middle", float(law.elastic_depth(distance))
-        yield compare(ID, f"{name} [m]", worn, depth, ALLOWED[distance], RIGID)
+        if distance == LAST:
+            yield compare(ID, f"{name} [m]", worn, depth, 2e-2, RIGID)
         yield compare(ID, f"{name}, elastic [m]", worn, dented, 1e-2, ELASTIC)
     summary, volume = result.summary, COEFFICIENT * FORCE * LAST
     lost = summary["geometry_volume_1_m3"]

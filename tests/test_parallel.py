@@ -45,16 +45,20 @@ def summaries(tmp_path, case, *overrides):
     return found
 
 
+def slow(*values):
+    return pytest.param(*values, marks=pytest.mark.slow)
+
+
 @pytest.mark.parametrize(
     ("case", "overrides"),
     [
-        (HOT, ["mesh.degree=6"]),
-        (COLD_RUNNING_IN, ["mesh.degree=6"]),
+        (HOT, ["mesh.degree=4"]),
+        slow(COLD_RUNNING_IN, ["mesh.degree=6"]),
         (COLD_RUNNING_IN, ["mesh.degree=3", "mesh.bodies.plate.elements=7"]),
         (DEMOS / "cylinder_on_block.toml", ["contact.method=nitsche"]),
         (DEMOS / "cylinder_stick_slip.toml", ["mesh.degree=2", "analysis.increments=4"]),
-        (DEMOS / "disk_brake_stability.toml", ["mesh.degree=4"]),
-        (DEMOS / "disk_brake_stop.toml", ["mesh.degree=3", "analysis.end_time=6 s"]),
+        slow(DEMOS / "disk_brake_stability.toml", ["mesh.degree=4"]),
+        slow(DEMOS / "disk_brake_stop.toml", ["mesh.degree=3", "analysis.end_time=6 s"]),
     ],
 )
 def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):
@@ -85,8 +89,8 @@ def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):
     ("arguments", "message"),
     [
         (["run", HOT, "--set", "bodies.punch.poisson_ratio=0.5"], "bodies.punch.poisson_ratio"),
-        (["run", "missing.toml"], "missing.toml"),
-        (["run", HOT, "--sett", "mesh.degree=2"], "--sett"),
+        slow(["run", "missing.toml"], "missing.toml"),
+        slow(["run", HOT, "--sett", "mesh.degree=2"], "--sett"),
         (["run", HOT, "-o", "/proc/nowhere", "--set=mesh.degree=2"], "-o /proc/nowhere"),
     ],
 )

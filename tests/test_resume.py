@@ -188,6 +188,7 @@ def test_random_moments(name, uninterrupted, tmp_path):
         shutil.rmtree(folder)
 
 
+@pytest.mark.slow
 def test_killed_while_writing_the_checkpoint(uninterrupted, tmp_path):
     """requirement: the last one stands until the next does."""
     whole, _ = uninterrupted("cold")
@@ -339,6 +340,7 @@ def test_two_runs_in_one_folder_are_refused(tmp_path):
         process.communicate()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 def test_two_ranks_go_on_with_their_parts(tmp_path):
     """requirement: nodal fields of each rank; another number of ranks is refused."""

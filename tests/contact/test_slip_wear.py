@@ -142,6 +142,7 @@ def rolling(contact, x):
     return dataclasses.replace(contact, rigid=rigid, modes=modes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", [0, 1])
 def test_a_cylinder_that_slides_to_and_fro(body):
     """requirement: rubbing as far as the contact is wide. A cylinder that wears has its scar where

@@ -184,6 +184,7 @@ def test_a_wrong_rate_is_refused(folder, fps):
     assert main(["animate", str(folder), "--fps", fps]) == 1
 
 
+@pytest.mark.slow
 def test_bodies_in_space(tmp_path):
     """requirement: solids and maps of the face; the depth worn off changes, the scales do not."""
     case, folder = tmp_path / "case.toml", tmp_path / "run"

@@ -52,6 +52,7 @@ QUICK = {
     RUNNING_IN: ("analysis.end_time=2 s", 'analysis.output_times=["1 s"]'),
     FRETTING: ("mesh.degree=2", "mesh.elements=12", "analysis.increments=3"),
     RECIPROCATING: ("mesh.degree=2", "analysis.cycles=4", 'analysis.output_times=["1 s"]'),
+    "annular-punch-deep": ("mesh.elements=2", "mesh.degree=2"),
     "cylinder-fretting": ("mesh.degree=2", "wear.cycles=20", 'analysis.output_times=["1 s"]'),
 }
 HEADS = {

@@ -148,6 +148,7 @@ def test_adaptive_jumps_are_those_of_all_cycles(adaptive, every):
         assert 0 <= row.error <= 1e-2
 
 
+@pytest.mark.slow
 def test_the_tolerance_of_jumps(every):
     """requirement: errors go with it; where it is large, no jump is longer than told."""
     errors = []

@@ -138,6 +138,7 @@ class _Watched(Observer):
         self.saved.append((saved.progress.worn, pack(MPI.COMM_WORLD, saved)))
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_from_a_mesh_made_anew():
     """requirement: bitwise the same."""
     often = "analysis.checkpoint_every=1e-9 s"
@@ -166,6 +167,7 @@ if MPI.COMM_WORLD.rank == 0:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 def test_two_ranks_give_the_serial_numbers():
     found = []

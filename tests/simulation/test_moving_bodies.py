@@ -97,7 +97,7 @@ def test_the_console_says_how_heat_is_carried(capsys):
 
 
 @needs_mpirun
-@pytest.mark.parametrize("advection", ["resolved", "spread"])
+@pytest.mark.parametrize("advection", ["resolved", pytest.param("spread", marks=pytest.mark.slow)])
 def test_two_ranks_give_the_serial_numbers(tmp_path, advection):
     """requirement: every number of the summary to 1e-8, also where a rank has no unknowns."""
     overrides = (f"heat.advection={advection}", "mesh.degree=3")

@@ -121,6 +121,7 @@ def test_a_contact_may_grow_past_its_zone():
     assert not notes
 
 
+@pytest.mark.slow
 def test_a_contact_that_fills_its_face_is_said_to():
     """requirement: beyond the end of the face there is nothing to wear; the run says so."""
     result, notes = grown(400)

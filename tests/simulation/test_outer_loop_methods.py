@@ -24,7 +24,7 @@ WITHIN = {"pressure": 1e-3, "wear_1": 3e-5, "shape": 1e-3, "temperature_1": 3e-4
 """Mean differences, by the largest value, of shapes by their range."""
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(scope="module", params=["cold", pytest.param("hot", marks=pytest.mark.slow)])
 def worn(request):
     """Some hundredths of the height of the ring worn off, by each method."""
     case = CASES[request.param]

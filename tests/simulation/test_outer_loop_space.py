@@ -149,6 +149,7 @@ def test_a_run_goes_on_from_a_moved_mesh():
     assert_the_same(whole, run_case(case, None, Watched(), None, saved))
 
 
+@pytest.mark.slow
 def test_two_ranks_give_the_serial_numbers(tmp_path):
     case = tmp_path / "case.toml"
     changes = until(4e5) | {"wear.update": 0.004, "mesh.elements": 3}

@@ -44,6 +44,7 @@ def test_a_beam_that_never_touches():
     assert np.all(result.interface.wear_1 == 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["penalty", "nitsche"])
 def test_methods_agree(method):
     """requirement: the same shape in the end by the other methods."""

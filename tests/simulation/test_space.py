@@ -96,6 +96,7 @@ def test_a_pad_that_may_tilt():
     np.testing.assert_allclose(middle, centroid, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_faces_need_not_match():
     """requirement: approach and curvature of the worn shape are those on matching faces."""
     same = run(PUNCH, mesh__degree=3)

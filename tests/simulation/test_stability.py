@@ -87,6 +87,7 @@ def ring(speed, **analysis):
     return tables(STEADY, changes)
 
 
+@pytest.mark.slow
 def test_running_in_settles_below_the_critical_speed_only():
     """requirement: heat and wear in time, nothing linearised, agree; what swings is found to swing.
 
@@ -110,6 +111,7 @@ def test_running_in_settles_below_the_critical_speed_only():
     assert np.diff(rising).mean() == pytest.approx(period, rel=0.15)
 
 
+@pytest.mark.slow
 def test_rates_at_the_critical_speed_vanish():
     """requirement: at the speed found nothing grows or dies out, where heat is carried along too.
 

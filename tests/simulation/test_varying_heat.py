@@ -66,6 +66,7 @@ def test_tables_of_a_constant_are_that_constant():
     )
 
 
+@pytest.mark.slow
 def test_running_in_ends_in_the_steady_state():
     """requirement: the end of a running-in is the state that the principle gives."""
     finer = SLOW | TABLES | {"mesh.degree": 6, "mesh.elements": 8}

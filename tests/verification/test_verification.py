@@ -9,9 +9,17 @@ from thermowear import verification
 from thermowear.cli import main
 from thermowear.verification import CASES, SLOW, Check, compare
 
+LONG = SLOW | {
+    "beam-shakedown", "block-on-ring", "case-2", "case-8", "case-9", "fretting-cylinder",
+    "fretting-wear", "fuel-fretting", "growing-cylinder", "growing-sphere",
+    "half-plane-instability", "methods-agree", "moving-band", "optimal-shape", "reciprocating",
+    "temperature-dependent",
+}  # fmt: skip
+"""Of more than four seconds; CI runs them by `thermowear verify`."""
+
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in CASES]
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in CASES]
 )
 def test_case(name):
     """requirement: every quantity within what is allowed of its reference."""

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
+from numpy.polynomial.polynomial import polyder
 
 from ..bulk.bodies import Bodies
 
@@ -31,21 +34,15 @@ def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
 
 def lagrange(order: int, t: np.ndarray) -> np.ndarray:
     """Lagrange polynomials with equally spaced nodes on [0, 1], shape (n, order + 1)."""
-    knots = np.linspace(0.0, 1.0, order + 1)
-    values = np.ones((len(t), order + 1))
-    for i in range(order + 1):
-        for j in np.delete(np.arange(order + 1), i):
-            values[:, i] *= (t - knots[j]) / (knots[i] - knots[j])
-    return values
+    return np.vander(t, order + 1, increasing=True) @ _coefficients(order)
 
 
 def lagrange_slopes(order: int, t: np.ndarray) -> np.ndarray:
     """Their derivatives, shape (n, order + 1)."""
-    knots = np.linspace(0.0, 1.0, order + 1)
-    slopes = np.zeros((len(t), order + 1))
-    for i in range(order + 1):
-        others = np.delete(np.arange(order + 1), i)
-        for k in others:
-            factors = [(t - knots[j]) / (knots[i] - knots[j]) for j in others if j != k]
-            slopes[:, i] += np.prod(factors, axis=0) / (knots[i] - knots[k])
-    return slopes
+    return np.vander(t, order, increasing=True) @ polyder(_coefficients(order))
+
+
+@cache
+def _coefficients(order: int) -> np.ndarray:
+    """Of the Lagrange polynomials: rows by power, columns by node; orders of geometry are low."""
+    return np.linalg.inv(np.vander(np.linspace(0.0, 1.0, order + 1), increasing=True))

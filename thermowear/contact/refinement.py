@@ -100,6 +100,7 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
             np.einsum("cq,pci->pqi", values, corners[chosen]) for values in (shape, along, across)
         )
         area = weights * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+        at = np.clip(at, 0.0, 1.0)  # corners on an edge of the facet are beyond it by rounding
         parts.append((np.repeat(facet[chosen], len(weights)), at.reshape(-1, 2), area.ravel()))
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     counting = columns[2] > 0.0

@@ -11,8 +11,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicSpline, RBFInterpolator
-from scipy.spatial import cKDTree
+import scipy
 
 from ..errors import CaseError
 
@@ -87,7 +86,7 @@ class Design:
     def normals_at(self, points: np.ndarray) -> np.ndarray:
         """Outward unit normals at points (n, gdim) of the face, shape (n, gdim)."""
         if self.points.shape[1] == 3:
-            return self.normals[cKDTree(self.points).query(points)[1]]
+            return self.normals[scipy.spatial.cKDTree(self.points).query(points)[1]]
         s = self._along(points)
         normals = np.column_stack([np.interp(s, self._lengths, n) for n in self.normals.T])
         return normals / np.linalg.norm(normals, axis=1, keepdims=True)
@@ -95,7 +94,7 @@ class Design:
     def _along(self, points: np.ndarray) -> np.ndarray:
         """Lengths (of chords) at the closest points of a curve through the design [m]."""
         face, slopes = self._face, self._face.derivative()
-        s = self._lengths[cKDTree(self.points).query(points)[1]]
+        s = self._lengths[scipy.spatial.cKDTree(self.points).query(points)[1]]
         for _ in range(_STEPS):
             offset, tangent = face(s) - points, slopes(s)
             s = s - (offset * tangent).sum(axis=1) / (tangent**2).sum(axis=1)
@@ -112,22 +111,24 @@ class Design:
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     @cached_property
-    def _face(self) -> CubicSpline:
-        return CubicSpline(self._lengths, self.points)
+    def _face(self) -> scipy.interpolate.CubicSpline:
+        return scipy.interpolate.CubicSpline(self._lengths, self.points)
 
     @cached_property
-    def _curve(self) -> CubicSpline:
-        return CubicSpline(self._lengths, self.depth)
+    def _curve(self) -> scipy.interpolate.CubicSpline:
+        return scipy.interpolate.CubicSpline(self._lengths, self.depth)
 
     def _in_space(self, points: np.ndarray) -> np.ndarray:
         """Interpolated in the plane across the mean normal."""
-        distance = cKDTree(self.points).query(points)[0].max()
+        distance = scipy.spatial.cKDTree(self.points).query(points)[0].max()
         if distance > 0.5 * self.extent:
             raise ValueError(f"is of a face that lies up to {distance:.3g} m off the contact face")
         across = np.linalg.svd(self.normals.mean(axis=0)[None])[2][1:]
         known = self.points @ across.T / self.extent
         neighbours = min(_NEIGHBOURS, len(known))
-        curve = RBFInterpolator(known, self.depth, neighbors=neighbours, kernel="cubic")
+        curve = scipy.interpolate.RBFInterpolator(
+            known, self.depth, neighbors=neighbours, kernel="cubic"
+        )
         return curve(points @ across.T / self.extent)
 
 

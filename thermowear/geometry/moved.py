@@ -11,10 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
+import scipy
 from numpy.polynomial.polynomial import polyder
-from scipy.sparse.linalg import spsolve
-from scipy.spatial import cKDTree
 
 from .nodes import edge_nodes
 from .shapes import stiffness
@@ -61,7 +59,7 @@ class MovableBody:
         self.parts = parts
         self._cells = np.isin(mesh.cell_tags, tags)
         own = np.unique(mesh.cells[self._cells])
-        self.face = own[cKDTree(mesh.points[own]).query(face)[1]]
+        self.face = own[scipy.spatial.cKDTree(mesh.points[own]).query(face)[1]]
         self._edges = _outline(mesh, mesh.cells[self._cells])
         self.sides = tuple(self._side(ends) for ends in (self.face[:2], self.face[-2:][::-1]))
 
@@ -195,10 +193,14 @@ def extended(
     matrices, nodes = stiffness(mesh, cells)
     count, size = len(mesh.points), nodes.shape[1]
     rows, columns = np.repeat(nodes, size, axis=1).ravel(), np.tile(nodes, size).ravel()
-    whole = sp.coo_matrix((matrices.ravel(), (rows, columns)), shape=(count, count)).tocsr()
+    whole = scipy.sparse.coo_matrix(
+        (matrices.ravel(), (rows, columns)), shape=(count, count)
+    ).tocsr()
     inner = np.setdiff1d(np.unique(nodes), known)
     if len(inner):
-        solved = spsolve(whole[inner][:, inner].tocsc(), -(whole[inner] @ given))
+        solved = scipy.sparse.linalg.spsolve(
+            whole[inner][:, inner].tocsc(), -(whole[inner] @ given)
+        )
         result[inner] = solved.reshape(len(inner), -1)
     return result
 

@@ -10,9 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import LinearOperator, cg
-from scipy.spatial import cKDTree
+import scipy
 
 from .nodes import FACETS
 from .orders import shape_functions, slopes
@@ -42,7 +40,7 @@ class MovableSolid:
         self._mesh = mesh
         self._cells = mesh.cells[np.isin(mesh.cell_tags, tags)]
         own = np.unique(self._cells)
-        self.face = own[cKDTree(mesh.points[own]).query(face)[1]]
+        self.face = own[scipy.spatial.cKDTree(mesh.points[own]).query(face)[1]]
         self._patches = Patches(mesh, self._cells, self.face)
 
     def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -127,14 +125,16 @@ class MovableSolid:
         matrices = laplacians(kind, self._mesh.order, self._mesh.points[cells])
         size = cells.shape[1]
         where = np.repeat(place, size, axis=1).ravel(), np.tile(place, size).ravel()
-        whole = sp.coo_matrix((matrices.ravel(), where), shape=(len(nodes), len(nodes))).tocsr()
+        whole = scipy.sparse.coo_matrix(
+            (matrices.ravel(), where), shape=(len(nodes), len(nodes))
+        ).tocsr()
         rows = whole[np.searchsorted(nodes, free)]
         inner = rows[:, np.searchsorted(nodes, free)]
         right = -(rows @ given[nodes])  # free ones are still zero
         scale = 1.0 / inner.diagonal()
-        jacobi = LinearOperator(inner.shape, matvec=lambda v: scale * v.ravel())
+        jacobi = scipy.sparse.linalg.LinearOperator(inner.shape, matvec=lambda v: scale * v.ravel())
         for k in range(given.shape[1]):
-            given[free, k] = cg(inner, right[:, k], rtol=_SETTLED, M=jacobi)[0]
+            given[free, k] = scipy.sparse.linalg.cg(inner, right[:, k], rtol=_SETTLED, M=jacobi)[0]
         known[free] = True
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import Akima1DInterpolator
+import scipy
 
 from .moved import enclosed
 
@@ -104,12 +104,12 @@ def divided(
     return NewFace(former, _edges(found, order), place, new)
 
 
-def curve(place: np.ndarray, nodes: np.ndarray) -> Akima1DInterpolator:
+def curve(place: np.ndarray, nodes: np.ndarray) -> scipy.interpolate.Akima1DInterpolator:
     """A cubic B-spline through nodes (n, 2) at places along it, its knots double (Akima, modified).
 
     It does not overshoot: where a face begins to be worn it has a corner.
     """
-    return Akima1DInterpolator(place, nodes, method="makima")
+    return scipy.interpolate.Akima1DInterpolator(place, nodes, method="makima")
 
 
 def _edges(nodes: np.ndarray, order: int) -> np.ndarray:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from .nodes import edge_nodes, reference_nodes
 from .orders import boundary, slopes
@@ -51,8 +50,8 @@ class Patches:
         inside = ~on_face[facet].any(axis=1)
         links = facet[inside & smooth]
         count = len(self.facets)
-        graph = sp.coo_matrix((np.ones(len(links)), links.T), shape=(count, count))
-        patch = connected_components(graph, directed=False)[1]
+        graph = scipy.sparse.coo_matrix((np.ones(len(links)), links.T), shape=(count, count))
+        patch = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
         rim = on_face[facet[:, 0]] != on_face[facet[:, 1]]
         beside = np.where(on_face[facet[:, 0]], *meeting.T[::-1])
         self._sharp, self._level = beside[rim & ~smooth], beside[rim & smooth]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+import scipy
 
 from .design import Design
 from .gmsh_session import gmsh_model
@@ -104,7 +104,7 @@ def _surface(occ, grid: np.ndarray) -> int:
     for axis in (0, 1):
         steps = np.linalg.norm(np.diff(grid, axis=axis), axis=2).mean(axis=1 - axis)
         at = np.concatenate([[0.0], np.cumsum(steps)])
-        spline = make_interp_spline(at, control, k=3, axis=axis)
+        spline = scipy.interpolate.make_interp_spline(at, control, k=3, axis=axis)
         control = np.moveaxis(spline.c, 0, axis) if axis else spline.c
         values, counts = np.unique(spline.t, return_counts=True)
         knots.append(values)

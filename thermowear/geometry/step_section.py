@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+import scipy
 
 from .design import Design
 from .gmsh_session import gmsh_model
@@ -176,7 +176,9 @@ def _wire(occ, curves: list[_Curve]) -> int:
 def _spline(occ, points: np.ndarray, start: int, end: int) -> int:
     """A cubic B-spline through points; OpenCASCADE's own only passes within a micrometre."""
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    spline = make_interp_spline(np.concatenate([[0.0], np.cumsum(steps)]), points, k=3)
+    spline = scipy.interpolate.make_interp_spline(
+        np.concatenate([[0.0], np.cumsum(steps)]), points, k=3
+    )
     knots, multiplicities = np.unique(spline.t, return_counts=True)
     inner = [_point(occ, control) for control in spline.c[1:-1]]
     return occ.addBSpline(

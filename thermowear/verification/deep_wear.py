@@ -44,7 +44,17 @@ def checks() -> Iterator[Check]:
     yield Check(ID, "1 / smallest scaled Jacobian [1]", slanted, 1.0, slanted, 10.0, "a rectangle")
     lost = summary["geometry_volume_1_m3"]
     volume = float(worn.interface.weight @ worn.interface.wear_1)
-    yield compare(ID, "volume lost by the mesh in the end [m³]", lost, volume, 1e-6, FACE)
+    whole = summary["wear_volume_1_m3"]
+    yield compare(ID, "volume lost by the mesh and kept in the gap [m³]", whole, volume, 1e-6, FACE)
+    # the last step is taken again on the moved mesh: the difference of both stays in the gap
+    yield compare(
+        ID,
+        "volume lost by the mesh in the end, but for the last step [m³]",
+        lost,
+        whole,
+        1e-5,
+        FACE,
+    )
     yield compare(ID, "height worn off [m]", lost / AREA, WORN, 1e-3, "the steady wear rate")
     height = HEIGHT - lost / AREA
     yield from _like_low(worn, height)

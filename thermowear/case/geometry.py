@@ -184,6 +184,20 @@ class Geometry(Section):
         """
         raise NotImplementedError
 
+    def check(self, mesh, case) -> None:
+        """Check a mesh that was not made here: nothing, where it was.
+
+        Parameters
+        ----------
+        mesh : thermowear.geometry.tagged.TaggedMesh
+        case : thermowear.case.schema.Case
+
+        Raises
+        ------
+        CaseError
+            If it cannot be what the case says it is.
+        """
+
 
 class PlaneGeometry(Geometry):
     """Base of geometries for plane models.

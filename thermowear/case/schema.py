@@ -220,6 +220,7 @@ class Case(Section):
         x = mesh.points[:, 0]
         if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():
             raise CaseError("geometry: x is the radius of an axisymmetric mesh, found x < 0")
+        self.geometry.check(mesh, self)
         return mesh
 
     def material(self, part: str) -> Body:

@@ -13,6 +13,8 @@ from ..case.section import KeyFault
 from ..case.units import Area, Length
 from .assembly import Named, assemble
 from .file_contents import read_contents
+from .mesh_checks import check_mesh
+from .pair_checks import check_pair
 
 _KEYS = {
     "body_names": "bodies",
@@ -119,12 +121,16 @@ class MeshFile(HalvableGeometry):
 
     def build(self, mesh, zone):
         contents = read_contents(Path(self.path))
+        contents = replace(contents, points=contents.points * self.length_unit)
         bodies = [
             Named(name, in_file, f"geometry.bodies.{name}")
             for name, in_file in self.body_names.items()
         ]
-        tagged = assemble(contents, bodies, list(self._purposes().values()))
-        return replace(tagged, points=tagged.points * self.length_unit)
+        return assemble(contents, bodies, list(self._purposes().values()))
+
+    def check(self, mesh, case):
+        check_mesh(mesh, self, case.model)
+        check_pair(mesh, case)
 
     def _purposes(self) -> dict[str, Named]:
         """All surfaces by their names in the case."""

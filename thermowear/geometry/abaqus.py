@@ -170,7 +170,8 @@ class _Deck:
 
     def _lines(self, of: int | str, side: int, sets: dict[str, np.ndarray]) -> Iterator[list[int]]:
         """Corners of one side of an element, or of the elements of a set."""
-        members = {of} if isinstance(of, int) else set(sets.get(of, np.empty(0)).tolist())
+        numbers = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
+        members = {int(number) for number in numbers}
         for _, corners, elements in self.blocks:
             for element in members & elements.keys() if corners > 2 else ():
                 nodes = elements[element]

@@ -60,6 +60,7 @@ def _kind(number: int) -> str:
 
 
 def nodes_2(source: Numbers) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers and places of the nodes."""
     count = source.one() if source.count is None else source.count
     if isinstance(source, Binary):
         rows = source.records(count, [("tag", "int", 1), ("x", "real", 3)])
@@ -129,6 +130,7 @@ def entities(source: Numbers, minor: int) -> dict[tuple[int, int], list[int]]:
 
 
 def nodes_4(source: Numbers, minor: int) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers and places of the nodes, entity by entity."""
     blocks, total = (int(n) for n in source.integers(2, "size"))
     if minor >= 1:
         source.integers(2, "size")
@@ -140,12 +142,11 @@ def nodes_4(source: Numbers, minor: int) -> tuple[np.ndarray, np.ndarray]:
         count, width = source.one("size"), 3 + (dim if parametric else 0)
         if minor >= 1:
             tags.append(source.integers(count, "size"))
-            table = source.reals(count * width).reshape(-1, width)
+            points.append(source.reals(count * width).reshape(-1, width)[:, :3])
         else:
-            table = source.reals(count * (1 + width)).reshape(-1, 1 + width)
-            tags.append(table[:, 0].astype(np.int64))
-            table = table[:, 1:]
-        points.append(table[:, :3])
+            rows = source.reals(count * (1 + width)).reshape(-1, 1 + width)
+            tags.append(rows[:, 0].astype(np.int64))
+            points.append(rows[:, 1:4])
     found = np.concatenate(tags)
     if len(found) != total:
         raise ValueError(f"the section $Nodes says {total} nodes and has {len(found)}")
@@ -153,6 +154,7 @@ def nodes_4(source: Numbers, minor: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def elements_4(source: Numbers, minor: int, groups) -> list[Elements]:
+    """Elements, entity by entity, in the groups of the entity."""
     blocks, total = (int(n) for n in source.integers(2, "size"))
     if minor >= 1:
         source.integers(2, "size")

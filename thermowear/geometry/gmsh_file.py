@@ -42,11 +42,8 @@ def read_gmsh(data: bytes) -> Contents:
         tags, points = nodes_2(form.numbers(sections, "Nodes"))
         blocks = elements_2(form.numbers(sections, "Elements"), form.binary)
     else:
-        groups = (
-            entities(form.numbers(sections, "Entities"), form.minor)
-            if "Entities" in sections
-            else {}
-        )
+        known = "Entities" in sections
+        groups = entities(form.numbers(sections, "Entities"), form.minor) if known else {}
         tags, points = nodes_4(form.numbers(sections, "Nodes"), form.minor)
         blocks = elements_4(form.numbers(sections, "Elements"), form.minor, groups)
     positions = numbering(tags)
@@ -63,9 +60,9 @@ def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
             if data[at : at + 1].isspace():
                 at += 1
                 continue
-            line = data[at:].split(b"\n", 1)[0]
+            line, number = data[at:].split(b"\n", 1)[0], 1 + data.count(b"\n", 0, at)
             raise ValueError(
-                f"line {1 + data.count(b'\n', 0, at)}, {shown(line)}, belongs to no section of a "
+                f"line {number}, {shown(line)}, belongs to no section of a "
                 "mesh; commands are never carried out"
             )
         name = start[1].decode("ascii", "replace")

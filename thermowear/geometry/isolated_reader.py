@@ -240,7 +240,7 @@ def _mixed(data: np.ndarray) -> tuple[list[tuple[str, np.ndarray]], list[np.ndar
     starts: dict[int, list[int]] = {}
     members: dict[int, list[int]] = {}
     at, cell = 0, 0
-    values: list[int] = data.tolist()
+    values = [int(value) for value in data]
     while at < len(values):
         number = values[at]
         if number not in _MIXED:

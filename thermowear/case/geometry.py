@@ -10,8 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, SerializeAsAny
+from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo
 
+from .paths import UserFile
 from .section import KeyFault, Section, Switch
 from .units import Length
 
@@ -63,9 +64,11 @@ class Geometry(Section):
         Surface of body 1 on the rigid holder; fixed surface of body 2.
     slides_across : bool
         Whether body 1 may slide across its axis, as a ball does on a flat, or across its section.
+    from_file : bool
+        Whether the mesh was made elsewhere, so that it can be wrong as the case can.
     initial_shape : str or None
         File with the worn shape to start from (a design, as ``shape`` writes it, or ``profile.csv``
-        of an earlier run), relative to the current directory.
+        of an earlier run).
     """
 
     name: ClassVar[str]
@@ -77,9 +80,10 @@ class Geometry(Section):
     fixed: ClassVar[str]
 
     slides_across: ClassVar[bool] = False
+    from_file: ClassVar[bool] = False
 
     type: str
-    initial_shape: str | None = None
+    initial_shape: UserFile | None = None
 
     def __init_subclass__(cls, **kwargs: Any):
         super().__init_subclass__(**kwargs)
@@ -240,7 +244,7 @@ def known_geometries() -> dict[str, type[Geometry]]:
     return dict(sorted(_KNOWN.items()))
 
 
-def _pick(data: Any) -> Any:
+def _pick(data: Any, info: ValidationInfo) -> Any:
     if isinstance(data, Geometry):
         return data
     if not isinstance(data, dict):
@@ -253,7 +257,7 @@ def _pick(data: Any) -> Any:
         raise KeyFault(
             "type", f"found {data['type']!r}; must be one of: {', '.join(known_geometries())}"
         ) from None
-    return kind.model_validate(data)
+    return kind.model_validate(data, context=info.context)
 
 
 AnyGeometry = Annotated[SerializeAsAny[Geometry], BeforeValidator(_pick)]

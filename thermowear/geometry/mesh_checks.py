@@ -39,6 +39,21 @@ def check_mesh(mesh: TaggedMesh, geometry: MeshFile, model: str) -> None:
         _symmetry(mesh, geometry)
 
 
+def described(mesh: TaggedMesh) -> list[str]:
+    """Size and number of cells of each body, in a few words."""
+    lines = []
+    for tag, body in enumerate(mesh.bodies, start=1):
+        cells = mesh.cells[mesh.cell_tags == tag]
+        size = " by ".join(length(x) for x in np.ptp(mesh.points[np.unique(cells)], axis=0))
+        lines.append(f"{body} {size} of {len(cells)} cells")
+    return lines
+
+
+def length(value: float) -> str:
+    """A length in millimetres or micrometres."""
+    return f"{1e3 * value:.4g} mm" if abs(value) >= 1e-4 else f"{1e6 * value:.4g} µm"
+
+
 def _ends(mesh: TaggedMesh, surface: str) -> np.ndarray:
     """Nodes at both ends of the edges of a surface, shape (n, 2)."""
     return mesh.facets[mesh.facet_tags == mesh.surfaces.index(surface) + 1][:, :2]

@@ -9,6 +9,7 @@ from typing import Any, Literal
 from pydantic import Field, model_serializer, model_validator
 
 from ..case.geometry import HalvableGeometry, keyed
+from ..case.paths import UserFile
 from ..case.section import KeyFault
 from ..case.units import Area, Length
 from .assembly import Named, assemble
@@ -37,7 +38,7 @@ class MeshFile(HalvableGeometry):
     Attributes
     ----------
     path : str
-        ``.msh``, ``.inp``, ``.vtu``, ``.xdmf`` or ``.med``; relative to the current directory.
+        ``.msh``, ``.inp``, ``.vtu``, ``.xdmf`` or ``.med``.
     length_unit : float
         What 1 in the file stands for [m].
     body_names : dict of str to str
@@ -58,9 +59,10 @@ class MeshFile(HalvableGeometry):
 
     name = "file"
     models = ("axisymmetric", "plane-strain", "plane-stress")
+    from_file = True
 
     type: Literal["file"]
-    path: str
+    path: UserFile
     length_unit: Length = 1.0
     body_names: dict[str, str] = Field(alias="bodies")
     contact_names: tuple[str, str] = Field(alias="contact")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import CaseError, CaseNote
+from .mesh_checks import length
 from .orders import shape_functions
 from .tagged import TaggedMesh
 
@@ -69,15 +70,15 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
     """
     faces = compared(mesh, case)
     height, overlap = faces.height, -faces.gap
-    of_body = f"of {faces.body!r}, which is {_length(height)} high"
+    of_body = f"of {faces.body!r}, which is {length(height)} high"
     if overlap > _SQUEEZED * height:
         raise CaseError(
-            f"geometry.path: the bodies overlap by {_length(overlap)}, {overlap / height:.0%} "
+            f"geometry.path: the bodies overlap by {length(overlap)}, {overlap / height:.0%} "
             f"{of_body}; place the faces where they begin to touch"
         )
     if faces.gap > height:
         raise CaseError(
-            f"geometry.path: the bodies lie {_length(faces.gap)} apart, more than the height "
+            f"geometry.path: the bodies lie {length(faces.gap)} apart, more than the height "
             f"{of_body}; place the faces where they begin to touch"
         )
     approach = case.approach()
@@ -87,7 +88,7 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
     if overlap > _MUCH * height:
         warnings.warn(
             CaseNote(
-                f"geometry.path: the bodies overlap by {_length(overlap)} before they are pressed, "
+                f"geometry.path: the bodies overlap by {length(overlap)} before they are pressed, "
                 f"{overlap / height:.1%} {of_body}"
             ),
             stacklevel=2,
@@ -99,14 +100,14 @@ def _check_approach(case: Case, faces: Faces, approach: float, of_body: str) -> 
     key = "load.history.approach" if case.load.approach is None else "load.approach"
     if approach - faces.gap > _SQUEEZED * faces.height:
         raise CaseError(
-            f"{key}: {_length(approach)} squeezes the bodies by "
+            f"{key}: {length(approach)} squeezes the bodies by "
             f"{(approach - faces.gap) / faces.height:.0%} {of_body} "
             "(is geometry.length_unit right?)"
         )
     alone = case.heat is None and not case.load.surfaces and case.geometry.initial_shape is None
     if alone and approach < faces.gap:
         raise CaseError(
-            f"{key}: {_length(approach)} does not close the gap of {_length(faces.gap)} between "
+            f"{key}: {length(approach)} does not close the gap of {length(faces.gap)} between "
             "the contact faces; nothing would touch"
         )
 
@@ -122,7 +123,7 @@ def _check_pressure(case: Case, faces: Faces) -> None:
     if strain > _SQUEEZED:
         raise CaseError(
             f"load: a mean pressure of {force / area / 1e6:.4g} MPa, if the faces touched along "
-            f"all of their {_length(faces.width)}, is {strain:.2g} times the modulus of {softer!r} "
+            f"all of their {length(faces.width)}, is {strain:.2g} times the modulus of {softer!r} "
             "(is geometry.length_unit right?)"
         )
 
@@ -198,8 +199,3 @@ def _highest(height: np.ndarray, across: np.ndarray, x: np.ndarray) -> np.ndarra
         values = np.where(inside, low + share * (high - low), -np.inf)
         result[start : start + _AT_ONCE] = values.max(axis=1)
     return np.where(np.isfinite(result), result, np.nan)
-
-
-def _length(value: float) -> str:
-    """A length in millimetres or micrometres, for a message."""
-    return f"{1e3 * value:.4g} mm" if abs(value) >= 1e-4 else f"{1e6 * value:.4g} µm"

@@ -23,6 +23,7 @@ from .small_wear import not_small
 from .stability import stability
 from .summary import summarise
 from .system import System
+from .untouched import judged
 from .without_time import initial, steady, unworn
 
 _UNPAIRED = 1e-6
@@ -92,6 +93,9 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
+    outcome, apart = judged(system, outcome)
+    if apart is not None:
+        observer.note(apart)
     large = not_small(system, outcome.interface)
     if large is not None:
         observer.note(large)

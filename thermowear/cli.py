@@ -211,16 +211,19 @@ def _cases(_) -> int:
 
 
 def _init(chosen) -> int:
-    from .case.starters import starter_text
+    from .case.starters import starter_files, starter_text
 
-    text = starter_text(chosen.name)
     path = chosen.output or Path(f"{chosen.name}.toml")
-    _guard(path, chosen.overwrite)
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be written: {error.strerror}") from None
-    print(f"wrote {path}; next: python3 -m thermowear run {path}")
+    files = {path: starter_text(chosen.name).encode()}
+    files |= {path.parent / name: data for name, data in starter_files(chosen.name).items()}
+    for file in files:
+        _guard(file, chosen.overwrite)
+    for file, data in files.items():
+        try:
+            file.write_bytes(data)
+        except OSError as error:
+            raise CaseError(f"{file}: cannot be written: {error.strerror}") from None
+    print(f"wrote {' and '.join(map(str, files))}; next: python3 -m thermowear run {path}")
     return 0
 
 

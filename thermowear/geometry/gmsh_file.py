@@ -33,10 +33,10 @@ def read_gmsh(data: bytes) -> Contents:
         If it is anything but a mesh, or a broken one.
     """
     sections = dict(_sections(data))
-    form = _format(sections.get("MeshFormat", b""))
-    for name in ("Nodes", "Elements"):
+    for name in ("MeshFormat", "Nodes", "Elements"):
         if name not in sections:
             raise ValueError(f"it has no section ${name}")
+    form = _format(sections["MeshFormat"])
     names = _physical_names(sections.get("PhysicalNames", b""))
     if form.version == 2:
         tags, points = nodes_2(form.numbers(sections, "Nodes"))

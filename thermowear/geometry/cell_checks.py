@@ -7,9 +7,7 @@ it, and the map from the unit cell to each cell keeps its orientation everywhere
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+import scipy
 
 from ..errors import CaseError
 from .nodes import CORNERS
@@ -86,8 +84,10 @@ def _sides(points: np.ndarray, corners: np.ndarray, body: str) -> tuple[np.ndarr
     (one, other), same = cell[shared].T, ascending[shared[:, 0]] == ascending[shared[:, 1]]
     rows = np.concatenate([one, one + count])
     columns = np.concatenate([other + count * same, other + count * ~same])
-    links = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))
-    _, label = connected_components(links, directed=False)
+    links = scipy.sparse.coo_matrix(
+        (np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count)
+    )
+    _, label = scipy.sparse.csgraph.connected_components(links, directed=False)
     as_listed, turned_round = label.reshape(2, count)
     if np.any(as_listed == turned_round):
         raise CaseError(f"geometry.path: the cells of {body!r} cannot lie in a plane side by side")
@@ -124,7 +124,7 @@ def _no_cracks(points: np.ndarray, edges: np.ndarray, body: str) -> None:
     """Refuse cells that lie side by side without sharing the nodes, or share but a corner."""
     ends = points[edges[:, :2]]
     near = _SAME * np.ptp(ends.reshape(-1, 2), axis=0).max()
-    pairs = cKDTree(ends.mean(axis=1)).query_pairs(near, output_type="ndarray")
+    pairs = scipy.spatial.cKDTree(ends.mean(axis=1)).query_pairs(near, output_type="ndarray")
     one, other = ends[pairs[:, 0]], ends[pairs[:, 1]]
     apart = np.minimum(np.abs(one - other).max((1, 2)), np.abs(one - other[:, ::-1]).max((1, 2)))
     cracks = pairs[apart < 2 * near]

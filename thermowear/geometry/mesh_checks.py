@@ -6,8 +6,7 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from ..errors import CaseError, CaseNote
 from .tagged import TaggedMesh
@@ -78,8 +77,8 @@ def _one_curve(ends: np.ndarray, surface: str) -> None:
     """A contact face is one open curve."""
     nodes, compact, count = np.unique(ends, return_inverse=True, return_counts=True)
     pairs = compact.reshape(ends.shape)
-    links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(nodes), len(nodes)))
-    parts, _ = connected_components(links, directed=False)
+    links = scipy.sparse.coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(nodes), len(nodes)))
+    parts, _ = scipy.sparse.csgraph.connected_components(links, directed=False)
     if parts > 1 or count.max() > 2:
         raise CaseError(
             f"geometry.contact: the edges of {surface!r} are in {parts} pieces; a contact face is "
@@ -96,8 +95,10 @@ def _pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
     """Every piece of a body must have part of the surface that holds it."""
     cells = mesh.cells[mesh.cell_tags == mesh.bodies.index(body) + 1]
     rows, columns = np.repeat(cells[:, 0], cells.shape[1]), cells.ravel()
-    links = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(len(mesh.points),) * 2)
-    _, label = connected_components(links, directed=False)
+    links = scipy.sparse.coo_matrix(
+        (np.ones(len(rows)), (rows, columns)), shape=(len(mesh.points),) * 2
+    )
+    _, label = scipy.sparse.csgraph.connected_components(links, directed=False)
     pieces = np.unique(label[cells[:, 0]])
     held = np.unique(label[_ends(mesh, surface)])
     loose = np.setdiff1d(pieces, held)

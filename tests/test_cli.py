@@ -166,7 +166,7 @@ def test_a_case_is_checked_without_the_solvers(name):
     assert not loaded & {"dolfinx", "petsc4py", "mpi4py", "gmsh", "matplotlib", "vtk", "pyvista"}
 
 
-def test_init_writes_the_files_of_a_case_beside_it(refused):
+def test_init_writes_the_files_of_a_case_beside_it(refused, capsys):
     """
     requirement: a starter that reads a mesh file comes with it, and overwrites none.
     """
@@ -174,6 +174,7 @@ def test_init_writes_the_files_of_a_case_beside_it(refused):
     assert main(["init", "own-mesh", "-o", "there/mine.toml"]) == 0
     assert sorted(contents()) == ["there/mine.toml", "there/own-mesh.msh"]
     Path("there/mine.toml").unlink()
+    capsys.readouterr()
     assert "there/own-mesh.msh: exists" in refused("init", "own-mesh", "-o", "there/mine.toml")
     assert sorted(contents()) == ["there/own-mesh.msh"]
 

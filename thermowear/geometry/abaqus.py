@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from .contents import Block, Contents, numbering
+from .contents import Block, Contents, numbering, parsed
 
 _PLANE = re.compile(r"(CPS|CPE|CPEG|CAX|M3D|STRI|S|DC2D|DCAX|WARP2D|R3D)(3|4|6|8|9)(?!\d)")
 _LINE = re.compile(r"(T2D|T3D|B2|B3|SAX|R2D|RAX|DC1D|W2D|W3D)\d*")
@@ -29,10 +30,11 @@ _REFUSED = {
     ),
 }
 """Cards that would change the mesh."""
+_MOST_SETS = 10_000
 _READ = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE")
 
-Member = int | str | tuple[int, int, int]
-"""Of a set: a number, the name of another set, or a range (first, last, step)."""
+Member = int | str | tuple[int, int, int] | np.ndarray
+"""Of a set: a number, the name of another set, a range (first, last, step), or numbers."""
 
 
 def read_abaqus(text: str) -> Contents:
@@ -52,8 +54,7 @@ def read_abaqus(text: str) -> Contents:
         if keyword in _READ:
             if "INPUT" in options:
                 raise ValueError(f"*{keyword} takes in another file; a mesh has to be in one file")
-            read = getattr(deck, f"read_{keyword.lower()}")
-            read(options, [[part.strip() for part in line.split(",")] for line in lines])
+            getattr(deck, f"read_{keyword.lower()}")(options, lines)
     return deck.result()
 
 
@@ -79,103 +80,153 @@ class _Deck:
     """What has been read so far; numbers are those of the file."""
 
     def __init__(self) -> None:
-        self.points: dict[int, list[float]] = {}
-        self.blocks: list[tuple[str, int, dict[int, list[int]]]] = []
+        self.tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
+        self.points: list[np.ndarray] = [np.empty((0, 3))]
+        self.blocks: list[_Elements] = []
         self.node_sets: dict[str, list[Member]] = {}
         self.element_sets: dict[str, list[Member]] = {}
         self.surfaces: dict[str, list[tuple[int | str, int]]] = {}
 
-    def read_node(self, options, rows) -> None:
+    def read_node(self, options, lines) -> None:
         if options.get("SYSTEM", "R").upper() != "R":
             raise ValueError("*NODE, SYSTEM= is no Cartesian one; write x, y and z")
-        for number, *place in rows:
-            x = [float(value or 0.0) for value in (*place, 0.0, 0.0)[:3]]
-            if self.points.setdefault(int(number), x) != x:
-                raise ValueError(
-                    f"node {number} is there twice; numbers must differ between parts too"
-                )
-            if "NSET" in options:
-                self.node_sets.setdefault(options["NSET"], []).append(int(number))
+        table = _table(lines)[:, :4]
+        self.tags.append(_whole(table[:, 0]))
+        self.points.append(np.pad(table[:, 1:], ((0, 0), (0, 4 - table.shape[1]))))
+        if "NSET" in options:
+            self.node_sets.setdefault(options["NSET"], []).append(self.tags[-1])
 
-    def read_element(self, options, rows) -> None:
-        kind = options.get("TYPE", "").upper()
-        flat = [int(part) for row in rows for part in row]
+    def read_element(self, options, lines) -> None:
+        kind, words = options.get("TYPE", "").upper(), len(lines[0].split(",")) if lines else 0
         plane = _PLANE.match(kind)
         if plane:
             count, corners = int(plane[2]), _CORNERS[int(plane[2])]
             name = _CELLS[count]
-        elif _LINE.match(kind) and rows and len(rows[0]) - 1 in _LINES:
-            count, corners = len(rows[0]) - 1, 2
+        elif _LINE.match(kind) and words - 1 in _LINES:
+            count, corners = words - 1, 2
             name = _LINES[count]
         else:
             raise ValueError(f"elements of type {kind or '?'} are of no use here")
+        flat = _whole(parsed(",".join(lines), f"*ELEMENT, TYPE={kind}", ","))
         if len(flat) % (count + 1):
             raise ValueError(f"an element of type {kind} does not have {count} nodes")
-        table = [flat[i : i + count + 1] for i in range(0, len(flat), count + 1)]
-        elements = {row[0]: row[1:] for row in table}
-        if len(elements) < len(table):
-            raise ValueError(f"an element of type {kind} is there twice in its card")
-        self.blocks.append((name, corners, elements))
+        table = flat.reshape(-1, count + 1)
+        self.blocks.append(_Elements(name, corners, table[:, 0], table[:, 1:]))
         if "ELSET" in options:
-            self.element_sets.setdefault(options["ELSET"], []).extend(row[0] for row in table)
+            self.element_sets.setdefault(options["ELSET"], []).append(table[:, 0])
 
-    def read_nset(self, options, rows) -> None:
-        self.node_sets.setdefault(options.get("NSET", ""), []).extend(_members(options, rows))
+    def read_nset(self, options, lines) -> None:
+        self.node_sets.setdefault(options.get("NSET", ""), []).extend(_members(options, lines))
 
-    def read_elset(self, options, rows) -> None:
-        self.element_sets.setdefault(options.get("ELSET", ""), []).extend(_members(options, rows))
+    def read_elset(self, options, lines) -> None:
+        self.element_sets.setdefault(options.get("ELSET", ""), []).extend(_members(options, lines))
 
-    def read_surface(self, options, rows) -> None:
+    def read_surface(self, options, lines) -> None:
         name, kind = options.get("NAME", ""), options.get("TYPE", "ELEMENT").upper()
+        rows = [_words(line) for line in lines]
         if kind == "NODE":
-            self.node_sets.setdefault(name, []).extend(_members({}, [row[:1] for row in rows]))
+            firsts = [row[0] for row in rows]
+            self.node_sets.setdefault(name, []).extend(_members({}, firsts))
         elif kind == "ELEMENT" and all(len(row) > 1 and _is_side(row[1]) for row in rows):
             self.surfaces[name] = [(_member(row[0]), int(row[1][1:])) for row in rows]
 
     def result(self) -> Contents:
-        self._no_element_twice()
-        tags = np.array(list(self.points), dtype=np.int64)
+        if max(len(self.node_sets), len(self.element_sets), len(self.surfaces)) > _MOST_SETS:
+            raise ValueError(f"it has more than {_MOST_SETS} sets")
+        tags, points = self._nodes()
         positions = numbering(tags)
-        elements = np.array(
-            [number for _, _, block in self.blocks for number in block], dtype=np.int64
-        )
+        self._merge()
+        elements = np.concatenate([np.empty(0, int), *(block.numbers for block in self.blocks)])
+        ordered = np.sort(elements)
+        double = ordered[1:][ordered[1:] == ordered[:-1]]
+        if len(double):
+            raise ValueError(
+                f"element {double[0]} is there twice; numbers must differ between parts too"
+            )
         sets = {name: _resolved(name, self.element_sets, elements) for name in self.element_sets}
         blocks = []
-        for kind, _, block in self.blocks:
-            nodes = positions(np.array(list(block.values()), dtype=np.int64))
-            own = np.array(list(block), dtype=np.int64)
-            mine = {name: np.flatnonzero(np.isin(own, found)) for name, found in sets.items()}
-            blocks.append(Block(kind, nodes, {name: at for name, at in mine.items() if len(at)}))
+        for block in self.blocks:
+            mine = {n: np.flatnonzero(np.isin(block.numbers, found)) for n, found in sets.items()}
+            own = {name: at for name, at in mine.items() if len(at)}
+            blocks.append(Block(block.kind, positions(block.nodes), own))
         for name, sides in self.surfaces.items():
-            lines = [line for of, side in sides for line in self._lines(of, side, sets)]
-            if lines:
-                nodes = positions(np.array(lines, dtype=np.int64))
+            lines = [self._sides(of, side, sets) for of, side in sides]
+            nodes = positions(np.concatenate([np.empty((0, 2), int), *lines]))
+            if len(nodes):
                 blocks.append(Block("line", nodes, {name: np.arange(len(nodes))}))
-        node_sets = {}
-        for name in self.node_sets:
-            members = _resolved(name, self.node_sets, tags)
-            node_sets[name] = np.sort(positions(members))
-        points = np.array(list(self.points.values()), dtype=float).reshape(-1, 3)
+        node_sets = {
+            name: np.sort(positions(_resolved(name, self.node_sets, tags)))
+            for name in self.node_sets
+        }
         return Contents(points, blocks, node_sets)
 
-    def _no_element_twice(self) -> None:
-        seen: set[int] = set()
-        for _, _, block in self.blocks:
-            double = seen.intersection(block)
-            if double:
-                raise ValueError(
-                    f"element {min(double)} is there twice; numbers must differ between parts too"
-                )
-            seen.update(block)
+    def _merge(self) -> None:
+        """One block for all cards of a kind."""
+        kinds: dict[str, list[_Elements]] = {}
+        for block in self.blocks:
+            kinds.setdefault(block.kind, []).append(block)
+        self.blocks = [
+            _Elements(
+                kind,
+                parts[0].corners,
+                np.concatenate([part.numbers for part in parts]),
+                np.concatenate([part.nodes for part in parts]),
+            )
+            for kind, parts in kinds.items()
+        ]
 
-    def _lines(self, of: int | str, side: int, sets: dict[str, np.ndarray]) -> Iterator[list[int]]:
-        """Corners of one side of an element, or of the elements of a set."""
-        numbers = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
-        members = {int(number) for number in numbers}
-        for _, corners, elements in self.blocks:
-            for element in members & elements.keys() if corners > 2 else ():
-                nodes = elements[element]
-                yield [nodes[(side - 1) % corners], nodes[side % corners]]
+    def _nodes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Numbers and places; a node that is there twice must be at one place."""
+        tags, points = np.concatenate(self.tags), np.concatenate(self.points)
+        order = np.argsort(tags, kind="stable")
+        again = np.zeros(len(tags), dtype=bool)
+        again[1:] = tags[order[1:]] == tags[order[:-1]]
+        moved = again[1:] & np.any(points[order[1:]] != points[order[:-1]], axis=1)
+        if moved.any():
+            number = tags[order[1:]][moved][0]
+            raise ValueError(f"node {number} is there twice; numbers must differ between parts too")
+        kept = np.sort(order[~again])
+        return tags[kept], points[kept]
+
+    def _sides(self, of: int | str, side: int, sets: dict[str, np.ndarray]) -> np.ndarray:
+        """Corners of one side of an element, or of the elements of a set, shape (n, 2)."""
+        members = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
+        found: list[np.ndarray] = [np.empty((0, 2), dtype=np.int64)]
+        for block in self.blocks:
+            if block.corners > 2:
+                ends = block.nodes[:, [(side - 1) % block.corners, side % block.corners]]
+                found.append(ends[np.isin(block.numbers, members)])
+        return np.concatenate(found)
+
+
+@dataclass(frozen=True)
+class _Elements:
+    """Elements of one card: their numbers, and those of their nodes."""
+
+    kind: str
+    corners: int
+    numbers: np.ndarray
+    nodes: np.ndarray
+
+
+def _words(line: str) -> list[str]:
+    return [part.strip() for part in line.split(",")]
+
+
+def _table(lines: list[str]) -> np.ndarray:
+    """Numbers of lines of one card; entries that are left out are 0, shape (n, at least 4)."""
+    widths = {line.count(",") for line in lines}
+    if len(widths) == 1 and not any(",," in line or ", ," in line for line in lines):
+        return parsed(",".join(lines), "*NODE", ",").reshape(len(lines), -1)
+    rows = [[*_words(line), "", "", ""][:4] for line in lines]
+    return np.array([[float(word or 0.0) for word in row] for row in rows]).reshape(-1, 4)
+
+
+def _whole(values: np.ndarray) -> np.ndarray:
+    """Numbers of nodes or elements."""
+    if not np.all(np.abs(values) < 2**53) or np.any(values != np.rint(values)):
+        raise ValueError("a number of a node or an element is not a whole one")
+    return values.astype(np.int64)
 
 
 def _is_side(label: str) -> bool:
@@ -186,14 +237,15 @@ def _member(word: str) -> int | str:
     return int(word) if word.isdigit() else word
 
 
-def _members(options, rows) -> Iterator[Member]:
+def _members(options, lines) -> Iterator[Member]:
     """Members of a card: numbers, ranges, or names of other sets."""
-    for row in rows:
+    for line in lines:
+        words = [word for word in _words(line) if word]
         if "GENERATE" in options:
-            first, last, *step = (int(part) for part in row if part)
+            first, last, *step = (int(word) for word in words)
             yield first, last, step[0] if step else 1
         else:
-            yield from (_member(part) for part in row if part)
+            yield from map(_member, words)
 
 
 def _resolved(name: str, sets: dict[str, list[Member]], known: np.ndarray) -> np.ndarray:
@@ -206,6 +258,7 @@ def _resolved(name: str, sets: dict[str, list[Member]], known: np.ndarray) -> np
     while waiting:
         members = sets.get(waiting.pop(), [])
         found.append(np.array([m for m in members if isinstance(m, int)], dtype=np.int64))
+        found += [m for m in members if isinstance(m, np.ndarray)]
         for member in members:
             if isinstance(member, str) and member not in seen:
                 seen.add(member)

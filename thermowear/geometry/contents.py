@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -126,3 +128,37 @@ def shown(line: bytes) -> str:
     """The beginning of a line, for a message."""
     text = line.strip().decode("utf-8", "replace")
     return repr(text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…")
+
+
+def parsed(text: str, where: str, between: str = " ") -> np.ndarray:
+    """All numbers of a text, shape (n,).
+
+    Parameters
+    ----------
+    text : str
+    where : str
+        For the message.
+    between : str
+        What separates numbers, besides blanks.
+
+    Raises
+    ------
+    ValueError
+        If there are other words.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of a word that is no number
+        try:
+            return np.fromstring(text, sep=between) if text.strip() else np.empty(0)
+        except (DeprecationWarning, ValueError):
+            words = (word[0].strip() for word in re.finditer(f"[^\\s{between}]+", text))
+            wrong = next((word for word in words if not _is_number(word)), "")
+    raise ValueError(f"{where} has {shown(wrong.encode())} where a number is due")
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True

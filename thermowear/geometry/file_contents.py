@@ -18,8 +18,8 @@ from .contents import Contents, shown
 from .gmsh_file import read_gmsh
 from .isolated import read_isolated
 
-_SHARE = 1 / 64
-"""Of the memory of the machine: a larger file is not read, as its mesh could not be solved."""
+_LARGEST = 32 * 2**20
+"""Bytes: half a million nodes as text, more than can be solved in a section; read in seconds."""
 
 
 @dataclass(frozen=True)
@@ -62,11 +62,9 @@ def _look_at(path: Path, kind: _Kind) -> None:
         raise ValueError("Is a directory")
     if not stat.S_ISREG(about.st_mode):
         raise ValueError("it is no file but a pipe or a device")
-    most = int(_SHARE * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    if about.st_size > most:
+    if about.st_size > _LARGEST:
         raise ValueError(
-            f"it has {about.st_size / 2**20:.0f} MB; on this machine a mesh may have "
-            f"{most / 2**20:.0f} MB"
+            f"it has {about.st_size / 2**20:.0f} MB; a mesh may have {_LARGEST / 2**20:.0f} MB"
         )
     with path.open("rb") as file:
         head = file.read(4096).removeprefix(b"\xef\xbb\xbf").lstrip()

@@ -27,6 +27,7 @@ _CELLS = {
 _NODES = {"line": 2, "triangle": 3, "quad": 4, "vertex": 1} | {
     name: int(re.sub(r"\D", "", name)) for name in _CELLS.values() if name[-1].isdigit()
 }
+_MOST_ENTITIES = 100_000
 _SOLID = {4, 5, 6, 7, 11, 12, 13, 14, 17, 18, 19, 29, 30, 31, 32, 33, 90, 91, 92, 93, 94, 95}
 """gmsh's numbers of the usual elements in space."""
 
@@ -115,10 +116,16 @@ def _alike(source: Numbers, left: int) -> tuple[str, int, np.ndarray]:
     return kind, tags, source.integers(count * width).reshape(count, width)[:, 3:]
 
 
+def _not_too_many(count: int) -> None:
+    if count > _MOST_ENTITIES:
+        raise ValueError(f"it has more than {_MOST_ENTITIES} entities")
+
+
 def entities(source: Numbers, minor: int) -> dict[tuple[int, int], list[int]]:
     """Physical groups of the entities, by dimension and number."""
     groups: dict[tuple[int, int], list[int]] = {}
     counts = source.integers(4, "size")
+    _not_too_many(int(counts.sum()))
     for dim, count in enumerate(counts):
         for _ in range(count):
             tag = source.one()
@@ -134,6 +141,7 @@ def nodes_4(source: Numbers, minor: int) -> tuple[np.ndarray, np.ndarray]:
     blocks, total = (int(n) for n in source.integers(2, "size"))
     if minor >= 1:
         source.integers(2, "size")
+    _not_too_many(blocks)
     tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
     points: list[np.ndarray] = [np.empty((0, 3))]
     for _ in range(blocks):
@@ -158,6 +166,7 @@ def elements_4(source: Numbers, minor: int, groups) -> list[Elements]:
     blocks, total = (int(n) for n in source.integers(2, "size"))
     if minor >= 1:
         source.integers(2, "size")
+    _not_too_many(blocks)
     result = []
     for _ in range(blocks):
         one, other, number = (int(n) for n in source.integers(3))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .contents import shown
+from .contents import parsed
 
 
 class Numbers:
@@ -76,21 +76,3 @@ class Binary(Numbers):
             raise self.ends_early()
         self.at += size
         return np.frombuffer(self.body, kind, count, self.at - size)
-
-
-def parsed(text: str, where: str) -> np.ndarray:
-    """All numbers of a text, shape (n,)."""
-    words = text.split()
-    try:
-        return np.array(words, dtype=np.float64)
-    except ValueError:
-        wrong = next(word for word in words if not _is_number(word))
-        raise ValueError(f"{where} has {shown(wrong.encode())} where a number is due") from None
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True

@@ -18,7 +18,7 @@ import numpy as np
 from .contents import Block, Contents
 
 _READER = Path(__file__).with_name("isolated_reader.py")
-_SECONDS = 120
+_SECONDS = 60
 """At the longest, however little processor time it takes."""
 _MEMORY = 2**30
 """For the libraries and a small file [bytes]; of address space, which is more than is used."""

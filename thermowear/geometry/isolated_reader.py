@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-_SECONDS = 60
+_SECONDS = 20
 """Of processor time."""
 _XDMF = {
     "Polyvertex": "vertex",

@@ -24,10 +24,13 @@ def read_text(path: Path, largest: int) -> str:
     ------
     OSError
         If it cannot be read, is no regular file, or is larger.
-    UnicodeDecodeError
+    ValueError
         If it is not in UTF-8.
     """
-    return read_bytes(path, largest).decode("utf-8-sig")
+    try:
+        return read_bytes(path, largest).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ValueError("is not text in UTF-8") from None
 
 
 def read_bytes(path: Path, largest: int) -> bytes:

@@ -122,6 +122,12 @@ def _spread(case: Case) -> Iterator[Fault]:
             continue
         if name != moving:
             yield f"wear.{name}.spread", f"only {moving} passes under the other body"
+        elif case.geometry.track is None and case.geometry.passes:
+            yield (
+                f"wear.{name}.spread",
+                f"wear of {moving} along its track is not followed in {case.model}; "
+                "use an axisymmetric or a plane geometry",
+            )
         elif case.geometry.track is None and case.geometry.sector == 1.0:
             yield f"wear.{name}.spread", f"all of {moving} is in the contact all the time"
         elif case.analysis.type in ("fretting", "reciprocating"):

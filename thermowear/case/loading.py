@@ -73,12 +73,13 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
 def _read(path: Path) -> dict[str, Any]:
     try:
         text = read_text(path, LARGEST_FILE)
-        check_keys(text, str(path))
-        return tomllib.loads(text)
     except OSError as error:
         raise CaseError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise CaseError(f"{path}: is not text in UTF-8") from None
+    except ValueError as error:
+        raise CaseError(f"{path}: {error}") from None
+    check_keys(text, str(path))
+    try:
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers or nesting beyond Python's limits too
         raise CaseError(f"{path}: is not valid TOML: {error}") from None
 

@@ -10,21 +10,27 @@ MOST_CELLS = 1_000_000
 """Of a body: a slip in a unit asks for more, and would fill the memory."""
 
 
-def check_count(*counts: float) -> None:
+MOST_HEXAHEDRA = 100_000
+"""Of a body in space: a cell there has many more nodes and neighbours."""
+
+
+def check_count(*counts: float, most: int = MOST_CELLS) -> None:
     """Refuse a grid of too many cells.
 
     Parameters
     ----------
     *counts : float
         Cells in each of its directions.
+    most : int
+        Cells that a body may have.
 
     Raises
     ------
     CaseError
     """
     cells = math.prod(counts)
-    if not cells <= MOST_CELLS:
+    if not cells <= most:
         raise CaseError(
             f"geometry: its sizes and mesh.elements ask for about {cells:.2g} cells in one body, "
-            f"at most {MOST_CELLS} can be meshed; look for a slip in a unit, or use fewer elements"
+            f"at most {most} can be meshed; look for a slip in a unit, or use fewer elements"
         )

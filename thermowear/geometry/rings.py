@@ -24,6 +24,9 @@ _SLENDER = 2.9
 _TALL = 5.4
 """Ratio from which they are joined in a narrower ring of their own."""
 
+_IN_RING = 500
+"""Cells that a ring may have, for an estimate of how many there will be."""
+
 
 class Outline(Protocol):
     """A body's shape, seen from its contact face.
@@ -78,7 +81,7 @@ def _growing(start: float, end: float, growth: float, largest: float) -> np.ndar
     """Distances from start to end that grow geometrically, by steps up to `largest`."""
     if start == end:
         return np.array([start])
-    check_count((end - start) / largest)
+    check_count((end - start) / largest, _IN_RING)
     found = [start]
     while found[-1] < end:
         found.append(found[-1] + min((growth - 1) * found[-1], largest))

@@ -7,7 +7,6 @@ and time goes on from there. How much is too much follows from what the last upd
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -196,7 +195,6 @@ class OuterLoop:
 
     def _update(self, system, problem, kept, last: Moment):
         """System and problem on meshes that are moved, and the same moment of them."""
-        gc.collect()  # systems hold factors in circles of references: two are all there is room for
         new = updated(system, problem, kept, last.state, last.time)
         change = new.change
         automatic = system.case.wear.largest_kept

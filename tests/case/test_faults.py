@@ -105,6 +105,8 @@ QUANTITIES = [
     Bad("quantity inf", {YOUNG: "inf GPa"}, YOUNG, "must be finite"),
     Bad("too large for a number", {YOUNG: "1e400 Pa"}, YOUNG, "must be finite"),
     Bad("too large in SI", {YOUNG: "1e308 GPa"}, YOUNG, "must be finite in Pa"),
+    Bad("beyond all sizes", {YOUNG: "1e200 Pa"}, YOUNG, "must be from 1e-100 to 1e+100 Pa"),
+    Bad("below all sizes", {YOUNG: "1e-320 Pa"}, YOUNG, "must be from 1e-100 to 1e+100 Pa"),
     Bad("too small in SI", {YOUNG: "1e-323 mPa"}, YOUNG, "greater than 0 Pa"),
     Bad(
         "negative conductivity",

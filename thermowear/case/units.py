@@ -12,12 +12,15 @@ import re
 from functools import lru_cache
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BeforeValidator, PlainSerializer
 
 from ..errors import quoted
 
 _LONGEST = 200
 """Characters of a quantity."""
+_EXTREME = 1e100
+"""Sizes of numbers in SI: products of three of them are still numbers."""
 _NUMBER = re.compile(r"\s*([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))", re.IGNORECASE)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
 _SUPERSCRIPT = re.compile(rf"[{''.join(map(chr, _SUPERSCRIPTS))}]+")
@@ -126,7 +129,8 @@ def _check_unit(unit: str) -> None:
 def _converted(value, unit: str) -> float | None:
     """The number in a unit; infinite where powers of units overflow, None in other dimensions."""
     try:
-        return float(value.to(unit).magnitude) if value.is_compatible_with(unit) else None
+        with np.errstate(over="ignore"):  # of decibels; what is not finite is refused
+            return float(value.to(unit).magnitude) if value.is_compatible_with(unit) else None
     except (OverflowError, ZeroDivisionError):
         return math.inf
 
@@ -145,6 +149,11 @@ def _to_si(unit: str, example: str, bounds: dict[str, float], text: Any) -> floa
         raise ValueError(f'found "{text}", which measures angles; write Hz, or 1/s')
     if not math.isfinite(number):
         raise ValueError(f'found "{text}"; the number must be finite in {unit} too')
+    if number != 0.0 and not 1 / _EXTREME <= abs(number) <= _EXTREME:
+        raise ValueError(
+            f'found "{text}"; a number other than 0 must be from {1 / _EXTREME:g} to {_EXTREME:g} '
+            f"{unit} in size"
+        )
     for word, bound in bounds.items():
         holds, phrase = _BOUNDS[word]
         if not holds(number, bound):

@@ -203,6 +203,8 @@ def _init(chosen) -> int:
 
 def _validate(chosen) -> int:
     case = load(chosen.case, tuple(chosen.overrides))
+    for text in case.notes():
+        print(f"note: {text}", file=sys.stderr)
     print(f"{chosen.case}: ok ({case.analysis.type} analysis, {case.geometry.type}, {case.model})")
     return 0
 

@@ -482,7 +482,7 @@ HISTORIES = [
         "a cycle of nothing",
         {f"{HISTORY}.cycle_start": "3 s"},
         f"{HISTORY}.cycle_start",
-        "must lie in time, before its end",
+        "must be at least 0 s and less than 3 s",
         FRETTING,
     ),
     Bad(

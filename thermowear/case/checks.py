@@ -27,10 +27,16 @@ _SLIDING = ("steady", "transient", "reciprocating")
 
 
 def check(case: Case) -> None:
-    """Raise a `CaseError` that lists every fault between the tables of `case`."""
+    """Raise a `CaseError` that lists every fault between the tables of `case`.
+
+    Where there is none, the contact that its loads lead to must fit the bodies.
+    """
     faults = [f"{path}: {text}" for look in _CHECKS for path, text in look(case)]
     if faults:
         raise CaseError(*faults)
+    zone = case.geometry.expected_zone(case.pressing())
+    if zone is not None:
+        case.geometry.check_zone(zone)
 
 
 def _names(case: Case) -> Iterator[Fault]:

@@ -205,6 +205,19 @@ class Geometry(Section):
         """
         return None
 
+    def check_zone(self, zone: tuple[float, float]) -> None:
+        """Refuse a zone where the faces cannot touch, or that cannot be meshed.
+
+        Parameters
+        ----------
+        zone : tuple of float
+            Range of x, as `expected_zone` gives it [m].
+
+        Raises
+        ------
+        CaseError
+        """
+
     def build(self, mesh, zone: tuple[float, float] | None):
         """Mesh both bodies.
 

@@ -84,8 +84,9 @@ def parse(text: Any, example: str):
             f"found {quoted(text)}, {len(text)} characters; a quantity has at most {_LONGEST}"
         )
     try:
-        value = _read(text)
-        bare = value.unitless
+        with np.errstate(over="ignore"):  # of decibels; what is not finite is refused
+            value = _read(text)
+            bare = value.unitless
     except Exception as error:  # pint raises a dozen kinds, tokenizer errors among them
         raise ValueError(f'cannot read "{text}"; write it like "{example}"') from error
     if bare:
@@ -129,7 +130,7 @@ def _check_unit(unit: str) -> None:
 def _converted(value, unit: str) -> float | None:
     """The number in a unit; infinite where powers of units overflow, None in other dimensions."""
     try:
-        with np.errstate(over="ignore"):  # of decibels; what is not finite is refused
+        with np.errstate(over="ignore"):
             return float(value.to(unit).magnitude) if value.is_compatible_with(unit) else None
     except (OverflowError, ZeroDivisionError):
         return math.inf

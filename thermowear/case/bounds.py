@@ -53,7 +53,8 @@ def check_tables(tables: dict[str, Any]) -> None:
     CaseError
         At the first fault.
     """
-    count, level = 0, [("", tables)]
+    count = 0
+    level: list[tuple[str, Any]] = [("", tables)]
     for depth in range(MOST_PARTS + 1):
         below = [pair for path, value in level for pair in _parts(path, value)]
         count += len(below)

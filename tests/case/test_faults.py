@@ -105,6 +105,8 @@ QUANTITIES = [
     Bad("quantity inf", {YOUNG: "inf GPa"}, YOUNG, "must be finite"),
     Bad("too large for a number", {YOUNG: "1e400 Pa"}, YOUNG, "must be finite"),
     Bad("too large in SI", {YOUNG: "1e308 GPa"}, YOUNG, "must be finite in Pa"),
+    Bad("beyond all sizes", {YOUNG: "1e200 Pa"}, YOUNG, "must be from 1e-100 to 1e+100 Pa"),
+    Bad("below all sizes", {YOUNG: "1e-320 Pa"}, YOUNG, "must be from 1e-100 to 1e+100 Pa"),
     Bad("too small in SI", {YOUNG: "1e-323 mPa"}, YOUNG, "greater than 0 Pa"),
     Bad(
         "negative conductivity",
@@ -480,7 +482,7 @@ HISTORIES = [
         "a cycle of nothing",
         {f"{HISTORY}.cycle_start": "3 s"},
         f"{HISTORY}.cycle_start",
-        "must lie in time, before its end",
+        "must be at least 0 s and less than 3 s",
         FRETTING,
     ),
     Bad(
@@ -773,6 +775,8 @@ HOLDERS = [
     Bad("only the track wears",
         {"wear": {"strip": {"coefficient": "1e-7 1/MPa", "spread": "track"}}},
         "wear.strip.spread", "no steady state", STRIP),
+    Bad("spread in space", {"wear": {"disk": {"coefficient": "1e-7 1/MPa", "spread": "track"}}},
+        "wear.disk.spread", "is not followed in 3d", "disk-sector"),
     Bad("spread nowhere", {"wear.punch.spread": "thin"}, "wear.punch.spread", "must be", STRIP),
     Bad("material of no part", {"bodies.bolt": {"like": "drum"}}, "bodies.bolt", "lining", DRUM),
     Bad("nitsche in space", {"contact.method": "nitsche"}, "contact.method", "sections", BOX),

@@ -27,10 +27,16 @@ _SLIDING = ("steady", "transient", "reciprocating")
 
 
 def check(case: Case) -> None:
-    """Raise a `CaseError` that lists every fault between the tables of `case`."""
+    """Raise a `CaseError` that lists every fault between the tables of `case`.
+
+    Where there is none, the contact that its loads lead to must fit the bodies.
+    """
     faults = [f"{path}: {text}" for look in _CHECKS for path, text in look(case)]
     if faults:
         raise CaseError(*faults)
+    zone = case.geometry.expected_zone(case.pressing())
+    if zone is not None:
+        case.geometry.check_zone(zone)
 
 
 def _names(case: Case) -> Iterator[Fault]:
@@ -122,6 +128,12 @@ def _spread(case: Case) -> Iterator[Fault]:
             continue
         if name != moving:
             yield f"wear.{name}.spread", f"only {moving} passes under the other body"
+        elif case.geometry.track is None and case.geometry.passes:
+            yield (
+                f"wear.{name}.spread",
+                f"wear of {moving} along its track is not followed in {case.model}; "
+                "use an axisymmetric or a plane geometry",
+            )
         elif case.geometry.track is None and case.geometry.sector == 1.0:
             yield f"wear.{name}.spread", f"all of {moving} is in the contact all the time"
         elif case.analysis.type in ("fretting", "reciprocating"):

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter, model_validator
 
+from ..errors import quoted
 from . import units
 from .factors import must_increase, must_match
 from .section import KeyFault, Section
@@ -83,7 +84,7 @@ def _read(data: Any) -> Any:
         raise KeyFault("type", f"missing; must be {_ALLOWED}")
     kind = data["type"]
     if not isinstance(kind, str) or kind not in _KINDS:
-        raise KeyFault("type", f"found {kind!r}; must be {_ALLOWED}")
+        raise KeyFault("type", f"found {quoted(kind)}; must be {_ALLOWED}")
     return _KINDS[kind].model_validate(data)
 
 

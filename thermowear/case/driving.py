@@ -53,7 +53,8 @@ class Load(Section):
     force : float or None
         Of the whole ring, or of the thickness, along the press [N].
     approach : float or None
-        How far the holder moves along the press from where it stands in the mesh [m].
+        How far the holder moves along the press, towards body 2, from where it stands in the mesh
+        [m].
     lever : float or None
         Distance along x from the pivot to the line of the force [m].
     point : tuple of float or None

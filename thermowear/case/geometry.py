@@ -6,17 +6,24 @@ file by its ``type`` as soon as that room is imported.
 
 from __future__ import annotations
 
+import importlib
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, get_args
 
-from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo
+from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo, model_validator
+from pydantic.fields import FieldInfo
 
+from ..errors import quoted
 from .paths import UserFile
 from .section import KeyFault, Section, Switch
 from .units import Length
 
 _KNOWN: dict[str, type[Geometry]] = {}
+
+_APART = 1e7
+"""Ratio of the sizes of a geometry at most: coordinates have 16 digits, and meshes some layers."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +69,8 @@ class Geometry(Section):
         Contact faces of body 1 and body 2.
     held, fixed : str
         Surface of body 1 on the rigid holder; fixed surface of body 2.
+    unmeshed : tuple of str
+        Keys of lengths that are no size of a mesh.
     slides_across : bool
         Whether body 1 may slide across its axis, as a ball does on a flat, or across its section.
     from_file : bool
@@ -79,6 +88,7 @@ class Geometry(Section):
     held: ClassVar[str]
     fixed: ClassVar[str]
 
+    unmeshed: ClassVar[tuple[str, ...]] = ("thickness", "length_unit")
     slides_across: ClassVar[bool] = False
     from_file: ClassVar[bool] = False
 
@@ -89,6 +99,33 @@ class Geometry(Section):
         super().__init_subclass__(**kwargs)
         if cls.__dict__.get("name"):  # bases of several geometries have none
             _KNOWN[cls.name] = cls
+
+    @model_validator(mode="after")
+    def _of_one_order(self):
+        """Sizes many orders apart are slips of a unit, and cannot be meshed."""
+        sizes = self.sizes()
+        if not sizes:
+            return self
+        middle = sorted(sizes.values())[len(sizes) // 2]
+        wrong = max(sizes, key=lambda key: abs(math.log(sizes[key] / middle)))
+        other = (min if sizes[wrong] >= middle else max)(sizes, key=lambda key: sizes[key])
+        ratio = sizes[wrong] / sizes[other]
+        if max(ratio, 1 / ratio) > _APART:
+            raise KeyFault(
+                wrong,
+                f"found {sizes[wrong]:g} m beside {other} = {sizes[other]:g} m; sizes of a "
+                f"geometry must be within a factor {_APART:g} of each other (a slip in a unit?)",
+            )
+        return self
+
+    def sizes(self) -> dict[str, float]:
+        """The lengths that the meshes are made from, by their keys [m]."""
+        keys = [key for key, field in type(self).model_fields.items() if _is_length(field)]
+        return {
+            key: getattr(self, key)
+            for key in keys
+            if key not in self.unmeshed and getattr(self, key)
+        }
 
     @property
     def symmetry(self) -> tuple[str, ...]:
@@ -172,6 +209,19 @@ class Geometry(Section):
         """
         return None
 
+    def check_zone(self, zone: tuple[float, float]) -> None:
+        """Refuse a zone where the faces cannot touch, or that cannot be meshed.
+
+        Parameters
+        ----------
+        zone : tuple of float
+            Range of x, as `expected_zone` gives it [m].
+
+        Raises
+        ------
+        CaseError
+        """
+
     def build(self, mesh, zone: tuple[float, float] | None):
         """Mesh both bodies.
 
@@ -240,22 +290,32 @@ class HalvableGeometry(PlaneGeometry):
 
 
 def known_geometries() -> dict[str, type[Geometry]]:
-    """All geometries that can be named in a case file."""
+    """All geometries that can be named in a case file, by their names in order.
+
+    Their room, which knows this one, is imported by its name where nobody has done so yet.
+    """
+    importlib.import_module("...geometry", __name__)
     return dict(sorted(_KNOWN.items()))
+
+
+def _is_length(field: FieldInfo) -> bool:
+    """Whether a key holds a length greater than 0, or may do so."""
+    optional = (getattr(part, "__metadata__", ()) for part in get_args(field.annotation))
+    return any(Length.__metadata__[0] in marks for marks in (field.metadata, *optional))
 
 
 def _pick(data: Any, info: ValidationInfo) -> Any:
     if isinstance(data, Geometry):
         return data
     if not isinstance(data, dict):
-        raise ValueError(f"found {data!r}; needs a table")
+        raise ValueError(f"found {quoted(data)}; needs a table")
     if "type" not in data:
         raise KeyFault("type", f"missing; one of: {', '.join(known_geometries())}")
     try:
-        kind = _KNOWN[data["type"]]
+        kind = known_geometries()[data["type"]]
     except (KeyError, TypeError):
         raise KeyFault(
-            "type", f"found {data['type']!r}; must be one of: {', '.join(known_geometries())}"
+            "type", f"found {quoted(data['type'])}; must be one of: {', '.join(known_geometries())}"
         ) from None
     return kind.model_validate(data, context=info.context)
 

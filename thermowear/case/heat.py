@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator
 
+from ..errors import quoted
 from . import units
 from .conductance import Conductance
 from .section import Section, Switch
@@ -19,7 +20,7 @@ def _share(value: Any) -> Any:
         return float(value)
     if value == "effusivity":
         return value
-    raise ValueError(f'found {value!r}; must be at least 0 and at most 1, or "effusivity"')
+    raise ValueError(f'found {quoted(value)}; must be at least 0 and at most 1, or "effusivity"')
 
 
 Partition = Annotated[float | Literal["effusivity"], BeforeValidator(_share)]

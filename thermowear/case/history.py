@@ -122,7 +122,11 @@ class History(Course):
         start = self.cycle_start
         if start is not None:
             if not self.time[0] <= start < self.time[-1]:
-                raise KeyFault("cycle_start", "must lie in time, before its end")
+                raise KeyFault(
+                    "cycle_start",
+                    f"found {start:g} s; must be at least {self.time[0]:g} s and less than "
+                    f"{self.time[-1]:g} s, the ends of time",
+                )
             if not self._as_at_the_end(start):
                 raise KeyFault("cycle_start", "a cycle must end with the loads that it begins with")
         return self

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from ..errors import quoted
 from . import units
 from .factors import ExpansionFactor, TemperatureFactor
 from .section import Number, Section
@@ -58,8 +59,8 @@ def resolve_like(bodies: dict[str, Body], name: str) -> str:
     seen = [name]
     while (other := bodies[seen[-1]].like) is not None:
         if other not in bodies:
-            raise ValueError(f"like = {other!r} names no body; one of: {', '.join(bodies)}")
+            raise ValueError(f"like = {quoted(other)} names no body; one of: {', '.join(bodies)}")
         if other in seen:
-            raise ValueError(f"like = {other!r} leads back to itself")
+            raise ValueError(f"like = {quoted(other)} leads back to itself")
         seen.append(other)
     return seen[-1]

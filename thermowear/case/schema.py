@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from ..errors import CaseError
+from ..errors import CaseError, quoted
 from . import units
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .checks import check
@@ -24,6 +24,9 @@ from .section import Number, Section, Switch
 from .wear import WearTable
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
+_MOST_NODES = 2_000_000
+"""Of displacement: their matrices fill the memory of today's workstations."""
+
 Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
 Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
 
@@ -32,12 +35,12 @@ def _pressure_degree(value: Any) -> Any:
     whole = isinstance(value, int) and not isinstance(value, bool)
     if value is None or value == "lobatto" or (whole and 1 <= value <= 10):
         return value
-    raise ValueError(f'found {value!r}; must be a whole number from 1 to 10, or "lobatto"')
+    raise ValueError(f'found {quoted(value)}; must be a whole number from 1 to 10, or "lobatto"')
 
 
 def _variant(value: Any) -> Any:
     if isinstance(value, bool | float):  # equal to 1 in Python, but not what was asked for
-        raise ValueError(f"found {value!r}; must be 1, 0 or -1")
+        raise ValueError(f"found {quoted(value)}; must be 1, 0 or -1")
     return value
 
 
@@ -176,6 +179,20 @@ class Case(Section):
         conductance = None if self.heat is None else self.heat.conductance
         return isinstance(conductance, Section) or any(table.depends_on for table in tables)
 
+    def notes(self) -> list[str]:
+        """What the case leaves to a default that changes the answer and is easily taken wrongly."""
+        friction = self.contact.friction
+        unsaid = {
+            name: friction**-law.pressure_exponent
+            for name, law in self.wear.items()
+            if "per" not in law.model_fields_set and friction > 0.0
+        }
+        return [
+            f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
+            f'Archard\'s k multiplies p: with per = "pressure" it wears {ratio:.3g} times as fast'
+            for name, ratio in unsaid.items()
+        ]
+
     def partition(self) -> float:
         """Part of the friction heat that is set free on body 1."""
         assert self.heat is not None
@@ -213,10 +230,23 @@ class Case(Section):
         ----------
         zone : tuple of float, optional
             Range of x [m].
+
+        Raises
+        ------
+        CaseError
+            If it has more nodes than can be computed, or lies beyond the axis.
         """
         if zone is None:
             zone = self.geometry.expected_zone(self.pressing())
         mesh = self.geometry.build(self.mesh, zone)
+        nodes = len(mesh.cells) * self.mesh.degree ** mesh.points.shape[1]
+        if nodes > _MOST_NODES:
+            raise CaseError(
+                f"mesh: {len(mesh.cells)} cells of degree {self.mesh.degree} have about "
+                f"{nodes / 1e6:.2g} million nodes, at most {_MOST_NODES / 1e6:g} million can be "
+                "computed; look for a slip in a unit of the geometry, or lower mesh.elements or "
+                "mesh.degree"
+            )
         x = mesh.points[:, 0]
         if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():
             raise CaseError("geometry: x is the radius of an axisymmetric mesh, found x < 0")

@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
 
+from ..errors import quoted
 from .factors import Factors
 from .section import KeyFault, Number, Section
 from .units import parse, registry
@@ -63,7 +64,11 @@ class Wear(Section):
 
     @model_validator(mode="after")
     def _unit_fits(self):
-        if not 0 < self.coefficient_si() < math.inf:
+        try:
+            number = self.coefficient_si()
+        except (OverflowError, ZeroDivisionError):
+            number = math.inf
+        if not 0 < number < math.inf:
             raise KeyFault("coefficient", f'found "{_text(self.coefficient)}"; out of range in SI')
         return self
 
@@ -92,7 +97,7 @@ def _update(value: Any) -> Any:
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if value in ("auto", "never") or (number and 0.0 < value <= 1.0):
         return value
-    raise ValueError(f'found {value!r}; must be "auto", "never", or a number up to 1')
+    raise ValueError(f'found {quoted(value)}; must be "auto", "never", or a number up to 1')
 
 
 class WearTable(Section):

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .limits import check_count
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -84,6 +86,7 @@ def growing(
 
 def _count(span: float, largest: float) -> int:
     """Equal elements that fill a span, none larger than asked."""
+    check_count(span / largest)
     return max(1, math.ceil(span / largest - 1e-9))
 
 
@@ -148,6 +151,7 @@ def add_grid(model, columns: list[Interval], rows: list[Interval]) -> Grid:
     columns, rows : list of Interval
         Consecutive, upwards; the directions of the first and second coordinate.
     """
+    check_count(*(sum(i.elements for i in intervals) for intervals in (columns, rows)))
     geo = model.geo
     xs = [columns[0].start] + [c.end for c in columns]
     ys = [rows[0].start] + [r.end for r in rows]

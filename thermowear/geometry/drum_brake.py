@@ -51,7 +51,9 @@ class DrumBrake(InsideRing):
     def _fits(self):
         if not self.arc_end - self.arc_start <= _LONGEST:
             raise KeyFault(
-                "arc_end", f"the lining must be at most {degrees(_LONGEST)} of the drum long"
+                "arc_end",
+                f"the lining takes {degrees(self.arc_end - self.arc_start)} of the drum; must be "
+                f"at most {degrees(_LONGEST)}",
             )
         if not self.held_radius > 0:
             raise KeyFault(
@@ -64,13 +66,19 @@ class DrumBrake(InsideRing):
 
     def _check_pivot(self) -> None:
         if not math.hypot(*self.pivot) < self.drum_radius:
-            raise KeyFault("pivot", "must lie inside the drum")
+            raise KeyFault(
+                "pivot",
+                f"lies {math.hypot(*self.pivot):g} m from the centre; must be less than "
+                f"drum_radius {self.drum_radius:g} m",
+            )
         at_start, at_end = (self.normal_arm(angle) for angle in self.arc)
         if not min(at_start, at_end) > 0 and not max(at_start, at_end) < 0:
             raise KeyFault(
                 "pivot",
-                "must lie in a direction from the centre that meets the lining neither forwards "
-                "nor backwards: turning would press one part of the shoe and lift the other",
+                f"lies at {degrees(math.atan2(*self.pivot))} clockwise from 12 o'clock (+y); must "
+                f"lie neither within the lining, {degrees(self.arc_start)} to "
+                f"{degrees(self.arc_end)}, nor opposite to it: turning would press one part of the "
+                "shoe and lift the other",
             )
 
     def normal_arm(self, angle: float) -> float:

@@ -23,7 +23,7 @@ class PadsOnDisk(Geometry):
         That the pads on one side of the disk take up together [rad].
     disk_inner_radius, disk_outer_radius : float [m]
     disk_thickness : float
-        Of the whole disk [m].
+        Of the whole disk: half of it is meshed [m].
     widest_pad : float
         Largest `pad_angle` that can be meshed [deg].
     """

@@ -123,7 +123,7 @@ def _highlights(summary: dict):
     yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
     low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
     yield "pressure", f"{low:.5g} … {high:.5g} MPa"
-    yield "approach", f"{summary['approach_m'] * 1e6:.5g} µm"
+    yield "approach of the holder, towards body 2", f"{summary['approach_m'] * 1e6:.5g} µm"
     if summary["shape_range_m"] > 0:
         yield "shape, highest to lowest", f"{summary['shape_range_m'] * 1e6:.5g} µm"
     if summary["max_temperature_K"] is not None:

@@ -39,6 +39,44 @@ _HARDLY = 0.1
 """Rise of the faces that is not worth a smaller first step [K]."""
 
 
+class CondensedDistortion:
+    """Condenses thermal distortion to the pressure space.
+
+    Operators of heat keep this, not the friction heat that keeps them: in a circle of references
+    they would stay in memory when the meshes that they are of have been given up.
+
+    Parameters
+    ----------
+    system : System
+    thermal : ThermalSystem
+    """
+
+    def __init__(self, system: System, thermal: ThermalSystem):
+        self._system = system
+        self._thermal = thermal
+
+    def __call__(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
+        """Weak gap per heat at the faces, by a conduction; every rank calls."""
+        with self._system.phases("condense distortion"):
+            if conduction is not self._thermal.conduction:  # over a step of time
+                return condense_distortion(conduction, self.per_rise, face)
+            return self._system.parts.get(
+                "distortion",
+                self._system.inputs.conduction,
+                lambda: condense_distortion(conduction, self.per_rise, face),
+            )
+
+    @cached_property
+    def per_rise(self) -> np.ndarray:
+        """Weak gap per nodal rise of temperature."""
+        system = self._system
+        return system.parts.get(
+            "gap per rise",
+            system.inputs.elasticity,
+            lambda: gap_per_rise(self._thermal.load, system.contact),
+        )
+
+
 class FrictionHeat:
     """Couples pressure, temperature and distortion at the contact points.
 
@@ -53,6 +91,7 @@ class FrictionHeat:
         self._thermal = thermal
         self._steps: OrderedDict[float, HeatOperators] = OrderedDict()
         self._distorts = system.case.contact.method == "condensed"
+        self.condensed = CondensedDistortion(system, thermal)
 
     @cached_property
     def steady(self) -> ConductingStage:
@@ -192,19 +231,8 @@ class FrictionHeat:
 
     def at_rest(self, rise: np.ndarray) -> Resting:
         """What a nodal rise (n_owned,) does to the interface; every rank calls."""
-        per_rise = self._per_rise if self._distorts else None
+        per_rise = self.condensed.per_rise if self._distorts else None
         return at_rest(rise, self._thermal.face.traces, self._system.comm, per_rise)
-
-    def condensed(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
-        """Thermal distortion condensed to the pressure space; every rank calls."""
-        with self._system.phases("condense distortion"):
-            if conduction is not self._thermal.conduction:  # over a step of time
-                return condense_distortion(conduction, self._per_rise, face)
-            return self._system.parts.get(
-                "distortion",
-                self._system.inputs.conduction,
-                lambda: condense_distortion(conduction, self._per_rise, face),
-            )
 
     @cached_property
     def _kept(self) -> int:
@@ -214,15 +242,6 @@ class FrictionHeat:
         numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes
         least = min(self._system.comm.allgather(_MEMORY / (8 * numbers)))
         return max(int(least), _FEWEST)
-
-    @cached_property
-    def _per_rise(self) -> np.ndarray:
-        system = self._system
-        return system.parts.get(
-            "gap per rise",
-            system.inputs.elasticity,
-            lambda: gap_per_rise(self._thermal.load, system.contact),
-        )
 
     def _operators(self, step: float) -> HeatOperators:
         steady = self._thermal.face

@@ -91,7 +91,7 @@ class VaryingFrictionHeat(FrictionHeat):
 
     def gap_per_rise(self, rise: np.ndarray) -> np.ndarray:
         """Weak gap per small change of a nodal rise, shape (n_owned, m)."""
-        result = self._per_rise
+        result = self.condensed.per_rise
         for part, per_rise in self._per_excess:
             result = result + part.slope(rise)[:, None] * per_rise
         return result
@@ -116,7 +116,7 @@ class VaryingFrictionHeat(FrictionHeat):
 
     def _opening(self, rise: np.ndarray) -> np.ndarray:
         """Weak gap that a rise opens, shape (m,) [m³]."""
-        opening = self._per_rise.T @ rise
+        opening = self.condensed.per_rise.T @ rise
         for part, per_rise in self._per_excess:
             opening = opening + per_rise.T @ part.excess(rise)
         return sum_over_ranks(self._system.comm, opening)

@@ -57,10 +57,11 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
         One line per fault.
     """
     tables = source if isinstance(source, dict) else _read(Path(source))
+    folder = None if isinstance(source, dict) else Path(source).parent
     for text in overrides:
         tables = _override(tables, text)
     try:
-        return Case.model_validate(tables)
+        return Case.model_validate(tables, context={"folder": folder})
     except ValidationError as error:
         raise CaseError(*(_line(fault) for fault in error.errors())) from None
 

@@ -193,7 +193,7 @@ class InterfaceProblem:
             self._heat.recall(memory)
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Times up to an end at which loads or speed change their course [s]."""
+        """Times up to an end at which something changes its course [s]."""
         return self._surroundings.corners(end)
 
     def first_step(self, state: WornContact) -> float:

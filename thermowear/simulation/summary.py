@@ -74,7 +74,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
 def _friction(system: System, outcome: Outcome) -> dict[str, float]:
     """The coefficients where it presses, and their mean by force, where they are not constant."""
     pressure = outcome.contact.pressure
-    if not system.case.contact.friction_factor.depends_on or not pressure.any():
+    if not system.case.friction_varies or not pressure.any():
         return {}
     friction, carries = outcome.contact.conditions.friction, pressure > 0
     return {

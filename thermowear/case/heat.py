@@ -104,9 +104,11 @@ class Heat(Section):
             for surface, value in self.temperature.items()
             if isinstance(value, TemperatureHistory)
         }
-        return found if self.ambient_history is None else found | {
-            "ambient_history": self.ambient_history
-        }
+        return (
+            found
+            if self.ambient_history is None
+            else found | {"ambient_history": self.ambient_history}
+        )
 
     @property
     def driven(self) -> bool:

@@ -33,7 +33,7 @@ _FEWEST = 3
 """Sizes of steps whose operators are kept in any case: those of a step, its half and its double."""
 _FILL = {2: 100, 3: 1000}
 """Entries of triangular factors per unknown, by dimension of the mesh."""
-_ROUNDING = 1e-6
+_ROUNDING = 1e-3
 """Of the heat that bodies have at the start: less than that is near to rounding of it."""
 _SHALLOW = 1e-3
 """Of the contact's length: heat that has gone so deep has changed nothing yet."""

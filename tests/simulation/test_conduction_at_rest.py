@@ -109,7 +109,7 @@ def test_heat_can_be_drawn_out_beside_friction():
 
 
 def test_smooth_bodies_that_wear_may_be_heated_otherwise():
-    """requirement: sliding without friction makes no heat, and wears by the pressure all the same."""
+    """requirement: sliding without friction makes no heat, and wears by the pressure."""
     smooth = {"contact.friction": 0.0, "wear.upper.per": "pressure"}
     result = solved(BLOCKS, COARSE | smooth | {"heat.temperature.upper_top": "100 degC"})
     assert_slabs(result, (HOT, COLD), None, 1e4)

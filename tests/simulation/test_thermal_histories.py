@@ -70,7 +70,7 @@ def test_heat_comes_through_the_joint_as_through_one_slab(heat, exact, hottest):
 
 
 def test_heat_stored_under_a_ramp_is_that_of_the_closed_form():
-    """requirement: heat that a given temperature brings in counts as lost, negative, and is stored."""
+    """requirement: heat that a given temperature brings in counts as lost, negative."""
     result = solved(
         BLOCKS, COLUMN | {"heat": {"transient": True, "temperature": {"upper_top": RAMP}}}
     )
@@ -83,7 +83,7 @@ def test_heat_stored_under_a_ramp_is_that_of_the_closed_form():
 
 
 def test_a_flux_over_time_is_its_integral():
-    """requirement: power counts as heat put in: 10 W for 20 s; all is stored in insulated bodies."""
+    """requirement: 10 W for 20 s are heat put in; insulated bodies store it all."""
     heat = {"transient": True, "power": {"upper_top": "10 W"}}
     result = solved(BLOCKS, COLUMN | {"heat": heat})
     np.testing.assert_allclose(
@@ -94,7 +94,7 @@ def test_a_flux_over_time_is_its_integral():
 
 
 def test_heat_that_only_changes_places_is_in_balance():
-    """requirement: what goes in at the top and out at the bottom: no error where all sums vanish."""
+    """requirement: what goes in at one end and out at the other: no error where sums vanish."""
     opposite = {"upper_top": "1e4 W/m^2", "lower_bottom": "-1e4 W/m^2"}
     result = solved(BLOCKS, COLUMN | {"heat": {"transient": True, "flux": opposite}})
     assert result.heat[-1].heat_in == 0.0
@@ -105,7 +105,7 @@ def test_heat_that_only_changes_places_is_in_balance():
 
 def test_surroundings_that_get_warmer():
     """
-    requirement: an ambient that rises evenly by b: a small body follows as b (t - τ (1 - e^{-t/τ})).
+    requirement: in an ambient that rises by b, a small body follows: b (t - τ (1 - e^{-t/τ})).
 
     τ = ρ c L/h of 30 mm and 50 W/(m² K); conduction inside is fast: Biot number 3e-4.
     """
@@ -177,7 +177,7 @@ def test_friction_that_switches():
 
 
 def test_friction_that_drags_changes_the_pressure():
-    """requirement: in the section, friction of a moment is that of the equilibrium of the moment."""
+    """requirement: in the section, the friction of a time is in the equilibrium of that time."""
     changes = {
         "heat": GONE,
         "analysis": {"type": "transient", "end_time": "2 s"},

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from mpi4py import MPI
+from petsc4py import PETSc
 
 import numpy as np
 import ufl
 from dolfinx import default_scalar_type, fem
 from dolfinx.fem.petsc import assemble_vector
-from petsc4py import PETSc
 
 from ..compat import exterior_facet_domain
 from .bodies import Bodies

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, PlainSerializer, PlainValidator, TypeAdapter, ValidationInfo
@@ -97,7 +98,7 @@ class Heat(Section):
     power: dict[str, units.Power] = {}
 
     @property
-    def histories(self) -> dict[str, Course]:
+    def histories(self) -> Mapping[str, Course]:
         """What changes in time, by its key."""
         found = {
             f"temperature.{surface}": value

@@ -176,13 +176,13 @@ class Case(Section):
     @property
     def histories(self) -> dict[str, Course]:
         """What changes in time, by the path of its key."""
-        found = {
+        found: dict[str, Course | None] = {
             "load.history": self.load.history,
             "motion.history": None if self.motion is None else self.motion.history,
             "contact.friction_history": self.contact.friction_history,
         }
-        heat = {} if self.heat is None else self.heat.histories
-        found |= {f"heat.{key}": course for key, course in heat.items()}
+        if self.heat is not None:
+            found |= {f"heat.{key}": course for key, course in self.heat.histories.items()}
         return {key: course for key, course in found.items() if course is not None}
 
     @property

@@ -105,11 +105,9 @@ class Heat(Section):
             for surface, value in self.temperature.items()
             if isinstance(value, TemperatureHistory)
         }
-        return (
-            found
-            if self.ambient_history is None
-            else found | {"ambient_history": self.ambient_history}
-        )
+        if self.ambient_history is not None:
+            found["ambient_history"] = self.ambient_history
+        return found
 
     @property
     def driven(self) -> bool:

@@ -52,7 +52,7 @@ GROUPS = {
     },
     "Heat and energy": {
         "max_temperature_K": "highest temperature",
-        "peak_temperature_K": "highest temperature on the way",
+        "peak_temperature_K": "highest temperature of the faces on the way",
         "peak_temperature_time_s": "time of the highest temperature",
         "friction_power_W": "friction power",
         "prescribed_heat_W": "heat through surfaces with a given flux or power",

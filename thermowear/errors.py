@@ -25,3 +25,7 @@ class ComputationError(Exception):
 
 class UnwritableError(ComputationError):
     """Results cannot be written any more: a disk is full, or gone."""
+
+
+class CaseNote(UserWarning):
+    """What is legal in a case, and still odd enough to be said; the command line prints it."""

@@ -10,6 +10,7 @@ import tomli_w
 import thermowear as tw
 from thermowear.case import as_plain
 from thermowear.cli import main
+from thermowear.errors import CaseNote
 
 from .bad import Bad, assert_refused
 from .starter import GONE, RUNNING_IN, tables
@@ -94,16 +95,18 @@ def test_files_are_looked_for_beside_the_case(tmp_path, monkeypatch):
     here.mkdir()
     (here / FILE).write_text(HEAD + "0,2\n")
     monkeypatch.chdir(here)
-    assert tw.load(path).force() == 1000.0
+    with pytest.warns(CaseNote, match="is another file, and is not read"):
+        assert tw.load(path).force() == 1000.0
     (beside / FILE).unlink()
-    assert tw.load(path).force() == 2000.0
+    with pytest.warns(CaseNote, match="paths are meant from the case file's"):
+        assert tw.load(path).force() == 2000.0
     override = (f"load.history={beside / 'other.csv'}",)
     (beside / "other.csv").write_text(HEAD + "0,3\n")
     assert tw.load(path, override).force() == 3000.0
 
 
 FAULTS = {
-    "no file": (None, "no file 'course.csv' in the folder of the case file and in the current"),
+    "no file": (None, f"{FILE} cannot be read: No such file"),
     "empty": ("", f"{FILE} is empty; needs a header, of: time [s], force [kN]"),
     "header alone": (HEAD, f"{FILE} has a header, but no rows"),
     "binary": (b"\xff\xfe\x00\x01", f"{FILE} is not text in UTF-8"),
@@ -129,10 +132,10 @@ FAULTS = {
     "before the start": (HEAD + "-1,1\n0,1\n", f"{FILE}, line 2: time: found "),
     "tension": (HEAD + "0,1\n1,-1\n", f"{FILE}, line 3: force: found "),
     "too many rows": (
-        HEAD + "".join(f"{i},1\n" for i in range(10_001)),
-        f"{FILE} has 10001 rows; at most 10000",
+        HEAD + "".join(f"{i},1\n" for i in range(5_001)),
+        f"{FILE} has 5001 rows; at most 5000",
     ),
-    "too long": (HEAD + "#" * 10_000_001, f"{FILE} has more than 10 MB"),
+    "too long": (HEAD + "#" * 10_000_001, f"{FILE} cannot be read: has more than 10000000 bytes"),
 }
 
 
@@ -145,7 +148,7 @@ def test_a_faulty_file_is_one_line_with_key_file_and_line(content, text, tmp_pat
     assert main(["validate", str(path)]) == 1
     printed = capsys.readouterr()
     (line,) = printed.err.splitlines()
-    assert line.startswith(f"error: {LOAD}: {text}")
+    assert line.replace(f"{tmp_path}/", "").startswith(f"error: {LOAD}: {text}")
     assert len(line) < 400
 
 
@@ -157,7 +160,7 @@ def test_only_regular_files_are_opened(tmp_path, capsys):
         assert main(["validate", str(path)]) == 1
         (line,) = capsys.readouterr().err.splitlines()
         assert line.startswith(f"error: {LOAD}: ")
-        assert "is not a regular file" in line
+        assert "not a file" in line or "Is a directory" in line
 
 
 def test_factors_have_no_unit_and_are_not_negative(tmp_path):

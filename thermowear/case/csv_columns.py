@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from .paths import find
+from ..user_files import read_text
 
 LARGEST = 10_000_000
 """Bytes of a file."""
-MOST_ROWS = 10_000
+MOST_ROWS = 5_000
+"""Each of them is a corner that a step must end at, and stands in the resolved case."""
 _SHOWN = 40  # characters of what was found
 _HEAD = re.compile(r"([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
@@ -25,7 +26,7 @@ class Columns:
     Attributes
     ----------
     name : str
-        Of the file, as the case names it.
+        Of the file.
     values : dict of str to list
         By key: quantities as text; numbers where the header has no unit.
     lines : list of int
@@ -37,7 +38,7 @@ class Columns:
     lines: list[int]
 
 
-def read_columns(name: str, folder: Path | None, known: dict[str, str]) -> Columns:
+def read_columns(path: Path, known: dict[str, str]) -> Columns:
     """Read a CSV file: a header such as ``time [s], force [kN]``, then rows of numbers.
 
     Commas, semicolons or tabs separate the cells; numbers have a decimal point; empty lines and
@@ -45,10 +46,7 @@ def read_columns(name: str, folder: Path | None, known: dict[str, str]) -> Colum
 
     Parameters
     ----------
-    name : str
-        In the folder of the case file, or else in the current directory.
-    folder : Path or None
-        Of the case file.
+    path : Path
     known : dict of str to str
         Keys that columns may stand for, with a unit that fits each; empty for plain numbers. Words
         of a key may be separated by spaces.
@@ -58,7 +56,8 @@ def read_columns(name: str, folder: Path | None, known: dict[str, str]) -> Colum
     ValueError
         With file and line, if it is not such a table.
     """
-    rows = _rows(name, _text(name, find(name, folder)))
+    name = path.name
+    rows = _rows(name, _text(path))
     allowed = ", ".join(f"{key} [{unit}]" if unit else key for key, unit in known.items())
     if not rows:
         raise ValueError(f"{name} is empty; needs a header, of: {allowed}")
@@ -78,18 +77,13 @@ def read_columns(name: str, folder: Path | None, known: dict[str, str]) -> Colum
     return Columns(name, values, [line for line, _ in body])
 
 
-def _text(name: str, path: Path) -> str:
+def _text(path: Path) -> str:
     try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
+        return read_text(path, LARGEST)
     except OSError as error:
-        raise ValueError(f"{name} cannot be read: {error.strerror}") from None
-    if len(content) > LARGEST:
-        raise ValueError(f"{name} has more than {LARGEST // 1_000_000} MB, too much for a history")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise ValueError(f"{name} is not text in UTF-8") from None
+        raise ValueError(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:  # not in UTF-8, or no name of a file
+        raise ValueError(f"{path} {error}") from None
 
 
 def _rows(name: str, text: str) -> list[tuple[int, list[str]]]:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import ValidationError, ValidationInfo, model_validator
+from pydantic import TypeAdapter, ValidationError, ValidationInfo, model_validator
 
 from . import units
 from .csv_columns import Columns, read_columns
 from .factors import NotNegative, must_increase, must_match
-from .paths import folder_of
+from .paths import UserFile
 from .section import KeyFault, Section, Switch
 
+_PATH = TypeAdapter(UserFile)
 _CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
 
 
@@ -46,10 +48,11 @@ class Course(Section):
         name, others = data["file"], {key: data[key] for key in data if key != "file"}
         if not isinstance(name, str):
             raise KeyFault("file", "must be the name of a CSV file")
-        columns = read_columns(name, folder_of(info), cls.COLUMNS)
+        path = _PATH.validate_python(name, context=info.context)
+        columns = read_columns(Path(path), cls.COLUMNS)
         for key in columns.values:
             if key in others:
-                raise KeyFault(key, f"is a column of {name} already")
+                raise KeyFault(key, f"is a column of {columns.name} already")
         try:
             return handler(others | columns.values)
         except ValidationError as error:

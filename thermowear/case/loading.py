@@ -11,6 +11,7 @@ from typing import Any, get_args, get_type_hints
 from pydantic import ValidationError
 
 from ..errors import CaseError
+from .paths import FOLDER
 from .schema import Case
 from .section import KeyFault, Section
 
@@ -42,7 +43,8 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
     Parameters
     ----------
     source : str, Path or dict
-        A case file, or its tables.
+        A case file, or its tables. Paths in a file are meant from its folder, and else, with a
+        warning, from the current one, as those in tables are.
     overrides : tuple of str
         ``KEY=VALUE`` each, with the key's path (``mesh.degree=6``); the value as in TOML, or plain
         text.
@@ -57,11 +59,11 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
         One line per fault.
     """
     tables = source if isinstance(source, dict) else _read(Path(source))
-    folder = None if isinstance(source, dict) else Path(source).parent
+    context = None if isinstance(source, dict) else {FOLDER: str(Path(source).absolute().parent)}
     for text in overrides:
         tables = _override(tables, text)
     try:
-        return Case.model_validate(tables, context={"folder": folder})
+        return Case.model_validate(tables, context=context)
     except ValidationError as error:
         raise CaseError(*(_line(fault) for fault in error.errors())) from None
 

@@ -1,36 +1,41 @@
-"""Files that a case file names."""
+"""Files that a case names: where they are, wherever the program is called."""
 
 from __future__ import annotations
 
-import stat
-from pathlib import Path
+import os
+import warnings
+from typing import Annotated
 
-from pydantic import ValidationInfo
+from pydantic import AfterValidator, ValidationInfo
+
+from ..errors import CaseNote
+
+FOLDER = "folder"
+"""Key of the folder of the case file in the context of validation."""
 
 
-def folder_of(info: ValidationInfo) -> Path | None:
-    """The folder of the case file that is being read; None for tables that come from no file."""
-    return (info.context or {}).get("folder")
+def _found(path: str, info: ValidationInfo) -> str:
+    """The absolute path of a file: from the folder of the case file, or else from the current one.
 
-
-def find(name: str, folder: Path | None) -> Path:
-    """A regular file, looked for in the case file's folder first, then in the current directory.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
+    A case without a file of its own (tables in Python) has only the current folder.
     """
-    candidates = [Path(name)] if folder is None else [folder / name, Path(name)]
-    try:
-        there = [path for path in candidates if path.exists()]
-    except (OSError, ValueError) as error:  # a name that no file can have
-        raise ValueError(f"{name[:100]!r} is not the name of a file: {error}"[:200]) from None
-    if not there:
-        looked = "the current directory"
-        if folder is not None and not Path(name).is_absolute():
-            looked = "the folder of the case file and in the current directory"
-        raise ValueError(f"no file {name[:100]!r} in {looked}")
-    if not stat.S_ISREG(there[0].stat().st_mode):
-        raise ValueError(f"{name[:100]!r} is not a regular file")
-    return there[0]
+    here = os.path.abspath(path)
+    folder = (info.context or {}).get(FOLDER)
+    if folder is None:
+        return here
+    beside = os.path.abspath(os.path.join(folder, path))
+    if here == beside or not os.path.exists(here):
+        return beside
+    if os.path.exists(beside):
+        _note(f"found {beside}, beside the case file; {here} is another file, and is not read")
+        return beside
+    _note(f"found {here} in the current folder; paths are meant from the case file's: {folder}")
+    return here
+
+
+def _note(text: str) -> None:
+    warnings.warn(CaseNote(text), stacklevel=2)
+
+
+UserFile = Annotated[str, AfterValidator(_found)]
+"""Type of a key that holds the path of a file: absolute inside."""

@@ -194,3 +194,17 @@ def test_friction_that_drags_changes_the_pressure():
     np.testing.assert_allclose(
         found.interface.pressure, known.interface.pressure, atol=1e-6 * scale
     )
+
+
+def test_heat_that_has_not_come_to_the_contact_yet():
+    """requirement: the tolerance holds for the temperatures inside the bodies, too.
+
+    After 0.3 s heat has gone 2 mm deep, and nothing has happened at the contact.
+    """
+    heat = {"transient": True, "flux": {"upper_top": "1e6 W/m^2"}}
+    short = {"type": "transient", "end_time": "0.3 s", "tolerance": 1e-3}
+    fine = {"mesh.degree": 3, "mesh.elements": 6}
+    result = solved(BLOCKS, COLUMN | {"heat": heat, "analysis": short} | fine)
+    hottest = result.fields.temperature.max() - COLD
+    assert hottest == pytest.approx(float(SLAB.flux(1e6, 0.3, 0.0)), rel=3e-4)
+    assert result.interface.temperature_1.max() - COLD < 1e-3 * hottest

@@ -126,9 +126,55 @@ UNSTABLE = [
         "not for stability"),
 ]  # fmt: skip
 
+REST = {"motion": GONE, "wear": GONE, "analysis": {"type": "initial"}}
+HEATED = REST | {"heat.temperature.upper_top": "100 degC"}
+RAMP = {"time": ["0 s", "1 s"], "temperature": ["20 degC", "90 degC"]}
+TOP = "heat.temperature.upper_top"
+FLUX, POWER, SURROUNDED = "heat.flux", "heat.power", "heat.ambient_history"
+AT_REST = [
+    Bad("nothing heats", REST, "motion", "nothing heats the bodies: needs sliding, or", BLOCKS),
+    Bad("smooth, and nothing heats", {"contact.friction": 0, "wear.upper.per": "pressure"},
+        "contact.friction", "friction heat needs friction", BLOCKS),
+    Bad("steady at rest", HEATED | {"wear.upper": {"coefficient": "1e-8 1/MPa"},
+        "analysis": {"type": "steady"}}, "motion", 'at rest use analysis.type = "initial"', BLOCKS),
+    Bad("nothing passes", REST | {PASSING: "spread",
+        "heat.power": {"punch_top": "1 W"}}, PASSING, "needs [motion]", STRIP),
+    Bad("heat with nowhere to go", REST | {"heat.temperature": GONE,
+        FLUX: {"upper_top": "1 W/m^2"}}, "heat", "nowhere to go", BLOCKS),
+    Bad("no flux", {FLUX: {"upper_side": "0 W/m^2"}}, f"{FLUX}.upper_side", "other than", BLOCKS),
+    Bad("flux in watts", {FLUX: {"upper_side": "1 W"}}, f"{FLUX}.upper_side", "W/m^2", BLOCKS),
+    Bad("power per area", {POWER: {"upper_side": "1 W/m^2"}}, f"{POWER}.upper_side", "of W",
+        BLOCKS),
+    Bad("unknown surface", {POWER: {"side": "1 W"}}, f"{POWER}.side", "one of: upper_face", BLOCKS),
+    Bad("on the contact", {FLUX: {"lower_face": "1 W/m^2"}}, f"{FLUX}.lower_face",
+        "exchanges heat with the other body only", BLOCKS),
+    Bad("on a given temperature", {POWER: {"upper_top": "1 W"}}, f"{POWER}.upper_top",
+        "has a given temperature already", BLOCKS),
+    Bad("twice", {FLUX: {"upper_side": "1 W/m^2"}, POWER: {"upper_side": "1 W"}},
+        f"{POWER}.upper_side", "has a given flux already", BLOCKS),
+    Bad("steady ramp", {TOP: RAMP}, TOP, "is for a transient analysis, not for steady", BLOCKS),
+    Bad("ramp without memory", IN_TIME | {TOP: RAMP}, TOP, "heat.transient = true", BLOCKS),
+    Bad("ramp of lists that differ", {TOP: RAMP | {"time": ["0 s"]}}, f"{TOP}.temperature",
+        "has 2 values for 1 times", BLOCKS),
+    Bad("ramp below nothing", {TOP: RAMP | {"temperature": ["20 degC", "-300 degC"]}},
+        f"{TOP}.temperature.1", "at least 0 K", BLOCKS),
+    Bad("unknown key of a ramp", {TOP: RAMP | {"factor": [1, 1]}}, f"{TOP}.factor", "unknown key",
+        BLOCKS),
+    Bad("ramp that jumps back", {TOP: RAMP | {"repeat": True}}, f"{TOP}.repeat",
+        "temperature must end with the value", BLOCKS),
+    Bad("number for a ramp", {TOP: 20}, TOP, "needs a quantity with its unit", BLOCKS),
+    Bad("surroundings of nothing", HOT | {SURROUNDED: RAMP, "heat.cooling": GONE}, SURROUNDED,
+        "no surface has heat.cooling"),
+    Bad("until steady in other surroundings",
+        HOT | {SURROUNDED: RAMP, "analysis": {"type": "transient", "until": "steady"}},
+        "analysis.until", f"nothing is steady under {SURROUNDED}"),
+]  # fmt: skip
+
 
 @pytest.mark.parametrize(
-    "bad", CONDUCTANCES + SHARES + MOVING + STORED + UNSTABLE, ids=lambda bad: bad.name
+    "bad",
+    CONDUCTANCES + SHARES + MOVING + STORED + UNSTABLE + AT_REST,
+    ids=lambda bad: bad.name,
 )
 def test_a_fault_of_heat_is_one_line_with_the_path_of_its_key(bad, tmp_path, capsys):
     """
@@ -188,6 +234,18 @@ ALLOWED = {
         BY_PRESSURE | {"bodies.punch.hardness": "2 GPa", "contact.method": "nitsche"},
     ),
     "blocks of one material": (BLOCKS, {}),
+    "at rest": (BLOCKS, HEATED),
+    "at rest, smooth": (BLOCKS, HEATED | {"contact.friction": 0}),
+    "at rest, in time, cooling down": (
+        STEADY,
+        HOT | {"wear": GONE, "motion": GONE, "heat.initial": "80 degC"},
+    ),
+    "smooth, and heated": (
+        BLOCKS,
+        {TOP: "90 degC", "contact.friction": 0, "wear.upper.per": "pressure"},
+    ),
+    "heat drawn out": (BLOCKS, {FLUX: {"lower_side": "-1 kW/m^2"}}),
+    "warm surroundings": (STEADY, HOT | {SURROUNDED: RAMP}),
 }
 
 

@@ -82,6 +82,16 @@ class Conduction:
         """Rise [K] due to nodal heat [W] and the given temperatures."""
         return self.given + self.respond(heat + self.lifted)
 
+    def holding(self, given: np.ndarray) -> Conduction:
+        """The same bodies with other given rises (n_owned,), zero in the free values [K]."""
+        return replace(self, given=given, lifted=-multiply(self.conductivity, given))
+
+    def per_ambient(self) -> np.ndarray:
+        """Nodal heat per rise of the surroundings, and of what comes in, (n_owned,) [W/K]."""
+        ones = np.ones(len(self.fixed))
+        heat = multiply(self.cooling, ones)
+        return heat if self.carried is None else heat + multiply(self.carried, ones)
+
     def storing(self, step: float) -> Conduction:
         """Conduction at the end of an implicit Euler step of time [s].
 
@@ -115,16 +125,22 @@ class Conduction:
         return multiply(self.capacity, rise)
 
     def losses(
-        self, rise: np.ndarray, heat: np.ndarray, storage: np.ndarray | None = None
+        self,
+        rise: np.ndarray,
+        heat: np.ndarray,
+        storage: np.ndarray | None = None,
+        ambient: float = 0.0,
     ) -> tuple[float, float, float]:
         """Heat that leaves by cooling, by given temperatures, and with a body that passes [W].
 
         Parameters
         ----------
         rise, heat : ndarray, shape (n_owned,)
-            A state and the nodal heat of the contact that goes with it.
+            A state and the nodal heat, of the contact and of `per_ambient`, that goes with it.
         storage : ndarray, shape (n_owned,), optional
             Rate of what the nodes store, see `stored` [W].
+        ambient : float, optional
+            Rise of the surroundings [K].
 
         Returns
         -------
@@ -133,13 +149,23 @@ class Conduction:
         """
         cooled, carried = self._per_rise
         left = self._into_given(rise, heat if storage is None else heat - storage)
-        parts = np.array([cooled @ rise, left.sum(), carried @ rise])
+        above = rise - ambient
+        parts = np.array([cooled @ above, left.sum(), carried @ above])
         return tuple(sum_over_ranks(self.space.mesh.comm, parts))
 
-    def turnover(self, rise: np.ndarray, heat: np.ndarray) -> float:
-        """Magnitude of what crosses cooled surfaces and those with a given temperature [W]."""
-        size = np.abs(multiply(self.cooling, rise)).sum()
-        size += np.abs(self._into_given(rise, heat)).sum()
+    def turnover(
+        self,
+        rise: np.ndarray,
+        heat: np.ndarray,
+        storage: np.ndarray | None = None,
+        ambient: float = 0.0,
+    ) -> float:
+        """Magnitude of what crosses cooled surfaces and those with a given temperature [W].
+
+        Parameters as in `losses`.
+        """
+        size = np.abs(multiply(self.cooling, rise - ambient)).sum()
+        size += np.abs(self._into_given(rise, heat if storage is None else heat - storage)).sum()
         return float(sum_over_ranks(self.space.mesh.comm, size))
 
     def _into_given(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from ..errors import CaseError
 from .analyses import Transient
 from .courses import courses
 from .equilibrium import holder, load, motion
-from .heating import Need, heat, thermal_needs
+from .heating import SURFACES, Need, heat, thermal_needs
 from .materials import resolve_like
 from .oscillation import counted, fretting, reciprocating
 from .varying import condensed_only, varying
@@ -50,8 +50,8 @@ def _names(case: Case) -> Iterator[Fault]:
         if name not in case.bodies:
             yield f"bodies.{name}", "missing; every body of the geometry needs its material"
     if case.heat is not None:
-        yield from _unknown("heat.cooling", case.heat.cooling, surfaces)
-        yield from _unknown("heat.temperature", case.heat.temperature, surfaces)
+        for table in SURFACES:
+            yield from _unknown(f"heat.{table}", getattr(case.heat, table), surfaces)
 
 
 def _unknown(table: str, found: Iterable[str], known: tuple[str, ...]) -> Iterator[Fault]:
@@ -98,12 +98,13 @@ def _sliding(case: Case) -> Iterator[Fault]:
     analysis = case.analysis
     if not case.wear and _wears(case):
         yield "wear", f"missing; a {analysis.type} analysis needs the wear law of a body"
-    heats = case.heat is not None or analysis.type == "stability"
-    slides = heats or analysis.type in _SLIDING
-    if slides and analysis.type != "fretting" and case.motion is None:
-        yield "motion", "missing; wear and friction heat need sliding"
+    heated_by_friction = analysis.type == "stability" or (
+        case.heat is not None and not case.heat.driven
+    )
+    if case.motion is None and analysis.type != "fretting":
+        yield from _at_rest(case, heated_by_friction)
     if case.contact.friction == 0.0:
-        if heats:
+        if heated_by_friction:
             yield "contact.friction", "is 0; friction heat needs friction"
         for name, law in case.wear.items():
             if law.per == "friction-stress":
@@ -111,6 +112,25 @@ def _sliding(case: Case) -> Iterator[Fault]:
                     "contact.friction",
                     f'is 0; wear.{name} is per friction stress (write per = "pressure" instead)',
                 )
+
+
+def _at_rest(case: Case, heated_by_friction: bool) -> Iterator[Fault]:
+    """Without sliding there is neither wear nor friction heat, only conduction."""
+    type_ = case.analysis.type
+    if _wears(case) or type_ == "stability" or (case.wear and type_ in _SLIDING):
+        text = "missing; wear and friction heat need sliding"
+        if case.heat is not None and not heated_by_friction:
+            text += (
+                '; for conduction at rest use analysis.type = "initial", or "transient" with '
+                "heat.transient = true and without wear"
+            )
+        yield "motion", text
+    elif heated_by_friction:
+        yield (
+            "motion",
+            "missing; nothing heats the bodies: needs sliding, or heat.temperature, heat.flux or "
+            "heat.power",
+        )
 
 
 def _wears(case: Case) -> bool:

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import model_validator
 
 from . import units
-from .history import History, SpeedHistory
+from .history import FactorHistory, History
 from .section import KeyFault, Section
 
 FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
@@ -96,7 +96,7 @@ class Motion(Section):
         Of body 1 over body 2 along x; negative: against it [m/s].
     amplitude, frequency : float or None
         Body 1 slides to and fro, ``x = amplitude sin(2 π frequency t)`` [m, Hz].
-    history : SpeedHistory or None
+    history : FactorHistory or None
         How the speed of a transient analysis changes.
     """
 
@@ -104,7 +104,7 @@ class Motion(Section):
     velocity: units.Velocity | None = None
     amplitude: units.Length | None = None
     frequency: units.Frequency | None = None
-    history: SpeedHistory | None = None
+    history: FactorHistory | None = None
 
     @property
     def one_way(self) -> Motion:

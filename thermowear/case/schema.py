@@ -19,6 +19,7 @@ from .driving import Holder, Load, Motion
 from .factors import Factors
 from .geometry import AnyGeometry, Pressing
 from .heat import Heat
+from .history import Course, FactorHistory
 from .materials import Body, resolve_like
 from .section import Number, Section, Switch
 from .wear import WearTable
@@ -90,6 +91,8 @@ class Contact(Section):
         Coefficient of friction in the direction of sliding.
     friction_factor : Factors
         Of it, by the mean temperature of both faces, pressure and speed.
+    friction_history : FactorHistory or None
+        How the friction of a transient analysis changes in time, by a factor.
     transverse_friction : float
         Coefficient of friction across it, on faces that are not level (Páczelt and Mróz's mu_d).
     compliance : float or None
@@ -111,6 +114,7 @@ class Contact(Section):
 
     friction: Annotated[Number, Field(ge=0.0)] = 0.0
     friction_factor: Factors = Factors()
+    friction_history: FactorHistory | None = None
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
     compliance: units.Compliance | None = None
     method: Literal["condensed", "penalty", "nitsche"] = "condensed"
@@ -171,6 +175,24 @@ class Case(Section):
             assert body.poisson_ratio is not None
             softness += (1 - body.poisson_ratio**2) / body.young_modulus
         return Pressing(self.force(), self.approach(), 1 / softness)
+
+    @property
+    def histories(self) -> dict[str, Course]:
+        """What changes in time, by the path of its key."""
+        found: dict[str, Course | None] = {
+            "load.history": self.load.history,
+            "motion.history": None if self.motion is None else self.motion.history,
+            "contact.friction_history": self.contact.friction_history,
+        }
+        if self.heat is not None:
+            found |= {f"heat.{key}": course for key, course in self.heat.histories.items()}
+        return {key: course for key, course in found.items() if course is not None}
+
+    @property
+    def friction_varies(self) -> bool:
+        """Whether the coefficient of friction depends on time, temperature, pressure or speed."""
+        contact = self.contact
+        return bool(contact.friction_factor.depends_on) or contact.friction_history is not None
 
     @property
     def varies(self) -> bool:

@@ -129,9 +129,13 @@ def _highlights(summary: dict):
     if summary["max_temperature_K"] is not None:
         yield "highest temperature", f"{summary['max_temperature_K'] - 273.15:.5g} °C"
         yield "friction power", f"{summary['friction_power_W']:.6g} W"
+    if summary.get("contact_heat_1_W") is not None and summary["friction_power_W"] == 0.0:
+        yield "heat from body 1 to body 2", f"{summary['contact_heat_2_W']:.6g} W"
+    if summary.get("prescribed_heat_W") is not None:
+        yield "heat through surfaces", f"{summary['prescribed_heat_W']:.6g} W"
     if summary.get("peak_temperature_K") is not None:
         peak, time = summary["peak_temperature_K"] - 273.15, summary["peak_temperature_time_s"]
-        yield "hottest on the way", f"{peak:.5g} °C at {time:.5g} s"
+        yield "hottest face on the way", f"{peak:.5g} °C at {time:.5g} s"
     if summary.get("max_cell_peclet_number") is not None:
         peclet = f"cell Péclet number up to {summary['max_cell_peclet_number']:.3g}"
         yield "heat carried along", f"{summary['heat_advection']}, {peclet}"

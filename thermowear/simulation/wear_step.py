@@ -88,6 +88,9 @@ class WearProblem(Protocol):
         ComputationError
         """
 
+    def difference_inside(self, one: WornContact, other: WornContact) -> float:
+        """Largest difference of temperatures inside the bodies, where that matters [K]."""
+
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end that steps must not pass over [s]."""
 
@@ -138,10 +141,12 @@ def advance_with_error(
         _relative(halves.worn - whole.worn, float(halves.worn.max(initial=0.0))),
     ]
     if halves.stored is not None and halves.faces is not None and whole.faces is not None:
+        largest = max(halves.stored.largest, _LEAST_RISE)
         errors += [
-            _relative(ours - theirs, max(halves.stored.largest, _LEAST_RISE))
+            _relative(ours - theirs, largest)
             for ours, theirs in zip(halves.faces.rise, whole.faces.rise, strict=True)
         ]
+        errors.append(problem.difference_inside(halves, whole) / largest)
     return halves, max(errors) / 3.0
 
 

@@ -85,7 +85,7 @@ def thermal_system(
         upper, lower = pairing.sides
         traces = (value_trace(space, upper), value_trace(space, lower))
         materials, cooling = _round_the_ring(case)
-        shift = max(m.conductivity for m in materials.values()) / pairing.extent
+        shift = max(_conductivities(case, materials)) / pairing.extent
         given = {name: value - heat.ambient for name, value in heat.temperature.items()}
         bath = bath_matrix(space, traces, pairing.weights, shift)
         passage = _passage(case)
@@ -119,6 +119,17 @@ def _varying(
         varying_conduction(conducting, bodies, model, materials, conducts, ambient),
         varying_expansion(elastic, conducting.space, expands, ambient),
     )
+
+
+def _conductivities(case: Case, materials: dict[str, ThermalMaterial]) -> list[float]:
+    """Of all parts at the ambient temperature, tables included [W/(m K)]."""
+    assert case.heat is not None
+    factors = [case.material(part).conductivity_factor for part in materials]
+    ambient = np.array(case.heat.ambient)
+    return [
+        material.conductivity * (1.0 if factor is None else float(factor.value(ambient)))
+        for material, factor in zip(materials.values(), factors, strict=True)
+    ]
 
 
 def _passage(case: Case) -> Passage | None:

@@ -20,7 +20,6 @@ from ..parallel import sum_over_ranks
 from .condensation import CondensedContact
 from .traces import distributed
 
-
 _REGULARITY = 1e-12
 """Part of the bodies' own resistance that stands for an infinite one: functions of the heat flux
 that differ only where nothing crosses stay independent."""

@@ -20,6 +20,9 @@ from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 from .factor import Factor
 
+_HIDDEN = 1e-8
+"""Of the flows between a node and its neighbours; a hundred millionth of it is rounding."""
+
 
 @dataclass(frozen=True)
 class Conduction:
@@ -113,6 +116,14 @@ class Conduction:
         """Heat stored by nodes [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None
         return multiply(self.capacity, rise)
+
+    def rounding(self, rise: np.ndarray) -> float:
+        """Heat flows that are small beside those which rounding hides in a rise (n_owned,) [W].
+
+        A balance is no more exact than that, even where nothing flows at all.
+        """
+        size = float(np.abs(self.conductivity.getDiagonal().getArray()) @ np.abs(rise))
+        return _HIDDEN * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
 
     def losses(
         self, rise: np.ndarray, heat: np.ndarray, storage: np.ndarray | None = None

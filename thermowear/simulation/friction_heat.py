@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..balances import relative
 from ..bulk.conduction import Conduction
 from ..contact.heat import (
     InterfaceHeat,
@@ -157,8 +158,8 @@ class FrictionHeat:
         heat = face.nodal_heat(faces, bath=False)
         made = float(face.weights @ (conditions.heating * pressure))
         lost = sum(conduction.losses(rise, heat))
-        scale = max(made, conduction.turnover(rise, heat))
-        return Warmth(faces, rise, abs(lost - made) / scale if scale > 0 else 0.0)
+        scale = max(made, conduction.turnover(rise, heat), conduction.rounding(rise))
+        return Warmth(faces, rise, relative(lost - made, scale))
 
     def momentary(self, stored: StoredHeat, faces: ThermalState) -> Warmth:
         """Temperatures that are followed in time; the balance is that of all the heat so far."""

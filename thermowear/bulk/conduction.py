@@ -21,7 +21,8 @@ from .even_paths import EvenFactor, EvenPaths
 from .factor import Factor
 
 _HIDDEN = 1e-8
-"""Of the flows between a node and its neighbours; a hundred millionth of it is rounding."""
+"""Part of the flows between a node and its neighbours that counts as heat turned over where there
+is no other: rounding errors are 1e-8 of that."""
 
 
 @dataclass(frozen=True)
@@ -118,9 +119,9 @@ class Conduction:
         return multiply(self.capacity, rise)
 
     def rounding(self, rise: np.ndarray) -> float:
-        """Heat flows that are small beside those which rounding hides in a rise (n_owned,) [W].
+        """Least heat flow that a balance of a rise (n_owned,) can be relative to [W].
 
-        A balance is no more exact than that, even where nothing flows at all.
+        Bodies of one temperature turn over nothing but rounding errors.
         """
         size = float(np.abs(self.conductivity.getDiagonal().getArray()) @ np.abs(rise))
         return _HIDDEN * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))

@@ -158,7 +158,9 @@ class FrictionHeat:
         heat = face.nodal_heat(faces, bath=False)
         made = float(face.weights @ (conditions.heating * pressure))
         lost = sum(conduction.losses(rise, heat))
-        scale = max(made, conduction.turnover(rise, heat), conduction.rounding(rise))
+        scale = max(made, conduction.turnover(rise, heat))
+        if made == 0.0:  # hardly anything may flow at all
+            scale = max(scale, conduction.rounding(rise))
         return Warmth(faces, rise, relative(lost - made, scale))
 
     def momentary(self, stored: StoredHeat, faces: ThermalState) -> Warmth:

@@ -23,6 +23,9 @@ from .traces import distributed
 _REGULARITY = 1e-12
 """Part of the bodies' own resistance that stands for an infinite one: functions of the heat flux
 that differ only where nothing crosses stay independent."""
+_DIRECT = 10.0
+"""Largest conductance across which heat goes point by point, over that of a layer of the bodies as
+thick as the functions are wide."""
 _NO_WAY_OUT = (
     "heat: a body is heated that nothing cools and that touches nothing, so that it has no steady "
     "temperature; give it heat.cooling, heat.temperature, or heat.gap_conductance"
@@ -92,7 +95,7 @@ class InterfaceHeat:
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Couple the faces.
 
-        Up to a conductance ``k`` of the bodies themselves, heat crosses point by point:
+        Up to a conductance ``k``, some times that of the bodies, heat crosses point by point:
         ``c = h (T2 - T1)``. Finite elements that do not match cannot follow a larger one point by
         point, and no small difference of temperatures may be multiplied by a large number: what
         is above, ``h - k``, has a resistance ``r = 1/(h - k)``, zero in perfect contact, and an
@@ -113,7 +116,7 @@ class InterfaceHeat:
             If no heat can leave a body that is heated.
         """
         n, s, (Θ1, Θ2) = len(self.weights), self.shift, self.response
-        own = s * self.basis.shape[1]  # of a layer as thick as the functions are wide
+        own = _DIRECT * s * self.basis.shape[1]
         direct = np.minimum(conductance, own)
         passing, held_back = _parts(own, conductance - direct)
         resisting = held_back * (passing + _REGULARITY * held_back) / own

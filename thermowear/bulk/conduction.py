@@ -20,6 +20,10 @@ from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 from .factor import Factor
 
+_HIDDEN = 1e-8
+"""Part of the flows between a node and its neighbours that counts as heat turned over where there
+is no other: rounding errors are 1e-8 of that."""
+
 
 @dataclass(frozen=True)
 class Conduction:
@@ -123,6 +127,14 @@ class Conduction:
         """Heat stored by nodes [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None
         return multiply(self.capacity, rise)
+
+    def rounding(self, rise: np.ndarray) -> float:
+        """Least heat flow that a balance of a rise (n_owned,) can be relative to [W].
+
+        Bodies of one temperature turn over nothing but rounding errors.
+        """
+        size = float(np.abs(self.conductivity.getDiagonal().getArray()) @ np.abs(rise))
+        return _HIDDEN * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
 
     def losses(
         self,

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 Fault = tuple[str, str]
 
+_LOCKING = {1: 0.45, 2: 0.499}
+"""Largest Poisson ratio by degree. Measured on a cylinder on a block with 16 elements in contact:
+up to there the force errs no more than twice as much as at 0.3; from degree 3 on always."""
+
 _SLIDING = ("steady", "transient", "reciprocating")
 """Analyses of wear by sliding."""
 
@@ -63,6 +67,20 @@ def _unknown(table: str, found: Iterable[str], known: tuple[str, ...]) -> Iterat
 def _model(case: Case) -> Iterator[Fault]:
     if case.model not in case.geometry.models:
         yield "model", f"{case.model!r} does not fit; allowed: {', '.join(case.geometry.models)}"
+
+
+def _locking(case: Case) -> Iterator[Fault]:
+    """Low elements cannot deform at nearly constant volume: they are far too stiff."""
+    limit = _LOCKING.get(case.mesh.degree)
+    if limit is None or case.model == "plane-stress":
+        return
+    for name, body in case.bodies.items():
+        if body.poisson_ratio is not None and body.poisson_ratio > limit:
+            yield (
+                f"bodies.{name}.poisson_ratio",
+                f"found {body.poisson_ratio:g}; elements of mesh.degree = {case.mesh.degree} lock "
+                f"(become too stiff) above {limit:g}; use mesh.degree = 3 or more",
+            )
 
 
 def _materials(case: Case) -> Iterator[Fault]:
@@ -219,6 +237,7 @@ _CHECKS = (
     _names,
     _model,
     _materials,
+    _locking,
     holder,
     load,
     courses,

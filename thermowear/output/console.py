@@ -10,6 +10,8 @@ from math import pi
 from rich.console import Console
 from rich.table import Table
 
+from ..balances import BALANCES, holds
+
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
 
 
@@ -120,6 +122,10 @@ def print_checks(console: Console, checks: list) -> None:
 
 
 def _highlights(summary: dict):
+    for key, balance in BALANCES.items():
+        error = summary.get(key)
+        if error is not None and not holds(error):
+            yield f"NOT BALANCED: {balance.name}", f"relative error {error:.1e}"
     yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
     low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
     yield "pressure", f"{low:.5g} … {high:.5g} MPa"

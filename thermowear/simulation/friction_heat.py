@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..balances import relative
 from ..bulk.conduction import Conduction
 from ..contact.heat import (
     InterfaceHeat,
@@ -206,8 +207,9 @@ class FrictionHeat:
         made = float(face.weights @ (conditions.heating * pressure))
         lost = sum(conduction.losses(rise, heat))
         scale = max(made + load.magnitude, conduction.turnover(rise, heat))
-        missing = abs(made + load.prescribed - lost)
-        return Warmth(faces, rise, missing / scale if scale > 0 else 0.0)
+        if made + load.magnitude == 0.0:  # hardly anything may flow at all
+            scale = max(scale, conduction.rounding(rise))
+        return Warmth(faces, rise, relative(lost - made - load.prescribed, scale))
 
     def momentary(self, stored: StoredHeat, faces: ThermalState) -> Warmth:
         """Temperatures that are followed in time; the balance is that of all the heat so far."""

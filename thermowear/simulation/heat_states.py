@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..balances import relative
 from ..contact.heat import ThermalState
 
 
@@ -81,4 +82,4 @@ class HeatBalance:
     def error(self) -> float:
         """What is missing, relative to the largest of them."""
         scale = max(abs(self.made), abs(self.stored), abs(self.lost), self.moved)
-        return abs(self.made - self.stored - self.lost) / scale if scale > 0 else 0.0
+        return relative(self.made - self.stored - self.lost, scale)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from ..balances import judged
 from ..case.schema import Case
 from .condensed_method import CondensedMethod
 from .fields import sample
@@ -58,7 +59,7 @@ def run(
     ------
     ComputationError
         If there is no answer at all; a transient run that stops on its way is returned, with what
-        stopped it.
+        stopped it, and a run whose balances do not hold likewise.
     """
     if comm is None:
         from mpi4py import MPI
@@ -105,18 +106,19 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
 
 
 def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:
-    """What a run returns."""
+    """What a run returns. One whose balances do not hold has failed, and keeps its results."""
     system = outcome.system or system
+    summary = summarise(system, outcome)
     return Result(
         outcome.interface,
         profile(system, outcome.interface),
-        summarise(system, outcome),
+        summary,
         outcome.history,
         outcome.outputs,
         fields,
         outcome.friction,
         outcome.track,
-        outcome.stopped,
+        outcome.stopped or judged(summary),
         outcome.heat,
         outcome.modes,
     )

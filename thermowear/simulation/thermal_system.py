@@ -90,7 +90,7 @@ def thermal_system(
         traces = (value_trace(space, upper), value_trace(space, lower))
         materials, times = _round_the_ring(case)
         cooling = {surface: times[surface] * h for surface, h in heat.cooling.items()}
-        shift = max(m.conductivity for m in materials.values()) / pairing.extent
+        shift = max(_conductivities(case, materials)) / pairing.extent
         given = {
             name: temperature_at(value, 0.0) - heat.ambient
             for name, value in heat.temperature.items()
@@ -130,6 +130,17 @@ def _varying(
         varying_conduction(conducting, bodies, model, materials, conducts, ambient),
         varying_expansion(elastic, conducting.space, expands, ambient),
     )
+
+
+def _conductivities(case: Case, materials: dict[str, ThermalMaterial]) -> list[float]:
+    """Of all parts at the ambient temperature, tables included [W/(m K)]."""
+    assert case.heat is not None
+    factors = [case.material(part).conductivity_factor for part in materials]
+    ambient = np.array(case.heat.ambient)
+    return [
+        material.conductivity * (1.0 if factor is None else float(factor.value(ambient)))
+        for material, factor in zip(materials.values(), factors, strict=True)
+    ]
 
 
 def _passage(case: Case) -> Passage | None:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from ...balances import ALLOWED, BALANCES, holds
 from .engineering import NOTHING, number, quantity, split_key
 
 GROUPS = {
@@ -90,11 +91,6 @@ _CELSIUS = {
     "peak_temperature_K",
 }  # a difference in K must not be turned to °C: only what is known
 _UNITS = {"seconds": "s"}  # of keys that do not end in theirs
-_BALANCES = {
-    "equilibrium_relative_error": "equilibrium",
-    "heat_balance_relative_error": "heat balance",
-}
-_ALLOWED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -143,13 +139,13 @@ def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
 def balances(summary: dict[str, Any]) -> list[Balance]:
     """The balances of a summary against what is allowed."""
     found = []
-    for key, label in _BALANCES.items():
+    for key, kept in BALANCES.items():
         error = summary.get(key)
         if isinstance(error, int | float):
             text = f"{error:.1e}" if math.isfinite(error) else NOTHING
-            found.append(Balance(label, f"{text} (allowed {_ALLOWED:g})", abs(error) <= _ALLOWED))
+            found.append(Balance(kept.name, f"{text} (allowed {ALLOWED:g})", holds(error)))
         elif key in summary:
-            found.append(Balance(label, NOTHING, None))
+            found.append(Balance(kept.name, NOTHING, None))
     return found
 
 

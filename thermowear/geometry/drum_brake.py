@@ -19,6 +19,8 @@ from .polar import Division
 from .quads import Sheet
 
 _LONGEST = math.radians(170.0)
+_ON_THE_LINE = 1e-9
+"""Part of the pivot's distance: an arm as short as that is zero but for rounding."""
 
 
 class DrumBrake(InsideRing):
@@ -65,12 +67,16 @@ class DrumBrake(InsideRing):
     def _check_pivot(self) -> None:
         if not math.hypot(*self.pivot) < self.drum_radius:
             raise KeyFault("pivot", "must lie inside the drum")
-        at_start, at_end = (self.normal_arm(angle) for angle in self.arc)
-        if not min(at_start, at_end) > 0 and not max(at_start, at_end) < 0:
+        ends = [self.normal_arm(angle) for angle in self.arc]
+        rounding = _ON_THE_LINE * math.hypot(*self.pivot)
+        outwards = min(ends) >= -rounding and max(ends) > rounding
+        inwards = max(ends) <= rounding and min(ends) < -rounding
+        if not outwards and not inwards:
             raise KeyFault(
                 "pivot",
-                "must lie in a direction from the centre that meets the lining neither forwards "
-                "nor backwards: turning would press one part of the shoe and lift the other",
+                "must lie off the centre, in a direction that meets the lining neither forwards "
+                "nor backwards but at its ends: turning would press one part of the shoe and lift "
+                "the other",
             )
 
     def normal_arm(self, angle: float) -> float:

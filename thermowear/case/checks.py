@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..errors import CaseError
 from .analyses import Transient
 from .courses import courses
-from .equilibrium import holder, load, motion
+from .equilibrium import holder, load, motion, surface_pressure
 from .heating import Need, heat, thermal_needs
 from .materials import resolve_like
 from .oscillation import counted, fretting, reciprocating
@@ -40,6 +40,7 @@ def _names(case: Case) -> Iterator[Fault]:
     yield from _unknown("wear", case.wear, bodies)
     yield from _unknown("mesh.bodies", case.mesh.bodies, bodies)
     yield from _unknown("load.surfaces", case.load.surfaces, surfaces)
+    yield from _unknown("load.pressure", case.load.pressure, surfaces)
     for name in bodies:
         if name not in case.bodies:
             yield f"bodies.{name}", "missing; every body of the geometry needs its material"
@@ -189,6 +190,7 @@ _CHECKS = (
     _materials,
     holder,
     load,
+    surface_pressure,
     courses,
     motion,
     counted,

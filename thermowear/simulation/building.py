@@ -17,7 +17,7 @@ from ..geometry.tagged import TaggedMesh
 from ..parallel import on_root
 from .contact_points import contact_points, worn_contact_points
 from .drives import drives
-from .elastic_system import dead_load, elastic_system
+from .elastic_system import dead_load, dead_resultant, elastic_system
 from .parts import Parts, inputs
 from .phases import Phases
 from .system import System
@@ -70,6 +70,8 @@ def build(
     if slides is not None:
         friction = case.contact.friction, case.contact.transverse_friction
         pull, speed = slides.pull(pairing.normals, *friction), slides.speed
+    dead = dead_load(case, elastic)
+    driven = drives(case, pairing, lambda motion: dead_resultant(case, elastic, dead, motion)[0])
     thermal = parts.get(
         "conduction",
         made_from.conduction,
@@ -82,11 +84,11 @@ def build(
         elastic=elastic,
         trace=trace,
         basis=basis,
-        holder=hold(pairing, pull, drives(case, pairing)),
+        holder=hold(pairing, pull, driven),
         slides=slides,
         pull=pull,
         speed=speed,
-        dead_load=dead_load(case, elastic),
+        dead_load=dead,
         thermal=None if thermal is None else _exchanging(thermal, case),
         phases=phases,
         parts=parts,

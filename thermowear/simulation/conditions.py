@@ -122,7 +122,7 @@ class Surroundings:
         temperatures = self._temperatures(faces)
         friction = self._friction(temperatures, pressure, speed)
         return Conditions(
-            load=pressed * system.holder.load,
+            load=pressed * system.holder.load + system.holder.dead,
             speed=speed,
             friction=friction,
             wear=self._wear(temperatures, pressure, speed, friction),

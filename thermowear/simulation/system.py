@@ -17,8 +17,10 @@ from ..contact.pairing import Pairing
 from ..contact.sliding import Sliding
 from ..contact.traces import vector_trace
 from ..laws import WearLaw
+from ..laws.motions import RigidMotion
 from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
 from ..parallel import sum_over_ranks
+from .elastic_system import dead_resultant
 from .parts import Inputs, Parts
 from .phases import Phases
 from .thermal_system import ThermalSystem
@@ -47,7 +49,7 @@ class System:
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
     dead_load : ndarray or None, shape (n_owned,)
-        Nodal forces of loads on surfaces [N].
+        Nodal forces of forces and pressures on surfaces [N].
     thermal : ThermalSystem or None
     phases : Phases
     parts : Parts
@@ -91,6 +93,10 @@ class System:
             return self.pairing.gap
         opened = self.trace.T @ self.elastic.solve(self.dead_load)
         return self.pairing.gap + sum_over_ranks(self.comm, opened)
+
+    def dead_resultant(self, motion: RigidMotion) -> np.ndarray:
+        """Generalised force of the dead load on a motion of either body, shape (2,) [N or N m]."""
+        return dead_resultant(self.case, self.elastic, self.dead_load, motion)
 
     @property
     def press(self) -> np.ndarray:

@@ -12,8 +12,9 @@ from ..errors import CaseError
 from .analyses import Transient
 from .courses import courses
 from .equilibrium import holder, load, motion, surface_pressure
+from .facing import material_of
 from .heating import Need, heat, thermal_needs
-from .materials import resolve_like
+from .materials import Properties
 from .oscillation import counted, fretting, reciprocating
 from .varying import condensed_only, varying
 
@@ -61,25 +62,50 @@ def _model(case: Case) -> Iterator[Fault]:
 
 
 def _materials(case: Case) -> Iterator[Fault]:
-    sources = {}
-    for part in case.geometry.parts:
-        name = part if part in case.bodies else case.geometry.zones.get(part, part)
+    geometry, sources = case.geometry, {}
+    for part in geometry.parts:
+        name = part if part in case.bodies else geometry.zones.get(part, part)
         if name not in case.bodies:
             continue
-        body = case.bodies[name]
-        if body.like is not None and part == name:
-            for key in sorted(body.model_fields_set - {"like"}):
-                yield f"bodies.{name}.{key}", "a body that is like another has no keys of its own"
+        path = f"bodies.{name}"
+        table: Properties = case.bodies[name]
+        in_set = geometry.set_of.get(part)
+        if in_set is not None:
+            path, table = f"{path}.materials.{in_set}", case.bodies[name].materials[in_set]
+        own = part == name or in_set is not None
+        if table.like is not None and own:
+            for key in sorted(table.model_fields_set - {"like", "materials"}):
+                yield f"{path}.{key}", "a body that is like another has no keys of its own"
         try:
-            sources[part] = resolve_like(case.bodies, name)
+            sources[part] = material_of(case, part)
         except ValueError as error:
-            if part == name:
-                yield f"bodies.{name}.like", str(error)
+            if own:
+                yield f"{path}.like", str(error)
     missing: dict[str, str] = {}
     for part, key, why in _needs(case):
-        if part in sources and getattr(case.bodies[sources[part]], key) is None:
-            missing.setdefault(f"bodies.{sources[part]}.{key}", f"missing; needed{why}")
+        if part in sources and getattr(sources[part][1], key) is None:
+            missing.setdefault(f"{sources[part][0]}.{key}", f"missing; needed{why}")
     yield from missing.items()
+
+
+def _cell_sets(case: Case) -> Iterator[Fault]:
+    """Materials by cell sets are for bodies of mesh files, all of whose cells must have one."""
+    geometry = case.geometry
+    for name, body in case.bodies.items():
+        if body.materials and not geometry.set_of:
+            yield (
+                f"bodies.{name}.materials",
+                'is by cell sets of a mesh file (geometry.type = "file"), not for '
+                f"{geometry.type!r}",
+            )
+        elif body.materials and name in geometry.bodies and not body.has_own:
+            named = {geometry.set_of[part] for part in geometry.parts_of(name)[1:]}
+            for left in geometry.sets_of(name):
+                if left not in named:
+                    yield (
+                        f"bodies.{name}.young_modulus",
+                        f"missing; cells of {left!r} may be in no set of bodies.{name}.materials",
+                    )
 
 
 def _needs(case: Case) -> Iterator[Need]:
@@ -187,6 +213,7 @@ def _update(case: Case) -> Iterator[Fault]:
 _CHECKS = (
     _names,
     _model,
+    _cell_sets,
     _materials,
     holder,
     load,

@@ -158,6 +158,6 @@ class Surroundings:
         heat = self._case.heat
         if heat is None:
             return np.zeros(len(pressure))
-        given = self._case.conductance(pressure)
+        given = self._case.conductance(pressure, self._system.facing)
         closed = np.inf if given is None else given
         return np.where(touching, closed, heat.gap_conductance or 0.0)

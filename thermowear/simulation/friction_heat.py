@@ -184,9 +184,10 @@ class FrictionHeat:
         if friction_heat == 0.0:
             return np.inf
         case, thermal = self._system.case, self._thermal
-        effusivities = (case.material(part).effusivity for part in case.geometry.facing)
-        parts = case.partition(), 1 - case.partition()
-        steepest = max(f / e for f, e in zip(parts, effusivities, strict=True)) * friction_heat
+        facing = self._system.facing
+        share = case.partition(facing)
+        first, second = facing.of(case, "effusivity")
+        steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
         through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
         return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
 

@@ -141,7 +141,8 @@ class GrowthModel:
         assert conduction.capacity is not None
         at = heat.at_rest(X)
         T1, T2 = at.rise
-        weights, f = system.weights[:, None], self._thermal.face.partition
+        weights = system.weights[:, None]
+        f = np.reshape(self._thermal.face.partition, (-1, 1))
         h = self._conditions.conductance[:, None]
         exchanged = weights * np.where(np.isinf(h), 0.0, h) * (T2 - T1)  # ties hold in each field
         carried = np.zeros((X.shape[1],) * 2)

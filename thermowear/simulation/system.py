@@ -10,6 +10,7 @@ import scipy.sparse as sp
 
 from ..bulk.bodies import Bodies
 from ..bulk.elasticity import Elasticity
+from ..case.facing import Facing
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, influence
 from ..contact.holder import Holder, hold
@@ -20,6 +21,7 @@ from ..laws import WearLaw
 from ..laws.motions import RigidMotion
 from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
 from ..parallel import sum_over_ranks
+from .contact_points import facing_parts
 from .elastic_system import dead_resultant
 from .parts import Inputs, Parts
 from .phases import Phases
@@ -97,6 +99,11 @@ class System:
     def dead_resultant(self, motion: RigidMotion) -> np.ndarray:
         """Generalised force of the dead load on a motion of either body, shape (2,) [N or N m]."""
         return dead_resultant(self.case, self.elastic, self.dead_load, motion)
+
+    @cached_property
+    def facing(self) -> Facing:
+        """The parts that touch at the contact points."""
+        return facing_parts(self.bodies, self.pairing)
 
     @property
     def press(self) -> np.ndarray:

@@ -22,6 +22,7 @@ from ..bulk.varying import (
     varying_conduction,
     varying_expansion,
 )
+from ..case.facing import Facing
 from ..case.schema import Case
 from ..contact.heat import InterfaceHeat, bath_matrix, condense_heat
 from ..contact.pairing import Pairing
@@ -74,6 +75,7 @@ def thermal_system(
     pairing: Pairing,
     elastic: Elasticity,
     basis: np.ndarray,
+    facing: Facing,
     phases: Phases,
 ) -> ThermalSystem | None:
     """Assemble and condense conduction; None without heat. Every rank calls."""
@@ -93,7 +95,8 @@ def thermal_system(
         load = elastic.thermal_load(space)
         conducting, expansions = _varying(case, conducting, bodies, model, elastic, materials)
     with phases("condense conduction"):
-        face = condense_heat(conducting, pairing.weights, basis, traces, shift, case.partition())
+        partition = case.partition(facing)
+        face = condense_heat(conducting, pairing.weights, basis, traces, shift, partition)
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
     return ThermalSystem(conducting, load, face, heat.ambient, initial, diffusivity, expansions)

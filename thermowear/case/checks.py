@@ -149,7 +149,7 @@ def _spread(case: Case) -> Iterator[Fault]:
             continue
         if name != moving:
             yield f"wear.{name}.spread", f"only {moving} passes under the other body"
-        elif case.geometry.track is None and case.geometry.sector == 1.0:
+        elif not case.geometry.passes and case.geometry.sector == 1.0:
             yield f"wear.{name}.spread", f"all of {moving} is in the contact all the time"
         elif case.analysis.type in ("fretting", "reciprocating"):
             yield f"wear.{name}.spread", f"nothing passes by in a {case.analysis.type} analysis"

@@ -117,6 +117,11 @@ class Geometry(Section):
         return None
 
     @property
+    def duty(self) -> float | None:
+        """Part of a turn for which a point of body 2 is under body 1, at every radius, in space."""
+        return None
+
+    @property
     def sector(self) -> float:
         """Part of the circumference that an axisymmetric body 1 takes up."""
         return 1.0

@@ -60,6 +60,10 @@ class DiskSector(PadsOnDisk):
     def rotation_center(self) -> tuple[float, float]:
         return (0.0, 0.0)
 
+    @property
+    def duty(self) -> float:
+        return self.pad_angle / (2 * math.pi)
+
     def build(self, mesh, zone=None):
         order = min(mesh.degree, _ORDER)
         pad, disk = self._pad(order, *mesh.face("pad")), self._disk(order, *mesh.face("disk"))

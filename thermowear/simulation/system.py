@@ -19,7 +19,7 @@ from ..contact.sliding import Sliding
 from ..contact.traces import vector_trace
 from ..laws import WearLaw
 from ..laws.motions import RigidMotion
-from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
+from ..laws.spreading import InPlace, Share, Spreading, Track, rings
 from ..parallel import sum_over_ranks
 from .contact_points import facing_parts
 from .elastic_system import dead_resultant
@@ -143,6 +143,9 @@ class System:
         geometry = self.case.geometry
         if self.case.wear[geometry.bodies[index]].spread == "in-place":
             return InPlace()
+        if geometry.duty is not None:
+            arms = self.pairing.points[:, :2] - np.array(geometry.rotation_center)
+            return rings(np.linalg.norm(arms, axis=1), self.weights, geometry.duty)
         if geometry.track is None:
             return Share(geometry.sector)
         assert geometry.thickness_factor is not None  # tracks are those of plane models
@@ -154,7 +157,7 @@ class System:
         if self.worn is not None:
             volumes = volumes + self.worn.lost
         for index, spread in self.spreads.items():
-            volumes[index] /= coverage(spread)
+            volumes[index] /= spread.coverage
         return volumes
 
     @cached_property

@@ -81,11 +81,11 @@ def test_a_disk_that_wears_most_runs_in_to_the_steady_state():
     """
     requirement: steps of wear are solved at any size: transient and principle agree.
     """
-    soft = {"wear.disk.coefficient": "2e-5 1/MPa", "mesh.elements": 4}
+    soft = {"wear.disk.coefficient": "2e-5 1/MPa", "mesh.elements": 4, "mesh.degree": 3}
     until = {"analysis": {"type": "transient", "until": "steady", "steady_tolerance": 1e-3}}
     reached, direct = run(soft, until), run(soft)
     size = direct.interface.pressure.max()
     np.testing.assert_allclose(
-        reached.interface.pressure, direct.interface.pressure, atol=2e-3 * size, rtol=0
+        reached.interface.pressure, direct.interface.pressure, atol=3e-3 * size, rtol=0
     )
     assert reached.summary["steps"] < 200

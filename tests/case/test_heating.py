@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.case.facing import Facing
 
 from .bad import Bad, assert_refused, faults
 from .starter import GONE, PUNCH, RECIPROCATING, STEADY, tables
@@ -28,6 +29,9 @@ HOT = IN_TIME | STORING | {"heat.transient": True}
 STABLE = {"analysis": {"type": "stability"}}
 BY_PRESSURE = {"heat.conductance": {"type": "pressure", "coefficient": "2e4 1/m"}}
 LAW, SHARE, PASSING = "heat.conductance", "heat.partition", "heat.advection"
+
+
+FACES = Facing(("upper", "lower"), (np.array([0]), np.array([1])))
 
 
 def by_table(pressures: list[str], conductances: list[str]) -> dict:
@@ -287,7 +291,7 @@ def test_conductance_by_pressure_is_that_of_the_harmonic_means():
     changes = BY_PRESSURE | {"bodies.upper.hardness": "2 GPa", "bodies.lower.hardness": "3 GPa"}
     case = tw.load(tables(BLOCKS, changes))
     expected = [0.0, 2e4 * (1500 / 65) * 5e6 / 2.4e9]
-    assert case.conductance(np.array([0.0, 5e6])) == pytest.approx(expected, rel=1e-14)
+    assert case.conductance(np.array([0.0, 5e6]), FACES) == pytest.approx(expected, rel=1e-14)
     assert case.varies
 
 
@@ -297,7 +301,7 @@ def test_conductance_by_table_is_straight_between_and_constant_beyond():
     """
     law = by_table(["0 MPa", "10 MPa"], ["1e3 W/(m^2 K)", "5e3 W/(m^2 K)"])
     case = tw.load(tables(STEADY, law))
-    assert case.conductance(np.array([0.0, 2.5e6, 2e7])) == pytest.approx([1e3, 2e3, 5e3])
+    assert case.conductance(np.array([0.0, 2.5e6, 2e7]), FACES) == pytest.approx([1e3, 2e3, 5e3])
     assert case.varies
 
 
@@ -306,8 +310,8 @@ def test_conductance_that_is_constant_or_perfect():
     requirement: a quantity alone is the constant conductance; none is perfect contact.
     """
     constant = tw.load(tables(STEADY))
-    assert constant.conductance(np.array([0.0, 1e6])) == pytest.approx([1e6, 1e6])
-    assert tw.load(tables(STEADY, {LAW: GONE})).conductance(np.zeros(2)) is None
+    assert constant.conductance(np.array([0.0, 1e6]), FACES) == pytest.approx([1e6, 1e6])
+    assert tw.load(tables(STEADY, {LAW: GONE})).conductance(np.zeros(2), FACES) is None
     assert not constant.varies
 
 
@@ -325,8 +329,8 @@ def test_partition_by_effusivity():
         "bodies.lower.specific_heat": "250 J/(kg K)",
         "bodies.lower.conductivity": "18 W/(m K)",
     }
-    assert tw.load(tables(BLOCKS, changes)).partition() == pytest.approx(0.678269, abs=1e-6)
-    assert tw.load(tables(BLOCKS, {SHARE: 1})).partition() == 1.0
+    assert tw.load(tables(BLOCKS, changes)).partition(FACES)[0] == pytest.approx(0.678269, abs=1e-6)
+    assert tw.load(tables(BLOCKS, {SHARE: 1})).partition(FACES) == 1.0
 
 
 def test_the_lining_touches_the_drum_not_its_shoe():

@@ -8,7 +8,7 @@ import pytest
 import thermowear as tw
 from thermowear.errors import ComputationError
 from thermowear.simulation.observer import Observer
-from thermowear.simulation.untouched import judged
+from thermowear.simulation.untouched import touching
 
 from ..case.starter import HERTZ, tables
 
@@ -63,7 +63,7 @@ def test_a_given_approach_may_leave_the_faces_apart(apart):
     """
     requirement: said, with how far they are apart.
     """
-    outcome, note = judged(*apart(punch(approach="0.05 mm")))
+    outcome, note = touching(*apart(punch(approach="0.05 mm")))
     assert outcome.stopped is None
     assert note == "nothing touches at the end; the faces are 2 µm apart at least"
 
@@ -72,7 +72,7 @@ def test_a_pressing_force_has_to_be_carried(apart):
     """
     requirement: a force that nothing carries is a failed computation, results kept.
     """
-    outcome, note = judged(*apart(punch(force="1 kN")))
+    outcome, note = touching(*apart(punch(force="1 kN")))
     assert note is None
     assert isinstance(outcome.stopped, ComputationError)
     assert str(outcome.stopped).startswith("nothing carries the pressing force of 1000 N")

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 from ..errors import CaseError
 from .analyses import Transient
 from .courses import courses
-from .equilibrium import holder, load, motion
+from .equilibrium import holder, load, motion, surface_pressure
+from .facing import material_of
 from .heating import SURFACES, Need, heat, thermal_needs
-from .materials import resolve_like
+from .materials import Properties
 from .oscillation import counted, fretting, reciprocating
 from .varying import condensed_only, varying
 
@@ -50,6 +51,7 @@ def _names(case: Case) -> Iterator[Fault]:
     yield from _unknown("wear", case.wear, bodies)
     yield from _unknown("mesh.bodies", case.mesh.bodies, bodies)
     yield from _unknown("load.surfaces", case.load.surfaces, surfaces)
+    yield from _unknown("load.pressure", case.load.pressure, surfaces)
     for name in bodies:
         if name not in case.bodies:
             yield f"bodies.{name}", "missing; every body of the geometry needs its material"
@@ -75,34 +77,61 @@ def _locking(case: Case) -> Iterator[Fault]:
     if limit is None or case.model == "plane-stress":
         return
     for name, body in case.bodies.items():
-        if body.poisson_ratio is not None and body.poisson_ratio > limit:
-            yield (
-                f"bodies.{name}.poisson_ratio",
-                f"found {body.poisson_ratio:g}; elements of mesh.degree = {case.mesh.degree} lock "
-                f"(become too stiff) above {limit:g}; use mesh.degree = 3 or more",
-            )
+        sets = {f"{name}.materials.{key}": table for key, table in body.materials.items()}
+        for path, table in {name: body, **sets}.items():
+            if table.poisson_ratio is not None and table.poisson_ratio > limit:
+                yield (
+                    f"bodies.{path}.poisson_ratio",
+                    f"found {table.poisson_ratio:g}; elements of mesh.degree = {case.mesh.degree} "
+                    f"lock (become too stiff) above {limit:g}; use mesh.degree = 3 or more",
+                )
 
 
 def _materials(case: Case) -> Iterator[Fault]:
-    sources = {}
-    for part in case.geometry.parts:
-        name = part if part in case.bodies else case.geometry.zones.get(part, part)
+    geometry, sources = case.geometry, {}
+    for part in geometry.parts:
+        name = part if part in case.bodies else geometry.zones.get(part, part)
         if name not in case.bodies:
             continue
-        body = case.bodies[name]
-        if body.like is not None and part == name:
-            for key in sorted(body.model_fields_set - {"like"}):
-                yield f"bodies.{name}.{key}", "a body that is like another has no keys of its own"
+        path = f"bodies.{name}"
+        table: Properties = case.bodies[name]
+        in_set = geometry.set_of.get(part)
+        if in_set is not None:
+            path, table = f"{path}.materials.{in_set}", case.bodies[name].materials[in_set]
+        own = part == name or in_set is not None
+        if table.like is not None and own:
+            for key in sorted(table.model_fields_set - {"like", "materials"}):
+                yield f"{path}.{key}", "a body that is like another has no keys of its own"
         try:
-            sources[part] = resolve_like(case.bodies, name)
+            sources[part] = material_of(case, part)
         except ValueError as error:
-            if part == name:
-                yield f"bodies.{name}.like", str(error)
+            if own:
+                yield f"{path}.like", str(error)
     missing: dict[str, str] = {}
     for part, key, why in _needs(case):
-        if part in sources and getattr(case.bodies[sources[part]], key) is None:
-            missing.setdefault(f"bodies.{sources[part]}.{key}", f"missing; needed{why}")
+        if part in sources and getattr(sources[part][1], key) is None:
+            missing.setdefault(f"{sources[part][0]}.{key}", f"missing; needed{why}")
     yield from missing.items()
+
+
+def _cell_sets(case: Case) -> Iterator[Fault]:
+    """Materials by cell sets are for bodies of mesh files, all of whose cells must have one."""
+    geometry = case.geometry
+    for name, body in case.bodies.items():
+        if body.materials and not geometry.set_of:
+            yield (
+                f"bodies.{name}.materials",
+                'is by cell sets of a mesh file (geometry.type = "file"), not for '
+                f"{geometry.type!r}",
+            )
+        elif body.materials and name in geometry.bodies and not body.has_own:
+            named = {geometry.set_of[part] for part in geometry.parts_of(name)[1:]}
+            for left in geometry.sets_of(name):
+                if left not in named:
+                    yield (
+                        f"bodies.{name}.young_modulus",
+                        f"missing; cells of {left!r} may be in no set of bodies.{name}.materials",
+                    )
 
 
 def _needs(case: Case) -> Iterator[Need]:
@@ -166,13 +195,7 @@ def _spread(case: Case) -> Iterator[Fault]:
             continue
         if name != moving:
             yield f"wear.{name}.spread", f"only {moving} passes under the other body"
-        elif case.geometry.track is None and case.geometry.passes:
-            yield (
-                f"wear.{name}.spread",
-                f"wear of {moving} along its track is not followed in {case.model}; "
-                "use an axisymmetric or a plane geometry",
-            )
-        elif case.geometry.track is None and case.geometry.sector == 1.0:
+        elif not case.geometry.passes and case.geometry.sector == 1.0:
             yield f"wear.{name}.spread", f"all of {moving} is in the contact all the time"
         elif case.analysis.type in ("fretting", "reciprocating"):
             yield f"wear.{name}.spread", f"nothing passes by in a {case.analysis.type} analysis"
@@ -236,10 +259,12 @@ def _update(case: Case) -> Iterator[Fault]:
 _CHECKS = (
     _names,
     _model,
+    _cell_sets,
     _materials,
     _locking,
     holder,
     load,
+    surface_pressure,
     courses,
     motion,
     counted,

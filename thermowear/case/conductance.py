@@ -13,7 +13,7 @@ from .factors import must_increase, must_match
 from .section import KeyFault, Section
 
 
-def harmonic_mean(a: float, b: float) -> float:
+def harmonic_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """``2 a b / (a + b)``: of two things in series."""
     return 2 * a * b / (a + b)
 
@@ -33,7 +33,9 @@ class PressureConductance(Section):
     type: Literal["pressure"]
     coefficient: units.PerLength
 
-    def value(self, pressure: np.ndarray, conductivity: float, hardness: float) -> np.ndarray:
+    def value(
+        self, pressure: np.ndarray, conductivity: np.ndarray, hardness: np.ndarray
+    ) -> np.ndarray:
         """Conductance [W/(m² K)] at pressures [Pa], by the harmonic means of both bodies."""
         return self.coefficient * conductivity * np.asarray(pressure) / hardness
 

@@ -44,7 +44,8 @@ class Load(Section):
     """What presses body 1 on body 2.
 
     Exactly one of force, mean pressure and approach; a holder that only turns may have a moment
-    instead, and one that is fixed needs forces on surfaces.
+    instead, and one that is fixed needs forces or pressures on surfaces. Pressures on surfaces may
+    also press alone.
 
     Attributes
     ----------
@@ -68,6 +69,10 @@ class Load(Section):
         Along x, for a holder that is free along it [N].
     surfaces : dict of str to float
         Forces along the press, spread evenly over surfaces of body 1, whose holder is fixed [N].
+    pressure : dict of str to float
+        Pressures on surfaces of either body, normal to them and towards the body, in addition to
+        all other loads and constant in time. What they press body 1 with along a free motion of
+        its holder is in equilibrium with the contact, too [Pa].
     history : History or None
         What changes: the loads of a fretting analysis, the force of a transient one.
     """
@@ -81,6 +86,7 @@ class Load(Section):
     moments: tuple[units.SignedMoment, units.SignedMoment] | None = None
     tangential_force: units.SignedForce | None = None
     surfaces: dict[str, units.Force] = {}
+    pressure: dict[str, units.Pressure] = {}
     history: History | None = None
 
 

@@ -158,6 +158,11 @@ class Geometry(Section):
         return None
 
     @property
+    def duty(self) -> float | None:
+        """Part of a turn for which a point of body 2 is under body 1, at every radius, in space."""
+        return None
+
+    @property
     def sector(self) -> float:
         """Part of the circumference that an axisymmetric body 1 takes up."""
         return 1.0
@@ -168,10 +173,26 @@ class Geometry(Section):
         return {}
 
     @property
-    def facing(self) -> tuple[str, str]:
-        """What touches: each body, or the first of its zones, which bears its contact face."""
+    def facing(self) -> tuple[str | None, str | None]:
+        """What touches: each body, or the first of its zones, which bears its contact face.
+
+        None where only the mesh can tell.
+        """
         first, second = (self.parts_of(body)[:2][-1] for body in self.bodies)
         return first, second
+
+    @property
+    def set_of(self) -> dict[str, str]:
+        """Cell sets of a mesh file by the zones that stand for them."""
+        return {}
+
+    def sets_of(self, body: str) -> tuple[str, ...]:
+        """Cell sets of a mesh file that a body is made of."""
+        return ()
+
+    def with_cell_sets(self, sets: dict[str, tuple[str, ...]]) -> Geometry:
+        """The geometry with zones for cell sets of bodies, by body; as it is where it has none."""
+        return self
 
     @property
     def passes(self) -> bool:

@@ -53,6 +53,7 @@ def thermal_needs(case: Case) -> Iterator[Need]:
     if heat is None:
         return
     storing = ("density", "specific_heat")
+    facing = tuple(part for part in geometry.facing if part is not None)
     wanted: list[tuple[tuple[str, ...], tuple[str, ...], str]] = [
         (geometry.parts, ("conductivity", "expansion"), "the case has a [heat] table")
     ]
@@ -63,9 +64,9 @@ def thermal_needs(case: Case) -> Iterator[Need]:
             (geometry.parts_of(geometry.bodies[1]), storing, 'heat.advection is "resolved"')
         )
     if heat.partition == "effusivity":
-        wanted.append((geometry.facing, storing, 'heat.partition is "effusivity"'))
+        wanted.append((facing, storing, 'heat.partition is "effusivity"'))
     if getattr(heat.conductance, "type", None) == "pressure":
-        wanted.append((geometry.facing, ("hardness",), 'heat.conductance is of type "pressure"'))
+        wanted.append((facing, ("hardness",), 'heat.conductance is of type "pressure"'))
     for parts, keys, why in wanted:
         yield from ((part, key, f" because {why}") for part in parts for key in keys)
 

@@ -16,11 +16,12 @@ from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Trans
 from .checks import check
 from .conductance import PressureConductance, TabulatedConductance, harmonic_mean
 from .driving import Holder, Load, Motion
+from .facing import Facing, material_of
 from .factors import Factors
 from .geometry import AnyGeometry, Pressing
 from .heat import Heat
 from .history import Course, FactorHistory
-from .materials import Body, resolve_like
+from .materials import Body, Properties
 from .section import Number, Section, Switch
 from .wear import WearTable
 
@@ -146,6 +147,9 @@ class Case(Section):
 
     @model_validator(mode="after")
     def _consistent(self):
+        sets = {name: tuple(body.materials) for name, body in self.bodies.items() if body.materials}
+        if sets:
+            object.__setattr__(self, "geometry", self.geometry.with_cell_sets(sets))
         check(self)
         return self
 
@@ -215,32 +219,32 @@ class Case(Section):
             for name, ratio in unsaid.items()
         ]
 
-    def partition(self) -> float:
-        """Part of the friction heat that is set free on body 1."""
+    def partition(self, facing: Facing) -> float | np.ndarray:
+        """Part of the friction heat that is set free on body 1, at points (n,) or everywhere."""
         assert self.heat is not None
         share = self.heat.partition
         if isinstance(share, float):
             return share
-        e1, e2 = (self.material(part).effusivity for part in self.geometry.facing)
+        e1, e2 = facing.of(self, "effusivity")
         return e1 / (e1 + e2)
 
-    def conductance(self, pressure: np.ndarray) -> np.ndarray | None:
+    def conductance(self, pressure: np.ndarray, facing: Facing) -> np.ndarray | None:
         """Contact conductance at points [W/(m² K)]; None: perfect contact.
 
         Parameters
         ----------
         pressure : ndarray, shape (n,)
             [Pa]
+        facing : Facing
+            Parts that touch there.
         """
         assert self.heat is not None
         given = self.heat.conductance
         if isinstance(given, TabulatedConductance):
             return given.value(pressure)
         if isinstance(given, PressureConductance):
-            facing = [self.material(part) for part in self.geometry.facing]
             k, hardness = (
-                harmonic_mean(*(getattr(body, key) for body in facing))
-                for key in ("conductivity", "hardness")
+                harmonic_mean(*facing.of(self, key)) for key in ("conductivity", "hardness")
             )
             return given.value(pressure, k, hardness)
         return None if given is None else np.full(np.shape(pressure), given)
@@ -275,10 +279,9 @@ class Case(Section):
         self.geometry.check(mesh, self)
         return mesh
 
-    def material(self, part: str) -> Body:
-        """The material of a body, ``like`` followed to its end; a zone may have its body's."""
-        given = part if part in self.bodies else self.geometry.zones[part]
-        return self.bodies[resolve_like(self.bodies, given)]
+    def material(self, part: str) -> Properties:
+        """The material of a part, ``like`` followed to its end; a zone may have its body's."""
+        return material_of(self, part)[1]
 
 
 def as_plain(case: Case) -> dict[str, Any]:

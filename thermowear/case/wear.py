@@ -50,7 +50,8 @@ class Wear(Section):
         b and a.
     spread : str
         ``"in-place"``: the body wears where it is pressed; ``"track"``: a body 2 that passes under
-        body 1 wears evenly along its whole track.
+        body 1 wears along its whole track: evenly under a plane body 1; a turning disk at each
+        radius, by the part of a turn for which it is under the pad.
     factor : Factors
         Of the coefficient, by the temperature of the body's own face, pressure and speed.
     """

@@ -81,7 +81,7 @@ class InterfaceHeat:
         that is taken out again here [W/(m² K)].
     response : tuple of ndarray, shape (n, n)
         Face rise per heat flux at the points, the bath included [m² K/W].
-    partition : float
+    partition : float or ndarray, shape (n,)
         Part of the friction heat set free on body 1.
     """
 
@@ -90,7 +90,7 @@ class InterfaceHeat:
     traces: tuple[sp.csr_matrix, sp.csr_matrix]
     shift: float
     response: tuple[np.ndarray, np.ndarray]
-    partition: float
+    partition: float | np.ndarray
 
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Couple the faces.
@@ -232,7 +232,7 @@ def condense_heat(
     basis: np.ndarray,
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     shift: float,
-    partition: float,
+    partition: float | np.ndarray,
 ) -> InterfaceHeat:
     """Condense conduction to the contact points; parameters as in `InterfaceHeat`.
 

@@ -12,6 +12,9 @@ import numpy as np
 
 from .limits import check_count
 
+SAME = 1e-9
+"""Relative: lengths that differ by less are the same, written in other units."""
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -64,9 +67,12 @@ def growing(
 ) -> list[Interval]:
     """Fill ``start…end`` with elements that grow from `first` by ``1/grading`` up to `largest`.
 
-    `end` may lie below `start`: the elements grow from `start` in any case.
+    `end` may lie below `start`: the elements grow from `start` in any case. Where both are the same
+    but for rounding there is nothing to fill.
     """
     span = abs(end - start)
+    if span <= SAME * max(abs(start), abs(end)):
+        return []
     ratio = 1.0 / grading
     if grading == 1.0:
         return _oriented([Interval(start, end, _count(span, largest))])
@@ -95,8 +101,10 @@ def growing_from_both(
 ) -> list[Interval]:
     """Fill ``start…end`` (upwards) with elements that grow from both ends to the middle.
 
-    `first` are the sizes at start and end.
+    `first` are the sizes at start and end; nothing is filled as in `growing`.
     """
+    if abs(end - start) <= SAME * max(abs(start), abs(end)):
+        return []
     middle = (start + end) / 2
     lower = growing(start, middle, first[0], grading, largest)
     upper = growing(end, middle, first[1], grading, largest)

@@ -19,6 +19,8 @@ from .polar import Division
 from .quads import Sheet
 
 _LONGEST = math.radians(170.0)
+_ON_THE_LINE = 1e-9
+"""Part of the pivot's distance: an arm as short as that is zero but for rounding."""
 
 
 class DrumBrake(InsideRing):
@@ -71,14 +73,17 @@ class DrumBrake(InsideRing):
                 f"lies {math.hypot(*self.pivot):g} m from the centre; must be less than "
                 f"drum_radius {self.drum_radius:g} m",
             )
-        at_start, at_end = (self.normal_arm(angle) for angle in self.arc)
-        if not min(at_start, at_end) > 0 and not max(at_start, at_end) < 0:
+        ends = [self.normal_arm(angle) for angle in self.arc]
+        rounding = _ON_THE_LINE * math.hypot(*self.pivot)
+        outwards = min(ends) >= -rounding and max(ends) > rounding
+        inwards = max(ends) <= rounding and min(ends) < -rounding
+        if not outwards and not inwards:
             raise KeyFault(
                 "pivot",
                 f"lies at {degrees(math.atan2(*self.pivot))} clockwise from 12 o'clock (+y); must "
                 f"lie neither within the lining, {degrees(self.arc_start)} to "
-                f"{degrees(self.arc_end)}, nor opposite to it: turning would press one part of the "
-                "shoe and lift the other",
+                f"{degrees(self.arc_end)}, nor opposite to it, its ends excepted: turning would "
+                "press one part of the shoe and lift the other",
             )
 
     def normal_arm(self, angle: float) -> float:

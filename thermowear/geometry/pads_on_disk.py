@@ -11,6 +11,7 @@ from pydantic import model_validator
 from ..case.geometry import Geometry
 from ..case.section import KeyFault
 from ..case.units import Angle, Length
+from .blocks import SAME
 
 
 class PadsOnDisk(Geometry):
@@ -48,8 +49,10 @@ class PadsOnDisk(Geometry):
         names = ("disk_inner_radius", "pad_inner_radius", "pad_outer_radius", "disk_outer_radius")
         for smaller, larger in pairwise(names):
             a, b = getattr(self, smaller), getattr(self, larger)
-            if not a < b:
+            if not a < b and larger == "pad_outer_radius":
                 raise KeyFault(smaller, f"{a:g} m must be less than {larger} {b:g} m")
+            if not a <= b * (1 + SAME):
+                raise KeyFault(smaller, f"{a:g} m must be at most {larger} {b:g} m")
         if not 0 < self.pad_angle <= math.radians(self.widest_pad) * (1 + 1e-12):
             raise KeyFault(
                 "pad_angle",

@@ -7,7 +7,7 @@ import numpy as np
 from ..contact.complementarity import ContactSolution, NoEquilibrium, solve_contact
 from ..contact.condensation import CondensedContact
 from ..errors import ComputationError
-from .contact_method import Contact, WearRates, newton_with_wear
+from .contact_method import Contact, Slope, WearRates, newton_with_wear
 from .system import System
 
 _TURNS = 60
@@ -103,10 +103,12 @@ class CondensedMethod:
         return self._rubbing[1]
 
     def _solved(
-        self, contact: CondensedContact, compliance, weak, slope, guess: Contact | None, load
+        self, contact: CondensedContact, compliance, weak, slope: Slope, guess, load
     ) -> Contact:
-        if slope.any():
-            compliance = compliance + contact.weighted.T @ (slope[:, None] * contact.basis)
+        if slope.point.any():
+            compliance = compliance + contact.weighted.T @ (slope.point[:, None] * contact.basis)
+        if len(slope.rows):
+            compliance = compliance + contact.weak(slope.reach) @ (slope.rows @ contact.basis)
         solution = solve_contact(
             compliance,
             weak,

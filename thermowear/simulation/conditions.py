@@ -120,7 +120,7 @@ class Surroundings:
         temperatures = self._temperatures(faces)
         friction = self._friction(time, temperatures, pressure, speed)
         return Conditions(
-            load=pressed * system.holder.load,
+            load=pressed * system.holder.load + system.holder.dead,
             speed=speed,
             friction=friction,
             wear=self._wear(temperatures, pressure, speed, friction),
@@ -157,6 +157,6 @@ class Surroundings:
         heat = self._case.heat
         if heat is None:
             return np.zeros(len(pressure))
-        given = self._case.conductance(pressure)
+        given = self._case.conductance(pressure, self._system.facing)
         closed = np.inf if given is None else given
         return np.where(touching, closed, heat.gap_conductance or 0.0)

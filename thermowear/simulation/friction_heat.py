@@ -253,9 +253,9 @@ class FrictionHeat:
             return (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
         if friction_heat == 0.0:
             return np.inf
-        effusivities = (case.material(part).effusivity for part in case.geometry.facing)
-        parts = case.partition(), 1 - case.partition()
-        steepest = max(f / e for f, e in zip(parts, effusivities, strict=True)) * friction_heat
+        share = case.partition(self._system.facing)
+        first, second = self._system.facing.of(case, "effusivity")
+        steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
         through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
         return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
 

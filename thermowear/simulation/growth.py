@@ -143,7 +143,8 @@ class GrowthModel:
         assert conduction.capacity is not None
         at = heat.at_rest(X)
         T1, T2 = at.rise
-        weights, f = system.weights[:, None], self._thermal.face.partition
+        weights = system.weights[:, None]
+        f = np.reshape(self._thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # the law of the contact holds in each field
         carried = np.zeros((X.shape[1],) * 2)
         if conduction.carried is not None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .conditions import Conditions, Surroundings
-from .contact_method import Contact, ContactMethod, WearRates, newton_with_wear
+from .contact_method import Contact, ContactMethod, Slope, WearRates, newton_with_wear
 from .friction_heat import FrictionHeat
 from .heat_stages import FrozenHeat, HeatStage
 from .heat_states import HeatBalance
@@ -278,12 +278,14 @@ class InterfaceProblem:
             return Contact(np.zeros(len(gap)), motion, None)
 
         def solve(opened, slope, last):
-            return self._method.solve(gap + opened, self._softness + slope, last, conditions, heat)
+            softer = slope.softer_by(self._softness)
+            return self._method.solve(gap + opened, softer, last, conditions, heat)
 
         still = np.zeros(len(gap))
+        rigid = Slope.on_the_spot(still)
         if guess is not None and guess.memory is None:
             guess = None
         if step == 0.0 or not self._laws:
-            return solve(still, still, guess)
-        guess = guess or solve(still, still, None)
+            return solve(still, rigid, guess)
+        guess = guess or solve(still, rigid, None)
         return newton_with_wear(solve, self._rates(conditions), step, guess)

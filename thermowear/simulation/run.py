@@ -24,7 +24,7 @@ from .small_wear import not_small
 from .stability import stability
 from .summary import summarise
 from .system import System
-from .untouched import judged
+from .untouched import touching
 from .without_time import initial, steady, unworn
 
 _UNPAIRED = 1e-6
@@ -96,7 +96,7 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
-    outcome, apart = judged(system, outcome)
+    outcome, apart = touching(system, outcome)
     if apart is not None:
         observer.note(apart)
     large = not_small(system, outcome.interface)

@@ -127,19 +127,19 @@ def _force_error(system: System, contact: ContactState, displacement, loads) -> 
         along = tangents(system.pairing.normals)[0]
         moved = np.array([motion.at(points) for motion in holder.motions])
         carried = carried - weights * shear * np.einsum("kni,ni->kn", moved, along)
-    dead = np.zeros_like(displacement) if system.dead_load is None else system.dead_load
     errors, scales = np.zeros(len(drives)), np.zeros(len(drives))
-    pressed = _part(contact.conditions.load, system.holder.load)
+    pressed = _part(contact.conditions.load - system.holder.dead, system.holder.load)
     for k, (drive, share) in enumerate(zip(holder.drives, carried, strict=True)):
         moved = drive.motion.at(nodes)
         work = (reactions * moved).sum(axis=1)
-        parts = work[upper].sum(), work[~upper].sum(), dead @ moved.ravel(), np.abs(work).sum()
-        held, supported, given, borne = sum_over_ranks(system.comm, np.array(parts))
+        parts = work[upper].sum(), work[~upper].sum(), np.abs(work).sum()
+        held, supported, borne = sum_over_ranks(system.comm, np.array(parts))
+        given = system.dead_resultant(drive.motion)
         found = share.sum()
         # the largest of a history of loads may be over
-        load = found if drive.load is None or shear is not None else pressed * drive.load
-        errors[k] = np.maximum(abs(held + given - load), abs(supported + found))
-        scales[k] = max(np.abs(share).sum() + abs(given), borne)
+        due = found - given[0] if drive.load is None or shear is not None else pressed * drive.load
+        errors[k] = np.maximum(abs(held - due), abs(supported + given[1] + found))
+        scales[k] = max(np.abs(share).sum() + np.abs(given).sum(), borne)
     shifts = np.array([not drive.motion.rotation.any() for drive in drives])
     scales[shifts] = scales[shifts].max()
     return max(relative(e, s) for e, s in zip(errors, scales, strict=True))

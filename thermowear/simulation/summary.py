@@ -150,7 +150,8 @@ def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
     for name, motion in guides(case).items():
         if name not in case.holder.free:
             work = np.einsum("ni,ni->n", motion.at(points), system.pull)
-            reaction = float(system.weights @ (pressure * work)) - applied(case, motion)
+            given = applied(case, motion) + float(system.dead_resultant(motion)[0])
+            reaction = float(system.weights @ (pressure * work)) - given
             reactions[_GUIDES[name]] = 0.0 if case.geometry.symmetry else reaction
     return reactions
 

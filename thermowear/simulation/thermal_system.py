@@ -22,6 +22,7 @@ from ..bulk.varying import (
     varying_conduction,
     varying_expansion,
 )
+from ..case.facing import Facing
 from ..case.schema import Case
 from ..contact.heat import InterfaceHeat, bath_matrix, condense_heat
 from ..contact.pairing import Pairing
@@ -78,6 +79,7 @@ def thermal_system(
     pairing: Pairing,
     elastic: Elasticity,
     basis: np.ndarray,
+    facing: Facing,
     phases: Phases,
 ) -> ThermalSystem | None:
     """Assemble and condense conduction; None without heat. Every rank calls."""
@@ -102,7 +104,8 @@ def thermal_system(
         loads = thermal_loads(heat, bodies, model, conducting, times)
         conducting, expansions = _varying(case, conducting, bodies, model, elastic, materials)
     with phases("condense conduction"):
-        face = condense_heat(conducting, pairing.weights, basis, traces, shift, case.partition())
+        partition = case.partition(facing)
+        face = condense_heat(conducting, pairing.weights, basis, traces, shift, partition)
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
     return ThermalSystem(

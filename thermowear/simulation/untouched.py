@@ -11,7 +11,7 @@ from .outcome import Outcome
 from .system import System
 
 
-def judged(system: System, outcome: Outcome) -> tuple[Outcome, str | None]:
+def touching(system: System, outcome: Outcome) -> tuple[Outcome, str | None]:
     """An outcome in which nothing touches: failed, or what should be known of it.
 
     A constant pressing force has to be carried, or the computation has failed. A given approach, a

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import CaseError
 from .assembly import Named
-from .file_contents import Block, Contents
+from .contents import Block, Contents
 from .tagged import TaggedMesh
 
 

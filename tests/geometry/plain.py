@@ -82,7 +82,7 @@ _GMSH = {("line", 2): 1, ("line", 3): 8, ("cell", 3): 2, ("cell", 4): 3, ("cell"
 def msh(mesh: Plain) -> str:
     """Text of a gmsh file, format 2.2."""
     names = [f'{1 if tag > 2 else 2} {tag} "{name}"' for name, tag in TAGS.items()]
-    nodes = [f"{k} {x!r} {y!r} 0" for k, (x, y) in enumerate(mesh.points, 1)]
+    nodes = [f"{k} {float(x)!r} {float(y)!r} 0" for k, (x, y) in enumerate(mesh.points, 1)]
     elements = [
         f"{_GMSH[kind, len(of)]} 2 {TAGS[name]} {TAGS[name]} {' '.join(str(n + 1) for n in of)}"
         for kind, group in (("line", mesh.lines), ("cell", mesh.cells))
@@ -100,7 +100,10 @@ def msh(mesh: Plain) -> str:
 
 def inp(mesh: Plain) -> str:
     """Text of an Abaqus file."""
-    rows = ["*NODE", *(f"{k}, {x!r}, {y!r}" for k, (x, y) in enumerate(mesh.points, 1))]
+    rows = [
+        "*NODE",
+        *(f"{k}, {float(x)!r}, {float(y)!r}" for k, (x, y) in enumerate(mesh.points, 1)),
+    ]
     number = 0
     for kind, group in (("T2D2", mesh.lines), ("CPE4", mesh.cells)):
         for wanted in TAGS:

@@ -312,7 +312,6 @@ LOADS = {
     "force": ({"length_unit": "1 um"}, {"force": "10 kN"}, "times the modulus of"),
     "open": ({"length_unit": "1 m"}, {"approach": "0.05 mm"}, "does not close the gap of 1 mm"),
     "atoms": ({"length_unit": "1e-9 m"}, {"force": "1 N"}, "the bodies have a size of 6e-11 m"),
-    "planets": ({"length_unit": "1e9 m"}, {"force": "1 N"}, "nodes may lie up to 1e+06 m away"),
 }
 
 

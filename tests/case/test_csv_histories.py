@@ -13,7 +13,7 @@ from thermowear.cli import main
 from thermowear.errors import CaseNote
 
 from .bad import Bad, assert_refused
-from .starter import GONE, RUNNING_IN, tables
+from .starter import FRETTING, GONE, RUNNING_IN, tables
 
 LOAD, SPEED, FRICTION = "load.history", "motion.history", "contact.friction_history"
 BLOCKS, FILE = "stacked-blocks", "course.csv"
@@ -77,6 +77,30 @@ def test_every_history_may_be_a_file(tmp_path):
     assert set(case.histories) == {
         SPEED, FRICTION, "heat.temperature.upper_top", "heat.ambient_history",
     }  # fmt: skip
+
+
+def test_cycles_of_loads_may_be_a_file(tmp_path):
+    """requirement: a fretting history from a file, its cycle beside it; columns by their words."""
+    (tmp_path / FILE).write_text("time [s];tangential force [N]\n0;0\n1;36\n3;-36\n5;36\n")
+    changes = {"load.history": {"file": FILE, "cycle_start": "1 s"}, "analysis.output_times": []}
+    path = tmp_path / "case.toml"
+    path.write_text(tomli_w.dumps(tables(FRETTING, changes)), encoding="utf-8")
+    history = tw.load(path).load.history
+    assert history.tangential_force == (0.0, 36.0, -36.0, 36.0)
+    assert history.cycle == (1.0, 5.0)
+
+
+def test_a_list_stands_in_the_file_or_in_the_table(tmp_path):
+    """requirement: what is given twice is refused, by the path of its key."""
+    given = {"file": FILE, "factor": [1.0, 0.5]}
+    for table, text in (
+        (given, f"{SPEED}.factor: is a column of {FILE} already"),
+        ({"file": 3}, f"{SPEED}.file: must be the name of a CSV file"),
+    ):
+        path = case_with(tmp_path, SPEED, "time [s],factor\n0,1\n", written=table)
+        with pytest.raises(tw.CaseError) as caught:
+            tw.load(path)
+        assert caught.value.faults == [text]
 
 
 def test_what_was_read_is_written_out(tmp_path):

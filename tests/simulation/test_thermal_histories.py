@@ -1,5 +1,7 @@
 """Temperatures and friction that are given over time, against closed forms."""
 
+from functools import lru_cache
+
 import numpy as np
 import pytest
 
@@ -47,20 +49,30 @@ def column(rows, name):
     return np.array([getattr(row, name) for row in rows])
 
 
-@pytest.mark.parametrize(
-    ("heat", "exact", "hottest"),
-    [
-        ({"temperature": {"upper_top": RAMP}}, lambda t: SLAB.ramp(RATE, t, DEPTH), 40.0),
-        ({"temperature": {"upper_top": "120 degC"}}, lambda t: SLAB.step(100.0, t, DEPTH), 100.0),
-        ({"flux": {"upper_top": "1e5 W/m^2"}}, lambda t: SLAB.flux(1e5, t, DEPTH), 40.0),
-    ],
-    ids=["ramp", "step", "flux"],
-)
-def test_heat_comes_through_the_joint_as_through_one_slab(heat, exact, hottest):
+HEATED = {
+    "ramp": ({"temperature": {"upper_top": RAMP}}, lambda t: SLAB.ramp(RATE, t, DEPTH), 40.0),
+    "step": (
+        {"temperature": {"upper_top": "120 degC"}},
+        lambda t: SLAB.step(100.0, t, DEPTH),
+        100.0,
+    ),
+    "power": ({"power": {"upper_top": "10 W"}}, lambda t: SLAB.flux(1e5, t, DEPTH), 40.0),
+}
+"""What heats the top, the rise at the contact, and how hot the slab gets in 20 s."""
+
+
+@lru_cache
+def heated(kind):
+    """The column, heated at its top."""
+    return solved(BLOCKS, COLUMN | {"heat": {"transient": True} | HEATED[kind][0]})
+
+
+@pytest.mark.parametrize("kind", HEATED)
+def test_heat_comes_through_the_joint_as_through_one_slab(kind):
     """
-    requirement: a temperature history and a flux in time: the closed form to the tolerance.
+    requirement: a temperature history and a power in time: the closed form to the tolerance.
     """
-    result = solved(BLOCKS, COLUMN | {"heat": {"transient": True} | heat})
+    result, (_, exact, hottest) = heated(kind), HEATED[kind]
     found = states(result)
     assert tuple(found) == OUTPUTS
     for time, i in found.items():
@@ -71,10 +83,7 @@ def test_heat_comes_through_the_joint_as_through_one_slab(heat, exact, hottest):
 
 def test_heat_stored_under_a_ramp_is_that_of_the_closed_form():
     """requirement: heat that a given temperature brings in counts as lost, negative."""
-    result = solved(
-        BLOCKS, COLUMN | {"heat": {"transient": True, "temperature": {"upper_top": RAMP}}}
-    )
-    stored = SLAB.ramp_heat(RATE, 20.0) * AREA
+    stored, result = SLAB.ramp_heat(RATE, 20.0) * AREA, heated("ramp")
     last = result.heat[-1]
     assert last.heat_stored == pytest.approx(stored, rel=1e-3)
     assert last.heat_lost == pytest.approx(-stored, rel=1e-3)
@@ -82,15 +91,12 @@ def test_heat_stored_under_a_ramp_is_that_of_the_closed_form():
     assert result.summary["heat_balance_relative_error"] < 1e-10
 
 
-def test_a_flux_over_time_is_its_integral():
+def test_a_power_over_time_is_its_integral():
     """requirement: 10 W for 20 s are heat put in; insulated bodies store it all."""
-    heat = {"transient": True, "power": {"upper_top": "10 W"}}
-    result = solved(BLOCKS, COLUMN | {"heat": heat})
-    np.testing.assert_allclose(
-        column(result.heat, "heat_in"), 10 * column(result.heat, "time"), rtol=1e-12
-    )
-    assert result.heat[-1].heat_stored == pytest.approx(200.0, rel=1e-9)
-    assert result.heat[-1].heat_lost == pytest.approx(0.0, abs=1e-9)
+    rows = heated("power").heat
+    np.testing.assert_allclose(column(rows, "heat_in"), 10 * column(rows, "time"), rtol=1e-12)
+    assert rows[-1].heat_stored == pytest.approx(200.0, rel=1e-9)
+    assert rows[-1].heat_lost == pytest.approx(0.0, abs=1e-9)
 
 
 def test_heat_that_only_changes_places_is_in_balance():

@@ -227,7 +227,7 @@ class FrictionHeat:
     def difference(self, one: StoredHeat, other: StoredHeat) -> float:
         """Largest difference of the temperatures inside the bodies [K]; every rank calls.
 
-        None where friction alone heats them: the faces are hottest, and nearest to what happens.
+        Zero where friction alone heats them: their faces show the errors of a step then.
         """
         return self._largest(one.rise - other.rise)
 

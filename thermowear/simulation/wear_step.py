@@ -127,8 +127,9 @@ def advance_with_error(
         After the two half steps.
     float
         Largest of the errors of pressure, of wear, and of temperatures that are followed in time:
-        relative to the largest pressure, to the largest depth worn and to the largest rise of the
-        faces so far, 10 K at least. What rounding makes of a pressure that vanishes in the end is
+        relative to the largest pressure, to the largest depth worn and to the largest rise so far,
+        10 K at least. Temperatures are those of the faces, and those inside the bodies where not
+        friction alone heats them. What rounding makes of a pressure that vanishes in the end is
         no error of the step.
     """
     whole = advance(problem, state, time, step)

@@ -291,6 +291,7 @@ def test_sets_that_do_not_fit_the_file(layers, changes, path, text):
             "unknown key",
         ),
         ({"bodies.pad.materials.BACKING": None}, "bodies.pad.young_modulus", "cells of 'BACKING'"),
+        ({"bodies": {"pad.LINING": SOFT}}, "bodies.pad.LINING", "one of: pad, block"),
         ({"geometry.bodies.pad": []}, "geometry.bodies.pad", "list of such names"),
     ],
 )

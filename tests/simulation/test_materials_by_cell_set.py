@@ -10,6 +10,7 @@ import thermowear as tw
 from thermowear.case.facing import Facing
 from thermowear.case.schema import as_plain
 from thermowear.errors import CaseError
+from thermowear.geometry.remeshed import meshed_anew
 
 from ..layered import layered_case, write_layered
 from .space import changed
@@ -201,6 +202,22 @@ def test_wear_moves_the_mesh_of_a_lined_pad(layers):
     assert result.summary["approach_m"] == pytest.approx(expected, rel=1e-3)
 
 
+def test_a_body_meshed_anew_keeps_its_layers(layers):
+    """
+    requirement: cells of each set where they were, though no cell has the body's own material.
+    """
+    case = tw.load(layered_case(layers, LINING=SOFT, BACKING=HARD))
+    mesh, parts = case.tagged_mesh(), case.geometry.parts_of("pad")
+    nodes = np.unique(mesh.facets[mesh.facet_tags == mesh.surfaces.index("FACE") + 1])
+    face = nodes[np.argsort(mesh.points[nodes, 0])]
+    sizes = np.diff(mesh.points[face, 0])
+    anew, _ = meshed_anew(mesh, parts, face, sizes, lambda points: np.ones(len(points)))
+    for part, span in {"pad.LINING": (0.0, 0.01), "pad.BACKING": (0.01, 0.015)}.items():
+        cells = anew.cells[anew.cell_tags == anew.bodies.index(part) + 1]
+        y = anew.points[cells, 1]
+        assert (y.min(), y.max()) == pytest.approx(span, abs=1e-12)
+
+
 def test_every_material_is_written_out():
     """
     requirement: the resolved case reads back the same.
@@ -274,6 +291,7 @@ def test_sets_that_do_not_fit_the_file(layers, changes, path, text):
             "unknown key",
         ),
         ({"bodies.pad.materials.BACKING": None}, "bodies.pad.young_modulus", "cells of 'BACKING'"),
+        ({"bodies": {"pad.LINING": SOFT}}, "bodies.pad.LINING", "one of: pad, block"),
         ({"geometry.bodies.pad": []}, "geometry.bodies.pad", "list of such names"),
     ],
 )

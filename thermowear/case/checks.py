@@ -47,7 +47,8 @@ def check(case: Case) -> None:
 def _names(case: Case) -> Iterator[Fault]:
     """Bodies and surfaces must be those of the geometry."""
     bodies, surfaces = case.geometry.bodies, case.geometry.surfaces
-    yield from _unknown("bodies", case.bodies, case.geometry.parts)
+    named = tuple(part for part in case.geometry.parts if part not in case.geometry.set_of)
+    yield from _unknown("bodies", case.bodies, named)
     yield from _unknown("wear", case.wear, bodies)
     yield from _unknown("mesh.bodies", case.mesh.bodies, bodies)
     yield from _unknown("load.surfaces", case.load.surfaces, surfaces)

@@ -33,7 +33,8 @@ class DrumBrake(InsideRing):
     lining_thickness, shoe_thickness : float
         Radial [m].
     pivot : tuple of float
-        Point about which the shoe turns [m].
+        Point about which the shoe turns; an end of the lining may lie on the line through it and
+        the centre, where turning does not press [m].
     """
 
     name = "drum-brake"

@@ -23,7 +23,8 @@ class OnStrip(Stacked, PlaneGeometry):
 
     Attributes
     ----------
-    strip_length, strip_height : float [m]
+    strip_length, strip_height : float
+        The strip is as long as the face of body 1 at least [m].
     """
 
     name: ClassVar[str] = ""

@@ -22,7 +22,8 @@ class PadsOnDisk(Geometry):
     pad_inner_radius, pad_outer_radius, pad_thickness : float [m]
     pad_angle : float
         That the pads on one side of the disk take up together [rad].
-    disk_inner_radius, disk_outer_radius : float [m]
+    disk_inner_radius, disk_outer_radius : float
+        Those of the pads, or beyond them [m].
     disk_thickness : float
         Of the whole disk: half of it is meshed [m].
     widest_pad : float

@@ -791,8 +791,6 @@ HOLDERS = [
     Bad("only the track wears",
         {"wear": {"strip": {"coefficient": "1e-7 1/MPa", "spread": "track"}}},
         "wear.strip.spread", "no steady state", STRIP),
-    Bad("spread in space", {"wear": {"disk": {"coefficient": "1e-7 1/MPa", "spread": "track"}}},
-        "wear.disk.spread", "is not followed in 3d", "disk-sector"),
     Bad("spread nowhere", {"wear.punch.spread": "thin"}, "wear.punch.spread", "must be", STRIP),
     Bad("material of no part", {"bodies.bolt": {"like": "drum"}}, "bodies.bolt", "lining", DRUM),
     Bad("nitsche in space", {"contact.method": "nitsche"}, "contact.method", "sections", BOX),

@@ -90,7 +90,7 @@ def test_a_lining_may_begin_on_the_line_of_the_pivot(end, sign):
             "must be thinner together than drum_radius",
         ),
         ({"arc_start": "-111 deg"}, "arc_end", "must be at most 170 deg"),
-        ({"pivot": ["-80 mm", "-60 mm"]}, "pivot", "must lie inside the drum"),
+        ({"pivot": ["-80 mm", "-60 mm"]}, "pivot", "must be less than drum_radius"),
         ({"pivot": ["0 mm", "0 mm"]}, "pivot", "lift the other"),
         ({"pivot": ["20 mm", "80 mm"]}, "pivot", "lift the other"),
         ({"pivot": ["10 mm", "-80 mm"]}, "pivot", "lift the other"),

@@ -11,14 +11,14 @@ from typing import Any
 
 from ..errors import CaseError, quoted
 
-LARGEST_FILE = 1_000_000
+LARGEST_FILE = 2_000_000
 """Bytes of a case file."""
 LONGEST_KEY = 200
 """Characters of the name of a key."""
 MOST_PARTS = 20
 """Parts of a dotted key, and tables within each other."""
-MOST_VALUES = 20_000
-"""Values of all keys together, those in lists counted one by one."""
+MOST_VALUES = 60_000
+"""Values of all keys together, those in lists counted one by one; histories of 5 000 rows fit in."""
 _WIDEST = 1024
 """Bits of a whole number: beyond them it is not even a floating-point number."""
 

@@ -35,8 +35,10 @@ class Section(BaseModel):
 
 def _quantities(key: str, value: Any) -> Any:
     """A list of quantities from numbers and their unit; anything else as it is."""
-    if not isinstance(value, dict) or value.keys() != {"values", "unit"}:
+    if not isinstance(value, dict) or not value.keys() >= {"values", "unit"}:
         return value
+    for other in value.keys() - {"values", "unit"}:
+        raise KeyFault(f"{key}.{other}", "unknown key; a list with one unit has values and unit")
     numbers, unit = value["values"], value["unit"]
     if not isinstance(unit, str) or not unit.strip():
         raise KeyFault(f"{key}.unit", 'must be the unit of all values, such as "s"')

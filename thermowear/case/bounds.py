@@ -18,7 +18,7 @@ LONGEST_KEY = 200
 MOST_PARTS = 20
 """Parts of a dotted key, and tables within each other."""
 MOST_VALUES = 60_000
-"""Values of all keys together, those in lists counted one by one; histories of 5 000 rows fit in."""
+"""Values of all keys together, those in lists one by one; histories of 5 000 rows fit in."""
 _WIDEST = 1024
 """Bits of a whole number: beyond them it is not even a floating-point number."""
 

@@ -25,7 +25,7 @@ _RING = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a facet in order round it."""
 
 
-def opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
+def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
     """Parts of the facets of body 1 that have a facet of body 2 opposite to them.
 
     Returns

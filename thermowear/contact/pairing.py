@@ -2,7 +2,8 @@
 
 Sign convention (the only place where it is stated)
 ---------------------------------------------------
-``n`` is the outward normal of body 1, the held body. The gap is open where positive::
+``n`` is the normal of the common face, see `common_face`, outward from body 1, the held body. The
+gap is open where positive::
 
     g = g0 + (u2 - u1)·n
 
@@ -25,8 +26,8 @@ from scipy.spatial import cKDTree
 
 from ..bulk.kinematics import Model
 from ..errors import CaseError
+from .common_face import opposite, stretch
 from .face import Face
-from .projection import project
 from .refinement import BESIDE, Rule, rule
 from .surface import Surface
 
@@ -58,14 +59,17 @@ class Pairing:
     Attributes
     ----------
     points : ndarray, shape (n, gdim) [m]
+        On the common face.
     position : ndarray, shape (n,)
-        Length along the face from its first end [m]; NaN on a surface.
+        Length along the face of body 1 from its first end [m]; NaN on a surface.
     weights : ndarray, shape (n,)
-        Area each point stands for [m²].
+        Area of the common face that each point stands for [m²].
     normals : ndarray, shape (n, gdim)
-        Outward unit normals of body 1.
+        Unit normals of the common face, outward from body 1.
     gap : ndarray, shape (n,)
         Of the unloaded, unworn bodies along the normal [m].
+    share : ndarray, shape (n,)
+        s_1: what body 1 takes of the approach of opposite points.
     sides : tuple of Side
         On body 1 and body 2.
     unpaired : float
@@ -79,6 +83,7 @@ class Pairing:
     weights: np.ndarray
     normals: np.ndarray
     gap: np.ndarray
+    share: np.ndarray
     sides: tuple[Side, Side]
     unpaired: float
     pieces: Rule
@@ -136,24 +141,26 @@ def pair(
 def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces: Rule) -> Pairing:
     """Pair two faces at given points of the face of body 1; those that coincide are one."""
     facet, t = pieces.facet, pieces.t
-    points, normals = face_1.points(facet, t), face_1.normals(facet, t)
-    weights = pieces.weight * face_1.stretch(facet, t) * model.area_factor(points)
-    other, other_t, offset = project(face_2, points)
-    gap = np.einsum("ni,ni->n", offset, normals)
+    on_face = face_1.points(facet, t)
+    pairs = opposite(face_1, facet, t, face_2)
+    points = on_face + (pairs.share * pairs.gap)[:, None] * pairs.normals
+    weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs) * model.area_factor(points)
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
-    group, first = _groups(points, _SAME * face_1.extent)
-    weights = np.bincount(group, weights)
-    normals = np.column_stack([np.bincount(group, n) for n in normals.T])
+    group, first = _groups(on_face, _SAME * face_1.extent)
+    normals = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    sides = (Side(face_1, facet[first], t[first]), Side(face_2, other[first], other_t[first]))
-    position = face_1.position(facet, t)[first]
+    sides = (
+        Side(face_1, facet[first], t[first]),
+        Side(face_2, pairs.facet[first], pairs.t[first]),
+    )
     return Pairing(
         points=points[first],
-        position=position,
-        weights=weights,
+        position=face_1.position(facet, t)[first],
+        weights=np.bincount(group, weights),
         normals=normals,
-        gap=gap[first],
+        gap=pairs.gap[first],
+        share=pairs.share[first],
         sides=sides,
         unpaired=max(unpaired, 0.0),
         pieces=pieces,

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .clipping import opposite
+from .clipping import parts_opposite
+from .common_face import opposite
 from .face import Face
-from .projection import beside, project
 from .quadrature import gauss, lobatto, square
 from .surface import Surface
 
@@ -73,8 +73,10 @@ def _on_pieces(
 
 def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
     """Parameters at which each facet of body 1 is cut, its own ends included."""
-    ends = np.concatenate([face_2.nodes[:, 0], face_2.nodes[-1:, -1]])
-    facet, t, _ = project(face_1, ends)
+    count = len(face_2.nodes)
+    pairs = opposite(face_2, np.append(np.arange(count), count - 1), np.append(np.zeros(count), 1.0), face_1)
+    meeting = pairs.meets(BESIDE * face_1.extent)
+    facet, t = pairs.facet[meeting], pairs.t[meeting]
     cuts = []
     for f in range(len(face_1.nodes)):
         inner = np.sort(t[facet == f])
@@ -87,7 +89,7 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
 
 def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
     """Rules on the parts of facets that are opposite: Gauss-Lobatto's, in triangles Gauss's."""
-    facet, corners = opposite(face_1, face_2)
+    facet, corners = parts_opposite(face_1, face_2)
     triangular = np.all(corners[:, 2] == corners[:, 3], axis=1)
     parts = []
     for chosen, line in ((~triangular, lobatto(order)), (triangular, gauss(order))):
@@ -121,7 +123,7 @@ def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
 
 def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed: float) -> Rule:
     """Those pieces, of so many points each, whose inner points have body 2 opposite."""
-    points = face_1.points(pieces.facet, pieces.t)
-    off = beside(face_2, *project(face_2, points)).reshape(-1, count)[:, inner]
-    kept = np.repeat(off.max(axis=1) <= allowed * face_1.extent, count)
+    pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
+    meeting = pairs.meets(allowed * face_1.extent).reshape(-1, count)[:, inner]
+    kept = np.repeat(meeting.all(axis=1), count)
     return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])

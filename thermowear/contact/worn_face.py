@@ -1,7 +1,8 @@
-"""How the nodes of a worn face move: by the depth worn off it, along its unworn normals.
+"""How the nodes of a worn face move: by the depth worn off it, along the unworn normals.
 
-Each node goes along the normal of the unworn face so far that the face moves by the depth along
-its present normal. Nodes of faces that matched when they were new so stay opposite each other, and
+Each node goes along the normal of the common face of the unworn bodies so far that its face moves by
+the depth along the present normal: the gap opens by just that, and the volume is that of the depth
+over the common face. Nodes of faces that matched when they were new so stay opposite each other, and
 those at the ends of a face go along the sides of its body.
 """
 
@@ -14,6 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
+from .common_face import FACING, opposite
 from .face import Face
 from .facets import lagrange
 from .pairing import Pairing, Side
@@ -47,10 +49,19 @@ def nodes_of(face: Face | Surface) -> np.ndarray:
     return result
 
 
-def node_normals(face: Face | Surface) -> np.ndarray:
-    """Outward unit normals at the nodes, means where facets meet, shape (n_nodes, gdim)."""
+def node_normals(face: Face | Surface, other: Face | Surface) -> np.ndarray:
+    """Unit normals of the common face at the nodes of a face, outward from it, (n_nodes, gdim).
+
+    Those of the face itself where nothing faces it; means where facets meet.
+    """
     number = _numbers(face).ravel()
-    normals = _at(face, face.normals, np.linspace(0.0, 1.0, _order(face) + 1))
+
+    def common(facet, t):
+        pairs = opposite(face, facet, t, other)
+        facing = pairs.cosine[:, None] <= FACING
+        return np.where(facing, pairs.normals, face.smooth_normals(facet, t)[0])
+
+    normals = _at(face, common, np.linspace(0.0, 1.0, _order(face) + 1))
     summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
     return summed / np.linalg.norm(summed, axis=1, keepdims=True)
 

@@ -59,7 +59,7 @@ def build(
         bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(case, comm, zone, worn))
     with phases("pair"):
         pairing, basis = parts.get(
-            "points", made_from.mesh, lambda: _paired(case, comm, model, bodies, worn)
+            "points", made_from.points, lambda: _paired(case, comm, model, bodies, worn)
         )
     with phases("assemble elasticity"):
         elastic, trace = parts.get(
@@ -107,10 +107,19 @@ def _meshed(
 def _paired(
     case: Case, comm, model: Model, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Pairing, np.ndarray]:
-    faces = [gather_face(bodies, surface) for surface in case.geometry.contact]
+    softness = bodies.per_body({part: _softness(case, part) for part in case.geometry.parts})
+    faces = [gather_face(bodies, surface, softness) for surface in case.geometry.contact]
     if worn is None:
         return contact_points(case, comm, model, *faces)
     return worn_contact_points(case, model, worn, *faces)
+
+
+def _softness(case: Case, part: str) -> float:
+    """``(1 - ν²) / E`` of a material [1/Pa]."""
+    material = case.material(part)
+    assert material.young_modulus is not None  # the case has been checked
+    assert material.poisson_ratio is not None
+    return (1 - material.poisson_ratio**2) / material.young_modulus
 
 
 def _exchanging(thermal: ThermalSystem, case: Case) -> ThermalSystem:

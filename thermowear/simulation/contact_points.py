@@ -53,16 +53,16 @@ def worn_contact_points(
         pairing = paired(closer, face_2, model, worn.pieces)
         basis = _basis(case, pairing)
     first, second = pairing.sides
-    points = face_1.points(first.facet, first.t)
-    to = motion.at(points)
-    apart = np.einsum("ni,ni->n", pairing.normals, to)
+    on_face = face_1.points(first.facet, first.t)
+    to = motion.at(on_face)
     ways = _ways(worn, pairing)
-    facet, t, way = ahead(face_2, points + to, ways)
-    gap = way * np.einsum("ni,ni->n", pairing.normals, ways)
+    facet, t, way = ahead(face_2, on_face + to, ways)
+    gap = np.einsum("ni,ni->n", pairing.normals, way[:, None] * ways + to)
+    points = on_face + (pairing.share * gap)[:, None] * pairing.normals
     sides = replace(first, face=face_1), replace(second, facet=facet, t=t)
     worn_pairing = replace(pairing, points=points, sides=sides)
     unworn = worn.carried(worn.lacking, pairing) - worn.moved(worn_pairing).sum(axis=0)
-    return replace(worn_pairing, gap=gap + apart + unworn), basis
+    return replace(worn_pairing, gap=gap + unworn), basis
 
 
 def _ways(worn: WornGeometry, pairing: Pairing) -> np.ndarray:

@@ -109,8 +109,7 @@ class KeptWear:
 def _unworn(system: System) -> WornGeometry:
     """The geometry before its first update."""
     pairing, comm = system.pairing, system.comm
-    second = pairing.sides[1]
-    apart = second.face.points(second.facet, second.t) - pairing.points
+    first, second = (side.face.points(side.facet, side.t) for side in pairing.sides)
     mesh, paths = on_root(comm, lambda: _ways(system))
     nothing, geometry = np.zeros(3), system.case.geometry
     return WornGeometry(
@@ -121,7 +120,7 @@ def _unworn(system: System) -> WornGeometry:
         best=np.array([quality(mesh, geometry.parts_of(body)) for body in geometry.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
-        lacking=pairing.gap - np.einsum("ni,ni->n", pairing.normals, apart),
+        lacking=pairing.gap - np.einsum("ni,ni->n", pairing.normals, second - first),
         holder=(nothing, nothing),
         lost=np.zeros(2),
         updates=0,
@@ -135,9 +134,10 @@ def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
     """The unworn mesh, and how the nodes of its faces may go."""
     mesh = system.case.tagged_mesh(system.inputs.zone)
     paths = []
-    for index, side in enumerate(system.pairing.sides):
+    faces = [side.face for side in system.pairing.sides]
+    for index, face in enumerate(faces):
         body = movable_body(system, mesh, index)
-        paths.append(Paths(*body.ways(node_normals(side.face))))
+        paths.append(Paths(*body.ways(node_normals(face, faces[1 - index]))))
     return mesh, paths
 
 

@@ -68,6 +68,27 @@ class Opposite:
         return (self.cosine <= FACING) & (self.beside <= allowed)
 
 
+@dataclass(frozen=True)
+class Line:
+    """Lines along the common normals from points to the planes that touch the other face.
+
+    Attributes
+    ----------
+    normals, share, cosine : ndarray
+        See `Opposite`.
+    way : ndarray, shape (n,)
+        Lengths, negative where the planes are behind the points [m].
+    end : ndarray, shape (n, gdim)
+        Where they meet the planes [m].
+    """
+
+    normals: np.ndarray
+    way: np.ndarray
+    end: np.ndarray
+    share: np.ndarray
+    cosine: np.ndarray
+
+
 def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface):
     """Points of another face opposite to points of a face.
 
@@ -87,7 +108,9 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
         return project(other, points)[:2]
 
     points, out = face.points(facet, t), face.smooth_normals(facet, t)[0]
-    return met(points, out, face.soft(facet), other, locate)
+    facet, t, line = met(points, out, face.soft(facet), other, locate)
+    off = beside(other, facet, t, other.points(facet, t) - line.end)
+    return Opposite(facet, t, line.normals, line.way, line.share, line.cosine, off)
 
 
 def met(
@@ -96,8 +119,8 @@ def met(
     soft: np.ndarray,
     other: Face | Surface,
     locate: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
-) -> Opposite:
-    """Points of a face opposite to points of a body.
+) -> tuple[np.ndarray, np.ndarray, Line]:
+    """Facets and parameters of a face opposite to points of a body, and the lines between them.
 
     From the closest point on, the line along the normal of the common face is followed to the
     plane that touches the face there.
@@ -125,9 +148,7 @@ def met(
         moving = moving[missed > _SETTLED * other.extent]
         if not len(moving):
             break
-    line = _line(points, out, soft, other, facet, t)
-    off = beside(other, facet, t, found - line.end)
-    return Opposite(facet, t, line.normals, line.way, line.share, line.cosine, off)
+    return facet, t, _line(points, out, soft, other, facet, t)
 
 
 def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs: Opposite):
@@ -139,7 +160,8 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     """
     n, g, s = pairs.normals, pairs.gap[:, None, None], pairs.share[:, None, None]
     (n_1, turn_1), (n_2, turn_2) = (
-        side.smooth_normals(*at) for side, at in ((face, (facet, t)), (other, (pairs.facet, pairs.t)))
+        side.smooth_normals(*at)
+        for side, at in ((face, (facet, t)), (other, (pairs.facet, pairs.t)))
     )
     count = len(facet)
     x_1 = face.tangents(facet, t).reshape(count, -1, n.shape[1])
@@ -155,18 +177,7 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     return np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
 
 
-@dataclass(frozen=True)
-class _Line:
-    """Lines along the common normal to the planes that touch the other face, see `Opposite`."""
-
-    normals: np.ndarray
-    way: np.ndarray
-    end: np.ndarray
-    share: np.ndarray
-    cosine: np.ndarray
-
-
-def _line(points, out, soft, other, facet, t) -> _Line:
+def _line(points, out, soft, other, facet, t) -> Line:
     against, softer = other.smooth_normals(facet, t)[0], other.soft(facet)
     share = soft / (soft + softer)
     normals = (1 - share)[:, None] * out - share[:, None] * against
@@ -176,7 +187,7 @@ def _line(points, out, soft, other, facet, t) -> _Line:
     offset = other.points(facet, t) - points
     way = np.einsum("ni,ni->n", offset, against) / steep
     cosine = np.einsum("ni,ni->n", out, against)
-    return _Line(normals, way, points + way[:, None] * normals, share, cosine)
+    return Line(normals, way, points + way[:, None] * normals, share, cosine)
 
 
 def _in_plane(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:

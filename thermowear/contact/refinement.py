@@ -74,7 +74,9 @@ def _on_pieces(
 def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
     """Parameters at which each facet of body 1 is cut, its own ends included."""
     count = len(face_2.nodes)
-    pairs = opposite(face_2, np.append(np.arange(count), count - 1), np.append(np.zeros(count), 1.0), face_1)
+    pairs = opposite(
+        face_2, np.append(np.arange(count), count - 1), np.append(np.zeros(count), 1.0), face_1
+    )
     meeting = pairs.meets(BESIDE * face_1.extent)
     facet, t = pairs.facet[meeting], pairs.t[meeting]
     cuts = []

@@ -1,8 +1,7 @@
-"""How the nodes of a worn face move: by the depth worn off it, along the unworn normals.
+"""How the nodes of a worn face move: by the depth worn off it, along its unworn normals.
 
-Each node goes along the normal of the common face of the unworn bodies so far that its face moves by
-the depth along the present normal: the gap opens by just that, and the volume is that of the depth
-over the common face. Nodes of faces that matched when they were new so stay opposite each other, and
+Each node goes along the normal of the unworn face so far that the face moves by the depth along
+its present normal. Nodes of faces that matched when they were new so stay opposite each other, and
 those at the ends of a face go along the sides of its body.
 """
 
@@ -15,7 +14,6 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from .common_face import FACING, opposite
 from .face import Face
 from .facets import lagrange
 from .pairing import Pairing, Side
@@ -49,24 +47,36 @@ def nodes_of(face: Face | Surface) -> np.ndarray:
     return result
 
 
-def node_normals(face: Face | Surface, other: Face | Surface) -> np.ndarray:
-    """Unit normals of the common face at the nodes of a face, outward from it, (n_nodes, gdim).
-
-    Those of the face itself where nothing faces it; means where facets meet.
-    """
+def node_normals(face: Face | Surface) -> np.ndarray:
+    """Outward unit normals at the nodes, means where facets meet, shape (n_nodes, gdim)."""
     number = _numbers(face).ravel()
-
-    def common(facet, t):
-        pairs = opposite(face, facet, t, other)
-        facing = pairs.cosine[:, None] <= FACING
-        return np.where(facing, pairs.normals, face.smooth_normals(facet, t)[0])
-
-    normals = _at(face, common, np.linspace(0.0, 1.0, _order(face) + 1))
+    normals = _at(face, face.normals, np.linspace(0.0, 1.0, _order(face) + 1))
     summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
     return summed / np.linalg.norm(summed, axis=1, keepdims=True)
 
 
-def ways_at(side: Side, directions: np.ndarray) -> np.ndarray:
+def ways_between(
+    sides: tuple[Side, Side], directions: tuple[np.ndarray, np.ndarray], gone: np.ndarray
+) -> np.ndarray:
+    """Ways on which body 2 lies opposite, unit vectors at contact points, shape (n, gdim).
+
+    Those out of body 1 and into body 2 of the nodes, by how far each face has gone.
+
+    Parameters
+    ----------
+    sides : tuple of Side
+    directions : tuple of ndarray, shape (n_nodes, gdim)
+        Of the nodes of both faces, see `Paths`.
+    gone : ndarray, shape (2,)
+        How far each face has gone; only the ratio counts.
+    """
+    pairs = zip(sides, directions, strict=True)
+    out_1, out_2 = (_ways_at(side, along) for side, along in pairs)
+    ways = gone[0] * out_1 - gone[1] * out_2
+    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+
+
+def _ways_at(side: Side, directions: np.ndarray) -> np.ndarray:
     """Ways of the points of a face between those of its nodes, unit vectors (n, gdim)."""
     values = _polynomials(_order(side.face), side.t)
     ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])

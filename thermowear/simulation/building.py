@@ -20,6 +20,7 @@ from .drives import drives
 from .elastic_system import dead_load, elastic_system
 from .parts import Parts, inputs
 from .phases import Phases
+from .shares import softness_of_parts
 from .system import System
 from .thermal_system import ThermalSystem, thermal_system
 from .worn_geometry import WornGeometry
@@ -107,19 +108,11 @@ def _meshed(
 def _paired(
     case: Case, comm, model: Model, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Pairing, np.ndarray]:
-    softness = bodies.per_body({part: _softness(case, part) for part in case.geometry.parts})
+    softness = bodies.per_body(softness_of_parts(case))
     faces = [gather_face(bodies, surface, softness) for surface in case.geometry.contact]
     if worn is None:
         return contact_points(case, comm, model, *faces)
     return worn_contact_points(case, model, worn, *faces)
-
-
-def _softness(case: Case, part: str) -> float:
-    """``(1 - ν²) / E`` of a material [1/Pa]."""
-    material = case.material(part)
-    assert material.young_modulus is not None  # the case has been checked
-    assert material.poisson_ratio is not None
-    return (1 - material.poisson_ratio**2) / material.young_modulus
 
 
 def _exchanging(thermal: ThermalSystem, case: Case) -> ThermalSystem:

@@ -14,9 +14,10 @@ from ..contact.pressure import pressure_basis
 from ..contact.projection import ahead
 from ..contact.refinement import BESIDE
 from ..contact.surface import Surface
-from ..contact.worn_face import ways_at
+from ..contact.worn_face import ways_between
 from ..laws.motions import RigidMotion
 from .initial_shape import initial_gap
+from .shares import LEAST
 from .worn_geometry import WornGeometry
 
 _SLIVER = 1e-3
@@ -44,6 +45,7 @@ def worn_contact_points(
     against each other. They are where a mesh cannot follow the edge of its wear: they overlap by
     what is kept of it. Closest points or those along the normals would change the gap there.
     """
+    face_1, face_2 = _by_walls(worn, (face_1, face_2))
     moved, turned = worn.holder
     motion = RigidMotion(moved, turned, np.zeros(3))
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
@@ -55,7 +57,7 @@ def worn_contact_points(
     first, second = pairing.sides
     on_face = face_1.points(first.facet, first.t)
     to = motion.at(on_face)
-    ways = _ways(worn, pairing)
+    ways = ways_between(pairing.sides, worn.directions, np.abs(worn.depth).max(axis=1))
     facet, t, way = ahead(face_2, on_face + to, ways)
     gap = np.einsum("ni,ni->n", pairing.normals, way[:, None] * ways + to)
     points = on_face + (pairing.share * gap)[:, None] * pairing.normals
@@ -65,18 +67,16 @@ def worn_contact_points(
     return replace(worn_pairing, gap=gap + unworn), basis
 
 
-def _ways(worn: WornGeometry, pairing: Pairing) -> np.ndarray:
-    """Ways on which body 2 lies opposite, unit vectors at the points, shape (n, gdim).
+def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
+    """The same faces; where only one has walls of a groove, the common face is that of the other.
 
-    Those out of body 1 and into body 2 of the nodes, by how far each face has gone.
+    Walls are what is left of a mesh beside its wear, and no face that touches.
     """
-    out_1, out_2 = (
-        ways_at(side, directions)
-        for side, directions in zip(pairing.sides, worn.directions, strict=True)
-    )
-    gone_1, gone_2 = np.abs(worn.depth).max(axis=1)
-    ways = gone_1 * out_1 - gone_2 * out_2
-    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    walled = np.array([held.any() for held in worn.held]) & np.any(worn.depth != 0.0, axis=1)
+    if walled[0] == walled[1]:
+        return faces
+    pairs = zip(faces, walled, strict=True)
+    return tuple(replace(face, softness=1.0 if wall else LEAST) for face, wall in pairs)
 
 
 def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from ..case.schema import Case
+from .shares import softness_of_parts
 
 Part = TypeVar("Part")
 
@@ -72,8 +73,8 @@ def inputs(case: Case, zone: tuple[float, float] | None = None) -> Inputs:
         "poisson_ratio",
         *(("expansion", "expansion_factor") if hot else ()),
     )
-    points = (mesh, _chosen(materials, lambda key: key in ("young_modulus", "poisson_ratio")))
-    elasticity = (mesh, hot, _chosen(materials, lambda key: key in elastic))
+    points = (mesh, softness_of_parts(case))
+    elasticity = (points, hot, _chosen(materials, lambda key: key in elastic))
     if case.heat is None:
         return Inputs(mesh, points, elasticity, ())
     bodies = _chosen(materials, lambda key: key not in ("hardness", *elastic))

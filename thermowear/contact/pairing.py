@@ -28,7 +28,7 @@ from ..bulk.kinematics import Model
 from ..errors import CaseError
 from .common_face import opposite, stretch
 from .face import Face
-from .refinement import BESIDE, Rule, rule
+from .refinement import BESIDE, SLIVER, Rule, rule
 from .surface import Surface
 
 _SAME = 1e-10
@@ -105,7 +105,7 @@ def pair(
     model: Model,
     order: int,
     refine: bool = True,
-    sliver: float = 1e-9,
+    sliver: float = SLIVER,
     beside: float = BESIDE,
 ) -> Pairing:
     """Pair two faces on their common refinement.
@@ -143,8 +143,8 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
     facet, t = pieces.facet, pieces.t
     on_face = face_1.points(facet, t)
     pairs = opposite(face_1, facet, t, face_2)
-    points = on_face + (pairs.share * pairs.gap)[:, None] * pairs.normals
-    weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs) * model.area_factor(points)
+    weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
+    weights *= model.area_factor(on_face + (pairs.share * pairs.gap)[:, None] * pairs.normals)
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
     group, first = _groups(on_face, _SAME * face_1.extent)
@@ -154,8 +154,9 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
         Side(face_1, facet[first], t[first]),
         Side(face_2, pairs.facet[first], pairs.t[first]),
     )
+    to_common = (pairs.share * pairs.gap)[first, None] * normals
     return Pairing(
-        points=points[first],
+        points=on_face[first] + to_common,
         position=face_1.position(facet, t)[first],
         weights=np.bincount(group, weights),
         normals=normals,

@@ -51,6 +51,11 @@ class Side:
     facet: np.ndarray
     t: np.ndarray
 
+    @property
+    def points(self) -> np.ndarray:
+        """Coordinates, shape (n, gdim) [m]."""
+        return self.face.points(self.facet, self.t)
+
 
 @dataclass(frozen=True)
 class Pairing:
@@ -92,6 +97,11 @@ class Pairing:
     def extent(self) -> float:
         """Size of the face of body 1 [m]."""
         return self.sides[0].face.extent
+
+    @property
+    def on_body_1(self) -> np.ndarray:
+        """The points on the face of body 1, shape (n, gdim) [m]."""
+        return self.sides[0].points
 
     def locate(self, position) -> np.ndarray:
         """Coordinates of positions along the face of a plane body, shape (n, 2) [m]."""

@@ -15,9 +15,9 @@ LEAST = 1e-9
 def softness_of_parts(case: Case) -> dict[str, float]:
     """Softness of each part of the bodies for `contact.common_face`; only ratios count.
 
-    The gap between opposite points closes by the elastic deflection of both bodies. Where wear
-    changes the faces for good, as in a run whose meshes follow it, the deflection is soon small
-    beside the wear, and the common face is that of the body which wears less.
+    The gap between opposite points closes by the elastic deflection of both bodies. Where bodies
+    wear on and on, the deflection is soon small beside the wear, and the common face is that of
+    the body which wears less.
     """
     wearing = _wear_rates(case)
     if wearing:
@@ -38,8 +38,8 @@ def _elastic(case: Case, part: str) -> float:
 
 
 def _wear_rates(case: Case) -> dict[int, float]:
-    """Wear rates of the bodies whose faces the meshes follow, by index, at one pressure [m/s]."""
-    if not isinstance(case.analysis, Transient) or case.wear.update == "never":
+    """Wear rates of the bodies whose faces change, by index, at one pressure [m/s]."""
+    if not isinstance(case.analysis, Transient):
         return {}
     bodies = case.geometry.bodies
     return {

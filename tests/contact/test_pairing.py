@@ -15,8 +15,8 @@ from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.contact.face import Face, gather_face
 from thermowear.contact.pairing import pair
-from thermowear.contact.projection import project
 from thermowear.contact.pressure import pressure_basis
+from thermowear.contact.projection import project
 from thermowear.contact.traces import gap_trace, value_trace
 from thermowear.parallel import sum_over_ranks
 

@@ -1,9 +1,9 @@
 """Which parts of the facets of one surface lie opposite to which facets of another.
 
 Everything happens in the parameters of a facet of body 1, a unit square: the facets of body 2 are
-drawn into it by their outlines, at the points opposite to them (see `common_face`), and clipped by its sides (Sutherland and Hodgman, Commun. ACM 17
-(1974) 32). Facets of body 2 that share an edge have it at the same place, so the parts lie side by
-side without gaps, on curved facets too.
+drawn into it by their outlines, at the points opposite to them (see `common_face`), and clipped by
+its sides (Sutherland and Hodgman, Commun. ACM 17 (1974) 32). Facets of body 2 that share an edge
+have it at the same place, so the parts lie side by side without gaps, on curved facets too.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def _opposite_within(
         return on[which], within(face_1, points, on[which], start, bounds=(-np.inf, np.inf))
 
     columns = outlines.points[chosen], outlines.normals[chosen], outlines.soft[chosen]
-    return met(*columns, face_1, locate)[1]
+    return met(*columns, face_1, *locate(columns[0], np.arange(len(on))), locate)[1]
 
 
 def _needed(edges: np.ndarray) -> np.ndarray:

@@ -6,10 +6,10 @@ Where bodies are pressed together their faces deform until they coincide. Body i
 
     x = s_2 x_1 + s_1 x_2,      n ∝ s_2 n_1 - s_1 n_2
 
-with the outward normals n_1 and n_2 of the unloaded faces: the mean of both faces for bodies of like
-stiffness, the face of the stiffer body where the other one is soft. Points are opposite each other
-where ``x_2 - x_1`` is along n, and ``g = (x_2 - x_1)·n`` is the gap. Exchanging the bodies turns n
-round and changes nothing else.
+with the outward normals n_1 and n_2 of the unloaded faces: the mean of both faces for bodies of
+like stiffness, the face of the stiffer body where the other one is soft. Points are opposite each
+other where ``x_2 - x_1`` is along n, and ``g = (x_2 - x_1)·n`` is the gap. Exchanging the bodies
+turns n round and changes nothing else.
 """
 
 from __future__ import annotations
@@ -52,7 +52,8 @@ class Opposite:
     cosine : ndarray, shape (n,)
         Between the outward normals of both faces.
     beside : ndarray, shape (n,)
-        How far the points lie beside the other face: more than 0 beyond its edge [m].
+        How far the points lie beside their closest ones: more than 0 beyond the edge of the other
+        face. Where their lines lean past an edge, the face is taken to go on straight [m].
     """
 
     facet: np.ndarray
@@ -108,8 +109,9 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
         return project(other, points)[:2]
 
     points, out = face.points(facet, t), face.smooth_normals(facet, t)[0]
-    facet, t, line = met(points, out, face.soft(facet), other, locate)
-    off = beside(other, facet, t, other.points(facet, t) - line.end)
+    *closest, offset = project(other, points)
+    off = beside(other, *closest, offset)
+    facet, t, line = met(points, out, face.soft(facet), other, *closest, locate)
     return Opposite(facet, t, line.normals, line.way, line.share, line.cosine, off)
 
 
@@ -118,6 +120,8 @@ def met(
     out: np.ndarray,
     soft: np.ndarray,
     other: Face | Surface,
+    facet: np.ndarray,
+    t: np.ndarray,
     locate: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
 ) -> tuple[np.ndarray, np.ndarray, Line]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
@@ -132,11 +136,13 @@ def met(
     soft : ndarray, shape (n,)
         c of the body at the points [1/Pa].
     other : Face or Surface
+    facet, t : ndarray
+        Of the points on it that are closest.
     locate : callable
         Facets and parameters on the other face that are closest to places (m, gdim), and which of
         the points these are for.
     """
-    facet, t = locate(points, np.arange(len(points)))
+    facet, t = facet.copy(), t.copy()
     found = other.points(facet, t)
     moving = np.arange(len(points))
     for _ in range(_PASSES):

@@ -20,7 +20,7 @@ from .quadrature import lobatto
 from .smooth_normals import corner_corrections, smooth_normals
 from .surface import Surface, gather_surface
 
-_ONWARD = (1.0, 0.3)
+ONWARD = (1.0, 0.3)
 """Along x; faces that stand upright begin at their lower end, even when it has worn a little."""
 
 
@@ -41,6 +41,8 @@ class Face:
     softness : float or ndarray, shape (n_facets,)
         ``(1 - ν²) / E`` of the material behind each facet [1/Pa]; only its ratio to that of the
         other face counts.
+    name : str
+        Of the surface.
     """
 
     nodes: np.ndarray
@@ -50,6 +52,7 @@ class Face:
     local_facet: np.ndarray
     reversed: np.ndarray
     softness: float | np.ndarray = 1.0
+    name: str = "the contact face"
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, 2) [m]."""
@@ -156,7 +159,7 @@ def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -
     inward = inside[order] - nodes.mean(axis=1)
     turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
     owner = rank[order], cell[order], local_facet[order]
-    return Face(nodes, -np.sign(turned), *owner, flip, soft[order])
+    return Face(nodes, -np.sign(turned), *owner, flip, soft[order], surface)
 
 
 def _local_facets(bodies: Bodies, surface: str):
@@ -177,7 +180,10 @@ def _local_facets(bodies: Bodies, surface: str):
 
 
 def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:
-    """Order of the facets from the first end to the last, and which must be turned round."""
+    """Order of the facets from the first end to the last, and which must be turned round.
+
+    A closed curve begins anywhere, see `closed_face`.
+    """
     vertices, compact = np.unique(ends, return_inverse=True)
     ends = compact.reshape(ends.shape)
     at: list[list[int]] = [[] for _ in vertices]
@@ -185,16 +191,26 @@ def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarra
         for vertex in pair:
             at[vertex].append(facet)
     loose = [v for v, facets in enumerate(at) if len(facets) == 1]
-    if len(loose) != 2:
-        raise CaseError(f"geometry: the contact face {surface} is not one connected open curve")
-    where = {v: nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1] for v in loose}
-    vertex = min(loose, key=lambda v: float(where[v] @ _ONWARD))
+    if len(loose) not in (0, 2) or max(len(facets) for facets in at) > 2:
+        raise CaseError(_not_one(surface))
+    where = {v: nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1] for v in loose or (0,)}
+    vertex = min(where, key=lambda v: float(where[v] @ ONWARD))
     order, flip, facet = [], np.zeros(len(ends), dtype=bool), at[vertex][0]
-    while True:
+    for _ in ends:
         order.append(facet)
         flip[facet] = ends[facet, 0] != vertex
         vertex = ends[facet, 0] if flip[facet] else ends[facet, 1]
         following = [f for f in at[vertex] if f != facet]
-        if not following:
-            return np.array(order), flip
+        if not following or following[0] == order[0]:
+            break
         facet = following[0]
+    if len(order) < len(ends):
+        raise CaseError(_not_one(surface))
+    return np.array(order), flip
+
+
+def _not_one(surface: str) -> str:
+    return (
+        f"geometry: the contact face {surface} is not one connected curve, open or closed; give "
+        "each part that touches a run of its own, or name one part only"
+    )

@@ -28,11 +28,13 @@ from ..bulk.kinematics import Model
 from ..errors import CaseError
 from .common_face import opposite, stretch
 from .face import Face
-from .refinement import BESIDE, SLIVER, Rule, rule
+from .refinement import BESIDE, SLIVER, Rule, folded, rule
 from .surface import Surface
 
 _SAME = 1e-10
 """Of the face's size: points nearer to each other are one."""
+_TWICE = 1e-3
+"""Of a facet: so much of it may have two facets opposite, by rounding and curved edges."""
 
 
 @dataclass(frozen=True)
@@ -140,11 +142,14 @@ def pair(
     Raises
     ------
     CaseError
-        If no point of body 1 faces body 2.
+        If no point of body 1 faces body 2, or it is not clear which points meet.
     """
     pieces = rule(face_1, face_2, order, refine, sliver, beside)
     if len(pieces.facet) == 0:
-        raise CaseError("geometry: the contact faces do not lie opposite each other")
+        raise CaseError(
+            f"geometry.contact: {face_1.name} and {face_2.name} do not lie opposite each other; "
+            "their outward normals must point against each other where they are to touch"
+        )
     return paired(face_1, face_2, model, pieces)
 
 
@@ -156,8 +161,13 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
     weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
     weights *= model.area_factor(on_face + (pairs.share * pairs.gap)[:, None] * pairs.normals)
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
+    if covered.max() > 1.0 + _TWICE:
+        raise CaseError(folded(face_1, face_2))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
-    group, first = _groups(on_face, _SAME * face_1.extent)
+    position = face_1.position(facet, t)
+    # along a curve by the length: both ends of a closed one are at the same place
+    places = on_face if isinstance(face_1, Surface) else position[:, None]
+    group, first = _groups(places, _SAME * face_1.extent)
     normals = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     sides = (
@@ -167,7 +177,7 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
     to_common = (pairs.share * pairs.gap)[first, None] * normals
     return Pairing(
         points=on_face[first] + to_common,
-        position=face_1.position(facet, t)[first],
+        position=position[first],
         weights=np.bincount(group, weights),
         normals=normals,
         gap=pairs.gap[first],

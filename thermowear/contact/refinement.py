@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..errors import CaseError
 from .clipping import parts_opposite
-from .common_face import opposite
+from .common_face import FACING, Opposite, opposite
 from .face import Face
 from .quadrature import gauss, lobatto, square
 from .surface import Surface
@@ -22,6 +23,10 @@ BESIDE = 1e-9
 SLIVER = 5e-3
 """Of a facet: so near to its ends, facets that are meant to match meet curved or worn ones. What
 bends there is integrated to half the square of it."""
+_BACK = 2.0
+"""Of their gap: so far may points opposite to consecutive ones go back."""
+_SAME = 1e-6
+"""Of the length of a face: the same by rounding."""
 
 
 @dataclass(frozen=True)
@@ -131,5 +136,38 @@ def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed
     """Those pieces, of so many points each, whose inner points have body 2 opposite."""
     pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
     meeting = pairs.meets(allowed * face_1.extent).reshape(-1, count)[:, inner]
-    kept = np.repeat(meeting.all(axis=1), count)
+    whole = meeting.all(axis=1)
+    kept = np.repeat(whole, count)
+    if isinstance(face_1, Face):
+        facing = (pairs.cosine <= FACING).reshape(-1, count)[:, inner].all(axis=1)
+        _check_order(face_1, face_2, pairs, whole, facing & ~whole)
     return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])
+
+
+def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, lost: np.ndarray):
+    """Refuse pieces of a chain whose opposite points are lost on the way, or go back.
+
+    Points may go back a little where faces have edges or bend: by less than they are apart.
+    """
+    between = np.flatnonzero(kept)
+    if len(between) == 0:
+        return
+    if lost[between[0] : between[-1]].any():
+        raise CaseError(folded(face_1, face_2))
+    chosen = np.repeat(kept, len(pairs.gap) // len(kept))
+    s, apart = face_2.position(pairs.facet, pairs.t)[chosen], np.abs(pairs.gap[chosen])
+    step, length = np.diff(s), face_2.sizes.sum()
+    if face_2.closed:
+        step = (step + length / 2) % length - length / 2
+    step = step * np.sign(np.median(step))
+    allowed = _BACK * np.maximum(apart[1:], apart[:-1]) + _SAME * length
+    if np.any(step < -allowed):
+        raise CaseError(folded(face_1, face_2))
+
+
+def folded(face_1: Face | Surface, face_2: Face | Surface) -> str:
+    """The message about faces of which it is not clear which points meet."""
+    return (
+        f"geometry.contact: it is not clear which points of {face_1.name} and {face_2.name} meet, "
+        "as one of them folds back opposite the other; name only the part that is to touch"
+    )

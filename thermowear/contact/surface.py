@@ -72,6 +72,8 @@ class Surface:
     softness : float or ndarray, shape (n_facets,)
         ``(1 - ν²) / E`` of the material behind each facet [1/Pa]; only its ratio to that of the
         other face counts.
+    name : str
+        Of the surface.
     """
 
     nodes: np.ndarray
@@ -81,6 +83,7 @@ class Surface:
     cell: np.ndarray
     local_facet: np.ndarray
     softness: float | np.ndarray = 1.0
+    name: str = "the contact face"
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of shape (n, 2) of facets, shape (n, 3) [m]."""
@@ -227,7 +230,8 @@ def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None =
     first, second = nodes[:, -1, 0] - nodes[:, 0, 0], nodes[:, 0, -1] - nodes[:, 0, 0]
     from_inside = nodes.mean(axis=(1, 2)) - inside[order]
     outward = np.sign(np.einsum("fi,fi->f", np.cross(first, second), from_inside))
-    return Surface(nodes, corners, outward, rank[order], cells[order], local[order], soft[order])
+    owner = rank[order], cells[order], local[order]
+    return Surface(nodes, corners, outward, *owner, soft[order], surface)
 
 
 def _grids(mesh) -> np.ndarray:

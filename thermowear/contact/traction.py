@@ -22,9 +22,9 @@ def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
     """Sᵀ: shape (n_owned, n_points). Every rank calls.
 
     ``S u = n·σ(u) n_1 / (n·n_1)`` of body 1 [Pa], compression negative, without the thermal part
-    (see `thermal_traction`): the traction on its own face, of normal n_1, along that of the common
-    face, whose area is smaller by ``n·n_1``. Where two facets share a point it is the mean of both cells, weighted with
-    the parts of its area, so that it converges like the stress inside.
+    (see `thermal_traction`): the traction on its own face, of normal n_1, along the normal of the
+    common face, whose area is smaller by ``n·n_1``. Where two facets share a point it is the mean
+    of both cells, weighted with the parts of its area, so that it converges like the stress inside.
     """
     space = elastic.space
     side, point, share = on_every_facet(pairing)

@@ -9,7 +9,7 @@ import numpy as np
 from ..bulk.bodies import Bodies, distribute
 from ..bulk.kinematics import Model, section_model
 from ..case.schema import Case
-from ..contact.face import gather_face
+from ..contact.closed_face import gather_faces
 from ..contact.holder import hold
 from ..contact.pairing import Pairing
 from ..contact.sliding import Sliding, sliding
@@ -109,7 +109,7 @@ def _paired(
     case: Case, comm, model: Model, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Pairing, np.ndarray]:
     softness = bodies.per_body(softness_of_parts(case))
-    faces = [gather_face(bodies, surface, softness) for surface in case.geometry.contact]
+    faces = gather_faces(bodies, case.geometry.contact, softness)
     if worn is None:
         return contact_points(case, comm, model, *faces)
     return worn_contact_points(case, model, worn, *faces)

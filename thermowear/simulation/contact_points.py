@@ -57,9 +57,7 @@ def worn_contact_points(
     to = motion.at(on_face)
     ways = ways_between(pairing.sides, worn.directions, np.abs(worn.depth).max(axis=1))
     facet, t, way = ahead(face_2, on_face + to, ways)
-    between, apart = (
-        np.einsum("ni,ni->n", pairing.normals, v) for v in (way[:, None] * ways, to)
-    )
+    between, apart = (np.einsum("ni,ni->n", pairing.normals, v) for v in (way[:, None] * ways, to))
     points = on_face + (pairing.share * between)[:, None] * pairing.normals
     sides = replace(first, face=face_1), replace(second, facet=facet, t=t)
     worn_pairing = replace(pairing, points=points, sides=sides)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from ..case.schema import Case
 from .condensed_method import CondensedMethod
@@ -13,6 +14,7 @@ from .observer import Observer
 from .outcome import Outcome
 from .outgrown import outgrown
 from .phases import Phases
+from .plausible import too_steep, went_back
 from .preparation import prepare
 from .reciprocating import reciprocating
 from .recording import profile
@@ -92,6 +94,11 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
+    steep = too_steep(outcome.system or system, outcome.contact.pressure)
+    if steep is not None:
+        observer.note(steep)
+    if outcome.stopped is None:
+        outcome = replace(outcome, stopped=went_back(system, outcome))
     large = not_small(system, outcome.interface)
     if large is not None:
         observer.note(large)

@@ -2,31 +2,34 @@
 
 from __future__ import annotations
 
-from ..case.analyses import Transient
+from ..case.analyses import Reciprocating, Transient
 from ..case.schema import Case
 from .wear_laws import wear_laws
 
 _PRESSURE, _SPEED = 1e7, 0.1
 """At which wear rates are compared: bodies that rub have the same exponents as a rule [Pa, m/s]."""
 LEAST = 1e-9
-"""Share of a body that does not wear, where the other one does."""
+"""Softness of the body that wears less, where that of the other one is 1."""
+_ALIKE = 1e-6
+"""Wear rates that differ by less are the same."""
 
 
 def softness_of_parts(case: Case) -> dict[str, float]:
     """Softness of each part of the bodies for `contact.common_face`; only ratios count.
 
     The gap between opposite points closes by the elastic deflection of both bodies. Where bodies
-    wear on and on, the deflection is soon small beside the wear, and the common face is that of
-    the body which wears less.
+    slide and wear on and on, the deflection is soon small beside the wear, and the common face is
+    that of the body which wears less.
     """
     wearing = _wear_rates(case)
-    if wearing:
-        bodies = case.geometry.bodies
-        largest = max(wearing.values())
-        rates = [max(wearing.get(k, 0.0), LEAST * largest) for k in range(len(bodies))]
-        pairs = zip(bodies, rates, strict=True)
-        return {part: rate for body, rate in pairs for part in case.geometry.parts_of(body)}
-    return {part: _elastic(case, part) for part in case.geometry.parts}
+    if not wearing:
+        return {part: _elastic(case, part) for part in case.geometry.parts}
+    largest = max(wearing.values())
+    softness = {}
+    for index, body in enumerate(case.geometry.bodies):
+        most = wearing.get(index, 0.0) >= (1 - _ALIKE) * largest
+        softness |= dict.fromkeys(case.geometry.parts_of(body), 1.0 if most else LEAST)
+    return softness
 
 
 def _elastic(case: Case, part: str) -> float:
@@ -39,7 +42,7 @@ def _elastic(case: Case, part: str) -> float:
 
 def _wear_rates(case: Case) -> dict[int, float]:
     """Wear rates of the bodies whose faces change, by index, at one pressure [m/s]."""
-    if not isinstance(case.analysis, Transient):
+    if not isinstance(case.analysis, Transient | Reciprocating):
         return {}
     bodies = case.geometry.bodies
     return {

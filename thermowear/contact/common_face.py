@@ -27,6 +27,8 @@ FACING = -0.5
 """Cosine between the outward normals of points that can meet: at most this."""
 _FLATTEST = 0.3
 """Cosine between a line and a normal of the face that it meets; steeper is taken for so much."""
+_BEHIND = 0.25
+"""Of a face's size: points that overlap by more are on the far sides of their bodies."""
 _PASSES = 40
 _SETTLED = 1e-13
 """Of a face's size."""
@@ -64,9 +66,18 @@ class Opposite:
     cosine: np.ndarray
     beside: np.ndarray
 
-    def meets(self, allowed: float) -> np.ndarray:
-        """Which points can meet those opposite, so far beside the other face at most [m]."""
-        return (self.cosine <= FACING) & (self.beside <= allowed)
+    def meets(self, size: float, allowed: float) -> np.ndarray:
+        """Which points can meet those opposite.
+
+        Parameters
+        ----------
+        size : float
+            Of the face [m].
+        allowed : float
+            So far beside the other face at most, of the size.
+        """
+        inside = (self.beside <= allowed * size) & (self.gap >= -_BEHIND * size)
+        return (self.cosine <= FACING) & inside
 
 
 @dataclass(frozen=True)

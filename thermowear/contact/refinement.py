@@ -86,7 +86,7 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
     pairs = opposite(
         face_2, np.append(np.arange(count), count - 1), np.append(np.zeros(count), 1.0), face_1
     )
-    meeting = pairs.meets(BESIDE * face_1.extent)
+    meeting = pairs.meets(face_1.extent, BESIDE)
     facet, t = pairs.facet[meeting], pairs.t[meeting]
     cuts = []
     for f in range(len(face_1.nodes)):
@@ -135,7 +135,7 @@ def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
 def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed: float) -> Rule:
     """Those pieces, of so many points each, whose inner points have body 2 opposite."""
     pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
-    meeting = pairs.meets(allowed * face_1.extent).reshape(-1, count)[:, inner]
+    meeting = pairs.meets(face_1.extent, allowed).reshape(-1, count)[:, inner]
     whole = meeting.all(axis=1)
     kept = np.repeat(whole, count)
     if isinstance(face_1, Face):

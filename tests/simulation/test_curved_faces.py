@@ -97,18 +97,21 @@ def test_the_shear_of_equal_cylinders_is_symmetric(tmp_path, round_body):
         assert np.abs(found.pressure - found.pressure[::-1]).max() < 1e-8 * limit
 
 
-@pytest.mark.parametrize(("radius", "near"), [(R, 1e-4), (R / 2, 3e-2)])
+@pytest.mark.parametrize(("radius", "near"), [(R, 1e-5), (R / 2, 2e-2)])
 def test_exchanged_bodies_answer_alike(tmp_path, round_body, radius, near):
     """requirement: which body is held does not matter, of unlike stiffness either; up to the error
     of the mesh where meshes differ, as the pressure has the facets of body 1."""
     soft, stiff = "70 GPa", "200 GPa"
-    other = round_body if radius == R else cylinder(radius, ZONE, 12)
+    other = round_body if radius == R else cylinder(radius, ZONE, 20)
     first = fretted(tmp_path / "a.msh", on_cylinder(round_body, other, 60.0), (soft, stiff))
     second = fretted(tmp_path / "b.msh", on_cylinder(other, round_body, 60.0), (stiff, soft))
+    x = np.linspace(-2 * ZONE, 2 * ZONE, 400)
     for name in ("pressure", "shear"):  # half a turn: x becomes -x
-        one, two = getattr(first, name), getattr(second, name)
-        turned = np.interp(first.x, -second.x[::-1], two[::-1])
-        assert np.abs(one - turned).max() < near * np.abs(first.pressure).max()
+        one, two = (
+            np.interp(x, sign * f.x[::sign], getattr(f, name)[::sign])
+            for sign, f in ((1, first), (-1, second))
+        )
+        assert np.abs(one - two).sum() < near * np.abs(one).sum()
 
 
 def test_faces_side_by_side_are_refused(tmp_path, round_body):

@@ -120,9 +120,9 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
         return project(other, points)[:2]
 
     points, out = face.points(facet, t), face.smooth_normals(facet, t)[0]
-    *closest, offset = project(other, points)
-    off = beside(other, *closest, offset)
-    facet, t, line = met(points, out, face.soft(facet), other, *closest, locate)
+    closest, at, offset = project(other, points)
+    off = beside(other, closest, at, offset)
+    facet, t, line = met(points, out, face.soft(facet), other, closest, at, locate)
     return Opposite(facet, t, line.normals, line.way, line.share, line.cosine, off)
 
 

@@ -168,8 +168,8 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
     # along a curve by the length: both ends of a closed one are at the same place
     places = on_face if isinstance(face_1, Surface) else position[:, None]
     group, first = _groups(places, _SAME * face_1.extent)
-    normals = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    summed = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
+    normals = summed / np.linalg.norm(summed, axis=1, keepdims=True)
     sides = (
         Side(face_1, facet[first], t[first]),
         Side(face_2, pairs.facet[first], pairs.t[first]),

@@ -40,8 +40,8 @@ def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarr
     facet = np.repeat(np.arange(len(nodes)), len(ends))
     own, _ = _raw(nodes, outward, facet, np.tile(ends, (len(nodes), 1)))
     _, number = np.unique(corners.reshape(-1), return_inverse=True)
-    mean = np.column_stack([np.bincount(number, component) for component in own.T])
-    mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-300)
+    summed = np.column_stack([np.bincount(number, component) for component in own.T])
+    mean = summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300)
     sharp = np.zeros(len(mean), dtype=bool)
     sharp[number[np.einsum("ni,ni->n", own, mean[number]) < _SHARP]] = True
     correction = np.where(sharp[number, None], 0.0, mean[number] - own)

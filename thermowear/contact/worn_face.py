@@ -56,7 +56,7 @@ def node_normals(face: Face | Surface) -> np.ndarray:
 
 
 def ways_between(
-    sides: tuple[Side, Side], directions: tuple[np.ndarray, np.ndarray], gone: np.ndarray
+    sides: tuple[Side, Side], directions: tuple[np.ndarray, ...], gone: np.ndarray
 ) -> np.ndarray:
     """Ways on which body 2 lies opposite, unit vectors at contact points, shape (n, gdim).
 

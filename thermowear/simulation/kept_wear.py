@@ -145,7 +145,7 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
 
 
 def _along_ways(
-    pairing: Pairing, directions: tuple[np.ndarray, np.ndarray], bodies: list[int]
+    pairing: Pairing, directions: tuple[np.ndarray, ...], bodies: list[int]
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points whose places on body 2 lie on the ways of the nodes of the bodies that wear.
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..case.analyses import Reciprocating, Transient
 from ..case.schema import Case
 from .wear_laws import wear_laws
 
-_PRESSURE, _SPEED = 1e7, 0.1
+_NOMINAL = np.array(1e7), np.array(0.1)
 """At which wear rates are compared: bodies that rub have the same exponents as a rule [Pa, m/s]."""
 LEAST = 1e-9
 """Softness of the body that wears less, where that of the other one is 1."""
@@ -25,7 +27,7 @@ def softness_of_parts(case: Case) -> dict[str, float]:
     if not wearing:
         return {part: _elastic(case, part) for part in case.geometry.parts}
     largest = max(wearing.values())
-    softness = {}
+    softness: dict[str, float] = {}
     for index, body in enumerate(case.geometry.bodies):
         most = wearing.get(index, 0.0) >= (1 - _ALIKE) * largest
         softness |= dict.fromkeys(case.geometry.parts_of(body), 1.0 if most else LEAST)
@@ -46,7 +48,7 @@ def _wear_rates(case: Case) -> dict[int, float]:
         return {}
     bodies = case.geometry.bodies
     return {
-        index: float(law.rate(_PRESSURE, _SPEED))
+        index: float(law.rate(*_NOMINAL))
         for index, law in wear_laws(case).items()
         if case.wear[bodies[index]].spread == "in-place"
     }

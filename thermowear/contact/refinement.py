@@ -20,9 +20,8 @@ from .surface import Surface
 BESIDE = 1e-9
 """Of the face's size: points that lie further beside body 2 have nothing opposite."""
 
-SLIVER = 5e-3
-"""Of a facet: so near to its ends, facets that are meant to match meet curved or worn ones. What
-bends there is integrated to half the square of it."""
+SLIVER = 1e-9
+"""Of a facet: it is not cut so near to its ends."""
 _BACK = 2.0
 """Of their gap: so far may points opposite to consecutive ones go back."""
 _SAME = 1e-6

@@ -17,6 +17,8 @@ from .facets import lagrange, lagrange_bends, lagrange_slopes
 
 _SHARP = np.cos(np.radians(20.0))
 """Cosine between the normal of a facet and the mean at its corner: below, the corner is an edge."""
+_SLIGHT = 0.02
+"""Of a unit normal: what curved or short facets are off at their ends."""
 
 
 def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarray) -> np.ndarray:
@@ -40,12 +42,22 @@ def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarr
     facet = np.repeat(np.arange(len(nodes)), len(ends))
     own, _ = _raw(nodes, outward, facet, np.tile(ends, (len(nodes), 1)))
     _, number = np.unique(corners.reshape(-1), return_inverse=True)
-    summed = np.column_stack([np.bincount(number, component) for component in own.T])
+    # a facet of an arc is off at its ends by its size to the power of its order
+    across = nodes.reshape(len(nodes), -1, nodes.shape[-1])[:, [0, -1]]
+    size = np.linalg.norm(across[:, 1] - across[:, 0], axis=1)
+    weight = np.repeat((size.min() / size) ** (nodes.shape[1] - 1), len(ends))
+    summed = np.column_stack([np.bincount(number, weight * component) for component in own.T])
     mean = summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300)
     sharp = np.zeros(len(mean), dtype=bool)
     sharp[number[np.einsum("ni,ni->n", own, mean[number]) < _SHARP]] = True
     correction = np.where(sharp[number, None], 0.0, mean[number] - own)
-    return correction.reshape(len(nodes), len(ends), -1)
+    correction = correction.reshape(len(nodes), len(ends), -1)
+    if dim == 1:  # a facet of an arc is off by as much the other way at an end of the face
+        free = (np.bincount(number) == 1)[number].reshape(-1, 2)
+        slight = np.linalg.norm(correction, axis=2).max(axis=1) < _SLIGHT
+        mirrored = free & slight[:, None]
+        correction[mirrored] = -correction[:, ::-1][mirrored]
+    return correction
 
 
 def smooth_normals(

@@ -12,7 +12,7 @@ from ..contact.face import Face
 from ..contact.pairing import Pairing, pair, paired
 from ..contact.pressure import pressure_basis
 from ..contact.projection import ahead
-from ..contact.refinement import BESIDE
+from ..contact.refinement import BESIDE, SLIVER
 from ..contact.surface import Surface
 from ..contact.worn_face import ways_between
 from ..laws.motions import RigidMotion
@@ -20,6 +20,8 @@ from .initial_shape import initial_gap
 from .shares import LEAST
 from .worn_geometry import WornGeometry
 
+_SLIVER = 1e-3
+"""Of a facet: so near to its ends, facets that matched when they were new meet worn ones."""
 _ALONG = 0.05
 """Of a face: so far a holder may take it along the other one, past its end."""
 
@@ -48,7 +50,7 @@ def worn_contact_points(
     motion = RigidMotion(moved, turned, np.zeros(3))
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
     if worn.pieces is None:
-        pairing, basis = _points(case, model, closer, face_2, _beside(worn, face_1))
+        pairing, basis = _points(case, model, closer, face_2, _SLIVER, _beside(worn, face_1))
     else:
         pairing = paired(closer, face_2, model, worn.pieces)
         basis = _basis(case, pairing)
@@ -88,14 +90,14 @@ def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:
 
 
 def _points(
-    case: Case, model: Model, face_1, face_2, beside: float = BESIDE
+    case: Case, model: Model, face_1, face_2, sliver: float = SLIVER, beside: float = BESIDE
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points of two faces, and pressure space Ψ."""
     degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree
     if pressure_degree == "lobatto":  # point by point, at the nodes of body 1's facets
         pairing = pair(face_1, face_2, model, degree + 1, refine=False)
         return pairing, np.eye(len(pairing.weights))
-    pairing = pair(face_1, face_2, model, degree + 2, beside=beside)
+    pairing = pair(face_1, face_2, model, degree + 2, sliver=sliver, beside=beside)
     return pairing, _basis(case, pairing)
 
 

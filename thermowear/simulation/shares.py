@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..case.analyses import Reciprocating, Transient
+from ..case.analyses import Fretting
 from ..case.schema import Case
 from .wear_laws import wear_laws
 
@@ -44,7 +44,7 @@ def _elastic(case: Case, part: str) -> float:
 
 def _wear_rates(case: Case) -> dict[int, float]:
     """Wear rates of the bodies whose faces change, by index, at one pressure [m/s]."""
-    if not isinstance(case.analysis, Transient | Reciprocating):
+    if isinstance(case.analysis, Fretting):
         return {}
     bodies = case.geometry.bodies
     return {

@@ -1,5 +1,7 @@
 """Points of faces that lie opposite others: the closest ones, and those straight ahead."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -51,6 +53,7 @@ def test_only_the_ends_of_a_face_have_something_beside_them():
 def test_a_face_may_reach_past_the_other():
     """Its pieces beside the other face count where they are asked for, all others always."""
     lower, upper = chain([0.0, 1.0, 2.0], [0.0] * 3), chain([0.05, 1.05, 2.05], [0.1] * 3)
+    upper = replace(upper, outward=-upper.outward)
     strict, generous = (rule(upper, lower, 4, True, 1e-9, size) for size in (1e-9, 0.05))
     assert strict.weight.sum() == pytest.approx(1.95)
     assert generous.weight.sum() == pytest.approx(2.0)

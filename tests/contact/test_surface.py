@@ -9,7 +9,7 @@ from dolfinx import fem
 from thermowear import CaseError
 from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial
-from thermowear.contact.clipping import opposite
+from thermowear.contact.clipping import parts_opposite
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis
 from thermowear.contact.projection import project
@@ -119,7 +119,7 @@ def test_parts_are_where_both_facets_are(axes):
     lower = replace(lower, nodes=((square.transpose(axes) - middle) @ turn.T + middle)[None])
     if upper.middle_normals[0] @ lower.middle_normals[0] > 0:
         lower = replace(lower, outward=-lower.outward)
-    facet, corners = opposite(upper, lower)
+    facet, corners = parts_opposite(upper, lower)
     assert set(facet) == {0}
     side = np.sqrt(2) - 1
     following = np.roll(corners, -1, axis=1)

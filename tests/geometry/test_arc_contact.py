@@ -151,7 +151,7 @@ def test_faces_pair_and_the_press_closes_them(geometry, outward):
     requirement: no gap; normals of body 1 along the radius, to the disk inside or to the ring
     outside; the nominal area is what a uniform pressure has along the press.
     """
-    bodies = distribute(geometry.build(Mesh(elements=24), None), MPI.COMM_SELF)
+    bodies = distribute(geometry.build(Mesh(elements=32), None), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
     pairing = pair(*faces, section_model("plane-strain", geometry.thickness_factor), 8)
     assert pairing.unpaired < 1e-12

@@ -183,17 +183,24 @@ def test_meshes_are_as_small_as_promised():
 )
 def test_the_gap_is_that_of_a_circle(geometry, model):
     """
-    requirement: faces chain and pair; the initial gap is exact to 1e-8 of the radius.
+    requirement: faces chain and pair along the common normal, which halves the angle between the
+    faces of like bodies; the initial gap is exact to 1e-8 of the radius.
     """
     division = Mesh(elements=6, grading=0.3, bodies={"block": {"elements": 10}})
     bodies = distribute(geometry.build(division, (-5e-4, 5e-4)), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
     pairing = pair(*faces, section_model(model, geometry.thickness_factor), 8)
-    x, y = pairing.points.T
+    first, second = (side.face.points(side.facet, side.t) for side in pairing.sides)
+    x, y = first.T
     assert x.max() > 9e-4
     np.testing.assert_allclose(np.hypot(x, y - R), R, atol=1e-9 * R)
-    np.testing.assert_allclose(y, R - np.sqrt(R**2 - x**2), atol=1e-8 * R)
-    np.testing.assert_allclose(pairing.gap, -y * pairing.normals[:, 1], atol=1e-12)
+    half = np.arcsin(x / R) / 2
+    normals = np.column_stack([np.sin(half), -np.cos(half)])
+    gap = (R - R * np.cos(2 * half)) / np.cos(half)
+    np.testing.assert_allclose(pairing.normals, normals, atol=1e-6)
+    np.testing.assert_allclose(pairing.gap, gap, atol=1e-8 * R)
+    np.testing.assert_allclose(second, first + gap[:, None] * normals, atol=1e-8 * R)
+    np.testing.assert_allclose(pairing.points, (first + second) / 2, atol=1e-12)
 
 
 def test_expected_zones_are_those_of_hertz():

@@ -109,14 +109,17 @@ def test_they_touch_at_the_bottom_and_gape_beside_it(zone):
     faces = [gather_face(bodies, name) for name in geometry.contact]
     pairing = pair(*faces, section_model("plane-strain", geometry.thickness_factor), 6)
     assert pairing.unpaired < 1e-12
-    x, y = pairing.points.T
+    first, second = (side.face.points(side.facet, side.t) for side in pairing.sides)
     hole = R + geometry.support_clearance
-    exact = hole - np.hypot(x, y - hole)
+    out_1, out_2 = (first - [0.0, R]) / R, -(second - [0.0, hole]) / hole
+    normals = (out_1 - out_2) / np.linalg.norm(out_1 - out_2, axis=1, keepdims=True)
+    np.testing.assert_allclose(pairing.normals, normals, atol=2e-4)
+    exact = np.einsum("ni,ni->n", second - first, normals)
     assert exact.max() > 3e-6
     np.testing.assert_allclose(pairing.gap, exact, rtol=5e-4, atol=1e-7 * R)
-    assert pairing.gap[np.abs(x).argmin()] == pytest.approx(0.0, abs=1e-3 * exact.max())
-    radial = np.column_stack([x, y - R]) / R
-    np.testing.assert_allclose(pairing.normals, radial, atol=2e-4)
+    across = second - first - exact[:, None] * normals
+    assert np.linalg.norm(across, axis=1).max() < 3e-4 * exact.max()
+    assert pairing.gap[np.abs(first[:, 0]).argmin()] == pytest.approx(0.0, abs=1e-3 * exact.max())
 
 
 def test_the_expected_zone_is_that_of_hertz_up_to_a_limit():

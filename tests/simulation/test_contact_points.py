@@ -52,8 +52,8 @@ def test_the_unworn_gap_stays_where_faces_are_slanted():
     near = after.points[:, 0] < wide
     assert after.normals[near, 0].max() > 0.25
     assert after.sides[1].face.nodes[0, 0, 1] == pytest.approx(-deep, rel=0.01)
-    cos = np.sqrt(1 - (after.points[:, 0] / RADIUS) ** 2)
-    unworn = RADIUS * (1 - cos) * cos  # of a circle above a plane, along its normals
+    cos = -after.normals[:, 1]  # those of the cylinder, the block wears
+    unworn = RADIUS * (1 / cos - 1)  # of a circle above a plane, along its normals
     assert after.gap[near] == pytest.approx(unworn[near], abs=2e-4 * deep)
 
 

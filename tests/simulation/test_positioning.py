@@ -67,7 +67,7 @@ def test_friction_moves_the_contact_and_the_mesh_follows(way):
     for edge in zone:
         assert np.abs(ends - edge).min() <= 0.1 * smallest
     width = zone[1] - zone[0]
-    assert 0.01 * width < -way * sum(zone) / 2 < 0.03 * width  # it trails
+    assert 0.005 * width < -way * sum(zone) / 2 < 0.015 * width  # it trails
     assert smallest < 0.05 * width
 
 
@@ -126,7 +126,7 @@ def test_edges_settle_or_it_is_said():
 
 # ---- Hertz's line contact ----
 
-CONVERGED = 1.00097698
+CONVERGED = 1.00057897
 """Peak over ``√(F E*/(π R))`` of the starter case, with 32 elements of degree 8."""
 
 UNPOSITIONED = {20: 1.58e-3, 40: 4.4e-4, 80: 9.7e-5, 160: 1.9e-5}

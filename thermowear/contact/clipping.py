@@ -1,15 +1,18 @@
 """Which parts of the facets of one surface lie opposite to which facets of another.
 
 Everything happens in the parameters of a facet of body 1, a unit square: the facets of body 2 are
-drawn into it by their outlines and clipped by its sides (Sutherland and Hodgman, Commun. ACM 17
-(1974) 32). Facets of body 2 that share an edge have it at the same place, so the parts lie side by
-side without gaps, on curved facets too.
+drawn into it by their outlines, at the points opposite to them (see `common_face`), and clipped by
+its sides (Sutherland and Hodgman, Commun. ACM 17 (1974) 32). Facets of body 2 that share an edge
+have it at the same place, so the parts lie side by side without gaps, on curved facets too.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from .common_face import FACING, met
 from .projection import within
 from .surface import Surface
 
@@ -25,7 +28,7 @@ _RING = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a facet in order round it."""
 
 
-def opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
+def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
     """Parts of the facets of body 1 that have a facet of body 2 opposite to them.
 
     Returns
@@ -37,41 +40,82 @@ def opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
     """
     facets, parts, outlines = [], [], _outlines(face_2)
     for facet in range(len(face_1.nodes)):
-        facing = face_2.middle_normals @ face_1.middle_normals[facet] < 0
-        for ring in _drawn(face_1, facet, outlines[facing]):
+        facing = face_2.middle_normals @ face_1.middle_normals[facet] <= FACING
+        for ring in _drawn(face_1, facet, outlines.only(facing)):
             pieces = _quadrilaterals(_clipped(ring))
             facets += [facet] * len(pieces)
             parts += pieces
     return np.array(facets, dtype=np.int64), np.array(parts).reshape(-1, 4, 2)
 
 
-def _outlines(face: Surface) -> np.ndarray:
-    """Points along the edges of each facet, corner to corner, shape (n, 4, steps + 1, 3) [m]."""
+@dataclass(frozen=True)
+class _Outlines:
+    """Points along the edges of facets, corner to corner.
+
+    Attributes
+    ----------
+    points, normals : ndarray, shape (n, 4, steps + 1, 3)
+    soft : ndarray, shape (n, 4, steps + 1)
+        Softness of the body behind them [1/Pa].
+    """
+
+    points: np.ndarray
+    normals: np.ndarray
+    soft: np.ndarray
+
+    def only(self, chosen: np.ndarray) -> _Outlines:
+        return _Outlines(self.points[chosen], self.normals[chosen], self.soft[chosen])
+
+
+def _outlines(face: Surface) -> _Outlines:
     ring = np.array(_RING, dtype=float)
     part = np.arange(_STEPS + 1)[:, None] / _STEPS
     t = ring[:, None] + part * (np.roll(ring, -1, axis=0) - ring)[:, None]
-    count, places = len(face.nodes), t.reshape(-1, 2)
-    facet = np.repeat(np.arange(count), len(places))
-    return face.points(facet, np.tile(places, (count, 1))).reshape(count, 4, _STEPS + 1, 3)
+    shape, places = (len(face.nodes), 4, _STEPS + 1), t.reshape(-1, 2)
+    facet, at = np.repeat(np.arange(shape[0]), len(places)), np.tile(places, (shape[0], 1))
+    points, normals = face.points(facet, at), face.smooth_normals(facet, at)[0]
+    return _Outlines(
+        points.reshape(*shape, 3), normals.reshape(*shape, 3), face.soft(facet).reshape(shape)
+    )
 
 
-def _drawn(face_1: Surface, facet: int, outlines: np.ndarray) -> list[np.ndarray]:
+def _drawn(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]:
     """Outlines near a facet of body 1 in its parameters, without needless points, each (n, 2)."""
-    flat, curved = face_1.flattened.only(facet), not face_1.flat[facet]
-    t = flat.parameters(outlines.reshape(-1, 3)).reshape(outlines.shape[:-1] + (2,))
-    margin = 0.5 if curved else 0.0
+    flat = face_1.flattened.only(facet)
+    t = flat.parameters(outlines.points.reshape(-1, 3)).reshape(outlines.soft.shape + (2,))
+    parallel = face_1.flat[facet] and _level(outlines.normals, face_1.middle_normals[facet])
+    margin = 0.0 if parallel else 0.5
     near = (t.min(axis=(1, 2)) < 1 + margin) & (t.max(axis=(1, 2)) > -margin)
-    t, outlines = t[near.all(axis=1)], outlines[near.all(axis=1)]
-    if curved:
+    chosen = near.all(axis=1)
+    t, outlines = t[chosen], outlines.only(chosen)
+    if not parallel and len(t):
         close = np.all((t > -1) & (t < 2), axis=-1)  # farther away it does not matter where
-        on = np.full(close.sum(), facet)
-        t[close] = within(face_1, outlines[close], on, t[close], bounds=(-np.inf, np.inf))
+        t[close] = _opposite_within(face_1, facet, outlines, close)
     for side in (0.0, 1.0):
         t[np.abs(t - side) < _SAME] = side
     kept = _needed(t)
     rings = [edges[:, :-1][chosen] for edges, chosen in zip(t, kept, strict=True)]
     # seen from body 1 the facets of body 2 may run either way round
     return [ring if _area(ring) > 0 else ring[::-1] for ring in rings]
+
+
+def _level(normals: np.ndarray, against: np.ndarray) -> bool:
+    """Whether all normals are opposite to one."""
+    return bool(np.abs(normals + against).max(initial=0.0) < _SAME)
+
+
+def _opposite_within(
+    face_1: Surface, facet: int, outlines: _Outlines, chosen: np.ndarray
+) -> np.ndarray:
+    """Parameters on a facet, continued beyond its edges, opposite to points of outlines (n, 2)."""
+    on = np.full(int(chosen.sum()), facet)
+
+    def locate(points: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        start = face_1.flattened.only(facet).parameters(points)[:, 0]
+        return on[which], within(face_1, points, on[which], start, bounds=(-np.inf, np.inf))
+
+    columns = outlines.points[chosen], outlines.normals[chosen], outlines.soft[chosen]
+    return met(*columns, face_1, *locate(columns[0], np.arange(len(on))), locate)[1]
 
 
 def _needed(edges: np.ndarray) -> np.ndarray:

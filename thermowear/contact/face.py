@@ -10,15 +10,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from dolfinx import fem
 
 from ..bulk.bodies import Bodies
 from ..compat import entities_to_geometry_layout, geometry_dofmap
 from ..errors import CaseError
-from .facets import lagrange, lagrange_slopes, owned_facets
+from .facets import lagrange, lagrange_slopes, owned_facets, softness_behind
 from .quadrature import lobatto
+from .smooth_normals import corner_corrections, smooth_normals
 from .surface import Surface, gather_surface
 
-_ONWARD = (1.0, 0.3)
+ONWARD = (1.0, 0.3)
 """Along x; faces that stand upright begin at their lower end, even when it has worn a little."""
 
 
@@ -36,6 +38,11 @@ class Face:
         Who owns the facet's cell, its local index there, and which of its facets it is.
     reversed : ndarray of bool, shape (n_facets,)
         Whether t runs against the cell's own direction of the facet.
+    softness : float or ndarray, shape (n_facets,)
+        ``(1 - ν²) / E`` of the material behind each facet [1/Pa]; only its ratio to that of the
+        other face counts.
+    name : str
+        Of the surface.
     """
 
     nodes: np.ndarray
@@ -44,6 +51,8 @@ class Face:
     cell: np.ndarray
     local_facet: np.ndarray
     reversed: np.ndarray
+    softness: float | np.ndarray = 1.0
+    name: str = "the contact face"
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, 2) [m]."""
@@ -59,6 +68,17 @@ class Face:
         tangent = self.tangents(facet, t)
         normal = np.column_stack([tangent[:, 1], -tangent[:, 0]]) * self.outward[facet, None]
         return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+    def smooth_normals(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Normals that are continuous across facets, and their derivatives along t.
+
+        Shapes (n, 2) and (n, 1, 2).
+        """
+        return smooth_normals(self.nodes, self.outward, self._corrections, facet, t[:, None])
+
+    def soft(self, facet: np.ndarray) -> np.ndarray:
+        """Softness behind facets, shape (n,) [1/Pa]."""
+        return np.broadcast_to(self.softness, len(self.nodes))[facet]
 
     def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Length per parameter, shape (n,) [m]."""
@@ -80,6 +100,11 @@ class Face:
         return self._length_within(every, np.ones(len(every)))
 
     @property
+    def closed(self) -> bool:
+        """Whether the chain ends where it begins."""
+        return bool(np.all(self.nodes[0, 0] == self.nodes[-1, -1]))
+
+    @property
     def extent(self) -> float:
         """Size of the face [m]."""
         return float(np.ptp(self.nodes.reshape(-1, 2), axis=0).max())
@@ -88,6 +113,13 @@ class Face:
         """Numbers of continuous polynomials' coefficients, shape (n_facets, degree + 1)."""
         return np.arange(len(self.nodes))[:, None] * degree + np.arange(degree + 1)
 
+    @cached_property
+    def _corrections(self) -> np.ndarray:
+        corners = np.arange(len(self.nodes))[:, None] + np.arange(2)
+        if self.closed:
+            corners %= len(self.nodes)
+        return corner_corrections(self.nodes, self.outward, corners)
+
     def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Length of each facet from its start to t [m]."""
         x, w = lobatto(self.nodes.shape[1] + 4)
@@ -95,18 +127,28 @@ class Face:
         return t * (self.stretch(np.repeat(facet, len(x)), at).reshape(-1, len(x)) @ w)
 
 
-def gather_face(bodies: Bodies, surface: str) -> Face | Surface:
-    """Collect a surface's facets from all ranks and put them in order; every rank calls."""
+def gather_face(
+    bodies: Bodies, surface: str, softness: fem.Function | None = None
+) -> Face | Surface:
+    """Collect a surface's facets from all ranks and put them in order; every rank calls.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    surface : str
+    softness : dolfinx.fem.Function, optional
+        ``(1 - ν²) / E``, constant on each cell; without it all materials count alike [1/Pa].
+    """
     gather = gather_surface if bodies.mesh.topology.dim == 3 else _gather_chain
-    return gather(bodies, surface)
+    return gather(bodies, surface, softness)
 
 
-def _gather_chain(bodies: Bodies, surface: str) -> Face:
+def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -> Face:
     mesh = bodies.mesh
     local = _local_facets(bodies, surface)
-    parts = mesh.comm.allgather(local)
-    nodes, ends, inside, rank, cell, local_facet = (
-        np.concatenate([part[k] for part in parts]) for k in range(6)
+    parts = mesh.comm.allgather((*local, softness_behind(local[4], softness)))
+    nodes, ends, inside, rank, cell, local_facet, soft = (
+        np.concatenate([part[k] for part in parts]) for k in range(7)
     )
     if len(nodes) == 0:
         raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
@@ -116,7 +158,8 @@ def _gather_chain(bodies: Bodies, surface: str) -> Face:
     tangent = nodes[:, -1] - nodes[:, 0]
     inward = inside[order] - nodes.mean(axis=1)
     turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
-    return Face(nodes, -np.sign(turned), rank[order], cell[order], local_facet[order], flip)
+    owner = rank[order], cell[order], local_facet[order]
+    return Face(nodes, -np.sign(turned), *owner, flip, soft[order], surface)
 
 
 def _local_facets(bodies: Bodies, surface: str):
@@ -137,7 +180,10 @@ def _local_facets(bodies: Bodies, surface: str):
 
 
 def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:
-    """Order of the facets from the first end to the last, and which must be turned round."""
+    """Order of the facets from the first end to the last, and which must be turned round.
+
+    A closed curve begins anywhere, see `closed_face`.
+    """
     vertices, compact = np.unique(ends, return_inverse=True)
     ends = compact.reshape(ends.shape)
     at: list[list[int]] = [[] for _ in vertices]
@@ -145,16 +191,26 @@ def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarra
         for vertex in pair:
             at[vertex].append(facet)
     loose = [v for v, facets in enumerate(at) if len(facets) == 1]
-    if len(loose) != 2:
-        raise CaseError(f"geometry: the contact face {surface} is not one connected open curve")
-    where = {v: nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1] for v in loose}
-    vertex = min(loose, key=lambda v: float(where[v] @ _ONWARD))
+    if len(loose) not in (0, 2) or max(len(facets) for facets in at) > 2:
+        raise CaseError(_not_one(surface))
+    where = {v: nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1] for v in loose or (0,)}
+    vertex = min(where, key=lambda v: float(where[v] @ ONWARD))
     order, flip, facet = [], np.zeros(len(ends), dtype=bool), at[vertex][0]
-    while True:
+    for _ in ends:
         order.append(facet)
         flip[facet] = ends[facet, 0] != vertex
         vertex = ends[facet, 0] if flip[facet] else ends[facet, 1]
         following = [f for f in at[vertex] if f != facet]
-        if not following:
-            return np.array(order), flip
+        if not following or following[0] == order[0]:
+            break
         facet = following[0]
+    if len(order) < len(ends):
+        raise CaseError(_not_one(surface))
+    return np.array(order), flip
+
+
+def _not_one(surface: str) -> str:
+    return (
+        f"geometry: the contact face {surface} is not one connected curve, open or closed; give "
+        "each part that touches a run of its own, or name one part only"
+    )

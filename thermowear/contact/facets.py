@@ -6,6 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from dolfinx import fem
 from numpy.polynomial.polynomial import polyder
 
 from ..bulk.bodies import Bodies
@@ -49,6 +50,13 @@ def parts_of_facets(bodies: Bodies, face: Face | Surface) -> np.ndarray:
     return comm.allreduce(parts)
 
 
+def softness_behind(cells: np.ndarray, softness: fem.Function | None) -> np.ndarray:
+    """Softness of some cells of this rank, 1 where none is given, shape (n,) [1/Pa]."""
+    if softness is None:
+        return np.ones(len(cells))
+    return softness.x.array[softness.function_space.dofmap.list[cells, 0]].astype(float)
+
+
 def lagrange(order: int, t: np.ndarray) -> np.ndarray:
     """Lagrange polynomials with equally spaced nodes on [0, 1], shape (n, order + 1)."""
     return np.vander(t, order + 1, increasing=True) @ _coefficients(order)
@@ -57,6 +65,12 @@ def lagrange(order: int, t: np.ndarray) -> np.ndarray:
 def lagrange_slopes(order: int, t: np.ndarray) -> np.ndarray:
     """Their derivatives, shape (n, order + 1)."""
     return np.vander(t, order, increasing=True) @ polyder(_coefficients(order))
+
+
+def lagrange_bends(order: int, t: np.ndarray) -> np.ndarray:
+    """Their second derivatives, shape (n, order + 1)."""
+    knots = np.linspace(0.0, 1.0, order + 1)
+    return lagrange_slopes(order, t) @ lagrange_slopes(order, knots)
 
 
 @cache

@@ -2,7 +2,8 @@
 
 Sign convention (the only place where it is stated)
 ---------------------------------------------------
-``n`` is the outward normal of body 1, the held body. The gap is open where positive::
+``n`` is the normal of the common face, see `common_face`, outward from body 1, the held body. The
+gap is open where positive::
 
     g = g0 + (u2 - u1)·n
 
@@ -25,13 +26,15 @@ from scipy.spatial import cKDTree
 
 from ..bulk.kinematics import Model
 from ..errors import CaseError
+from .common_face import opposite, stretch
 from .face import Face
-from .projection import project
-from .refinement import BESIDE, Rule, rule
+from .refinement import BESIDE, SLIVER, Rule, folded, rule
 from .surface import Surface
 
 _SAME = 1e-10
 """Of the face's size: points nearer to each other are one."""
+_TWICE = 1e-3
+"""Of a facet: so much of it may have two facets opposite, by rounding and curved edges."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,11 @@ class Side:
     facet: np.ndarray
     t: np.ndarray
 
+    @property
+    def points(self) -> np.ndarray:
+        """Coordinates, shape (n, gdim) [m]."""
+        return self.face.points(self.facet, self.t)
+
 
 @dataclass(frozen=True)
 class Pairing:
@@ -58,14 +66,17 @@ class Pairing:
     Attributes
     ----------
     points : ndarray, shape (n, gdim) [m]
+        On the common face.
     position : ndarray, shape (n,)
-        Length along the face from its first end [m]; NaN on a surface.
+        Length along the face of body 1 from its first end [m]; NaN on a surface.
     weights : ndarray, shape (n,)
-        Area each point stands for [m²].
+        Area of the common face that each point stands for [m²].
     normals : ndarray, shape (n, gdim)
-        Outward unit normals of body 1.
+        Unit normals of the common face, outward from body 1.
     gap : ndarray, shape (n,)
         Of the unloaded, unworn bodies along the normal [m].
+    share : ndarray, shape (n,)
+        s_1: what body 1 takes of the approach of opposite points.
     sides : tuple of Side
         On body 1 and body 2.
     unpaired : float
@@ -79,6 +90,7 @@ class Pairing:
     weights: np.ndarray
     normals: np.ndarray
     gap: np.ndarray
+    share: np.ndarray
     sides: tuple[Side, Side]
     unpaired: float
     pieces: Rule
@@ -87,6 +99,11 @@ class Pairing:
     def extent(self) -> float:
         """Size of the face of body 1 [m]."""
         return self.sides[0].face.extent
+
+    @property
+    def on_body_1(self) -> np.ndarray:
+        """The points on the face of body 1, shape (n, gdim) [m]."""
+        return self.sides[0].points
 
     def locate(self, position) -> np.ndarray:
         """Coordinates of positions along the face of a plane body, shape (n, 2) [m]."""
@@ -100,7 +117,7 @@ def pair(
     model: Model,
     order: int,
     refine: bool = True,
-    sliver: float = 1e-9,
+    sliver: float = SLIVER,
     beside: float = BESIDE,
 ) -> Pairing:
     """Pair two faces on their common refinement.
@@ -125,35 +142,46 @@ def pair(
     Raises
     ------
     CaseError
-        If no point of body 1 faces body 2.
+        If no point of body 1 faces body 2, or it is not clear which points meet.
     """
     pieces = rule(face_1, face_2, order, refine, sliver, beside)
     if len(pieces.facet) == 0:
-        raise CaseError("geometry: the contact faces do not lie opposite each other")
+        raise CaseError(
+            f"geometry.contact: {face_1.name} and {face_2.name} do not lie opposite each other; "
+            "their outward normals must point against each other where they are to touch"
+        )
     return paired(face_1, face_2, model, pieces)
 
 
 def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces: Rule) -> Pairing:
     """Pair two faces at given points of the face of body 1; those that coincide are one."""
     facet, t = pieces.facet, pieces.t
-    points, normals = face_1.points(facet, t), face_1.normals(facet, t)
-    weights = pieces.weight * face_1.stretch(facet, t) * model.area_factor(points)
-    other, other_t, offset = project(face_2, points)
-    gap = np.einsum("ni,ni->n", offset, normals)
+    on_face = face_1.points(facet, t)
+    pairs = opposite(face_1, facet, t, face_2)
+    weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
+    weights *= model.area_factor(on_face + (pairs.share * pairs.gap)[:, None] * pairs.normals)
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
+    if covered.max() > 1.0 + _TWICE:
+        raise CaseError(folded(face_1, face_2))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
-    group, first = _groups(points, _SAME * face_1.extent)
-    weights = np.bincount(group, weights)
-    normals = np.column_stack([np.bincount(group, n) for n in normals.T])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    sides = (Side(face_1, facet[first], t[first]), Side(face_2, other[first], other_t[first]))
-    position = face_1.position(facet, t)[first]
+    position = face_1.position(facet, t)
+    # along a curve by the length: both ends of a closed one are at the same place
+    places = on_face if isinstance(face_1, Surface) else position[:, None]
+    group, first = _groups(places, _SAME * face_1.extent)
+    summed = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
+    normals = summed / np.linalg.norm(summed, axis=1, keepdims=True)
+    sides = (
+        Side(face_1, facet[first], t[first]),
+        Side(face_2, pairs.facet[first], pairs.t[first]),
+    )
+    to_common = (pairs.share * pairs.gap)[first, None] * normals
     return Pairing(
-        points=points[first],
-        position=position,
-        weights=weights,
+        points=on_face[first] + to_common,
+        position=position[first],
+        weights=np.bincount(group, weights),
         normals=normals,
-        gap=gap[first],
+        gap=pairs.gap[first],
+        share=pairs.share[first],
         sides=sides,
         unpaired=max(unpaired, 0.0),
         pieces=pieces,

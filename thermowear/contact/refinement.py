@@ -10,14 +10,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .clipping import opposite
+from ..errors import CaseError
+from .clipping import parts_opposite
+from .common_face import FACING, Opposite, opposite
 from .face import Face
-from .projection import beside, project
 from .quadrature import gauss, lobatto, square
 from .surface import Surface
 
 BESIDE = 1e-9
 """Of the face's size: points that lie further beside body 2 have nothing opposite."""
+
+SLIVER = 1e-9
+"""Of a facet: it is not cut so near to its ends."""
+_BACK = 2.0
+"""Of their gap: so far may points opposite to consecutive ones go back."""
+_SAME = 1e-6
+"""Of the length of a face: the same by rounding."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +81,12 @@ def _on_pieces(
 
 def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
     """Parameters at which each facet of body 1 is cut, its own ends included."""
-    ends = np.concatenate([face_2.nodes[:, 0], face_2.nodes[-1:, -1]])
-    facet, t, _ = project(face_1, ends)
+    count = len(face_2.nodes)
+    pairs = opposite(
+        face_2, np.append(np.arange(count), count - 1), np.append(np.zeros(count), 1.0), face_1
+    )
+    meeting = pairs.meets(face_1.extent, BESIDE)
+    facet, t = pairs.facet[meeting], pairs.t[meeting]
     cuts = []
     for f in range(len(face_1.nodes)):
         inner = np.sort(t[facet == f])
@@ -87,7 +99,7 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
 
 def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
     """Rules on the parts of facets that are opposite: Gauss-Lobatto's, in triangles Gauss's."""
-    facet, corners = opposite(face_1, face_2)
+    facet, corners = parts_opposite(face_1, face_2)
     triangular = np.all(corners[:, 2] == corners[:, 3], axis=1)
     parts = []
     for chosen, line in ((~triangular, lobatto(order)), (triangular, gauss(order))):
@@ -121,7 +133,40 @@ def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
 
 def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed: float) -> Rule:
     """Those pieces, of so many points each, whose inner points have body 2 opposite."""
-    points = face_1.points(pieces.facet, pieces.t)
-    off = beside(face_2, *project(face_2, points)).reshape(-1, count)[:, inner]
-    kept = np.repeat(off.max(axis=1) <= allowed * face_1.extent, count)
+    pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
+    meeting = pairs.meets(face_1.extent, allowed).reshape(-1, count)[:, inner]
+    whole = meeting.all(axis=1)
+    kept = np.repeat(whole, count)
+    if isinstance(face_1, Face):
+        facing = (pairs.cosine <= FACING).reshape(-1, count)[:, inner].all(axis=1)
+        _check_order(face_1, face_2, pairs, whole, facing & ~whole)
     return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])
+
+
+def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, lost: np.ndarray):
+    """Refuse pieces of a chain whose opposite points are lost on the way, or go back.
+
+    Points may go back a little where faces have edges or bend: by less than they are apart.
+    """
+    between = np.flatnonzero(kept)
+    if len(between) == 0:
+        return
+    if lost[between[0] : between[-1]].any():
+        raise CaseError(folded(face_1, face_2))
+    chosen = np.repeat(kept, len(pairs.gap) // len(kept))
+    s, apart = face_2.position(pairs.facet, pairs.t)[chosen], np.abs(pairs.gap[chosen])
+    step, length = np.diff(s), face_2.sizes.sum()
+    if face_2.closed:
+        step = (step + length / 2) % length - length / 2
+    step = step * np.sign(np.median(step))
+    allowed = _BACK * np.maximum(apart[1:], apart[:-1]) + _SAME * length
+    if np.any(step < -allowed):
+        raise CaseError(folded(face_1, face_2))
+
+
+def folded(face_1: Face | Surface, face_2: Face | Surface) -> str:
+    """The message about faces of which it is not clear which points meet."""
+    return (
+        f"geometry.contact: it is not clear which points of {face_1.name} and {face_2.name} meet, "
+        "as one of them folds back opposite the other; name only the part that is to touch"
+    )

@@ -9,8 +9,9 @@ Slip at single points scatters about zero where it sticks; in the mean it vanish
 does wear. Where it slips, the shear is ``mu λ``, coefficient by coefficient: for ``a = b = 1`` the
 volume worn off is exactly ``κ/mu`` times the energy dissipated.
 
-Coefficients are counted along the face of body 2. The worn profile of body 1 slides along with it:
-at a slip s, ``W1(x - s)`` lies at x. Between the functions it is interpolated linearly, by a matrix
+Coefficients are counted along the common face, of which each body takes its share (see
+`common_face`). The worn profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and
+``W2(x + s_1 s)`` lie at x. Between the functions it is interpolated linearly, by a matrix
 L; what is lost there goes back to ω by its adjoint, so that no volume is lost on the way.
 """
 
@@ -43,20 +44,20 @@ class Profile:
         Of the basis functions, as lengths along the face, which runs along +x [m].
     areas : ndarray, shape (m,)
         Of the basis functions [m²].
-    moves : bool
-        Whether it is that of body 1, which slides along.
+    moves : float
+        How far it goes along the common face per slip.
     """
 
     places: np.ndarray
     areas: np.ndarray
-    moves: bool
+    moves: float
 
     def seen(self, slip: float) -> np.ndarray:
         """L: coefficients at the contact, of the profile's own, at a slip along +x [m], (m, m)."""
         m = len(self.places)
-        if not self.moves or slip == 0.0:
+        if self.moves * slip == 0.0:
             return np.eye(m)
-        places, at = self.places, self.places - slip
+        places, at = self.places, self.places - self.moves * slip
         upper = np.clip(np.searchsorted(places, at), 1, m - 1)
         part = (at - places[upper - 1]) / (places[upper] - places[upper - 1])
         part = np.clip(part, 0.0, 1.0)
@@ -81,7 +82,9 @@ def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> Profile:
     body : int
     """
     areas = weighted.sum(axis=0)
-    return Profile((pairing.position @ weighted) / areas, areas, body == 0)
+    share = float(pairing.weights @ pairing.share / pairing.weights.sum())
+    moves = 1.0 - share if body == 0 else -share
+    return Profile((pairing.position @ weighted) / areas, areas, moves)
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,15 @@ from functools import cached_property
 
 import basix
 import numpy as np
+from dolfinx import fem
 
 from ..bulk.bodies import Bodies
 from ..bulk.field import reference_element
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
-from .facets import lagrange, lagrange_slopes, owned_facets
+from .facets import lagrange, lagrange_slopes, owned_facets, softness_behind
 from .quadrature import gauss, square
+from .smooth_normals import corner_corrections, smooth_normals
 
 _FLAT = 1e-9
 """Of a facet's shorter side: nearer to a parallelogram it is one."""
@@ -67,6 +69,11 @@ class Surface:
         +1 where the outward normal is the first tangent times the second, -1 otherwise.
     rank, cell, local_facet : ndarray of int, shape (n_facets,)
         Who owns the facet's cell, its local index there, and which of its facets it is.
+    softness : float or ndarray, shape (n_facets,)
+        ``(1 - ν²) / E`` of the material behind each facet [1/Pa]; only its ratio to that of the
+        other face counts.
+    name : str
+        Of the surface.
     """
 
     nodes: np.ndarray
@@ -75,6 +82,8 @@ class Surface:
     rank: np.ndarray
     cell: np.ndarray
     local_facet: np.ndarray
+    softness: float | np.ndarray = 1.0
+    name: str = "the contact face"
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of shape (n, 2) of facets, shape (n, 3) [m]."""
@@ -94,6 +103,17 @@ class Surface:
         """Outward unit normals, shape (n, 3)."""
         normal = self._across(facet, t) * self.outward[facet, None]
         return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+    def smooth_normals(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Normals that are continuous across facets, and their derivatives along t.
+
+        Shapes (n, 3) and (n, 2, 3).
+        """
+        return smooth_normals(self.nodes, self.outward, self._corrections, facet, t)
+
+    def soft(self, facet: np.ndarray) -> np.ndarray:
+        """Softness behind facets, shape (n,) [1/Pa]."""
+        return np.broadcast_to(self.softness, len(self.nodes))[facet]
 
     def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Area per area of parameters, shape (n,) [m²]."""
@@ -171,11 +191,15 @@ class Surface:
     def _order(self) -> int:
         return self.nodes.shape[1] - 1
 
+    @cached_property
+    def _corrections(self) -> np.ndarray:
+        return corner_corrections(self.nodes, self.outward, self.corners)
+
     def _across(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         return np.cross(*np.moveaxis(self.tangents(facet, t), 1, 0))
 
 
-def gather_surface(bodies: Bodies, surface: str) -> Surface:
+def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None = None) -> Surface:
     """Collect a surface's facets from all ranks, in the order of their cells in the mesh file."""
     mesh = bodies.mesh
     cells, local = owned_facets(bodies, surface)
@@ -191,9 +215,10 @@ def gather_surface(bodies: Bodies, surface: str) -> Surface:
         np.full(len(cells), mesh.comm.rank),
         cells,
         local,
+        softness_behind(cells, softness),
     )
     parts = mesh.comm.allgather(part)
-    original, nodes, numbers, inside, rank, cells, local = (
+    original, nodes, numbers, inside, rank, cells, local, soft = (
         np.concatenate([part[k] for part in parts]) for k in range(len(part))
     )
     if len(nodes) == 0:
@@ -205,7 +230,8 @@ def gather_surface(bodies: Bodies, surface: str) -> Surface:
     first, second = nodes[:, -1, 0] - nodes[:, 0, 0], nodes[:, 0, -1] - nodes[:, 0, 0]
     from_inside = nodes.mean(axis=(1, 2)) - inside[order]
     outward = np.sign(np.einsum("fi,fi->f", np.cross(first, second), from_inside))
-    return Surface(nodes, corners, outward, rank[order], cells[order], local[order])
+    owner = rank[order], cells[order], local[order]
+    return Surface(nodes, corners, outward, *owner, soft[order], surface)
 
 
 def _grids(mesh) -> np.ndarray:

@@ -21,9 +21,10 @@ from .traces import gather_rows, reference_points
 def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
     """Sᵀ: shape (n_owned, n_points). Every rank calls.
 
-    ``S u = n·σ(u) n`` of body 1 [Pa], compression negative, without the thermal part (see
-    `thermal_traction`). Where two facets share a point it is the mean of both cells, weighted with
-    the parts of its area, so that it converges like the stress inside.
+    ``S u = n·σ(u) n_1 / (n·n_1)`` of body 1 [Pa], compression negative, without the thermal part
+    (see `thermal_traction`): the traction on its own face, of normal n_1, along the normal of the
+    common face, whose area is smaller by ``n·n_1``. Where two facets share a point it is the mean
+    of both cells, weighted with the parts of its area, so that it converges like the stress inside.
     """
     space = elastic.space
     side, point, share = on_every_facet(pairing)
@@ -40,7 +41,9 @@ def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
 def cell_traction(
     elastic: Elasticity, side: Side, chosen: np.ndarray, normals: np.ndarray
 ) -> np.ndarray:
-    """Normal traction per nodal displacement of the cell, shape (n, nodes, 2) [Pa/m].
+    """Traction along normals per nodal displacement of the cell, shape (n, nodes, 2) [Pa/m].
+
+    Per area of a common face that has these normals.
 
     Parameters
     ----------
@@ -49,14 +52,18 @@ def cell_traction(
     chosen : ndarray of int, shape (n,)
         Entries of the side, all in cells of this rank.
     normals : ndarray, shape (n, 2)
+        Of the common face.
     """
-    cells = side.face.cell[side.facet[chosen]]
+    facet = side.facet[chosen]
+    cells = side.face.cell[facet]
+    own = side.face.normals(facet, side.t[chosen])
     kind = reference_element(elastic.bodies.mesh, 1).cell_type
     reference = reference_points(side, chosen, kind)
     _, slopes, divergence = displacement_slopes(elastic, cells, reference)
     λ, μ = (cell_values(function, cells)[:, None, None] for function in elastic.lame[:2])
-    along = np.einsum("nai,ni->na", slopes, normals)
-    return λ * divergence + 2 * μ * along[..., None] * normals[:, None]
+    along, outward = (np.einsum("nai,ni->na", slopes, v)[..., None] for v in (normals, own))
+    sheared = outward * normals[:, None] + along * own[:, None]
+    return λ * divergence + μ * sheared / np.einsum("ni,ni->n", normals, own)[:, None, None]
 
 
 def thermal_traction(elastic: Elasticity, pairing: Pairing) -> np.ndarray:

@@ -55,7 +55,28 @@ def node_normals(face: Face | Surface) -> np.ndarray:
     return summed / np.linalg.norm(summed, axis=1, keepdims=True)
 
 
-def ways_at(side: Side, directions: np.ndarray) -> np.ndarray:
+def ways_between(
+    sides: tuple[Side, Side], directions: tuple[np.ndarray, ...], gone: np.ndarray
+) -> np.ndarray:
+    """Ways on which body 2 lies opposite, unit vectors at contact points, shape (n, gdim).
+
+    Those out of body 1 and into body 2 of the nodes, by how far each face has gone.
+
+    Parameters
+    ----------
+    sides : tuple of Side
+    directions : tuple of ndarray, shape (n_nodes, gdim)
+        Of the nodes of both faces, see `Paths`.
+    gone : ndarray, shape (2,)
+        How far each face has gone; only the ratio counts.
+    """
+    pairs = zip(sides, directions, strict=True)
+    out_1, out_2 = (_ways_at(side, along) for side, along in pairs)
+    ways = gone[0] * out_1 - gone[1] * out_2
+    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+
+
+def _ways_at(side: Side, directions: np.ndarray) -> np.ndarray:
     """Ways of the points of a face between those of its nodes, unit vectors (n, gdim)."""
     values = _polynomials(_order(side.face), side.t)
     ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])

@@ -10,7 +10,7 @@ from ..bulk.bodies import Bodies, distribute
 from ..bulk.kinematics import Model, section_model
 from ..case.facing import Facing
 from ..case.schema import Case
-from ..contact.face import gather_face
+from ..contact.closed_face import gather_faces
 from ..contact.holder import hold
 from ..contact.pairing import Pairing
 from ..contact.sliding import Sliding, sliding
@@ -21,6 +21,7 @@ from .drives import drives
 from .elastic_system import dead_load, dead_resultant, elastic_system
 from .parts import Parts, inputs
 from .phases import Phases
+from .shares import softness_of_parts
 from .system import System
 from .thermal_system import ThermalSystem, thermal_system
 from .worn_geometry import WornGeometry
@@ -60,7 +61,7 @@ def build(
         bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(case, comm, zone, worn))
     with phases("pair"):
         pairing, basis = parts.get(
-            "points", made_from.mesh, lambda: _paired(case, comm, model, bodies, worn)
+            "points", made_from.points, lambda: _paired(case, comm, model, bodies, worn)
         )
     with phases("assemble elasticity"):
         elastic, trace = parts.get(
@@ -111,7 +112,8 @@ def _meshed(
 def _paired(
     case: Case, comm, model: Model, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Pairing, np.ndarray]:
-    faces = [gather_face(bodies, surface) for surface in case.geometry.contact]
+    softness = bodies.per_body(softness_of_parts(case))
+    faces = gather_faces(bodies, case.geometry.contact, softness)
     if worn is None:
         return contact_points(case, comm, model, *faces)
     return worn_contact_points(case, model, worn, *faces)

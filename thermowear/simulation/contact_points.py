@@ -15,11 +15,12 @@ from ..contact.facets import parts_of_facets
 from ..contact.pairing import Pairing, pair, paired
 from ..contact.pressure import pressure_basis
 from ..contact.projection import ahead
-from ..contact.refinement import BESIDE
+from ..contact.refinement import BESIDE, SLIVER
 from ..contact.surface import Surface
-from ..contact.worn_face import ways_at
+from ..contact.worn_face import ways_between
 from ..laws.motions import RigidMotion
 from .initial_shape import initial_gap
+from .shares import LEAST
 from .worn_geometry import WornGeometry
 
 _SLIVER = 1e-3
@@ -47,6 +48,7 @@ def worn_contact_points(
     against each other. They are where a mesh cannot follow the edge of its wear: they overlap by
     what is kept of it. Closest points or those along the normals would change the gap there.
     """
+    face_1, face_2 = _by_walls(worn, (face_1, face_2))
     moved, turned = worn.holder
     motion = RigidMotion(moved, turned, np.zeros(3))
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
@@ -56,30 +58,28 @@ def worn_contact_points(
         pairing = paired(closer, face_2, model, worn.pieces)
         basis = _basis(case, pairing)
     first, second = pairing.sides
-    points = face_1.points(first.facet, first.t)
-    to = motion.at(points)
-    apart = np.einsum("ni,ni->n", pairing.normals, to)
-    ways = _ways(worn, pairing)
-    facet, t, way = ahead(face_2, points + to, ways)
-    gap = way * np.einsum("ni,ni->n", pairing.normals, ways)
+    on_face = face_1.points(first.facet, first.t)
+    to = motion.at(on_face)
+    ways = ways_between(pairing.sides, worn.directions, np.abs(worn.depth).max(axis=1))
+    facet, t, way = ahead(face_2, on_face + to, ways)
+    between, apart = (np.einsum("ni,ni->n", pairing.normals, v) for v in (way[:, None] * ways, to))
+    points = on_face + (pairing.share * between)[:, None] * pairing.normals
     sides = replace(first, face=face_1), replace(second, facet=facet, t=t)
     worn_pairing = replace(pairing, points=points, sides=sides)
     unworn = worn.carried(worn.lacking, pairing) - worn.moved(worn_pairing).sum(axis=0)
-    return replace(worn_pairing, gap=gap + apart + unworn), basis
+    return replace(worn_pairing, gap=between + apart + unworn), basis
 
 
-def _ways(worn: WornGeometry, pairing: Pairing) -> np.ndarray:
-    """Ways on which body 2 lies opposite, unit vectors at the points, shape (n, gdim).
+def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
+    """The same faces; where only one has walls of a groove, the common face is that of the other.
 
-    Those out of body 1 and into body 2 of the nodes, by how far each face has gone.
+    Walls are what is left of a mesh beside its wear, and no face that touches.
     """
-    out_1, out_2 = (
-        ways_at(side, directions)
-        for side, directions in zip(pairing.sides, worn.directions, strict=True)
-    )
-    gone_1, gone_2 = np.abs(worn.depth).max(axis=1)
-    ways = gone_1 * out_1 - gone_2 * out_2
-    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    walled = np.array([held.any() for held in worn.held]) & np.any(worn.depth != 0.0, axis=1)
+    if walled[0] == walled[1]:
+        return faces
+    pairs = zip(faces, walled, strict=True)
+    return tuple(replace(face, softness=1.0 if wall else LEAST) for face, wall in pairs)
 
 
 def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:
@@ -93,7 +93,7 @@ def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:
 
 
 def _points(
-    case: Case, model: Model, face_1, face_2, sliver: float = 1e-9, beside: float = BESIDE
+    case: Case, model: Model, face_1, face_2, sliver: float = SLIVER, beside: float = BESIDE
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points of two faces, and pressure space Ψ."""
     degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree

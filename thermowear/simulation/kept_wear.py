@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ..compat import geometry_dofmap
+from ..contact.pairing import Pairing
+from ..contact.projection import ahead
 from ..contact.surface import Surface
-from ..contact.worn_face import Paths, WornFace, curvatures, lengths, node_normals, nodes_of
+from ..contact.worn_face import (
+    Paths,
+    WornFace,
+    curvatures,
+    lengths,
+    node_normals,
+    nodes_of,
+    ways_between,
+)
 from ..geometry.moved import MovableBody
 from ..geometry.moved_solid import MovableSolid
 from ..geometry.shapes import quality, scaled_jacobians
@@ -49,14 +60,17 @@ class KeptWear:
     @cached_property
     def geometry(self) -> WornGeometry:
         """Where the meshes are; every rank calls."""
-        return self._system.worn or _unworn(self._system)
+        return self._system.worn or _unworn(self._system, self.bodies)
 
     @cached_property
     def faces(self) -> dict[int, WornFace]:
         """The faces that move, by index of the body."""
         ways = zip(self.geometry.directions, self.geometry.held, strict=True)
         paths = [Paths(directions, held) for directions, held in ways]
-        return {index: WornFace(self._system.pairing, index, paths[index]) for index in self.bodies}
+        pairing = self._system.pairing
+        if self._system.worn is None:
+            pairing = _along_ways(pairing, self.geometry.directions, self.bodies)[0]
+        return {index: WornFace(pairing, index, paths[index]) for index in self.bodies}
 
     def movable(self, depth: np.ndarray) -> np.ndarray:
         """What the nodes of the faces can take up of a depth (2, n) [m]."""
@@ -106,22 +120,21 @@ class KeptWear:
         return max(largest / self._thickness[index], curved, _TILT * tilt)
 
 
-def _unworn(system: System) -> WornGeometry:
+def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     """The geometry before its first update."""
     pairing, comm = system.pairing, system.comm
-    second = pairing.sides[1]
-    apart = second.face.points(second.facet, second.t) - pairing.points
     mesh, paths = on_root(comm, lambda: _ways(system))
+    directions = tuple(path.directions for path in paths)
     nothing, geometry = np.zeros(3), system.case.geometry
     return WornGeometry(
         mesh=mesh,
-        directions=tuple(path.directions for path in paths),
+        directions=directions,
         held=tuple(path.held for path in paths),
         sizes=tuple(side.face.sizes for side in pairing.sides),
         best=np.array([quality(mesh, geometry.parts_of(body)) for body in geometry.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
-        lacking=pairing.gap - np.einsum("ni,ni->n", pairing.normals, apart),
+        lacking=pairing.gap - _along_ways(pairing, directions, bodies)[1],
         holder=(nothing, nothing),
         lost=np.zeros(2),
         updates=0,
@@ -129,6 +142,25 @@ def _unworn(system: System) -> WornGeometry:
         volume_error=0.0,
         pieces=pairing.pieces if isinstance(pairing.sides[0].face, Surface) else None,
     )
+
+
+def _along_ways(
+    pairing: Pairing, directions: tuple[np.ndarray, ...], bodies: list[int]
+) -> tuple[Pairing, np.ndarray]:
+    """Contact points whose places on body 2 lie on the ways of the nodes of the bodies that wear.
+
+    Returns
+    -------
+    pairing : Pairing
+    gap : ndarray, shape (n,)
+        Between these places along the normals [m].
+    """
+    first, second = pairing.sides
+    gone = np.isin([0, 1], bodies or [0, 1]).astype(float)
+    ways = ways_between(pairing.sides, directions, gone)
+    facet, t, way = ahead(second.face, first.face.points(first.facet, first.t), ways)
+    gap = way * np.einsum("ni,ni->n", pairing.normals, ways)
+    return replace(pairing, sides=(first, replace(second, facet=facet, t=t))), gap
 
 
 def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:

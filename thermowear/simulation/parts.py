@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from ..case.schema import Case
+from .shares import softness_of_parts
 
 Part = TypeVar("Part")
 
@@ -40,7 +41,9 @@ class Inputs:
     Attributes
     ----------
     mesh : tuple
-        Of the meshed bodies and their contact points.
+        Of the meshed bodies.
+    points : tuple
+        Of their contact points.
     elasticity : tuple
         Of the elastic factor and of the condensed bodies.
     conduction : tuple
@@ -48,6 +51,7 @@ class Inputs:
     """
 
     mesh: tuple
+    points: tuple
     elasticity: tuple
     conduction: tuple
 
@@ -69,13 +73,14 @@ def inputs(case: Case, zone: tuple[float, float] | None = None) -> Inputs:
         "poisson_ratio",
         *(("expansion", "expansion_factor") if hot else ()),
     )
-    elasticity = (mesh, hot, _chosen(materials, lambda key: key in elastic))
+    points = (mesh, softness_of_parts(case))
+    elasticity = (points, hot, _chosen(materials, lambda key: key in elastic))
     if case.heat is None:
-        return Inputs(mesh, elasticity, ())
+        return Inputs(mesh, points, elasticity, ())
     bodies = _chosen(materials, lambda key: key not in ("hardness", *elastic))
     heat = {key: value for key, value in case.heat.model_dump().items() if key not in _EXCHANGE}
     carried = case.motion if heat.get("advection") == "resolved" else None
-    return Inputs(mesh, elasticity, (elasticity, bodies, heat, carried))
+    return Inputs(mesh, points, elasticity, (elasticity, bodies, heat, carried))
 
 
 def _chosen(tables: dict[str, dict], chooses: Callable[[str], bool]) -> dict[str, dict]:

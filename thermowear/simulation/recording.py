@@ -53,7 +53,7 @@ def record(
     Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
     """
     pressure = contact.pressure
-    points = system.pairing.points
+    points = system.pairing.on_body_1
     nothing = np.full(len(pressure), np.nan)
     rates = _local_rates(system, contact) if rates is None else rates
     temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
@@ -92,8 +92,8 @@ def _local_rates(system: System, contact: ContactState) -> np.ndarray:
 
 def profile(system: System, interface: Interface) -> Profile:
     """The worn shape of an interface, along its normals and along the press."""
-    points, normals = system.pairing.points, np.zeros((len(interface.s), 3))
-    normals[:, : points.shape[1]] = system.pairing.normals
+    normals = np.zeros((len(interface.s), 3))
+    normals[:, : len(system.press)] = system.pairing.normals
     along = along_press(system)
     lost = system.pairing.gap + interface.wear_1 + interface.wear_2
     lost = (interface.shape.max() - interface.shape + lost.min()) / along

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from ..balances import judged
 from ..case.schema import Case
@@ -14,6 +15,7 @@ from .observer import Observer
 from .outcome import Outcome
 from .outgrown import outgrown
 from .phases import Phases
+from .plausible import too_steep, went_back
 from .preparation import prepare
 from .reciprocating import reciprocating
 from .recording import profile
@@ -99,6 +101,11 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
     outcome, apart = touching(system, outcome)
     if apart is not None:
         observer.note(apart)
+    steep = too_steep(outcome.system or system, outcome.contact.pressure)
+    if steep is not None:
+        observer.note(steep)
+    if outcome.stopped is None:
+        outcome = replace(outcome, stopped=went_back(system, outcome))
     large = not_small(system, outcome.interface)
     if large is not None:
         observer.note(large)

@@ -26,6 +26,7 @@ from .elastic_system import dead_resultant
 from .parts import Inputs, Parts
 from .phases import Phases
 from .thermal_system import ThermalSystem
+from .wear_laws import wear_laws
 from .worn_geometry import WornGeometry
 
 
@@ -122,17 +123,7 @@ class System:
     @cached_property
     def laws(self) -> dict[int, WearLaw]:
         """Wear laws by index of the body (0 is body 1); bodies that do not wear are left out."""
-        laws = {}
-        for index, name in enumerate(self.case.geometry.bodies):
-            if name in self.case.wear:
-                wear = self.case.wear[name]
-                κ, b, a = wear.coefficient_si(), wear.pressure_exponent, wear.velocity_exponent
-                laws[index] = (
-                    WearLaw.per_friction_stress(κ, self.friction, b, a)
-                    if wear.per == "friction-stress"
-                    else WearLaw(κ, b, a)
-                )
-        return laws
+        return wear_laws(self.case)
 
     @cached_property
     def spreads(self) -> dict[int, Spreading]:

@@ -1,0 +1,213 @@
+"""The common face of two bodies in contact, and which points of their faces meet on it.
+
+Where bodies are pressed together their faces deform until they coincide. Body i takes the share
+``s_i = c_i / (c_1 + c_2)``, ``c_i = (1 - ν_i²) / E_i``, of the approach of two points x_1 and x_2
+(Johnson, Contact Mechanics, 1985, section 4.2), so the common face and its normal are about
+
+    x = s_2 x_1 + s_1 x_2,      n ∝ s_2 n_1 - s_1 n_2
+
+with the outward normals n_1 and n_2 of the unloaded faces: the mean of both faces for bodies of
+like stiffness, the face of the stiffer body where the other one is soft. Points are opposite each
+other where ``x_2 - x_1`` is along n, and ``g = (x_2 - x_1)·n`` is the gap. Exchanging the bodies
+turns n round and changes nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .face import Face
+from .projection import beside, project
+from .surface import Surface
+
+FACING = -0.5
+"""Cosine between the outward normals of points that can meet: at most this."""
+_FLATTEST = 0.3
+"""Cosine between a line and a normal of the face that it meets; steeper is taken for so much."""
+_BEHIND = 0.25
+"""Of a face's size: points that overlap by more are on the far sides of their bodies."""
+_PASSES = 40
+_SETTLED = 1e-13
+"""Of a face's size."""
+_NONE = 0.1
+"""Length of ``s_2 n_1 - s_1 n_2`` below which it is no direction."""
+
+
+@dataclass(frozen=True)
+class Opposite:
+    """Points of one face and those opposite to them on another one.
+
+    Attributes
+    ----------
+    facet : ndarray of int, shape (n,)
+    t : ndarray, shape (n,) or (n, 2)
+        Parameters on the other face.
+    normals : ndarray, shape (n, gdim)
+        Of the common face, outward from the first body.
+    gap : ndarray, shape (n,)
+        From the points to those opposite, along the normals [m].
+    share : ndarray, shape (n,)
+        s of the first body.
+    cosine : ndarray, shape (n,)
+        Between the outward normals of both faces.
+    beside : ndarray, shape (n,)
+        How far the points lie beside their closest ones: more than 0 beyond the edge of the other
+        face. Where their lines lean past an edge, the face is taken to go on straight [m].
+    """
+
+    facet: np.ndarray
+    t: np.ndarray
+    normals: np.ndarray
+    gap: np.ndarray
+    share: np.ndarray
+    cosine: np.ndarray
+    beside: np.ndarray
+
+    def meets(self, size: float, allowed: float) -> np.ndarray:
+        """Which points can meet those opposite.
+
+        Parameters
+        ----------
+        size : float
+            Of the face [m].
+        allowed : float
+            So far beside the other face at most, of the size.
+        """
+        inside = (self.beside <= allowed * size) & (self.gap >= -_BEHIND * size)
+        return (self.cosine <= FACING) & inside
+
+
+@dataclass(frozen=True)
+class Line:
+    """Lines along the common normals from points to the planes that touch the other face.
+
+    Attributes
+    ----------
+    normals, share, cosine : ndarray
+        See `Opposite`.
+    way : ndarray, shape (n,)
+        Lengths, negative where the planes are behind the points [m].
+    end : ndarray, shape (n, gdim)
+        Where they meet the planes [m].
+    """
+
+    normals: np.ndarray
+    way: np.ndarray
+    end: np.ndarray
+    share: np.ndarray
+    cosine: np.ndarray
+
+
+def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface):
+    """Points of another face opposite to points of a face.
+
+    Parameters
+    ----------
+    face : Face or Surface
+    facet : ndarray of int, shape (n,)
+    t : ndarray, shape (n,) or (n, 2)
+    other : Face or Surface
+
+    Returns
+    -------
+    Opposite
+    """
+
+    def locate(points: np.ndarray, _) -> tuple[np.ndarray, np.ndarray]:
+        return project(other, points)[:2]
+
+    points, out = face.points(facet, t), face.smooth_normals(facet, t)[0]
+    closest, at, offset = project(other, points)
+    off = beside(other, closest, at, offset)
+    facet, t, line = met(points, out, face.soft(facet), other, closest, at, locate)
+    return Opposite(facet, t, line.normals, line.way, line.share, line.cosine, off)
+
+
+def met(
+    points: np.ndarray,
+    out: np.ndarray,
+    soft: np.ndarray,
+    other: Face | Surface,
+    facet: np.ndarray,
+    t: np.ndarray,
+    locate: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
+) -> tuple[np.ndarray, np.ndarray, Line]:
+    """Facets and parameters of a face opposite to points of a body, and the lines between them.
+
+    From the closest point on, the line along the normal of the common face is followed to the
+    plane that touches the face there.
+
+    Parameters
+    ----------
+    points, out : ndarray, shape (n, gdim)
+        Points [m] and outward normals of the body.
+    soft : ndarray, shape (n,)
+        c of the body at the points [1/Pa].
+    other : Face or Surface
+    facet, t : ndarray
+        Of the points on it that are closest.
+    locate : callable
+        Facets and parameters on the other face that are closest to places (m, gdim), and which of
+        the points these are for.
+    """
+    facet, t = facet.copy(), t.copy()
+    found = other.points(facet, t)
+    moving = np.arange(len(points))
+    for _ in range(_PASSES):
+        now = slice(None) if len(moving) == len(points) else moving
+        line = _line(points[now], out[now], soft[now], other, facet[now], t[now])
+        facet[now], t[now] = locate(line.end, moving)
+        before, found[now] = found[now].copy(), other.points(facet[now], t[now])
+        missed = np.linalg.norm(found[now] - before, axis=1)
+        moving = moving[missed > _SETTLED * other.extent]
+        if not len(moving):
+            break
+    return facet, t, _line(points, out, soft, other, facet, t)
+
+
+def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs: Opposite):
+    """Area of the common face per area of the parameters of a face, shape (n,) [m or m²].
+
+    The points opposite move with the parameters so that ``x_2 - x_1 = g n`` stays true:
+    ``P (x_2' + g s_1 n_2' / m) t_2' = P (x_1' + g s_2 n_1' / m)``, where P projects on the common
+    face and m is the length of ``s_2 n_1 - s_1 n_2``.
+    """
+    n, g, s = pairs.normals, pairs.gap[:, None, None], pairs.share[:, None, None]
+    (n_1, turn_1), (n_2, turn_2) = (
+        side.smooth_normals(*at)
+        for side, at in ((face, (facet, t)), (other, (pairs.facet, pairs.t)))
+    )
+    count = len(facet)
+    x_1 = face.tangents(facet, t).reshape(count, -1, n.shape[1])
+    x_2 = other.tangents(pairs.facet, pairs.t).reshape(count, -1, n.shape[1])
+    m = np.linalg.norm((1 - s[:, 0]) * n_1 - s[:, 0] * n_2, axis=1)[:, None, None]
+    here = _in_plane(x_1 + g * (1 - s) / m * turn_1, n)
+    there = _in_plane(x_2 + g * s / m * turn_2, n)
+    square = np.einsum("nki,nli->nkl", there, there)
+    along = np.linalg.solve(square, np.einsum("nki,nji->nkj", there, here))
+    tangents = (1 - s) * x_1 + s * np.einsum("nkj,nki->nji", along, x_2)
+    if tangents.shape[1] == 1:
+        return np.linalg.norm(tangents[:, 0], axis=1)
+    return np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
+
+
+def _line(points, out, soft, other, facet, t) -> Line:
+    against, softer = other.smooth_normals(facet, t)[0], other.soft(facet)
+    share = soft / (soft + softer)
+    normals = (1 - share)[:, None] * out - share[:, None] * against
+    size = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.where(size > _NONE, normals / np.maximum(size, _NONE), out)
+    steep = np.minimum(np.einsum("ni,ni->n", normals, against), -_FLATTEST)
+    offset = other.points(facet, t) - points
+    way = np.einsum("ni,ni->n", offset, against) / steep
+    cosine = np.einsum("ni,ni->n", out, against)
+    return Line(normals, way, points + way[:, None] * normals, share, cosine)
+
+
+def _in_plane(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Vectors (n, k, gdim) without their part along normals (n, gdim)."""
+    along = np.einsum("nki,ni->nk", vectors, normals)
+    return vectors - along[:, :, None] * normals[:, None]

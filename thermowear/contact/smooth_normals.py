@@ -1,0 +1,140 @@
+"""Normals that are continuous across the facets of a contact face.
+
+Facets of a mesh only approximate a smooth face: where they meet, their normals differ a little, by
+as much as an element turns where its edges are straight. Averaging at the corners and blending
+within the facets makes the field of normals continuous (Yang, Laursen and Meng, Int. J. Numer.
+Meth. Engng 62 (2005) 1183), so that points opposite each other are unique. Edges of the face itself
+are kept.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from .facets import lagrange, lagrange_bends, lagrange_slopes
+
+_SHARP = np.cos(np.radians(20.0))
+"""Cosine between the normal of a facet and the mean at its corner: below, the corner is an edge."""
+_SLIGHT = 0.02
+"""Of a unit normal: what curved or short facets are off at their ends."""
+
+
+def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Differences between the mean normals at the corners of facets and the facets' own.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n_facets, order + 1, …, gdim) [m]
+        By one or two parameters.
+    outward : ndarray, shape (n_facets,)
+    corners : ndarray of int, shape (n_facets, 2) or (n_facets, 2, 2)
+        Numbers of the corners by the parameters.
+
+    Returns
+    -------
+    ndarray, shape (n_facets, n_corners, gdim)
+        Zero at edges of the face, where normals differ too much.
+    """
+    dim = corners.ndim - 1
+    ends = np.array(list(itertools.product((0.0, 1.0), repeat=dim)))
+    facet = np.repeat(np.arange(len(nodes)), len(ends))
+    own, _ = _raw(nodes, outward, facet, np.tile(ends, (len(nodes), 1)))
+    _, number = np.unique(corners.reshape(-1), return_inverse=True)
+    # a facet of an arc is off at its ends by its size to the power of its order
+    across = nodes.reshape(len(nodes), -1, nodes.shape[-1])[:, [0, -1]]
+    size = np.linalg.norm(across[:, 1] - across[:, 0], axis=1)
+    weight = np.repeat((size.min() / size) ** (nodes.shape[1] - 1), len(ends))
+    summed = np.column_stack([np.bincount(number, weight * component) for component in own.T])
+    mean = summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300)
+    sharp = np.zeros(len(mean), dtype=bool)
+    sharp[number[np.einsum("ni,ni->n", own, mean[number]) < _SHARP]] = True
+    correction = np.where(sharp[number, None], 0.0, mean[number] - own)
+    correction = correction.reshape(len(nodes), len(ends), -1)
+    if dim == 1:  # a facet of an arc is off by as much the other way at an end of the face
+        free = (np.bincount(number) == 1)[number].reshape(-1, 2)
+        slight = np.linalg.norm(correction, axis=2).max(axis=1) < _SLIGHT
+        mirrored = free & slight[:, None]
+        correction[mirrored] = -correction[:, ::-1][mirrored]
+    return correction
+
+
+def smooth_normals(
+    nodes: np.ndarray, outward: np.ndarray, corrections: np.ndarray, facet: np.ndarray, t
+) -> tuple[np.ndarray, np.ndarray]:
+    """Continuous outward unit normals, and their derivatives along the parameters.
+
+    Parameters
+    ----------
+    nodes, outward, corrections : ndarray
+        See `corner_corrections`.
+    facet : ndarray of int, shape (n,)
+    t : ndarray, shape (n, dim)
+
+    Returns
+    -------
+    normals : ndarray, shape (n, gdim)
+    turning : ndarray, shape (n, dim, gdim)
+    """
+    normal, turning = _raw(nodes, outward, facet, t)
+    values, slopes = _products(1, t)
+    chosen = corrections[facet]
+    blended = normal + np.einsum("nc,nci->ni", values, chosen)
+    changing = turning + np.einsum("nkc,nci->nki", slopes, chosen)
+    return _unit(blended, changing)
+
+
+def _raw(nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
+    """Outward unit normals of the facets themselves, and their derivatives."""
+    order, dim = nodes.shape[1] - 1, t.shape[1]
+    on = nodes[facet].reshape(len(facet), -1, nodes.shape[-1])
+    _, slopes, bends = _products(order, t, second=True)
+    tangents = np.einsum("nka,nai->nki", slopes, on)
+    bent = np.einsum("nkla,nai->nkli", bends, on)
+    if dim == 1:
+        across = _turned(tangents[:, 0])
+        changing = _turned(bent[:, 0, 0])[:, None]
+    else:
+        first, second = tangents[:, 0], tangents[:, 1]
+        across = np.cross(first, second)
+        changing = np.cross(bent[:, :, 0], second[:, None])
+        changing += np.cross(first[:, None], bent[:, :, 1])
+    sign = outward[facet]
+    return _unit(sign[:, None] * across, sign[:, None, None] * changing)
+
+
+def _turned(vectors: np.ndarray) -> np.ndarray:
+    """Vectors in the plane turned clockwise by 90 degrees."""
+    return np.stack([vectors[..., 1], -vectors[..., 0]], axis=-1)
+
+
+def _unit(vectors: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors (n, gdim) and the derivatives of them from those of the vectors."""
+    size = np.linalg.norm(vectors, axis=1)
+    unit = vectors / size[:, None]
+    along = np.einsum("nki,ni->nk", slopes, unit)
+    return unit, (slopes - along[:, :, None] * unit[:, None]) / size[:, None, None]
+
+
+def _products(order: int, t: np.ndarray, second: bool = False):
+    """Products of Lagrange polynomials of each parameter: values, first (and second) derivatives.
+
+    Shapes (n, a), (n, dim, a) and (n, dim, dim, a), with a running over the nodes of a facet.
+    """
+    kinds = [lagrange, lagrange_slopes, *((lagrange_bends,) if second else ())]
+    one = [[kind(order, along) for kind in kinds] for along in t.T]
+    if t.shape[1] == 1:
+        values, slopes, *bends = one[0]
+        return values, slopes[:, None], *(b[:, None, None] for b in bends)
+    (u, du, *ddu), (v, dv, *ddv) = one
+
+    def times(a, b):
+        return np.einsum("na,nb->nab", a, b).reshape(len(t), -1)
+
+    slopes = np.stack([times(du, v), times(u, dv)], axis=1)
+    if not second:
+        return times(u, v), slopes
+    mixed = times(du, dv)
+    rows = [[times(ddu[0], v), mixed], [mixed, times(u, ddv[0])]]
+    return times(u, v), slopes, np.stack([np.stack(row, axis=1) for row in rows], axis=1)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..contact.complementarity import ContactSolution, solve_contact
 from ..contact.condensation import CondensedContact
+from ..contact.wear_edge import EdgeSpace, edge_points, edge_space
 from ..errors import ComputationError
 from .contact_method import Contact, WearRates, newton_with_wear
 from .system import System
@@ -15,6 +18,8 @@ _TURNS = 60
 
 class CondensedMethod:
     """The contact conditions in the pressure space, with gaps measured weakly.
+
+    Where the edge of the wear lies they hold point by point, see `contact.wear_edge`.
 
     Parameters
     ----------
@@ -27,23 +32,20 @@ class CondensedMethod:
         nominal = np.full(len(system.weights), system.friction)
         self._rubbing = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
+        self._at_edge: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
         self.note: str | None = None
 
-    def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
-        bodies = self._rubbed(conditions.friction)
-        compliance, weak = bodies.compliance, bodies.weak(gap + self._dead)
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat, reached=None) -> Contact:
+        bodies, load = self._rubbed(conditions.friction), conditions.load
+        edge = self._edge(bodies, reached)
+        gap, compliance = gap + self._dead, bodies.compliance
         if heat is None:
-            return self._solved(bodies, compliance, weak, slope, guess, conditions.load)
+            resting = np.zeros(len(compliance))
+            return self._solved(bodies, edge, compliance, resting, gap, slope, guess, load)
         for _ in range(_TURNS):
             hot = heat.coupling(conditions, bodies.basis)
-            guess = self._solved(
-                bodies,
-                compliance + hot.compliance,
-                weak + hot.resting,
-                slope,
-                guess,
-                conditions.load,
-            )
+            both = compliance + hot.compliance
+            guess = self._solved(bodies, edge, both, hot.resting, gap, slope, guess, load)
             if heat.holds(conditions, guess.pressure):
                 return guess
         raise ComputationError(
@@ -62,10 +64,10 @@ class CondensedMethod:
         active = np.ones(len(coefficients), dtype=bool)
         still = np.zeros(contact.modes.shape[1])
         start = Contact(pressure, still, ContactSolution(coefficients, still, active))
-        rigid = np.zeros_like(contact.compliance)
+        rigid, resting = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
         return newton_with_wear(
             lambda worn, slope, last: self._solved(
-                contact, rigid, contact.weak(worn), slope, last, load
+                contact, None, rigid, resting, worn, slope, last, load
             ),
             rates,
             1.0,
@@ -83,18 +85,39 @@ class CondensedMethod:
             self._rubbing = (key, self._system.rubbing(friction).contact)
         return self._rubbing[1]
 
+    def _edge(self, bodies: CondensedContact, reached: np.ndarray | None) -> EdgeSpace | None:
+        """Pressures where the edge of the wear lies; None without one. The last one is kept."""
+        if reached is None or reached.all():
+            return None
+        points = edge_points(self._system.pairing.sides[0].facet, bodies.basis, reached)
+        last = self._at_edge
+        if last is None or last[0] is not bodies or not np.array_equal(last[1], points):
+            last = self._at_edge = bodies, points, edge_space(bodies, points, self._system.holder)
+        return last[2]
+
     def _solved(
-        self, contact: CondensedContact, compliance, weak, slope, guess: Contact | None, load
+        self,
+        bodies: CondensedContact,
+        edge: EdgeSpace | None,
+        compliance: np.ndarray,
+        resting: np.ndarray,
+        gap: np.ndarray,
+        slope: np.ndarray,
+        guess: Contact | None,
+        load: np.ndarray,
     ) -> Contact:
+        """Contact of bodies with a compliance (m, m) and a weak gap at rest (m,)."""
+        space = bodies if edge is None else edge
+        start = None if guess is None else guess.memory.active
+        if edge is not None:
+            compliance, resting = edge.compliance(compliance), edge.seen.T @ resting
+            start = None if guess is None else edge.pressing(guess.pressure)
         if slope.any():
-            compliance = compliance + contact.weighted.T @ (slope[:, None] * contact.basis)
-        solution = solve_contact(
-            compliance,
-            weak,
-            contact.modes,
-            load,
-            None if guess is None else guess.memory.active,
-            contact.force_modes,
-        )
-        pressure = contact.basis @ solution.coefficients
+            compliance = compliance + space.weighted.T @ (slope[:, None] * space.basis)
+        weak = space.weighted.T @ gap + resting
+        solution = solve_contact(compliance, weak, space.modes, load, start, space.force_modes)
+        pressure = space.basis @ solution.coefficients
+        if edge is not None:
+            seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
+            solution = replace(solution, coefficients=seen, active=active)
         return Contact(pressure, self._system.holder.amounts(solution.motion), solution)

@@ -52,6 +52,7 @@ class ContactMethod(Protocol):
         guess: Contact | None,
         conditions: Conditions,
         heat: HeatStage | None,
+        reached: np.ndarray | None = None,
     ) -> Contact:
         """Contact of bodies with friction heat and a local compliance.
 
@@ -64,6 +65,8 @@ class ContactMethod(Protocol):
         guess : Contact or None
         conditions : Conditions
         heat : HeatStage or None
+        reached : ndarray of bool, shape (n,), optional
+            Points that wear has reached; by default it has reached none, or all.
 
         Raises
         ------

@@ -42,7 +42,8 @@ class FullMethod:
         heated = system.thermal is not None
         self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
 
-    def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat, reached=None) -> Contact:
+        # contact holds point by point all over: the edge of the wear needs nothing else
         start, load = None if guess is None else guess.memory, conditions.load
         if heat is None:
             return self._result(self._solved(gap, slope, start, load, self._dead, None))

@@ -16,7 +16,7 @@ from .self_consistent import Supposed, self_consistent
 from .state import ContactState
 from .steady import SteadyState
 from .system import System
-from .wear_step import WornContact
+from .wear_step import WornContact, wear_reached
 
 _UNWORN = (
     "contact: neither the touching points nor what depends on temperature and pressure settle; "
@@ -73,7 +73,7 @@ class InterfaceProblem:
         heat = None if self._heat is None else self._heat.steady
 
         def respond(conditions: Conditions) -> WornContact:
-            contact = self._contact(worn, 0.0, conditions, heat, None)
+            contact = self._contact(worn, 0.0, conditions, heat, None, wear_reached(worn))
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return WornContact(worn, contact, faces=faces)
 
@@ -83,7 +83,8 @@ class InterfaceProblem:
     def worn(self, depth: np.ndarray, guess: Contact | None = None) -> Contact:
         """Contact of faces from which a depth (n,) is worn, without heat [m]."""
         conditions = self.conditions(WornContact(self._nothing(), self._guess), 0.0)
-        return self._contact(depth[None], 0.0, conditions, None, guess)
+        reached = wear_reached(depth[None])
+        return self._contact(depth[None], 0.0, conditions, None, guess, reached)
 
     def start(self) -> WornContact:
         """The unworn faces at time 0."""
@@ -127,7 +128,8 @@ class InterfaceProblem:
     def _frozen(self, worn: np.ndarray, heat: FrozenHeat, time: float) -> WornContact:
         """Contact at a moment of which the temperatures are known."""
         guess = WornContact(worn, self._guess, faces=heat.initial)
-        contact = self._contact(worn, 0.0, self.conditions(guess, time), heat, None)
+        conditions, reached = self.conditions(guess, time), wear_reached(worn)
+        contact = self._contact(worn, 0.0, conditions, heat, None, reached)
         return replace(guess, contact=contact, stored=heat.stored)
 
     def stage(
@@ -142,9 +144,9 @@ class InterfaceProblem:
 
         def respond(conditions: Conditions) -> WornContact:
             nonlocal last
-            last = self._contact(before.worn, step, conditions, heat, last)
+            last = self._contact(before.worn, step, conditions, heat, last, before.reached)
             faces = None if heat is None else heat.faces(conditions, last.pressure)
-            return WornContact(before.worn, last, before.peak, faces)
+            return WornContact(before.worn, last, before.peak, faces, reached=before.reached)
 
         conditions, found = self_consistent(
             self._surroundings, time, guess, respond, _STEP, closed=guess.pressure > 0
@@ -260,6 +262,7 @@ class InterfaceProblem:
         conditions: Conditions,
         heat: HeatStage | None,
         guess: Contact | None,
+        reached: np.ndarray | None,
     ) -> Contact:
         """Contact at the end of an implicit step of wear, by Newton's method.
 
@@ -272,7 +275,8 @@ class InterfaceProblem:
             return Contact(np.zeros(len(gap)), motion, None)
 
         def solve(opened, slope, last):
-            return self._method.solve(gap + opened, self._softness + slope, last, conditions, heat)
+            soft = self._softness + slope
+            return self._method.solve(gap + opened, soft, last, conditions, heat, reached)
 
         still = np.zeros(len(gap))
         if guess is not None and guess.memory is None:

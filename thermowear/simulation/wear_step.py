@@ -33,6 +33,8 @@ class WornContact:
         Temperatures and fluxes of the faces; None without heat.
     stored : StoredHeat or None
         None where temperatures are those of a steady state at any time.
+    reached : ndarray of bool or None, shape (n,)
+        Points that wear had reached before the step; None between steps.
     """
 
     worn: np.ndarray
@@ -40,6 +42,7 @@ class WornContact:
     peak: float = 0.0
     faces: ThermalState | None = None
     stored: StoredHeat | None = None
+    reached: np.ndarray | None = None
 
     @property
     def pressure(self) -> np.ndarray:
@@ -57,7 +60,7 @@ class WornContact:
         if stored is not None and other.stored is not None:
             stored = stored.towards(other.stored, part)
         worn = self.worn + part * (other.worn - self.worn)
-        return WornContact(worn, other.contact, self.largest, other.faces, stored)
+        return WornContact(worn, other.contact, self.largest, other.faces, stored, self.reached)
 
 
 class WearProblem(Protocol):
@@ -101,6 +104,17 @@ class WearProblem(Protocol):
         """How far from the steady state; NaN where that is not known."""
 
 
+def wear_reached(worn: np.ndarray) -> np.ndarray | None:
+    """Points of which something is worn off, shape (n,); None without any.
+
+    Parameters
+    ----------
+    worn : ndarray, shape (n_rows, n) [m]
+    """
+    reached = np.any(worn > 0.0, axis=0)
+    return reached if reached.any() else None
+
+
 def advance(problem: WearProblem, state: WornContact, time: float, step: float) -> WornContact:
     """One step of the two-stage, second-order, L-stable diagonally implicit Runge-Kutta method.
 
@@ -128,6 +142,8 @@ def advance_with_error(
         faces so far, 10 K at least. What rounding makes of a pressure that vanishes in the end is
         no error of the step.
     """
+    # the same points for the whole step and for its halves: what moves on is no error of time
+    state = replace(state, reached=wear_reached(state.worn))
     whole = advance(problem, state, time, step)
     middle = advance(problem, state, time, step / 2)
     halves = advance(problem, middle, time + step / 2, step / 2)
@@ -142,7 +158,7 @@ def advance_with_error(
             _relative(ours - theirs, max(halves.stored.largest, _LEAST_RISE))
             for ours, theirs in zip(halves.faces.rise, whole.faces.rise, strict=True)
         ]
-    return halves, max(errors) / 3.0
+    return replace(halves, reached=None), max(errors) / 3.0
 
 
 def _relative(errors: np.ndarray, scale: float, allowed: float = 0.0) -> float:

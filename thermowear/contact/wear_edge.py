@@ -27,6 +27,8 @@ from .holder import Holder
 
 _NONE = 1e-12
 """Of the area of a basis function."""
+_SMOOTH = 1e-3
+"""Of the largest pressure: what may be left by the projection on the pressure space."""
 
 
 def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np.ndarray:
@@ -51,6 +53,26 @@ def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np
     near[facet[np.any(basis[:, shared] > 0.0, axis=1)]] = True
     partly[facet[~reached]] = True
     return (near & partly)[facet]
+
+
+def rough_points(facet: np.ndarray, contact: CondensedContact, pressure: np.ndarray) -> np.ndarray:
+    """Contact points of the facets where a pressure is not one of the pressure space.
+
+    Parameters
+    ----------
+    facet : ndarray of int, shape (n,)
+    contact : CondensedContact
+    pressure : ndarray, shape (n,) [Pa]
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    mass = contact.weighted.T @ contact.basis
+    left = pressure - contact.basis @ np.linalg.solve(mass, contact.weak(pressure))
+    rough = np.zeros(facet.max() + 1, dtype=bool)
+    rough[facet[np.abs(left) > _SMOOTH * pressure.max()]] = True
+    return rough[facet]
 
 
 @dataclass(frozen=True)

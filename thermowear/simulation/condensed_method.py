@@ -8,7 +8,7 @@ import numpy as np
 
 from ..contact.complementarity import ContactSolution, solve_contact
 from ..contact.condensation import CondensedContact
-from ..contact.wear_edge import EdgeSpace, edge_points, edge_space
+from ..contact.wear_edge import EdgeSpace, edge_points, edge_space, rough_points
 from ..errors import ComputationError
 from .contact_method import Contact, WearRates, newton_with_wear
 from .system import System
@@ -32,12 +32,12 @@ class CondensedMethod:
         nominal = np.full(len(system.weights), system.friction)
         self._rubbing = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
-        self._at_edge: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
+        self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
         self.note: str | None = None
 
-    def solve(self, gap, slope, guess: Contact | None, conditions, heat, reached=None) -> Contact:
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
         bodies, load = self._rubbed(conditions.friction), conditions.load
-        edge = self._edge(bodies, reached)
+        edge = self._space(bodies, pointwise)
         gap, compliance = gap + self._dead, bodies.compliance
         if heat is None:
             resting = np.zeros(len(compliance))
@@ -52,6 +52,15 @@ class CondensedMethod:
             "contact: pressure and temperatures do not settle where conductivity or expansion "
             "change; reduce the speed"
         )
+
+    def edge(self, worn, pressure=None, before=None) -> np.ndarray | None:
+        facet, reached = self._system.pairing.sides[0].facet, np.any(worn > 0.0, axis=0)
+        if before is None and (reached.all() or not reached.any()):
+            return None
+        points = edge_points(facet, self._contact.basis, reached)
+        if before is not None:
+            points |= before & rough_points(facet, self._contact, pressure)
+        return points if points.any() else None
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle in the pressure space.
@@ -85,14 +94,14 @@ class CondensedMethod:
             self._rubbing = (key, self._system.rubbing(friction).contact)
         return self._rubbing[1]
 
-    def _edge(self, bodies: CondensedContact, reached: np.ndarray | None) -> EdgeSpace | None:
-        """Pressures where the edge of the wear lies; None without one. The last one is kept."""
-        if reached is None or reached.all():
+    def _space(self, bodies: CondensedContact, points: np.ndarray | None) -> EdgeSpace | None:
+        """Pressures with one for each of some points; None without any. The last one is kept."""
+        if points is None:
             return None
-        points = edge_points(self._system.pairing.sides[0].facet, bodies.basis, reached)
-        last = self._at_edge
+        last = self._last_space
         if last is None or last[0] is not bodies or not np.array_equal(last[1], points):
-            last = self._at_edge = bodies, points, edge_space(bodies, points, self._system.holder)
+            space = edge_space(bodies, points, self._system.holder)
+            last = self._last_space = bodies, points, space
         return last[2]
 
     def _solved(

@@ -16,7 +16,7 @@ from .self_consistent import Supposed, self_consistent
 from .state import ContactState
 from .steady import SteadyState
 from .system import System
-from .wear_step import WornContact, wear_reached
+from .wear_step import WornContact
 
 _UNWORN = (
     "contact: neither the touching points nor what depends on temperature and pressure settle; "
@@ -73,7 +73,7 @@ class InterfaceProblem:
         heat = None if self._heat is None else self._heat.steady
 
         def respond(conditions: Conditions) -> WornContact:
-            contact = self._contact(worn, 0.0, conditions, heat, None, wear_reached(worn))
+            contact = self._contact(worn, 0.0, conditions, heat, None, self._method.edge(worn))
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return WornContact(worn, contact, faces=faces)
 
@@ -83,8 +83,8 @@ class InterfaceProblem:
     def worn(self, depth: np.ndarray, guess: Contact | None = None) -> Contact:
         """Contact of faces from which a depth (n,) is worn, without heat [m]."""
         conditions = self.conditions(WornContact(self._nothing(), self._guess), 0.0)
-        reached = wear_reached(depth[None])
-        return self._contact(depth[None], 0.0, conditions, None, guess, reached)
+        pointwise = self._method.edge(depth[None])
+        return self._contact(depth[None], 0.0, conditions, None, guess, pointwise)
 
     def start(self) -> WornContact:
         """The unworn faces at time 0."""
@@ -128,9 +128,14 @@ class InterfaceProblem:
     def _frozen(self, worn: np.ndarray, heat: FrozenHeat, time: float) -> WornContact:
         """Contact at a moment of which the temperatures are known."""
         guess = WornContact(worn, self._guess, faces=heat.initial)
-        conditions, reached = self.conditions(guess, time), wear_reached(worn)
-        contact = self._contact(worn, 0.0, conditions, heat, None, reached)
+        conditions, pointwise = self.conditions(guess, time), self._method.edge(worn)
+        contact = self._contact(worn, 0.0, conditions, heat, None, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
+
+    def begin(self, state: WornContact) -> WornContact:
+        """A state with the points at which contact holds one by one in the next step."""
+        edge = self._method.edge(state.worn, state.pressure, state.pointwise)
+        return replace(state, pointwise=edge)
 
     def stage(
         self, before: WornContact, step: float, time: float, guess: WornContact
@@ -144,9 +149,9 @@ class InterfaceProblem:
 
         def respond(conditions: Conditions) -> WornContact:
             nonlocal last
-            last = self._contact(before.worn, step, conditions, heat, last, before.reached)
+            last = self._contact(before.worn, step, conditions, heat, last, before.pointwise)
             faces = None if heat is None else heat.faces(conditions, last.pressure)
-            return WornContact(before.worn, last, before.peak, faces, reached=before.reached)
+            return WornContact(before.worn, last, before.peak, faces, pointwise=before.pointwise)
 
         conditions, found = self_consistent(
             self._surroundings, time, guess, respond, _STEP, closed=guess.pressure > 0
@@ -262,7 +267,7 @@ class InterfaceProblem:
         conditions: Conditions,
         heat: HeatStage | None,
         guess: Contact | None,
-        reached: np.ndarray | None,
+        pointwise: np.ndarray | None,
     ) -> Contact:
         """Contact at the end of an implicit step of wear, by Newton's method.
 
@@ -276,7 +281,7 @@ class InterfaceProblem:
 
         def solve(opened, slope, last):
             soft = self._softness + slope
-            return self._method.solve(gap + opened, soft, last, conditions, heat, reached)
+            return self._method.solve(gap + opened, soft, last, conditions, heat, pointwise)
 
         still = np.zeros(len(gap))
         if guess is not None and guess.memory is None:

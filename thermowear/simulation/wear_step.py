@@ -33,8 +33,8 @@ class WornContact:
         Temperatures and fluxes of the faces; None without heat.
     stored : StoredHeat or None
         None where temperatures are those of a steady state at any time.
-    reached : ndarray of bool or None, shape (n,)
-        Points that wear had reached before the step; None between steps.
+    pointwise : ndarray of bool or None, shape (n,)
+        Points at which contact holds one by one, at the edge of the wear, see `contact.wear_edge`.
     """
 
     worn: np.ndarray
@@ -42,7 +42,7 @@ class WornContact:
     peak: float = 0.0
     faces: ThermalState | None = None
     stored: StoredHeat | None = None
-    reached: np.ndarray | None = None
+    pointwise: np.ndarray | None = None
 
     @property
     def pressure(self) -> np.ndarray:
@@ -60,7 +60,7 @@ class WornContact:
         if stored is not None and other.stored is not None:
             stored = stored.towards(other.stored, part)
         worn = self.worn + part * (other.worn - self.worn)
-        return WornContact(worn, other.contact, self.largest, other.faces, stored, self.reached)
+        return WornContact(worn, other.contact, self.largest, other.faces, stored, self.pointwise)
 
 
 class WearProblem(Protocol):
@@ -71,6 +71,9 @@ class WearProblem(Protocol):
 
     def start(self) -> WornContact:
         """The unworn faces, at time 0."""
+
+    def begin(self, state: WornContact) -> WornContact:
+        """A state with what is chosen anew for each step, the same for all that it is made of."""
 
     def stage(
         self, before: WornContact, step: float, time: float, guess: WornContact
@@ -104,17 +107,6 @@ class WearProblem(Protocol):
         """How far from the steady state; NaN where that is not known."""
 
 
-def wear_reached(worn: np.ndarray) -> np.ndarray | None:
-    """Points of which something is worn off, shape (n,); None without any.
-
-    Parameters
-    ----------
-    worn : ndarray, shape (n_rows, n) [m]
-    """
-    reached = np.any(worn > 0.0, axis=0)
-    return reached if reached.any() else None
-
-
 def advance(problem: WearProblem, state: WornContact, time: float, step: float) -> WornContact:
     """One step of the two-stage, second-order, L-stable diagonally implicit Runge-Kutta method.
 
@@ -143,7 +135,7 @@ def advance_with_error(
         no error of the step.
     """
     # the same points for the whole step and for its halves: what moves on is no error of time
-    state = replace(state, reached=wear_reached(state.worn))
+    state = problem.begin(state)
     whole = advance(problem, state, time, step)
     middle = advance(problem, state, time, step / 2)
     halves = advance(problem, middle, time + step / 2, step / 2)
@@ -158,7 +150,7 @@ def advance_with_error(
             _relative(ours - theirs, max(halves.stored.largest, _LEAST_RISE))
             for ours, theirs in zip(halves.faces.rise, whole.faces.rise, strict=True)
         ]
-    return replace(halves, reached=None), max(errors) / 3.0
+    return halves, max(errors) / 3.0
 
 
 def _relative(errors: np.ndarray, scale: float, allowed: float = 0.0) -> float:

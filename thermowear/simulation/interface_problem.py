@@ -68,12 +68,14 @@ class InterfaceProblem:
         """
         return self._lasting(self._nothing(), 0.0)
 
-    def _lasting(self, worn: np.ndarray, time: float) -> WornContact:
+    def _lasting(
+        self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
+    ) -> WornContact:
         """Contact of faces with given wear, at the temperatures that its friction leads to."""
         heat = None if self._heat is None else self._heat.steady
 
         def respond(conditions: Conditions) -> WornContact:
-            contact = self._contact(worn, 0.0, conditions, heat, None, self._method.edge(worn))
+            contact = self._contact(worn, 0.0, conditions, heat, None, pointwise)
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return WornContact(worn, contact, faces=faces)
 
@@ -83,8 +85,7 @@ class InterfaceProblem:
     def worn(self, depth: np.ndarray, guess: Contact | None = None) -> Contact:
         """Contact of faces from which a depth (n,) is worn, without heat [m]."""
         conditions = self.conditions(WornContact(self._nothing(), self._guess), 0.0)
-        pointwise = self._method.edge(depth[None])
-        return self._contact(depth[None], 0.0, conditions, None, guess, pointwise)
+        return self._contact(depth[None], 0.0, conditions, None, guess)
 
     def start(self) -> WornContact:
         """The unworn faces at time 0."""
@@ -115,25 +116,40 @@ class InterfaceProblem:
         time : float
             [s]
         """
+        edge = None if state.pointwise is None else self._method.edge(worn)
         if state.stored is None:
-            found = self._lasting(worn, time)
+            found = self._lasting(worn, time, edge)
         else:
             assert self._heat is not None
             assert former._heat is not None
             assert rise is not None
             stored = self._heat.take_over(former._heat, state.stored, rise)
-            found = self._frozen(worn, self._heat.at_moment(stored), time)
-        return replace(found, peak=state.largest)
+            found = self._frozen(worn, self._heat.at_moment(stored), time, edge)
+        return replace(found, peak=state.largest, pointwise=edge)
 
-    def _frozen(self, worn: np.ndarray, heat: FrozenHeat, time: float) -> WornContact:
+    def _frozen(
+        self,
+        worn: np.ndarray,
+        heat: FrozenHeat,
+        time: float,
+        pointwise: np.ndarray | None = None,
+    ) -> WornContact:
         """Contact at a moment of which the temperatures are known."""
         guess = WornContact(worn, self._guess, faces=heat.initial)
-        conditions, pointwise = self.conditions(guess, time), self._method.edge(worn)
+        conditions = self.conditions(guess, time)
         contact = self._contact(worn, 0.0, conditions, heat, None, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
 
     def begin(self, state: WornContact) -> WornContact:
-        """A state with the points at which contact holds one by one in the next step."""
+        """A state with the points at which contact holds one by one in the next step.
+
+        None before more is worn off than the bodies yield: till then the pressure of elastic bodies
+        falls to zero smoothly at the edge.
+        """
+        if state.pointwise is None:
+            deepest = float(state.worn.sum(axis=0).max())
+            if deepest <= self._method.opening(state.contact):
+                return state
         edge = self._method.edge(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)
 
@@ -267,7 +283,7 @@ class InterfaceProblem:
         conditions: Conditions,
         heat: HeatStage | None,
         guess: Contact | None,
-        pointwise: np.ndarray | None,
+        pointwise: np.ndarray | None = None,
     ) -> Contact:
         """Contact at the end of an implicit step of wear, by Newton's method.
 

@@ -22,6 +22,8 @@ _UNWORN = (
     "contact: neither the touching points nor what depends on temperature and pressure settle; "
     "give the contact a (smaller) heat.conductance, or reduce the speed"
 )
+_WORN = 0.25
+"""Of what the bodies yield: where more is worn off, the edge of the contact is that of the wear."""
 _STEP = "contact: what depends on temperature or pressure does not settle in a step"
 
 
@@ -143,12 +145,12 @@ class InterfaceProblem:
     def begin(self, state: WornContact) -> WornContact:
         """A state with the points at which contact holds one by one in the next step.
 
-        None before more is worn off than the bodies yield: till then the pressure of elastic bodies
-        falls to zero smoothly at the edge.
+        None before much is worn off against what the bodies yield: till then their pressure
+        falls to zero smoothly at the edge of the contact.
         """
         if state.pointwise is None:
             deepest = float(state.worn.sum(axis=0).max())
-            if deepest <= self._method.opening(state.contact):
+            if deepest <= _WORN * self._method.opening(state.contact):
                 return state
         edge = self._method.edge(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)

@@ -146,8 +146,12 @@ class InterfaceProblem:
         """A state with the points at which contact holds one by one in the next step.
 
         None before much is worn off against what the bodies yield: till then their pressure
-        falls to zero smoothly at the edge of the contact.
+        falls to zero smoothly at the edge of the contact. None with heat: the couplings of
+        heated bodies with single points are too badly conditioned for high degrees.
         """
+        pressed = state.worn.any() and state.contact.memory is not None
+        if self._heat is not None or not pressed:  # heated faces stay with weak contact
+            return state
         if state.pointwise is None:
             deepest = float(state.worn.sum(axis=0).max())
             if deepest <= _WORN * self._method.opening(state.contact):

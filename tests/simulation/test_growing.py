@@ -35,8 +35,8 @@ def test_a_ball_that_spins_wears_about_its_axis():
     np.testing.assert_allclose(i.pressure[middle] * i.x[middle] * 2 * np.pi * a, 10.385, rtol=0.02)
 
 
-def test_a_contact_that_outgrows_its_mesh_is_told():
-    """requirement: what was meshed for a smaller contact is said to be outgrown."""
+def test_a_contact_that_outgrows_its_zone_is_meshed_for_a_wider_one():
+    """requirement: it grows on by the closed form, no volume is lost, and the run says so."""
     import thermowear as tw
     from thermowear.simulation.observer import Observer
 
@@ -49,11 +49,27 @@ def test_a_contact_that_outgrows_its_mesh_is_told():
         def note(self, text):
             self.found.append(text)
 
+    law, changes = growing_line(20e3, 10e-3, MODULUS, 1e-14), {"analysis.end_time": "40 s"}
+    slid = 40 * 0.05
     for zone, outgrown in (("0.06 mm", True), ("0.3 mm", False)):
         notes = Notes()
-        case = tw.load(tables(CYLINDER, COARSE | {"geometry.zone": zone}))
-        tw.run(case, observer=notes)
-        assert any("end of the contact face" in note for note in notes.found) is outgrown
+        case = tw.load(tables(CYLINDER, COARSE | changes | {"geometry.zone": zone}))
+        i = tw.run(case, observer=notes).interface
+        assert any("beyond the zone" in note for note in notes.found) is outgrown
+        assert not any("end of the contact face" in note for note in notes.found)
+        assert i.weight @ i.wear_2 == pytest.approx(1e-14 * 20 * slid, rel=1e-3)
+        spread = np.sqrt(5 * np.average(i.x**2, weights=i.weight * i.wear_2))
+        assert spread == pytest.approx(law.elastic_half_width(slid), rel=1e-2)
+
+
+def test_the_pressure_does_not_overshoot_at_a_travelling_edge():
+    """requirement: largest pressure within 5 % of the uniform one wherever in an element it is."""
+    law = growing_line(20e3, 10e-3, MODULUS, 1e-14)
+    history = solved(CYLINDER, COARSE | {"analysis.end_time": "60 s"}).history
+    found = np.array([[row.time, row.max_pressure] for row in history if row.time > 15])
+    uniform = 20e3 / (2 * law.elastic_half_width(0.05 * found[:, 0]))
+    assert len(found) > 50
+    np.testing.assert_allclose(found[:, 1], uniform, rtol=5e-2)
 
 
 def test_finer_meshes_grow_alike():

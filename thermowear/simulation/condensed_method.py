@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..contact.complementarity import ContactSolution, NoEquilibrium, solve_contact
 from ..contact.condensation import CondensedContact
+from ..contact.wear_edge import EdgeSpace, edge_points, edge_space, rough_points
 from ..errors import ComputationError
 from .contact_method import Contact, Slope, WearRates, newton_with_wear
 from .system import System
@@ -28,6 +31,8 @@ _TIPPED = (
 class CondensedMethod:
     """The contact conditions in the pressure space, with gaps measured weakly.
 
+    Where the edge of the wear lies they hold point by point, see `contact.wear_edge`.
+
     Parameters
     ----------
     system : System
@@ -39,36 +44,42 @@ class CondensedMethod:
         nominal = np.full(len(system.weights), system.friction)
         self._rubbing = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
+        self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
         self.note: str | None = None
 
-    def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
         try:
-            return self._balanced(gap, slope, guess, conditions, heat)
+            return self._balanced(gap, slope, guess, conditions, heat, pointwise)
         except NoEquilibrium as error:
             cold = _LOCKED if conditions.friction.any() else _TIPPED
             raise ComputationError(f"{error}; {cold if heat is None else _HOT}") from None
 
-    def _balanced(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
-        bodies = self._rubbed(conditions.friction)
-        compliance, weak = bodies.compliance, bodies.weak(gap + self._dead)
+    def _balanced(self, gap, slope, guess: Contact | None, conditions, heat, pointwise) -> Contact:
+        bodies, load = self._rubbed(conditions.friction), conditions.load
+        edge = self._space(bodies, pointwise)
+        gap, compliance = gap + self._dead, bodies.compliance
         if heat is None:
-            return self._solved(bodies, compliance, weak, slope, guess, conditions.load)
+            resting = np.zeros(len(compliance))
+            return self._solved(bodies, edge, compliance, resting, gap, slope, guess, load)
         for _ in range(_TURNS):
             hot = heat.coupling(conditions, bodies.basis)
-            guess = self._solved(
-                bodies,
-                compliance + hot.compliance,
-                weak + hot.resting,
-                slope,
-                guess,
-                conditions.load,
-            )
+            both = compliance + hot.compliance
+            guess = self._solved(bodies, edge, both, hot.resting, gap, slope, guess, load)
             if heat.holds(conditions, guess.pressure):
                 return guess
         raise ComputationError(
             "contact: pressure and temperatures do not settle where conductivity or expansion "
             "change; reduce the speed"
         )
+
+    def edge(self, worn, pressure=None, before=None) -> np.ndarray | None:
+        facet, reached = self._system.pairing.sides[0].facet, np.any(worn > 0.0, axis=0)
+        if before is None and (reached.all() or not reached.any()):
+            return None
+        points = edge_points(facet, self._contact.basis, reached)
+        if before is not None:
+            points |= before & rough_points(facet, self._contact, pressure)
+        return points if points.any() else None
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle in the pressure space.
@@ -81,10 +92,10 @@ class CondensedMethod:
         active = np.ones(len(coefficients), dtype=bool)
         still = np.zeros(contact.modes.shape[1])
         start = Contact(pressure, still, ContactSolution(coefficients, still, active))
-        rigid = np.zeros_like(contact.compliance)
+        rigid, resting = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
         return newton_with_wear(
             lambda worn, slope, last: self._solved(
-                contact, rigid, contact.weak(worn), slope, last, load
+                contact, None, rigid, resting, worn, slope, last, load
             ),
             rates,
             1.0,
@@ -102,20 +113,42 @@ class CondensedMethod:
             self._rubbing = (key, self._system.rubbing(friction).contact)
         return self._rubbing[1]
 
+    def _space(self, bodies: CondensedContact, points: np.ndarray | None) -> EdgeSpace | None:
+        """Pressures with one for each of some points; None without any. The last one is kept."""
+        if points is None:
+            return None
+        last = self._last_space
+        if last is None or last[0] is not bodies or not np.array_equal(last[1], points):
+            space = edge_space(bodies, points, self._system.holder)
+            last = self._last_space = bodies, points, space
+        return last[2]
+
     def _solved(
-        self, contact: CondensedContact, compliance, weak, slope: Slope, guess, load
+        self,
+        bodies: CondensedContact,
+        edge: EdgeSpace | None,
+        compliance: np.ndarray,
+        resting: np.ndarray,
+        gap: np.ndarray,
+        slope: Slope,
+        guess: Contact | None,
+        load: np.ndarray,
     ) -> Contact:
+        """Contact of bodies with a compliance (m, m) and a weak gap at rest (m,)."""
+        space = bodies if edge is None else edge
+        start = None if guess is None else guess.memory.active
+        if edge is not None:
+            compliance, resting = edge.compliance(compliance), edge.seen.T @ resting
+            start = None if guess is None else edge.pressing(guess.pressure)
         if slope.point.any():
-            compliance = compliance + contact.weighted.T @ (slope.point[:, None] * contact.basis)
+            compliance = compliance + space.weighted.T @ (slope.point[:, None] * space.basis)
         if len(slope.rows):
-            compliance = compliance + contact.weak(slope.reach) @ (slope.rows @ contact.basis)
-        solution = solve_contact(
-            compliance,
-            weak,
-            contact.modes,
-            load,
-            None if guess is None else guess.memory.active,
-            contact.force_modes,
-        )
-        pressure = contact.basis @ solution.coefficients
+            reach = space.weighted.T @ slope.reach
+            compliance = compliance + reach @ (slope.rows @ space.basis)
+        weak = space.weighted.T @ gap + resting
+        solution = solve_contact(compliance, weak, space.modes, load, start, space.force_modes)
+        pressure = space.basis @ solution.coefficients
+        if edge is not None:
+            seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
+            solution = replace(solution, coefficients=seen, active=active)
         return Contact(pressure, self._system.holder.amounts(solution.motion), solution)

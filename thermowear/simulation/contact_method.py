@@ -52,6 +52,7 @@ class ContactMethod(Protocol):
         guess: Contact | None,
         conditions: Conditions,
         heat: HeatStage | None,
+        pointwise: np.ndarray | None = None,
     ) -> Contact:
         """Contact of bodies with friction heat and a local compliance.
 
@@ -64,10 +65,29 @@ class ContactMethod(Protocol):
         guess : Contact or None
         conditions : Conditions
         heat : HeatStage or None
+        pointwise : ndarray of bool, shape (n,), optional
+            From `edge`.
 
         Raises
         ------
         ComputationError
+        """
+
+    def edge(
+        self,
+        worn: np.ndarray,
+        pressure: np.ndarray | None = None,
+        before: np.ndarray | None = None,
+    ) -> np.ndarray | None:
+        """Points at the edge of the wear where contact is to hold one by one, shape (n,).
+
+        Parameters
+        ----------
+        worn : ndarray, shape (n_wearing, n) [m]
+        pressure : ndarray, shape (n,), optional
+            [Pa]
+        before : ndarray of bool, shape (n,), optional
+            Those under that pressure: they stay until it is smooth there.
         """
 
     def steady(self, pressure: np.ndarray, rates: WearRates, conditions: Conditions) -> np.ndarray:

@@ -42,7 +42,7 @@ class FullMethod:
         heated = system.thermal is not None
         self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
 
-    def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
         start, load = None if guess is None else guess.memory, conditions.load
         slope = slope.point  # means are of turning disks in space, which is for condensed contact
         if heat is None:
@@ -59,6 +59,10 @@ class FullMethod:
             f"contact: heat and pressure do not settle in {_PASSES} turns; reduce the speed, "
             'or use contact.method = "condensed", which solves both at once'
         )
+
+    def edge(self, worn, pressure=None, before=None) -> None:
+        """Contact holds point by point all over."""
+        return None
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle point by point: the full system has no pressure space of its own."""

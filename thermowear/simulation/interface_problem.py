@@ -22,6 +22,8 @@ _UNWORN = (
     "contact: neither the touching points nor what depends on temperature and pressure settle; "
     "give the contact a (smaller) heat.conductance, or reduce the speed"
 )
+_WORN = 0.25
+"""Of what the bodies yield: where more is worn off, the edge of the contact is that of the wear."""
 _STEP = "contact: what depends on temperature or pressure does not settle in a step"
 
 
@@ -68,12 +70,14 @@ class InterfaceProblem:
         """
         return self._lasting(self._nothing(), 0.0)
 
-    def _lasting(self, worn: np.ndarray, time: float) -> WornContact:
+    def _lasting(
+        self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
+    ) -> WornContact:
         """Contact of faces with given wear, at the temperatures that its friction leads to."""
         heat = None if self._heat is None else self._heat.steady
 
         def respond(conditions: Conditions) -> WornContact:
-            contact = self._contact(worn, 0.0, conditions, heat, None)
+            contact = self._contact(worn, 0.0, conditions, heat, None, pointwise)
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return WornContact(worn, contact, faces=faces)
 
@@ -114,21 +118,46 @@ class InterfaceProblem:
         time : float
             [s]
         """
+        edge = None if state.pointwise is None else self._method.edge(worn)
         if state.stored is None:
-            found = self._lasting(worn, time)
+            found = self._lasting(worn, time, edge)
         else:
             assert self._heat is not None
             assert former._heat is not None
             assert rise is not None
             stored = self._heat.take_over(former._heat, state.stored, rise)
-            found = self._frozen(worn, self._heat.at_moment(stored), time)
-        return replace(found, peak=state.largest)
+            found = self._frozen(worn, self._heat.at_moment(stored), time, edge)
+        return replace(found, peak=state.largest, pointwise=edge)
 
-    def _frozen(self, worn: np.ndarray, heat: FrozenHeat, time: float) -> WornContact:
+    def _frozen(
+        self,
+        worn: np.ndarray,
+        heat: FrozenHeat,
+        time: float,
+        pointwise: np.ndarray | None = None,
+    ) -> WornContact:
         """Contact at a moment of which the temperatures are known."""
         guess = WornContact(worn, self._guess, faces=heat.initial)
-        contact = self._contact(worn, 0.0, self.conditions(guess, time), heat, None)
+        conditions = self.conditions(guess, time)
+        contact = self._contact(worn, 0.0, conditions, heat, None, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
+
+    def begin(self, state: WornContact) -> WornContact:
+        """A state with the points at which contact holds one by one in the next step.
+
+        None before much is worn off against what the bodies yield: till then their pressure
+        falls to zero smoothly at the edge of the contact. None with heat: the couplings of
+        heated bodies with single points are too badly conditioned for high degrees.
+        """
+        pressed = state.worn.any() and state.contact.memory is not None
+        if self._heat is not None or not pressed:  # heated faces stay with weak contact
+            return state
+        if state.pointwise is None:
+            deepest = float(state.worn.sum(axis=0).max())
+            if deepest <= _WORN * self._method.opening(state.contact):
+                return state
+        edge = self._method.edge(state.worn, state.pressure, state.pointwise)
+        return replace(state, pointwise=edge)
 
     def stage(
         self, before: WornContact, step: float, time: float, guess: WornContact
@@ -142,9 +171,9 @@ class InterfaceProblem:
 
         def respond(conditions: Conditions) -> WornContact:
             nonlocal last
-            last = self._contact(before.worn, step, conditions, heat, last)
+            last = self._contact(before.worn, step, conditions, heat, last, before.pointwise)
             faces = None if heat is None else heat.faces(conditions, last.pressure)
-            return WornContact(before.worn, last, before.peak, faces)
+            return WornContact(before.worn, last, before.peak, faces, pointwise=before.pointwise)
 
         conditions, found = self_consistent(
             self._surroundings, time, guess, respond, _STEP, closed=guess.pressure > 0
@@ -266,6 +295,7 @@ class InterfaceProblem:
         conditions: Conditions,
         heat: HeatStage | None,
         guess: Contact | None,
+        pointwise: np.ndarray | None = None,
     ) -> Contact:
         """Contact at the end of an implicit step of wear, by Newton's method.
 
@@ -279,7 +309,7 @@ class InterfaceProblem:
 
         def solve(opened, slope, last):
             softer = slope.softer_by(self._softness)
-            return self._method.solve(gap + opened, softer, last, conditions, heat)
+            return self._method.solve(gap + opened, softer, last, conditions, heat, pointwise)
 
         still = np.zeros(len(gap))
         rigid = Slope.on_the_spot(still)

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..case.analyses import Transient
 from ..contact.refinement import Rule
+from ..errors import ComputationError
 from ..geometry.new_face import NewFace
 from ..geometry.tagged import TaggedMesh
 from .building import build
@@ -29,6 +30,7 @@ from .step_sizes import Limited, StepSizes
 from .system import System
 from .transient import Moment, is_over, moments
 from .wear_step import advance_with_error
+from .wider_zone import meshed_wider, wider_zone
 from .worn_geometry import WornGeometry
 
 _CHANGE = 5e-3
@@ -88,20 +90,26 @@ class OuterLoop:
         self._principle = principle
         self._sizes = Limited(sizes)
         self._observer = observer
+        self._narrow = ""
 
     @property
     def kept(self) -> tuple[float, float, float]:
         """The largest fraction so far, what is allowed, and the largest step that may follow."""
         return self.largest_kept, self.allowed, self._sizes.largest
 
-    def go_on(self, worn: WornGeometry | None, kept: tuple[float, float, float]) -> None:
-        """Take up an earlier loop, after its last update if there has been one."""
+    def go_on(
+        self,
+        worn: WornGeometry | None,
+        kept: tuple[float, float, float],
+        zone: tuple[float, float] | None,
+    ) -> None:
+        """Take up an earlier loop, after its last update or wider zone if there has been one."""
         self.largest_kept, self.allowed, self._sizes.largest = kept
-        if worn is None:
-            return
         unworn = self.system
-        inputs = unworn.case, unworn.comm, unworn.phases, unworn.inputs.zone
-        self.system = build(*inputs, Parts(), worn)
+        zone = unworn.inputs.zone if zone is None else zone
+        if worn is None and zone == unworn.inputs.zone:
+            return
+        self.system = build(unworn.case, unworn.comm, unworn.phases, zone, Parts(), worn)
         self.problem, self.steady = interface_problem(self.system), self._principle(self.system)
 
     def moments(self, last: Moment | None = None) -> Iterator[Moment]:
@@ -109,15 +117,17 @@ class OuterLoop:
         system, problem, steady = self.system, self.problem, self.steady
         settings = system.case.analysis
         assert isinstance(settings, Transient)
-        kept, fraction = KeptWear(system) if self._moves else None, 0.0
-        if kept is not None and last is not None:
-            fraction = kept.fraction(kept.depth(last.state.worn))
+        kept, fraction = self._kept_wear(system, last)
         while True:
+            if last is not None and self._widens(system, last):
+                system, problem, last = self._widen(system, problem, last)
+                steady = self._principle(system)
+                kept, fraction = self._kept_wear(system, last)
             if kept is not None and last is not None and self._is_due(kept, fraction, last):
                 system, problem, last = self._update(system, problem, kept, last)
                 steady = self._principle(system)
                 kept, fraction = KeptWear(system), 0.0
-            for moment in moments(problem, settings, steady, self._sizes, last):
+            for moment in self._told(moments(problem, settings, steady, self._sizes, last)):
                 if kept is not None:
                     before, fraction = fraction, kept.fraction(kept.depth(moment.state.worn))
                     self._look_ahead(fraction, fraction - before, moment.step)
@@ -128,6 +138,8 @@ class OuterLoop:
                 self.system, self.problem, self.steady = system, problem, steady
                 yield moment
                 last = moment
+                if self._widens(system, last):
+                    break
                 if kept is not None and self._is_due(kept, fraction, last):
                     break
             else:
@@ -150,6 +162,48 @@ class OuterLoop:
             "geometry_meshed_anew": worn.meshed_anew,
             "geometry_remeshing_error": worn.carrying_error,
         }
+
+    def _told(self, passing: Iterator[Moment]) -> Iterator[Moment]:
+        """The moments; a step that fails where the contact fills its face says so."""
+        try:
+            yield from passing
+        except ComputationError as reason:
+            if not self._narrow:
+                raise
+            raise ComputationError(
+                f"{reason}; the contact has grown beyond the zone that is meshed for it, which "
+                f"cannot be wider: {self._narrow}"
+            ) from None
+
+    def _kept_wear(self, system: System, last: Moment | None) -> tuple[KeptWear | None, float]:
+        """The wear kept in the gap, where meshes can be moved at all, and its fraction."""
+        kept = KeptWear(system) if self._moves else None
+        if kept is None or last is None:
+            return kept, 0.0
+        return kept, kept.fraction(kept.depth(last.state.worn))
+
+    def _widens(self, system: System, moment: Moment) -> bool:
+        """Whether a contact that wears has outgrown its zone, before the end of the run."""
+        settings = system.case.analysis
+        assert isinstance(settings, Transient)
+        if self._narrow or not moment.state.worn.any() or is_over(settings, self.problem, moment):
+            return False
+        return wider_zone(system, moment.state.pressure) is not None
+
+    def _widen(self, system: System, problem: InterfaceProblem, last: Moment):
+        """System and problem on meshes for a wider zone; the same ones where there are none."""
+        zone = wider_zone(system, last.state.pressure)
+        assert zone is not None
+        found = meshed_wider(system, problem, last.state, last.time, zone)
+        if isinstance(found, str):
+            self._narrow = found
+            return system, problem, last
+        self._observer.note(
+            f"at {last.time:.4g} s the contact has grown beyond the zone that was meshed for it; "
+            f"from there on the mesh is made for x = {zone[0]:.4g} to {zone[1]:.4g} m "
+            "(a larger geometry.zone avoids that)"
+        )
+        return found[0], found[1], replace(last, state=found[2])
 
     @property
     def _moves(self) -> bool:

@@ -173,6 +173,10 @@ class ReciprocatingProblem:
         parts = zip(self.split(self.rates(state.pressure)), self._places, strict=True)
         return max(_unevenness(rate, place) for rate, place in parts if rate.any())
 
+    def begin(self, state: WornContact) -> WornContact:
+        """Nothing is chosen for a step."""
+        return state
+
     def stage(
         self, before: WornContact, step: float, time: float, guess: WornContact
     ) -> WornContact:

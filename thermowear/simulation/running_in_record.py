@@ -53,6 +53,8 @@ class RunningIn:
         Where the meshes have been moved to the worn faces.
     kept : tuple of float
         See `OuterLoop`.
+    zone : tuple of float or None
+        Range of x that the mesh was made for [m].
     """
 
     moment: Moment
@@ -62,6 +64,7 @@ class RunningIn:
     heat: list[HeatRow]
     worn: WornGeometry | None
     kept: tuple[float, float, float]
+    zone: tuple[float, float] | None = None
 
     @property
     def time(self) -> float:
@@ -92,7 +95,7 @@ class RunningInRecord:
         """Take up what was kept before."""
         self._last, self._speed = before.moment, before.speed
         self.rows, self.heat = before.rows, before.heat
-        self._loop.go_on(before.worn, before.kept)
+        self._loop.go_on(before.worn, before.kept, before.zone)
         self._problem.recall(before.memory)
         for rows in (self.rows, self.heat):
             self._observer.resumed(rows)
@@ -100,8 +103,17 @@ class RunningInRecord:
 
     def progress(self) -> RunningIn:
         memory = self._problem.memory()
-        worn, kept = self._system.worn, self._loop.kept
-        return RunningIn(self._last, memory, self._speed, self.rows, self.heat, worn, kept)
+        system, kept = self._system, self._loop.kept
+        return RunningIn(
+            self._last,
+            memory,
+            self._speed,
+            self.rows,
+            self.heat,
+            system.worn,
+            kept,
+            system.inputs.zone,
+        )
 
     @property
     def _system(self) -> System:

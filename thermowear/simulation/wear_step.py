@@ -33,6 +33,8 @@ class WornContact:
         Temperatures and fluxes of the faces; None without heat.
     stored : StoredHeat or None
         None where temperatures are those of a steady state at any time.
+    pointwise : ndarray of bool or None, shape (n,)
+        Points at which contact holds one by one, at the edge of the wear, see `contact.wear_edge`.
     """
 
     worn: np.ndarray
@@ -40,6 +42,7 @@ class WornContact:
     peak: float = 0.0
     faces: ThermalState | None = None
     stored: StoredHeat | None = None
+    pointwise: np.ndarray | None = None
 
     @property
     def pressure(self) -> np.ndarray:
@@ -57,7 +60,7 @@ class WornContact:
         if stored is not None and other.stored is not None:
             stored = stored.towards(other.stored, part)
         worn = self.worn + part * (other.worn - self.worn)
-        return WornContact(worn, other.contact, self.largest, other.faces, stored)
+        return WornContact(worn, other.contact, self.largest, other.faces, stored, self.pointwise)
 
 
 class WearProblem(Protocol):
@@ -68,6 +71,9 @@ class WearProblem(Protocol):
 
     def start(self) -> WornContact:
         """The unworn faces, at time 0."""
+
+    def begin(self, state: WornContact) -> WornContact:
+        """A state with what is chosen anew for each step, the same for all that it is made of."""
 
     def stage(
         self, before: WornContact, step: float, time: float, guess: WornContact
@@ -132,6 +138,8 @@ def advance_with_error(
         friction alone heats them. What rounding makes of a pressure that vanishes in the end is
         no error of the step.
     """
+    # the same points for the whole step and for its halves: what moves on is no error of time
+    state = problem.begin(state)
     whole = advance(problem, state, time, step)
     middle = advance(problem, state, time, step / 2)
     halves = advance(problem, middle, time + step / 2, step / 2)

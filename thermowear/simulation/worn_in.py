@@ -31,7 +31,10 @@ def worn_in(
     contact = problem.contact_state(state, time)
     motion = combined(system.holder.motions, state.contact.motion)
     gap = interface_at(system, contact, motion, both)[1].gap
-    excess = unseen(gap, state.pressure > 0, system.pairing, system.basis)
+    weak = state.pressure > 0
+    if state.pointwise is not None:
+        weak &= ~state.pointwise  # faces fit there already, and the pressure sees all of the gap
+    excess = unseen(gap, weak, system.pairing, system.basis)
     in_place = np.array([isinstance(s, InPlace) for s in system.spreads.values()])
     ours = np.where(in_place[:, None], state.worn, 0.0)
     whole = ours.sum(axis=0)

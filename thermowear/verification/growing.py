@@ -75,6 +75,17 @@ class Growth:
             for name, value, rigid in zip(("half-width", "depth"), found, known, strict=True):
                 yield compare(self.id, f"{name} {place}, rigid [m]", value, rigid, 1e-2, RIGID)
 
+    def peaks(self, load: float, power: int) -> Iterator[Check]:
+        """Largest pressure, wherever in an element the edge lies, against the uniform one.
+
+        That is the load over ``a^power``: half the load per length, or the force over π.
+        """
+        for distance, state in self.states.items():
+            a = float(self.law.elastic_half_width(distance))
+            place = f"at {float(self.law.half_width(distance)) / self.law.start:.3g} a0{self.note}"
+            found, uniform = float(state.pressure.max()), load / a**power
+            yield compare(self.id, f"largest pressure {place} [Pa]", found, uniform, 5e-2, ELASTIC)
+
     def volumes(self, rate: float) -> Iterator[Check]:
         """Worn volume against ``k F s``; `rate` is k F [m²]."""
         for distance, state in self.states.items():

@@ -16,6 +16,7 @@ STARTER = "cylinder-on-block-growing"
 FORCE, THICKNESS, RADIUS = 20.0, 1e-3, 10e-3
 COEFFICIENT = 1e-14
 MESH = ("mesh.elements=60",)
+ELEMENTS, PLACES = (40, 80, 160), (3, 3.55, 4.1, 4.65, 5.2, 5.75, 6)
 WIDE = ("mesh.elements=90", "geometry.zone=1.15 mm")
 
 BOTH = ('wear.cylinder={coefficient="5e-9 1/MPa", per="pressure"}',)
@@ -33,6 +34,10 @@ def checks() -> Iterator[Check]:
     yield from both.checks()
     yield from both.volumes(1.5 * COEFFICIENT * FORCE)
     yield from run(", cylinder wears, b = 2", 2.0, 1e-22, (3, 4, 5), *SQUARE).checks()
+    for elements in ELEMENTS:
+        mesh = f", {elements} elements", f"mesh.elements={elements}"
+        peaks = run(mesh[0], 1.0, COEFFICIENT, PLACES, mesh[1])
+        yield from peaks.peaks(FORCE / THICKNESS / 2, 1)
 
 
 def run(

@@ -17,6 +17,7 @@ FORCE, RADIUS = 10.385, 50e-3
 COEFFICIENT = 1.33e-13
 MOMENT = 3
 MESH = ("mesh.elements=60",)
+ELEMENTS, PLACES = (40, 80, 160), (3, 3.55, 4.1, 4.65, 5.2, 5.75, 6)
 
 SQUARE = ('wear={block={coefficient="1.33e-9 1/MPa^2", per="pressure", pressure_exponent=2}}',)
 PUBLISHED = {0.32: 2.7426, 0.64: 3.2543}
@@ -31,6 +32,10 @@ def checks() -> Iterator[Check]:
     scar = run(", a0: a scar of 2 Hertz's", 1.0, COEFFICIENT, (2, 6.1, 6.5))
     yield from scar.from_scar()
     yield from run(", block wears, b = 2", 2.0, 1.33e-21, (3, 5), *SQUARE).checks()
+    for elements in ELEMENTS:
+        mesh = f", {elements} elements", f"mesh.elements={elements}"
+        peaks = run(mesh[0], 1.0, COEFFICIENT, PLACES, mesh[1])
+        yield from peaks.peaks(FORCE / np.pi, 2)
     published = grown(STARTER, tuple(PUBLISHED), *MESH)
     for (distance, ratio), state in zip(PUBLISHED.items(), published.values(), strict=True):
         found = worn_half_width(state, MOMENT) / growth.law.start

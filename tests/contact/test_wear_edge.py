@@ -1,0 +1,61 @@
+"""Pressure spaces with a pressure for each point at the edge of the wear."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from thermowear.contact.condensation import CondensedContact
+from thermowear.contact.wear_edge import edge_points, edge_space, rough_points
+
+FACETS, POINTS = 5, 4
+
+
+@pytest.fixture
+def face():
+    """Hats on a straight face of equal facets, and a compliance that is no diagonal one."""
+    t, w = np.polynomial.legendre.leggauss(POINTS)
+    t = (t + 1) / 2
+    facet = np.repeat(np.arange(FACETS), POINTS)
+    x = facet + np.tile(t, FACETS)
+    basis = np.maximum(1 - np.abs(x[:, None] - np.arange(FACETS + 1)), 0.0)
+    weighted = np.tile(w / 2, FACETS)[:, None] * basis
+    apart = np.abs(np.subtract.outer(np.arange(FACETS + 1.0), np.arange(FACETS + 1.0)))
+    modes = np.ones((len(x), 1))
+    holder = SimpleNamespace(modes=modes, force_modes=modes)
+    means = weighted.T @ modes
+    contact = CondensedContact(basis, weighted, np.exp(-apart), means, means, None)
+    return facet, x, contact, holder
+
+
+def test_the_edge_is_where_wear_ends_and_in_the_facet_beyond(face):
+    facet, x, contact, _ = face
+    for end, edge in ((2.5, (2, 3)), (2.0, (2,)), (0.0, ()), (5.0, ())):
+        points = edge_points(facet, contact.basis, x < end)
+        assert set(facet[points]) == set(edge)
+        assert points.sum() == POINTS * len(edge)
+
+
+def test_forces_stay_and_a_smooth_pressure_is_weak_contact(face):
+    """requirement: resultants to rounding; what is in the space answers with the same means."""
+    facet, x, contact, holder = face
+    space = edge_space(contact, edge_points(facet, contact.basis, x < 2.5), holder)
+    amounts = np.random.default_rng(1).random(space.basis.shape[1])
+    pressure = space.basis @ amounts
+    assert space.force_modes.T @ amounts == pytest.approx(contact.weak(pressure).sum(), rel=1e-13)
+    assert contact.weighted.sum(axis=0) @ (space.seen @ amounts) == pytest.approx(
+        contact.weak(pressure).sum(), rel=1e-12
+    )
+    smooth = 2.0 + 3.0 * x
+    amounts = np.linalg.lstsq(space.basis, smooth, rcond=None)[0]
+    np.testing.assert_allclose(space.basis @ amounts, smooth, rtol=1e-12)
+    np.testing.assert_allclose(space.own @ amounts, 0.0, atol=1e-11)
+    work = amounts @ space.compliance(contact.compliance) @ amounts
+    nodal = 2.0 + 3.0 * np.arange(FACETS + 1)
+    assert work == pytest.approx(nodal @ contact.compliance @ nodal, rel=1e-10)
+
+
+def test_a_jump_is_rough_where_it_lies(face):
+    facet, x, contact, _ = face
+    assert not rough_points(facet, contact, 1.0 + x).any()
+    assert 2 in facet[rough_points(facet, contact, np.where(x < 2.5, 1.0, 0.0))]

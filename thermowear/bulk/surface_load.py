@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from mpi4py import MPI
 from petsc4py import PETSc
 
 import numpy as np
 import ufl
 from dolfinx import fem
-from dolfinx.fem.petsc import assemble_vector
 
-from .compiled import compiled
+from .compiled import assembled, compiled
 from .elasticity import Elasticity
 
 
-def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.ndarray:
-    """Nodal loads of a force on a surface [N], owned rows. Every rank calls.
+def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callable:
+    """Form of the work of a force on a surface, as a function of the displacement [J].
 
     Parameters
     ----------
@@ -31,10 +32,10 @@ def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.nda
     local = fem.assemble_scalar(compiled(elastic.model.integral(mesh, one, measure)))
     area = mesh.comm.allreduce(local, op=MPI.SUM)
     traction = fem.Constant(mesh, np.asarray(force, dtype=PETSc.ScalarType) / area)
-    δu = ufl.TestFunction(elastic.space)
-    work = elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
-    vector = assemble_vector(compiled(work))
-    vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
-    result = vector.getArray().copy()
-    vector.destroy()
-    return result
+    return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
+
+
+def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.ndarray:
+    """Nodal loads of a force on a surface [N], owned rows; see `surface_work`. Every rank calls."""
+    work = surface_work(elastic, surface, force)
+    return assembled(compiled(work(ufl.TestFunction(elastic.space))))

@@ -84,7 +84,7 @@ def thermal_system(
         space = lagrange_space(bodies.mesh, case.mesh.degree)
         upper, lower = pairing.sides
         traces = (value_trace(space, upper), value_trace(space, lower))
-        materials, cooling = _round_the_ring(case)
+        materials, cooling = conducting_bodies(case)
         shift = max(m.conductivity for m in materials.values()) / pairing.extent
         given = {name: value - heat.ambient for name, value in heat.temperature.items()}
         bath = bath_matrix(space, traces, pairing.weights, shift)
@@ -142,7 +142,7 @@ def thermal_material(case: Case, part: str) -> ThermalMaterial:
     return ThermalMaterial(material.conductivity, material.density * material.specific_heat)
 
 
-def _round_the_ring(case: Case) -> tuple[dict[str, ThermalMaterial], dict[str, float]]:
+def conducting_bodies(case: Case) -> tuple[dict[str, ThermalMaterial], dict[str, float]]:
     """Materials by part and heat transfer by surface, for the modelled sector.
 
     Under a body 1 that takes up a sector, all of a turning body 2 comes by and is heated: what

@@ -21,9 +21,10 @@ from dolfinx.fem.petsc import assemble_matrix
 from ..parallel import sum_over_ranks
 from .compiled import assembled, compiled
 from .elasticity import supported
+from .factor import Factor
 from .field import owned
 
-_TOLERANCE = 1e-6  # of solutions on the surplus
+_TOLERANCE = 1e-2  # of solutions on the surplus in space, where a factor would cost too much
 
 
 class EnrichedProblem:
@@ -66,7 +67,7 @@ class EnrichedProblem:
         )
         trial = ufl.TrialFunction(surplus)
         terms = [term(trial, tests[1]) for term in (*forms, *regular)]
-        self._surplus_solver = _solver(terms, fixed[1])
+        self._surplus_solver = _solver(terms, fixed[1], space.mesh.topology.dim)
 
     def field(self, values: np.ndarray) -> np.ndarray:
         """A field from values of the space (n_owned,), without surplus."""
@@ -115,24 +116,28 @@ class EnrichedProblem:
 
     def _apply(self, field: np.ndarray, actions: Sequence[Sequence[fem.Form]]) -> np.ndarray:
         self.function(field)
-        return np.concatenate([np.sum([assembled(term) for term in terms], axis=0) for terms in actions])
+        return np.concatenate(
+            [np.sum([assembled(term) for term in terms], axis=0) for terms in actions]
+        )
 
     def _product(self, first: np.ndarray, second: np.ndarray) -> float:
         return float(sum_over_ranks(self._comm, first @ second))
 
 
-def _solver(forms: Sequence, fixed: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """Solves the sum of bilinear forms by conjugate gradients."""
+def _solver(forms: Sequence, fixed: np.ndarray, dim: int) -> Callable[[np.ndarray], np.ndarray]:
+    """Solves the sum of bilinear forms: by a factor, in space by conjugate gradients."""
     matrix = assemble_matrix(compiled(forms[0]))
     for form in forms[1:]:
         assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on it
     matrix.assemble()
     matrix = supported(matrix, fixed)
+    if dim == 2:
+        return Factor(matrix, dim=dim).solve
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(matrix)
     solver.setType(PETSc.KSP.Type.CG)
-    solver.getPC().setType(PETSc.PC.Type.JACOBI)
-    solver.setTolerances(rtol=_TOLERANCE, max_it=200)
+    solver.getPC().setType(PETSc.PC.Type.SOR)
+    solver.setTolerances(rtol=_TOLERANCE, max_it=100)
 
     def solve(loads: np.ndarray) -> np.ndarray:
         x, b = matrix.createVecs()

@@ -138,7 +138,9 @@ def transferring(bodies: Bodies, model: Model, surface: str, h: float):
 
 def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):
     """Add ``∫ h T δT dS`` of one surface."""
-    form = transferring(bodies, model, surface, h)(ufl.TrialFunction(space), ufl.TestFunction(space))
+    form = transferring(bodies, model, surface, h)(
+        ufl.TrialFunction(space), ufl.TestFunction(space)
+    )
     assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on matrix
 
 

@@ -9,6 +9,7 @@ directions are taken: the others are of higher total degree, and ten times as mu
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import product
 
 import basix
@@ -29,6 +30,7 @@ def surplus_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
     return fem.functionspace(mesh, element)
 
 
+@cache
 def _element(cell: basix.CellType, degree: int):
     """The scalar element; its values are moments on edges, and inside facets and cells."""
     geometry, topology = np.asarray(basix.geometry(cell)), basix.topology(cell)
@@ -71,19 +73,25 @@ def _vanishing(cell: basix.CellType, degree: int, inside: bool) -> np.ndarray:
         basix.create_element(basix.ElementFamily.P, cell, k, basix.LagrangeVariant.gll_warped)
         for k in (degree, degree + 1)
     )
-    nodes = low.points
+    nodes = np.asarray(low.points)
     if inside:
         boundary = [i for entities in high.entity_dofs[:-1] for dofs in entities for i in dofs]
-        nodes = np.vstack([nodes, high.points[boundary]])
+        nodes = np.vstack([nodes, np.asarray(high.points)[boundary]])
     left, sizes, _ = np.linalg.svd(basix.tabulate_polynomials(_LEGENDRE, cell, degree + 1, nodes))
     return left[:, np.count_nonzero(sizes > _ZERO * sizes[0]) :].T
 
 
+@cache
 def _moments(kind: basix.CellType, degree: int) -> tuple[np.ndarray, np.ndarray]:
     """Points in an edge, a facet or a cell and, by functions of it, weights of moments there."""
-    points, weights = basix.make_quadrature(kind, 2 * degree + 2)
+    points, weights = _quadrature(kind, 2 * degree + 2)
     values = basix.tabulate_polynomials(_LEGENDRE, kind, degree + 1, points)
     return points, _vanishing(kind, degree, inside=True) @ values * weights
+
+
+def _quadrature(cell: basix.CellType, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    points, weights = basix.make_quadrature(cell, degree)
+    return np.asarray(points), np.asarray(weights)
 
 
 def _placed(kind: basix.CellType, corners: np.ndarray, local: np.ndarray) -> np.ndarray:
@@ -97,7 +105,7 @@ def _products(cell: basix.CellType, degree: int) -> np.ndarray:
     """The surplus along each direction times linear functions of the others, orthonormalised."""
     line = basix.CellType.interval
     inner = _vanishing(line, degree, inside=True)
-    points, weights = basix.make_quadrature(cell, 2 * degree + 4)
+    points, weights = _quadrature(cell, 2 * degree + 4)
     dim = points.shape[1]
     functions = []
     for i in range(dim):

@@ -68,9 +68,7 @@ def enriched_pressure(
     return basis @ solution.coefficients
 
 
-def _compliance(
-    pairing: Pairing, influence: Influence, basis: np.ndarray, answer
-) -> np.ndarray:
+def _compliance(pairing: Pairing, influence: Influence, basis: np.ndarray, answer) -> np.ndarray:
     """Compliance of a richer basis: by the answers to Ψ, and on the spot where Ψ sees nothing."""
     weighted = influence.weighted
     opened = influence.trace[influence.touching].T @ influence.near

@@ -28,9 +28,7 @@ def elastic_system(
     geometry = case.geometry
     materials = {name: _elastic_material(case, name) for name in geometry.parts}
     clamped, symmetric, rollers = supports(case)
-    elastic = elasticity(
-        bodies, model, case.mesh.degree, materials, clamped, symmetric, rollers
-    )
+    elastic = elasticity(bodies, model, case.mesh.degree, materials, clamped, symmetric, rollers)
     return elastic, gap_trace(elastic.space, pairing)
 
 

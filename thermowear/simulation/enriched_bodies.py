@@ -59,9 +59,7 @@ class EnrichedBodies:
         bodies = elastic.bodies
         surplus = surplus_space(bodies.mesh, degree, bodies.mesh.geometry.dim)
         clamped, symmetric, rollers = supports(system.case)
-        held = fixed_values(
-            bodies, elastic.model, surplus, clamped, {0: symmetric, 1: rollers}
-        )
+        held = fixed_values(bodies, elastic.model, surplus, clamped, {0: symmetric, 1: rollers})
         self._system = system
         self._degree = degree + 1
         self._problem = EnrichedProblem(
@@ -85,7 +83,7 @@ class EnrichedBodies:
             loads = loads + problem.loads(
                 lambda δu: system.elastic.thermal_work(rise, δu, space.ufl_element().degree + 1)
             )
-        elif state.rise is not None:
+        elif state.rise is not None and system.thermal is not None:
             loads[: owned(problem.space)] += system.thermal.forces(state.rise)
         residual = problem.residual(problem.field(state.displacement), loads)
         return self._gap(problem.correction(residual))

@@ -72,6 +72,11 @@ GROUPS = {
         "dofs_displacement": "unknowns, displacement",
         "dofs_temperature": "unknowns, temperature",
         "contact_points": "contact points",
+        "pressure_error_estimate_relative": "estimated error of the pressure, in the mean",
+        "max_pressure_error_estimate_relative": "estimated error of the largest pressure",
+        "shape_error_estimate_relative": "estimated error of the shape",
+        "temperature_error_estimate_relative": "estimated error of the temperature",
+        "error_estimate_missing": "no error estimate",
     },
     "Times": {
         "time_s": "time at the end",

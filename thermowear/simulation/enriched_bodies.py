@@ -18,7 +18,7 @@ from ..bulk.heat_equation import conducting, transferring
 from ..bulk.kinematics import Model
 from ..bulk.surface_load import surface_work
 from ..bulk.surplus import surplus_space
-from ..contact.heat import Resting
+from ..contact.heat import InterfaceHeat, Resting
 from ..contact.tangential import tangents
 from ..contact.traces import gap_trace, value_trace, vector_trace
 from ..parallel import sum_over_ranks
@@ -137,15 +137,34 @@ def warmer_faces(system: System, model: Model, contact: ContactState, state: Bod
     )
     loads = np.concatenate([face.nodal_heat(state.thermal, bath=False), heat])
     change = problem.correction(problem.residual(problem.field(np.asarray(state.rise)), loads))
-    alone = [
-        sum_over_ranks(system.comm, trace.T @ change[:count] + more.T @ change[count:])
-        for trace, more in zip(face.traces, surplus, strict=True)
-    ]
+    alone = np.array(
+        [
+            sum_over_ranks(system.comm, trace.T @ change[:count] + more.T @ change[count:])
+            for trace, more in zip(face.traces, surplus, strict=True)
+        ]
+    )
+    # the nodes of the space alone could not answer a flux that levels what is between them
+    weighted = face.weights[:, None] * face.basis
+    seen = (
+        face.basis @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ alone.T, rcond=None)[0]
+    )
     exchange = face.exchange(contact.conditions.conductance)
     none = np.zeros(len(face.weights))
-    coupled = exchange.state(none, Resting((alone[0], alone[1])))
+    coupled = exchange.state(none, Resting((seen[:, 0], seen[:, 1])))
     change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
-    return WarmerFaces(np.array(coupled.rise), problem, change)
+    details = _levelled(alone - seen.T, face, contact.conditions.conductance)
+    return WarmerFaces(np.array(coupled.rise) + details, problem, change)
+
+
+def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:
+    """Rises of both faces (2, n) that are too short for the nodes, after their exchange of heat.
+
+    As if each point had a resistance of its own in either body, that of its own heat [K].
+    """
+    own = np.abs([np.diag(response) for response in face.response])
+    with np.errstate(divide="ignore"):
+        flux = (rises[1] - rises[0]) / (own.sum(axis=0) + 1 / conductance)
+    return rises + own * flux * np.array([[1.0], [-1.0]])
 
 
 def _conducting(system: System, model: Model) -> EnrichedProblem:

@@ -49,7 +49,7 @@ def _changed(case: Case, by: int) -> tuple[str, ...]:
 
 
 def side_by_side(path: Path, overrides: tuple[str, ...], comm) -> dict[str, dict[str, Any]]:
-    """Numbers of the neighbours of a case file, by their names. Every rank calls.
+    """Numbers of the neighbours of a case file, as its summary keeps them. Every rank calls.
 
     A neighbour that cannot be computed has the reason in the place of its numbers.
     """
@@ -63,5 +63,5 @@ def side_by_side(path: Path, overrides: tuple[str, ...], comm) -> dict[str, dict
             entry |= {key: result.summary.get(key) for key in COMPARED}
         except (CaseError, ComputationError) as error:
             entry["failed"] = str(error)
-        found[name] = entry
+        found[f"{name}_discretisation"] = entry
     return found

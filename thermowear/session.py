@@ -120,14 +120,14 @@ def run_session(chosen, comm, import_seconds: float) -> int:
             if chosen.accuracy and result.stopped is None:
                 with phases("coarser and finer"):
                     others = side_by_side(chosen.case, tuple(chosen.overrides), comm)
-                result = replace(result, summary=result.summary | {"discretisations": others})
+                result = replace(result, summary=result.summary | others)
             with phases("write"):
                 on_root(comm, lambda: _writing(lambda: folder.finish(result, phases.seconds)))
             if chosen.pictures:
                 with phases("pictures"):
                     on_root(comm, lambda: _writing(lambda: _draw(path, console)))
         print_summary(console, result.summary, phases.seconds)
-        if "discretisations" in result.summary:
+        if chosen.accuracy and result.stopped is None:
             print_discretisations(console, result.summary, COMPARED)
         console.print(f"results in {path}")
         if result.stopped is not None:

@@ -99,8 +99,8 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
 
 def print_discretisations(console: Console, summary: dict, keys: tuple[str, ...]) -> None:
     """Numbers of a case on a coarser, its own and a finer discretisation, side by side."""
-    others = summary["discretisations"]
-    shown = {"coarser": others["coarser"], "this case": summary, "finer": others["finer"]}
+    coarser, finer = (summary[f"{name}_discretisation"] for name in ("coarser", "finer"))
+    shown = {"coarser": coarser, "this case": summary, "finer": finer}
     table = Table(box=None, padding=(0, 2, 0, 0))
     table.add_column("quantity")
     for name in shown:
@@ -110,7 +110,7 @@ def print_discretisations(console: Console, summary: dict, keys: tuple[str, ...]
         if any(value is not None for value in values):
             table.add_row(key, *("" if value is None else f"{value:.6g}" for value in values))
     console.print(table)
-    for name, numbers in others.items():
+    for name, numbers in (("coarser", coarser), ("finer", finer)):
         ended = f"failed: {numbers['failed']}" if "failed" in numbers else numbers["changes"]
         console.print(f"{name}: {ended}", highlight=False, markup=False)
 

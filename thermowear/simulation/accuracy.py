@@ -35,6 +35,8 @@ from .system import System
 _FOLLOWING = 1.5
 """All further degrees by the next one: 1 + 1/3 + 1/9 …"""
 WORTH_A_WARNING = 0.05
+_FLAT = 1e-9
+"""Of the bodies' deflection: a shape of that range is rounding."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +137,8 @@ def _of_shape(system: System, outcome: Outcome, opened: np.ndarray) -> float | N
     interface = outcome.interface
     worn = np.any([interface.wear_1, interface.wear_2]) or _is_steady(system)
     pressing, scale = interface.pressure > 0, float(np.ptp(interface.shape))
-    if not worn or scale == 0.0 or not pressing.any():
+    flat = scale <= _FLAT * np.abs(outcome.state.opening).max(initial=0.0)
+    if not worn or flat or not pressing.any():
         return None
     modes, change = system.holder.modes[pressing], opened[pressing]
     roots = np.sqrt(system.weights[pressing])

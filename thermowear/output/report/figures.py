@@ -77,6 +77,8 @@ GROUPS = {
         "shape_error_estimate_relative": "estimated error of the shape",
         "temperature_error_estimate_relative": "estimated error of the temperature",
         "error_estimate_missing": "no error estimate",
+        "coarser_discretisation": "coarser",
+        "finer_discretisation": "finer",
     },
     "Times": {
         "time_s": "time at the end",

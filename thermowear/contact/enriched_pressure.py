@@ -27,6 +27,7 @@ def enriched_pressure(
     holder: Holder,
     pressure: np.ndarray,
     gap: np.ndarray,
+    local: np.ndarray,
     answer: Callable[[np.ndarray], np.ndarray],
 ) -> np.ndarray:
     """Solve contact for a change of the pressure in the space of the next degree.
@@ -41,6 +42,8 @@ def enriched_pressure(
     pressure : ndarray, shape (n,) [Pa]
     gap : ndarray, shape (n,)
         Under that pressure, as well as it is known [m].
+    local : ndarray, shape (n,)
+        Gap that the pressure of each point opens on the spot, beside the bodies [m/Pa].
     answer : callable
         Gap at the points that a pressure at them opens, about [m].
 
@@ -56,6 +59,7 @@ def enriched_pressure(
     basis, weights = pressure_basis(pairing, degree + 1), pairing.weights
     weighted = weights[:, None] * basis
     compliance = _compliance(pairing, influence, basis, answer)
+    compliance = compliance + weighted.T @ (local[:, None] * basis)
     start = np.linalg.lstsq(basis, pressure, rcond=None)[0]
     modes, force_modes = weighted.T @ holder.modes, weighted.T @ holder.force_modes
     solution = solve_contact(

@@ -23,7 +23,6 @@ from ..bulk.kinematics import section_model
 from ..contact.enriched_pressure import enriched_pressure
 from ..contact.holder import hold
 from ..contact.pairing import pair
-from ..contact.unseen import unseen
 from ..errors import CaseError, ComputationError
 from ..laws import steady_pressure
 from .building import sliding_of
@@ -167,17 +166,27 @@ def _richer_pressure(
     if degree == "lobatto":
         raise ComputationError('not estimated for contact.pressure_degree = "lobatto"')
     interface, pressure = outcome.interface, outcome.contact.pressure
-    worn = interface.wear_1 + interface.wear_2
-    hidden = unseen(worn, pressure > 0, system.pairing, system.influence.basis)
     return enriched_pressure(
         system.pairing,
         system.influence,
         degree or max(system.case.mesh.degree - 1, 1),
         system.holder,
         pressure,
-        interface.gap - hidden + opened,
+        interface.gap + opened,
+        system.softness + _wear_per_pressure(system, outcome),
         bodies.answer,
     )
+
+
+def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
+    """Depth that each point has lost so far, by the mean pressure, shape (n,) [m/Pa].
+
+    A pressure that had been wrong for so long would have been answered by wear on the spot: what is
+    left of the gap between the functions of the pressure is the work of its error all the time.
+    """
+    interface, pressing = outcome.interface, outcome.contact.pressure > 0
+    mean = np.average(outcome.contact.pressure[pressing], weights=system.weights[pressing])
+    return np.maximum(interface.wear_1 + interface.wear_2, 0.0) / mean
 
 
 def _finer_principle(system: System, pressure: np.ndarray) -> np.ndarray:

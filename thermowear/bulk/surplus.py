@@ -77,7 +77,8 @@ def _vanishing(cell: basix.CellType, degree: int, inside: bool) -> np.ndarray:
     if inside:
         boundary = [i for entities in high.entity_dofs[:-1] for dofs in entities for i in dofs]
         nodes = np.vstack([nodes, np.asarray(high.points)[boundary]])
-    left, sizes, _ = np.linalg.svd(basix.tabulate_polynomials(_LEGENDRE, cell, degree + 1, nodes))
+    values = np.asarray(basix.tabulate_polynomials(_LEGENDRE, cell, degree + 1, nodes))
+    left, sizes, _ = np.linalg.svd(values)
     return left[:, np.count_nonzero(sizes > _ZERO * sizes[0]) :].T
 
 

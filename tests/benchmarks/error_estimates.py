@@ -142,6 +142,12 @@ def studies() -> list[Study]:
     ring = worn_shape("annular-punch", *RING, *_mesh(8, 16), modes=_level)
     for mesh in ((1, 4), (1, 8), (1, 16), (2, 2), (2, 4), (2, 8), (3, 2), (3, 4), (4, 2), (4, 4)):
         found.append(Study("annular-punch", RING + _mesh(*mesh), ring))
+    strip = worn_shape("punch-on-strip", *RING, *_mesh(8, 12), modes=_level)
+    for mesh in ((1, 8), (1, 16), (2, 4), (2, 8), (3, 4)):
+        found.append(Study("punch-on-strip", RING + _mesh(*mesh), strip))
+    growing = pressure_of("cylinder-on-block-growing", *_mesh(2, 160))
+    for mesh in ((1, 40), (2, 20), (2, 40)):
+        found.append(Study("cylinder-on-block-growing", _mesh(*mesh), growing))
     return found
 
 

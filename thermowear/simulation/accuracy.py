@@ -179,14 +179,19 @@ def _richer_pressure(
 
 
 def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
-    """Depth that each point has lost so far, by the mean pressure, shape (n,) [m/Pa].
+    """Least depth that the facet of each point has lost, by the mean pressure, shape (n,) [m/Pa].
 
     A pressure that had been wrong for so long would have been answered by wear on the spot: what is
     left of the gap between the functions of the pressure is the work of its error all the time.
+    Where a part of the facet has lost nothing, it is the depth at the point itself.
     """
     interface, pressing = outcome.interface, outcome.contact.pressure > 0
     mean = np.average(outcome.contact.pressure[pressing], weights=system.weights[pressing])
-    return np.maximum(interface.wear_1 + interface.wear_2, 0.0) / mean
+    facet = system.pairing.sides[0].facet
+    least = np.full(facet.max() + 1, np.inf)
+    depth = interface.wear_1 + interface.wear_2
+    np.minimum.at(least, facet, depth)
+    return np.where(least[facet] > 0.0, least[facet], np.maximum(depth, 0.0)) / mean
 
 
 def _finer_principle(system: System, pressure: np.ndarray) -> np.ndarray:

@@ -152,17 +152,31 @@ def test_a_starter_is_written_and_valid(name, capsys):
     assert f"{name}.toml: ok" in capsys.readouterr().out
 
 
-def test_a_case_is_checked_without_the_solvers():
+@pytest.mark.parametrize("name", ["annular-punch", "own-mesh"])
+def test_a_case_is_checked_without_the_solvers(name):
     """
     requirement: `validate` answers at once: it loads no dolfinx, PETSc, gmsh, VTK or plotting.
     """
-    Path("case.toml").write_text(starter_text("annular-punch"), encoding="utf-8")
+    assert main(["init", name, "-o", "case.toml"]) == 0
     command = [sys.executable, "-X", "importtime", "-m", "thermowear", "validate", "case.toml"]
     done = subprocess.run(command, capture_output=True, check=True, env=_environment(), text=True)
     assert done.stdout.startswith("case.toml: ok (")
     loaded = {line.split("|")[-1].strip().split(".")[0] for line in done.stderr.splitlines()}
     assert "pydantic" in loaded
     assert not loaded & {"dolfinx", "petsc4py", "mpi4py", "gmsh", "matplotlib", "vtk", "pyvista"}
+
+
+def test_init_writes_the_files_of_a_case_beside_it(refused, capsys):
+    """
+    requirement: a starter that reads a mesh file comes with it, and overwrites none.
+    """
+    Path("there").mkdir()
+    assert main(["init", "own-mesh", "-o", "there/mine.toml"]) == 0
+    assert sorted(contents()) == ["there/mine.toml", "there/own-mesh.msh"]
+    Path("there/mine.toml").unlink()
+    capsys.readouterr()
+    assert "there/own-mesh.msh: exists" in refused("init", "own-mesh", "-o", "there/mine.toml")
+    assert sorted(contents()) == ["there/own-mesh.msh"]
 
 
 def test_init_does_not_overwrite(refused):

@@ -33,7 +33,7 @@ from .errors import CaseError, ComputationError  # noqa: E402
 
 def load(source, overrides: tuple[str, ...] = ()):
     """Read and check a case file (or its tables); see `thermowear.case.load`."""
-    from . import case, geometry  # noqa: F401  (the room of geometries makes them known)
+    from . import case
 
     return case.load(source, overrides)
 

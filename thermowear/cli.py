@@ -13,10 +13,11 @@ import signal
 import sys
 import time
 import traceback
+import warnings
 from pathlib import Path
 
 from . import __version__, load
-from .errors import CaseError, ComputationError
+from .errors import CaseError, CaseNote, ComputationError
 
 _INTERRUPTED = 130
 _HEARD = 1.0  # s; a launcher may drop what a process said just before it ended with an error
@@ -24,6 +25,13 @@ _HEARD = 1.0  # s; a launcher may drop what a process said just before it ended 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", CaseNote)
+        warnings.showwarning = _shown(warnings.showwarning)
+        return _main(arguments)
+
+
+def _main(arguments: list[str] | None) -> int:
     try:
         chosen = _parser().parse_args(arguments)
         return chosen.command(chosen)
@@ -37,10 +45,25 @@ def main(arguments: list[str] | None = None) -> int:
         return 0
 
 
+def _shown(otherwise):
+    """A way to show warnings: what is odd about a case as a note, all else as before."""
+
+    def show(message, category, *where) -> None:
+        if issubclass(category, CaseNote):
+            print(f"note: {_printable(str(message))}", file=sys.stderr, flush=True)
+        else:
+            otherwise(message, category, *where)
+
+    return show
+
+
+def _printable(line: str) -> str:
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
+
+
 def _complain(code: int, *lines: str) -> int:
     for line in lines if _speaks() else ():
-        shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
-        print(f"error: {shown}", file=sys.stderr, flush=True)
+        print(f"error: {_printable(line)}", file=sys.stderr, flush=True)
     if _launched_processes() > 1:
         time.sleep(_HEARD)
     return code
@@ -193,22 +216,32 @@ def _cases(_) -> int:
 
 
 def _init(chosen) -> int:
-    from .case.starters import starter_text
+    from .case.starters import starter_files, starter_text
 
-    text = starter_text(chosen.name)
     path = chosen.output or Path(f"{chosen.name}.toml")
-    _guard(path, chosen.overwrite)
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be written: {error.strerror}") from None
-    print(f"wrote {path}; next: python3 -m thermowear run {path}")
+    files = {path: starter_text(chosen.name).encode()}
+    files |= {path.parent / name: data for name, data in starter_files(chosen.name).items()}
+    for file in files:
+        _guard(file, chosen.overwrite)
+    for file, data in files.items():
+        try:
+            file.write_bytes(data)
+        except OSError as error:
+            raise CaseError(f"{file}: cannot be written: {error.strerror}") from None
+    print(f"wrote {' and '.join(map(str, files))}; next: python3 -m thermowear run {path}")
     return 0
 
 
 def _validate(chosen) -> int:
     case = load(chosen.case, tuple(chosen.overrides))
-    print(f"{chosen.case}: ok ({case.analysis.type} analysis, {case.geometry.type}, {case.model})")
+    for text in case.notes():
+        print(f"note: {text}", file=sys.stderr)
+    about = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
+    if case.geometry.from_file:
+        from .geometry.mesh_checks import described
+
+        about += described(case.tagged_mesh())
+    print(f"{chosen.case}: ok ({', '.join(about)})")
     return 0
 
 

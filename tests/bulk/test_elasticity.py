@@ -13,6 +13,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
+from thermowear.bulk.surface_load import surface_pressure
 from thermowear.reference import cylinder
 
 from ..conftest import two_blocks
@@ -21,19 +22,21 @@ STEEL = ElasticMaterial(2e11, 0.3, 1.2e-5)
 SOFT = ElasticMaterial(1e9, 0.45, 5e-5)
 
 
-ENDS = ("upper_end", "lower_end")
+ENDS, FACES = ("upper_end", "lower_end"), ("upper_face", "lower_face")
 EVERYWHERE = tuple(
     f"{b}_{s}" for b in ("upper", "lower") for s in ("end", "face", "inside", "outside")
 )
 
 
-def build(degree, columns=3, rows=2, materials=(STEEL, SOFT), clamped=ENDS, growth=(1.3, 0.8)):
+def build(
+    degree, columns=3, rows=2, materials=(STEEL, SOFT), clamped=ENDS, growth=(1.3, 0.8), **held
+):
     tagged = None
     if MPI.COMM_WORLD.rank == 0:
         tagged = two_blocks(columns=(columns, columns), rows=(rows, rows), growth=growth)
     bodies = distribute(tagged, MPI.COMM_WORLD)
     by_name = dict(zip(("upper", "lower"), materials, strict=True))
-    return elasticity(bodies, Axisymmetric(), degree, by_name, list(clamped))
+    return elasticity(bodies, Axisymmetric(), degree, by_name, list(clamped), **held)
 
 
 def nodal(elastic, function):
@@ -86,6 +89,18 @@ def test_thick_walled_cylinder():
     total = mesh.comm.allreduce(forces[np.abs(r - inner) < 1e-9].sum())
     assert total == pytest.approx(p * 2 * np.pi * inner * 0.05, rel=1e-8)
     assert np.abs(forces[np.abs(r - inner) > 1e-9]).max() <= 1e-7 * np.abs(forces).max()
+
+
+def test_pressure_on_the_surface_inside_a_thick_walled_cylinder():
+    """requirement: its nodal loads deform the bodies as Lamé has it."""
+    elastic = build(6, materials=(STEEL, STEEL), clamped=(), rollers=(*ENDS, *FACES))
+    p, inner, outer = 1e8, 0.05, 0.09
+    loads = sum(surface_pressure(elastic, f"{b}_inside", p) for b in ("upper", "lower"))
+    u = elastic.solve(loads).reshape(-1, 2)
+    r = elastic.nodes()[:, 0]
+    exact = cylinder.radial_displacement(r, inner, outer, p, 2e11, 0.3)
+    np.testing.assert_allclose(u[:, 0], exact, rtol=1e-7)
+    assert np.abs(u[:, 1]).max(initial=0.0) < 1e-7 * exact.max(initial=1.0)
 
 
 def test_free_expansion_has_no_stress():

@@ -5,9 +5,11 @@ from __future__ import annotations
 import copy
 import tomllib
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import thermowear as tw
+from thermowear.case import starters
 from thermowear.case.starters import starter_text
 
 STEADY, RUNNING_IN = "annular-punch", "annular-punch-running-in"
@@ -38,7 +40,12 @@ GONE = _Gone()
 
 @lru_cache
 def _parsed(name: str) -> dict[str, Any]:
-    return tomllib.loads(starter_text(name))
+    parsed = tomllib.loads(starter_text(name))
+    if "path" in parsed["geometry"]:  # of a file that `init` writes beside the case
+        parsed["geometry"]["path"] = str(
+            Path(starters.__file__).parent / parsed["geometry"]["path"]
+        )
+    return parsed
 
 
 def tables(name: str = STEADY, changes: dict[str, Any] | None = None) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.case.facing import Facing
 
 from .bad import Bad, assert_refused, faults
 from .starter import GONE, PUNCH, RECIPROCATING, STEADY, tables
@@ -28,6 +29,9 @@ HOT = IN_TIME | STORING | {"heat.transient": True}
 STABLE = {"analysis": {"type": "stability"}}
 BY_PRESSURE = {"heat.conductance": {"type": "pressure", "coefficient": "2e4 1/m"}}
 LAW, SHARE, PASSING = "heat.conductance", "heat.partition", "heat.advection"
+
+
+FACES = Facing(("upper", "lower"), (np.array([0]), np.array([1])))
 
 
 def by_table(pressures: list[str], conductances: list[str]) -> dict:
@@ -126,9 +130,55 @@ UNSTABLE = [
         "not for stability"),
 ]  # fmt: skip
 
+REST = {"motion": GONE, "wear": GONE, "analysis": {"type": "initial"}}
+HEATED = REST | {"heat.temperature.upper_top": "100 degC"}
+RAMP = {"time": ["0 s", "1 s"], "temperature": ["20 degC", "90 degC"]}
+TOP = "heat.temperature.upper_top"
+FLUX, POWER, SURROUNDED = "heat.flux", "heat.power", "heat.ambient_history"
+AT_REST = [
+    Bad("nothing heats", REST, "motion", "nothing heats the bodies: needs sliding, or", BLOCKS),
+    Bad("smooth, and nothing heats", {"contact.friction": 0, "wear.upper.per": "pressure"},
+        "contact.friction", "friction heat needs friction", BLOCKS),
+    Bad("steady at rest", HEATED | {"wear.upper": {"coefficient": "1e-8 1/MPa"},
+        "analysis": {"type": "steady"}}, "motion", 'at rest use analysis.type = "initial"', BLOCKS),
+    Bad("nothing passes", REST | {PASSING: "spread",
+        "heat.power": {"punch_top": "1 W"}}, PASSING, "needs [motion]", STRIP),
+    Bad("heat with nowhere to go", REST | {"heat.temperature": GONE,
+        FLUX: {"upper_top": "1 W/m^2"}}, "heat", "nowhere to go", BLOCKS),
+    Bad("no flux", {FLUX: {"upper_side": "0 W/m^2"}}, f"{FLUX}.upper_side", "other than", BLOCKS),
+    Bad("flux in watts", {FLUX: {"upper_side": "1 W"}}, f"{FLUX}.upper_side", "W/m^2", BLOCKS),
+    Bad("power per area", {POWER: {"upper_side": "1 W/m^2"}}, f"{POWER}.upper_side", "of W",
+        BLOCKS),
+    Bad("unknown surface", {POWER: {"side": "1 W"}}, f"{POWER}.side", "one of: upper_face", BLOCKS),
+    Bad("on the contact", {FLUX: {"lower_face": "1 W/m^2"}}, f"{FLUX}.lower_face",
+        "exchanges heat with the other body only", BLOCKS),
+    Bad("on a given temperature", {POWER: {"upper_top": "1 W"}}, f"{POWER}.upper_top",
+        "has a given temperature already", BLOCKS),
+    Bad("twice", {FLUX: {"upper_side": "1 W/m^2"}, POWER: {"upper_side": "1 W"}},
+        f"{POWER}.upper_side", "has a given flux already", BLOCKS),
+    Bad("steady ramp", {TOP: RAMP}, TOP, "is for a transient analysis, not for steady", BLOCKS),
+    Bad("ramp without memory", IN_TIME | {TOP: RAMP}, TOP, "heat.transient = true", BLOCKS),
+    Bad("ramp of lists that differ", {TOP: RAMP | {"time": ["0 s"]}}, f"{TOP}.temperature",
+        "has 2 values for 1 times", BLOCKS),
+    Bad("ramp below nothing", {TOP: RAMP | {"temperature": ["20 degC", "-300 degC"]}},
+        f"{TOP}.temperature.1", "at least 0 K", BLOCKS),
+    Bad("unknown key of a ramp", {TOP: RAMP | {"factor": [1, 1]}}, f"{TOP}.factor", "unknown key",
+        BLOCKS),
+    Bad("ramp that jumps back", {TOP: RAMP | {"repeat": True}}, f"{TOP}.repeat",
+        "temperature must end with the value", BLOCKS),
+    Bad("number for a ramp", {TOP: 20}, TOP, "needs a quantity with its unit", BLOCKS),
+    Bad("surroundings of nothing", HOT | {SURROUNDED: RAMP, "heat.cooling": GONE}, SURROUNDED,
+        "no surface has heat.cooling"),
+    Bad("until steady in other surroundings",
+        HOT | {SURROUNDED: RAMP, "analysis": {"type": "transient", "until": "steady"}},
+        "analysis.until", f"nothing is steady under {SURROUNDED}"),
+]  # fmt: skip
+
 
 @pytest.mark.parametrize(
-    "bad", CONDUCTANCES + SHARES + MOVING + STORED + UNSTABLE, ids=lambda bad: bad.name
+    "bad",
+    CONDUCTANCES + SHARES + MOVING + STORED + UNSTABLE + AT_REST,
+    ids=lambda bad: bad.name,
 )
 def test_a_fault_of_heat_is_one_line_with_the_path_of_its_key(bad, tmp_path, capsys):
     """
@@ -188,6 +238,18 @@ ALLOWED = {
         BY_PRESSURE | {"bodies.punch.hardness": "2 GPa", "contact.method": "nitsche"},
     ),
     "blocks of one material": (BLOCKS, {}),
+    "at rest": (BLOCKS, HEATED),
+    "at rest, smooth": (BLOCKS, HEATED | {"contact.friction": 0}),
+    "at rest, in time, cooling down": (
+        STEADY,
+        HOT | {"wear": GONE, "motion": GONE, "heat.initial": "80 degC"},
+    ),
+    "smooth, and heated": (
+        BLOCKS,
+        {TOP: "90 degC", "contact.friction": 0, "wear.upper.per": "pressure"},
+    ),
+    "heat drawn out": (BLOCKS, {FLUX: {"lower_side": "-1 kW/m^2"}}),
+    "warm surroundings": (STEADY, HOT | {SURROUNDED: RAMP}),
 }
 
 
@@ -229,7 +291,7 @@ def test_conductance_by_pressure_is_that_of_the_harmonic_means():
     changes = BY_PRESSURE | {"bodies.upper.hardness": "2 GPa", "bodies.lower.hardness": "3 GPa"}
     case = tw.load(tables(BLOCKS, changes))
     expected = [0.0, 2e4 * (1500 / 65) * 5e6 / 2.4e9]
-    assert case.conductance(np.array([0.0, 5e6])) == pytest.approx(expected, rel=1e-14)
+    assert case.conductance(np.array([0.0, 5e6]), FACES) == pytest.approx(expected, rel=1e-14)
     assert case.varies
 
 
@@ -239,7 +301,7 @@ def test_conductance_by_table_is_straight_between_and_constant_beyond():
     """
     law = by_table(["0 MPa", "10 MPa"], ["1e3 W/(m^2 K)", "5e3 W/(m^2 K)"])
     case = tw.load(tables(STEADY, law))
-    assert case.conductance(np.array([0.0, 2.5e6, 2e7])) == pytest.approx([1e3, 2e3, 5e3])
+    assert case.conductance(np.array([0.0, 2.5e6, 2e7]), FACES) == pytest.approx([1e3, 2e3, 5e3])
     assert case.varies
 
 
@@ -248,8 +310,8 @@ def test_conductance_that_is_constant_or_perfect():
     requirement: a quantity alone is the constant conductance; none is perfect contact.
     """
     constant = tw.load(tables(STEADY))
-    assert constant.conductance(np.array([0.0, 1e6])) == pytest.approx([1e6, 1e6])
-    assert tw.load(tables(STEADY, {LAW: GONE})).conductance(np.zeros(2)) is None
+    assert constant.conductance(np.array([0.0, 1e6]), FACES) == pytest.approx([1e6, 1e6])
+    assert tw.load(tables(STEADY, {LAW: GONE})).conductance(np.zeros(2), FACES) is None
     assert not constant.varies
 
 
@@ -267,8 +329,8 @@ def test_partition_by_effusivity():
         "bodies.lower.specific_heat": "250 J/(kg K)",
         "bodies.lower.conductivity": "18 W/(m K)",
     }
-    assert tw.load(tables(BLOCKS, changes)).partition() == pytest.approx(0.678269, abs=1e-6)
-    assert tw.load(tables(BLOCKS, {SHARE: 1})).partition() == 1.0
+    assert tw.load(tables(BLOCKS, changes)).partition(FACES)[0] == pytest.approx(0.678269, abs=1e-6)
+    assert tw.load(tables(BLOCKS, {SHARE: 1})).partition(FACES) == 1.0
 
 
 def test_the_lining_touches_the_drum_not_its_shoe():

@@ -11,7 +11,7 @@ import thermowear as tw
 from .bad import Bad, assert_refused
 from .starter import FRETTING, GONE, HERTZ, RECIPROCATING, RUNNING_IN, STEADY, tables
 
-LOAD, SPEED = "load.history", "motion.history"
+LOAD, SPEED, FRICTION = "load.history", "motion.history", "contact.friction_history"
 STOP = {"time": ["0 s", "10 s"], "factor": [1, 0]}
 DUTY = {"time": ["1 s", "3 s", "4 s", "5 s"], "factor": [1, 1, 0, 1], "repeat": True}
 PRESS = {"time": ["0 s", "1 s", "4 s"], "force": ["0 N", "2 kN", "1 kN"]}
@@ -69,6 +69,16 @@ BAD = [
         "holder.free": ["z", "x"]},
         "load.tangential_force", "does not change with load.history", STRIP),
     Bad("fixed beside it", {"load.history": PRESS}, "load.surfaces", "does not change", BEAM),
+    Bad("steady friction that changes", {FRICTION: STOP}, FRICTION, "not for steady"),
+    Bad("friction of strokes", {FRICTION: STOP}, FRICTION, "not for reciprocating", RECIPROCATING),
+    Bad("friction of fretting", {FRICTION: STOP}, FRICTION, "not for fretting", FRETTING),
+    Bad("friction of nothing", {FRICTION: STOP, "contact.friction": 0.0,
+        "wear.punch.per": "pressure"}, FRICTION, "contact.friction is 0", RUNNING_IN),
+    Bad("until steady under friction", {FRICTION: STOP, "analysis":
+        {"type": "transient", "until": "steady"}}, "analysis.until", f"under {FRICTION}",
+        RUNNING_IN),
+    Bad("friction by penalty", {FRICTION: STOP, "contact.method": "penalty"}, "contact.method",
+        "not for friction", RUNNING_IN),
     Bad("fixed and pressed", pressed(), LOAD, "the holder is fixed", BEAM),
 ]  # fmt: skip
 

@@ -72,6 +72,15 @@ VARIANTS = {
             "heat.partition": "effusivity",
             "heat.transient": True,
             "heat.initial": "77.7 degC",
+            "heat.flux": {"punch_outside": "-3.3 kW/m^2"},
+            "heat.power": {"punch_inside": "0.1 kW"},
+            "heat.temperature": {
+                "plate_side": {"time": ["0 s", "7 s"], "temperature": ["20 degC", "31.7 degC"]},
+                "plate_bottom": "11.1 degC",
+            },
+            "heat.cooling": {"punch_top": "3.3 W/(m^2 K)"},
+            "heat.ambient_history": {"time": ["1 s"], "temperature": ["30.3 degC"]},
+            "contact.friction_history": {"time": ["1 s", "2 min"], "factor": [1.1, 0]},
             "motion.history": {
                 "time": ["0 s", "333 ms", "1 min"],
                 "factor": [0, 1.1, 0],

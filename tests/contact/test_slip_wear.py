@@ -252,3 +252,19 @@ def test_corners_may_be_followed_one_by_one(partial):
     np.testing.assert_allclose(state.worn, states[12].worn, rtol=1e-9, atol=1e-20)
     later = [s.worn.sum() for s in states[1::6]]
     assert all(b > a for a, b in itertools.pairwise(later))
+
+
+def test_a_law_of_ones_own_is_asked():
+    """requirement: a wear law that somebody derives is used, in fretting, too."""
+
+    class Doubled(WearLaw):
+        def rate(self, pressure, speed):
+            return 2 * super().rate(pressure, speed)
+
+        def slope(self, pressure, speed):
+            return 2 * super().slope(pressure, speed)
+
+    x, p, slip = np.linspace(0, 1, 5), np.full(5, 1e6), np.full(5, 1e-6)
+    plain, doubled = (wear(x, (law(2e-13),), (0,)) for law in (WearLaw, Doubled))
+    assert doubled.depths(p, slip) == close(2 * plain.depths(p, slip), rel=1e-14)
+    assert doubled.slopes(p, slip) == close(2 * plain.slopes(p, slip), rel=1e-14)

@@ -48,7 +48,7 @@ def test_it_is_held_on_top_and_pressed_down_on_a_disk_fixed_at_its_bore():
     ("changes", "key", "text"),
     [
         ({"disk_bore": "20 mm"}, "disk_bore", "must be less than disk_radius 0.02 m"),
-        ({"arc_end": "81 deg"}, "arc_end", "81 deg must be within 80 deg of the vertical"),
+        ({"arc_end": "81 deg"}, "arc_end", "81 deg must be within 80 deg of 12 o'clock"),
         ({"arc_start": "-1.5 rad"}, "arc_start", "must be within 80 deg"),
     ],
 )

@@ -127,6 +127,7 @@ def test_a_file_without_a_table(tmp_path):
         (lambda t: t.replace("\n1,", "\n2,", 1), "column body"),
         (lambda t: "\n".join([*t.split("\n")[:5], "1,a,b,c,d,e,f,g,h,i,j"]), "no numbers"),
         (lambda t: "\n".join(t.split("\n")[:3]), "fewer than 4 rows"),
+        (lambda t: "\n".join([*t.split("\n")[:-2], "1,0.1,0,0,1,0,-1,0,0,0,25"]), "in metres"),
     ],
 )
 def test_spoiled_tables(tmp_path, spoil, text):

@@ -74,10 +74,34 @@ def test_what_a_sector_takes_up():
     assert DiskBrake.model_validate(sixth.model_dump()) == sixth
 
 
+def test_a_pad_as_wide_as_the_disk():
+    """
+    requirement: the edges are shared, whatever unit they are written in; no empty surface.
+    """
+    geometry = brake(disk_inner_radius="0.08 m", disk_outer_radius="12 cm")
+    mesh = geometry.build(Mesh(), None)
+    check_mesh(mesh, {"pad": 0.04 * 0.012, "disk": 0.04 * 0.01}, shape=0.999)
+    assert unnamed(mesh) == 0
+    assert mesh.surfaces == geometry.surfaces
+    assert "disk_rest" not in mesh.surfaces
+    np.testing.assert_allclose(ends(mesh, "pad_face"), ends(mesh, "disk_face"), rtol=1e-12)
+
+
+@pytest.mark.parametrize(("side", "span"), [("inner", (0.12, 0.13)), ("outer", (0.06, 0.08))])
+def test_a_pad_that_ends_where_the_disk_ends_on_one_side(side, span):
+    """
+    requirement: what the pad leaves of the disk's face is the rest, on the other side only.
+    """
+    radius = {"inner": "80 mm", "outer": "120 mm"}[side]
+    mesh = brake(**{f"disk_{side}_radius": radius}).build(Mesh(), None)
+    assert spans(mesh, "disk_rest") == [pytest.approx(span)]
+    assert spans(mesh, "disk_face") == [pytest.approx((0.08, 0.12))]
+
+
 @pytest.mark.parametrize(
     ("changes", "key"),
     [
-        ({"disk_inner_radius": "80 mm"}, "disk_inner_radius"),
+        ({"disk_inner_radius": "81 mm"}, "disk_inner_radius"),
         ({"pad_inner_radius": "120 mm"}, "pad_inner_radius"),
         ({"disk_outer_radius": "119 mm"}, "pad_outer_radius"),
         ({"pad_angle": "361 deg"}, "pad_angle"),

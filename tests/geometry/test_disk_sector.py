@@ -87,6 +87,21 @@ def test_the_pad_is_all_on_the_disk(keys):
     np.testing.assert_allclose(middle, brake().pivot_point, atol=1e-5)
 
 
+@pytest.mark.parametrize("wide", [("inner",), ("outer",), ("inner", "outer")])
+def test_a_pad_as_wide_as_the_disk(wide):
+    """requirement: edges shared on either side or both; matching faces, and no empty surface."""
+    radii = {"inner": "8 cm", "outer": "0.12 m"}
+    geometry = brake(**{f"disk_{side}_radius": radii[side] for side in wide})
+    mesh = geometry.build(Mesh(degree=2, elements=6, grading=0.3))
+    counts = dict(zip(mesh.surfaces, np.bincount(mesh.facet_tags)[1:], strict=True))
+    assert counts["disk_face"] == counts["pad_face"] == 12
+    assert min(counts.values()) > 0
+    for surface, radius in {"disk_inside": 0.08, "disk_outside": 0.12}.items():
+        if surface[5:-4] + "er" in wide:
+            p = edges(mesh, surface)
+            np.testing.assert_allclose(np.hypot(p[..., 0], p[..., 1]), radius, rtol=1e-12)
+
+
 def test_the_geometry_says_how_it_moves():
     geometry = brake()
     assert geometry.press_direction == (0.0, 0.0, -1.0)

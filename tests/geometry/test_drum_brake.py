@@ -67,6 +67,20 @@ def test_turning_about_the_pivot_presses_the_whole_lining():
         assert geometry.normal_arm(angle) > 0
 
 
+@pytest.mark.parametrize(("end", "sign"), [("arc_start", 1), ("arc_end", -1)])
+def test_a_lining_may_begin_on_the_line_of_the_pivot(end, sign):
+    """
+    requirement: an arm of zero at one end is legal, a degree beyond it is not.
+    """
+    angle = getattr(shoe(), end)
+    pivot = [f"{length:.17g} mm" for length in (50 * np.sin(angle), 50 * np.cos(angle))]
+    geometry = shoe(pivot=pivot)
+    arms = sign * np.array([geometry.normal_arm(angle) for angle in geometry.arc])
+    assert abs(arms.min()) < 1e-15
+    beyond = f"{np.degrees(angle) - sign:.17g} deg"
+    assert fault(shoe, pivot=pivot, **{end: beyond})[0] == "pivot"
+
+
 @pytest.mark.parametrize(
     ("changes", "key", "text"),
     [
@@ -76,7 +90,7 @@ def test_turning_about_the_pivot_presses_the_whole_lining():
             "must be thinner together than drum_radius",
         ),
         ({"arc_start": "-111 deg"}, "arc_end", "must be at most 170 deg"),
-        ({"pivot": ["-80 mm", "-60 mm"]}, "pivot", "must lie inside the drum"),
+        ({"pivot": ["-80 mm", "-60 mm"]}, "pivot", "must be less than drum_radius"),
         ({"pivot": ["0 mm", "0 mm"]}, "pivot", "lift the other"),
         ({"pivot": ["20 mm", "80 mm"]}, "pivot", "lift the other"),
         ({"pivot": ["10 mm", "-80 mm"]}, "pivot", "lift the other"),

@@ -1,14 +1,16 @@
 """Meshes that are read from files."""
 
 import textwrap
-from pathlib import Path
+import warnings
 
 import numpy as np
 import pytest
+import tomli_w
 
 import thermowear as tw
 from thermowear.case.schema import Mesh
-from thermowear.errors import CaseError
+from thermowear.cli import main
+from thermowear.errors import CaseError, CaseNote
 from thermowear.geometry.cylinder_on_block import CylinderOnBlock
 from thermowear.geometry.export import write_mesh
 from thermowear.geometry.gmsh_session import gmsh_model
@@ -51,7 +53,7 @@ def numbered(mesh):
     }
 
 
-def gmsh_blocks(path, version=4.1, order=1, triangles=False, glued=False, names=True):
+def gmsh_blocks(path, version=4.1, order=1, triangles=False, glued=False, names=True, **options):
     """Two blocks of 40 x 20 and 40 x 30, in the unit of the file, as a user of gmsh makes them."""
     with gmsh_model("blocks") as gmsh:
         model, occ = gmsh.model, gmsh.model.occ
@@ -74,6 +76,8 @@ def gmsh_blocks(path, version=4.1, order=1, triangles=False, glued=False, names=
         gmsh.option.setNumber("Mesh.RecombineAll", 0 if triangles else 1)
         gmsh.option.setNumber("Mesh.RecombinationAlgorithm", 3)
         gmsh.option.setNumber("Mesh.ElementOrder", order)
+        for key, value in options.items():
+            gmsh.option.setNumber(f"Mesh.{key}", value)
         model.mesh.generate(2)
         gmsh.write(str(path))
     return path
@@ -114,6 +118,38 @@ def test_meshes_of_gmsh(tmp_path, version, order, triangles, glued):
         assert set(of_face.ravel()) <= own[tag - 1]
 
 
+@pytest.mark.parametrize("version", [2.2, 4.1])
+def test_binary_meshes_of_gmsh(tmp_path, version):
+    """
+    requirement: binary files are the same meshes as those of text.
+    """
+    text = read(gmsh_blocks(tmp_path / "a.msh", version, 2), **GMSH_NAMES)
+    binary = read(gmsh_blocks(tmp_path / "b.msh", version, 2, Binary=1), **GMSH_NAMES)
+    np.testing.assert_allclose(binary.points, text.points, atol=1e-15)
+    np.testing.assert_array_equal(binary.cells, text.cells)
+    np.testing.assert_array_equal(binary.facets, text.facets)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("triangles", [False, True])
+@pytest.mark.parametrize("incomplete", [0, 1])
+@pytest.mark.parametrize("nodes", [0, 1])
+def test_abaqus_files_of_gmsh(tmp_path, order, triangles, incomplete, nodes):
+    """
+    requirement: .inp as gmsh writes it: CPS3, 4, 6, 8 or M3D9, lines T3D2 and T3D3 (end, middle,
+    end) in sets of elements, and sets of nodes of the same names.
+    """
+    options = {"SecondOrderIncomplete": incomplete, "SaveGroupsOfNodes": nodes}
+    path = gmsh_blocks(tmp_path / "a.inp", 4.1, order, triangles, **options)
+    mesh = read(path, **GMSH_NAMES)
+    assert mesh.order == order
+    assert areas(mesh, "punch").sum() == pytest.approx(40e-3 * 20e-3, rel=1e-9)
+    for face in ("punch_face", "plate_face"):
+        x, y = np.moveaxis(edges(mesh, face), 2, 0)
+        assert np.all(np.abs(y) < 1e-12)
+        assert np.ptp(x) == pytest.approx(40e-3, rel=1e-9)
+
+
 def test_numbers_stand_for_physical_groups_without_names(tmp_path):
     """
     requirement: physical tags without names go by their numbers.
@@ -147,7 +183,7 @@ def test_exports_are_read_back(tmp_path, ending):
         np.testing.assert_allclose(one, two, atol=1e-12)
 
 
-@pytest.mark.parametrize("ending", ["msh", "inp", "vtu"])
+@pytest.mark.parametrize("ending", ["msh", "inp", "vtu", "xdmf"])
 def test_curved_exports_are_read_back(tmp_path, ending):
     """
     requirement: cells of the third order as such, or as cells of the second whose nodes lie on
@@ -159,7 +195,7 @@ def test_curved_exports_are_read_back(tmp_path, ending):
     made = cylinder.build(Mesh(elements=20), (-5e-4, 5e-4))
     path = tmp_path / f"mesh.{ending}"
     write_mesh(made, path)
-    keys = numbered(made) if ending == "vtu" else {"bodies": {b: b for b in made.bodies}}
+    keys = numbered(made) if ending in ("vtu", "xdmf") else {"bodies": {b: b for b in made.bodies}}
     keys |= {"contact": list(cylinder.contact), "held": cylinder.held, "fixed": cylinder.fixed}
     keys.setdefault("surfaces", {name: name for name in made.surfaces})
     mesh = read(path, **keys)
@@ -247,6 +283,38 @@ def test_abaqus(tmp_path):
         assert np.all(edges(mesh, face)[..., 1] == 0.0)
 
 
+@pytest.mark.parametrize(
+    "kind", ["CPS8", "CPE8", "CAX8", "CPE8RH", "CAX8RT", "CPEG8", "cps8r", "M3D8", "S8R5"]
+)
+def test_kinds_of_abaqus_elements(tmp_path, kind):
+    """
+    requirement: plane stress and strain, generalised, axisymmetric, membranes and shells.
+    """
+    changes = [(f"type=CPS8R{end}", f"type={kind}{end}") for end in (", elset", "\n")]
+    mesh = read(deck(tmp_path, *changes), **DECK_NAMES)
+    assert mesh.cells.shape == (2, 9)
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("*HEADING", "*NGEN\n1, 4, 1"), "*NGEN makes nodes or elements"),
+        (("*HEADING", "*SYSTEM\n0, 0, 0"), "*SYSTEM turns the coordinates"),
+        (("*HEADING", "*Instance, name=A\n1., 0., 0."), "*INSTANCE moves a part"),
+        (("*Node, NSET=ALL", "*Node, NSET=ALL, SYSTEM=C"), "is no Cartesian one"),
+        (("12, 1., 0., 0.", "2, 1.5, 0., 0."), "node 2 is there twice"),
+        (("2, 11, 12, 13, 14, 15", "1, 11, 12, 13, 14, 15"), "element 1 is there twice"),
+        (("2, 2, 1", "2, 2, 0"), "a range with the step 0"),
+    ],
+)
+def test_abaqus_cards_that_change_the_mesh(tmp_path, change, expected):
+    """
+    requirement: what would make or move nodes and elements is not passed over; numbers that several
+    parts have each are refused.
+    """
+    assert expected in fault(deck(tmp_path, change), **DECK_NAMES)
+
+
 NO_CELLS = "geometry.bodies.punch: the file has no cells named"
 NO_SURFACE = "the file has no surface named"
 SURFACES = "one of: ALL, BOTTOM, NOTHING, PLATE_FACE, PUNCH_FACE, TOP"
@@ -310,7 +378,9 @@ def test_cells_without_area(tmp_path):
     requirement: degenerate cells are refused.
     """
     changes = [("13, 1., -1., 0.", "13, 1., 0., 0."), ("14, 0., -1.", "14, 0., 0.")]
-    assert fault(deck(tmp_path, *changes), **DECK_NAMES).endswith("cells without area")
+    assert "1 of 1 cells of 'plate' are tangled or flat" in fault(
+        deck(tmp_path, *changes), **DECK_NAMES
+    )
 
 
 def test_mixed_cells(tmp_path):
@@ -458,10 +528,61 @@ def test_missing_keys(key):
     assert f"geometry.{key}: missing" in error.value.faults
 
 
-def test_paths_are_relative_to_the_current_directory(tmp_path, monkeypatch):
+@pytest.fixture
+def two_folders(tmp_path, monkeypatch):
+    """A case file in one folder, the current one is another."""
+    case, here = tmp_path / "case", tmp_path / "here"
+    case.mkdir()
+    here.mkdir()
+    tables = file_tables("mesh.msh")
+    (case / "case.toml").write_text(tomli_w.dumps(tables), encoding="utf-8")
+    monkeypatch.chdir(here)
+    return case, here
+
+
+def test_paths_are_meant_from_the_folder_of_the_case(two_folders):
     """
-    requirement: relative paths.
+    requirement: wherever the program is called, and said where there is another file; the case as
+    it is written out reads the same file.
     """
-    write_mesh(two_blocks(), tmp_path / "here.msh")
-    monkeypatch.chdir(tmp_path)
-    assert len(read(Path("here.msh")).cells) > 0
+    case, here = two_folders
+    gmsh_blocks(case / "mesh.msh")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        known = tw.load(case / "case.toml")
+    assert known.geometry.path == str(case / "mesh.msh")
+    assert tw.load(tw.case.as_plain(known)) == known
+    assert len(known.tagged_mesh().cells) > 0
+    (here / "mesh.msh").write_text("not this\n")
+    with pytest.warns(CaseNote, match="is another file, and is not read"):
+        assert tw.load(case / "case.toml") == known
+
+
+def test_paths_from_the_current_folder_are_the_second_try(two_folders):
+    """
+    requirement: found there, and said.
+    """
+    case, here = two_folders
+    gmsh_blocks(here / "mesh.msh")
+    with pytest.warns(
+        CaseNote, match="in the current folder; paths are meant from the case file's"
+    ):
+        found = tw.load(case / "case.toml")
+    assert found.geometry.path == str(here / "mesh.msh")
+
+
+def test_validate_opens_the_file(two_folders, capsys):
+    """
+    requirement: what `run` would refuse, `validate` refuses: the file, its names, its bodies.
+    """
+    case, _ = two_folders
+    words = ["validate", str(case / "case.toml")]
+    assert main(words) == 1
+    assert "geometry.path: " in capsys.readouterr().err
+    gmsh_blocks(case / "mesh.msh")
+    assert main([*words, "--set", "geometry.held=TUP"]) == 1
+    assert "geometry.held: the file has no surface named 'TUP'" in capsys.readouterr().err
+    assert main(words) == 0
+    said = capsys.readouterr()
+    assert "punch 40 mm by 20 mm of 44 cells, plate 40 mm by 30 mm" in said.out
+    assert said.err == ""

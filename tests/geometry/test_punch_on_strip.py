@@ -94,7 +94,7 @@ def test_sizes_that_do_not_fit():
     """
     requirement: one clear line with the key's path.
     """
-    assert fault(punch, strip_length="30 mm")[0] == "strip_length"
+    assert fault(punch, strip_length="29 mm")[0] == "strip_length"
 
 
 def test_a_strip_that_is_rubbed_to_and_fro():
@@ -107,6 +107,18 @@ def test_a_strip_that_is_rubbed_to_and_fro():
     assert spans(mesh, "strip_face") == [pytest.approx((-0.025, 0.025))]
     assert spans(mesh, "punch_face") == [pytest.approx((-0.015, 0.015))]
     np.testing.assert_allclose(np.diff(ends(mesh, "strip_face")), 0.005, rtol=1e-9)
-    key, said = fault(punch, stroke="45 mm")
+    key, said = fault(punch, stroke="46 mm")
     assert key == "strip_length"
     assert "0.12 m" in said
+
+
+def test_a_punch_as_wide_as_its_strip():
+    """
+    requirement: edges in line; nothing is left of the strip's top.
+    """
+    geometry = punch(strip_length="0.03 m")
+    mesh = geometry.build(Mesh(), None)
+    assert mesh.surfaces == geometry.surfaces
+    assert "strip_top" not in mesh.surfaces
+    assert unnamed(mesh) == 0
+    assert np.bincount(mesh.facet_tags)[1:].min() > 0

@@ -47,7 +47,7 @@ def test_its_sides_are_radial():
     [
         ({"disk_outer_radius": "40 mm"}, "disk_outer_radius", "must be greater than disk_radius"),
         ({"segment_thickness": "40 mm"}, "segment_thickness", "must be less than disk_radius"),
-        ({"arc_end": "86 deg"}, "arc_end", "must be within 85 deg of the vertical"),
+        ({"arc_end": "86 deg"}, "arc_end", "must be within 85 deg of 12 o'clock"),
     ],
 )
 def test_sizes_that_do_not_fit(changes, key, text):

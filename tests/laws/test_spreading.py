@@ -10,6 +10,7 @@ from thermowear.laws import (
     Track,
     WearLaw,
     contact_patch,
+    rings,
     rotation,
     steady_pressure,
     translation,
@@ -41,11 +42,13 @@ def test_volume_is_kept():
     assert track * rate[0] == pytest.approx(LENGTHS @ LOCAL, rel=1e-14)
 
 
-def test_share_and_row_say_the_same():
-    """requirement: ``rate = share local + row·local``, of which the principle makes use."""
-    for way in (InPlace(), Share(0.3), Track(LENGTHS)):
-        common = 0.0 if way.row is None else way.row @ LOCAL
+def test_share_and_rows_say_the_same():
+    """requirement: ``rate = share local + reach (rows·local)``, as the principle has it."""
+    turning = rings(np.array([1.0, 2.0, 2.0, 3.0]), np.array([1.0, 2.0, 1.0, 2.0]), 0.2)
+    for way in (InPlace(), Share(0.3), Track(LENGTHS), turning):
+        common = 0.0 if way.rows is None else way.reach(4) @ (way.rows @ LOCAL)
         np.testing.assert_allclose(way.rate(LOCAL), way.share * LOCAL + common)
+        np.testing.assert_allclose(way.operator(4) @ LOCAL, way.rate(LOCAL))
 
 
 def test_a_share_of_the_wear():
@@ -116,3 +119,55 @@ def test_wear_of_tracks_only_leaves_the_pressure_open():
     _, patch, track = block_on_strip(tilting=False)
     with pytest.raises(ComputationError, match="spread over a track"):
         patch.steady([10.0], [WearLaw(1e-13)], [track])
+
+
+def disk_under_a_pad(n=12, m=9):
+    """Points of a sector of 60 degrees in polar coordinates, its areas, and where they lie."""
+    x, w = np.polynomial.legendre.leggauss(n)
+    y, v = np.polynomial.legendre.leggauss(m)
+    r, angle = 0.1 + 0.02 * x, np.pi / 6 * y
+    weights = np.outer(r * w * 0.02, v * np.pi / 6)
+    radii, angles = np.meshgrid(r, angle, indexing="ij")
+    return radii.ravel(), angles.ravel(), weights.ravel()
+
+
+def test_a_disk_wears_at_each_radius_by_the_mean_along_its_circle():
+    """requirement: the mean of the local rate round the axis, by quadrature; no volume is lost."""
+    r, angle, w = disk_under_a_pad()
+    local = r * (1 + 0.5 * angle + angle**2)
+    found = rings(r, w, 1 / 6).rate(local)
+    mean = r * (1 + (np.pi / 6) ** 2 / 3) / 6
+    np.testing.assert_allclose(found, mean, rtol=1e-12)
+    assert w @ found == pytest.approx(w @ local / 6, rel=1e-13)
+
+
+def test_rings_of_scattered_points():
+    """requirement: the same where no two points have one radius, to the width of the rings."""
+    rng = np.random.default_rng(1)
+    r, angle = np.sqrt(rng.uniform(0.08**2, 0.12**2, 4000)), rng.uniform(-0.5, 0.5, 4000)
+    way = rings(r, np.ones(4000), 0.2)
+    np.testing.assert_allclose(way.rate(np.full(4000, 3.0)), 0.6, rtol=1e-12)
+    local = r * (1 + angle)
+    found = way.rate(local)
+    assert found.min() > 0
+    assert found.sum() == pytest.approx(0.2 * local.sum(), rel=1e-12)
+    np.testing.assert_allclose(found, 0.2 * r, rtol=0.1)
+
+
+@pytest.mark.parametrize(("b_1", "b_2"), [(1.0, 1.0), (2.0, 0.5)])
+def test_the_principle_with_a_disk_that_wears_along_its_track(b_1, b_2):
+    """requirement: where it presses, pad and disk together wear as the pad approaches."""
+    r, angle, w = disk_under_a_pad()
+    way = rings(r, w, 1 / 6)
+    laws = [WearLaw(1e-13 * 1e6 ** (1 - b_1), b_1), WearLaw(9e-13 * 1e6 ** (1 - b_2), b_2)]
+    x, y = r * np.cos(angle), r * np.sin(angle)
+    modes = np.column_stack([np.ones(len(r)), x - 0.1, y])
+    load = np.array([1e3, 2.0, 1.0])
+    steady = steady_pressure(w, modes, modes, load, laws, 10 * r, [InPlace(), way])
+    p = steady.pressure
+    disk = way.operator(len(r)) @ laws[1].rate(p, 10 * r)
+    np.testing.assert_allclose(steady.rates[1], disk, rtol=1e-12)
+    total, scale = laws[0].rate(p, 10 * r) + disk, steady.approach.max()
+    np.testing.assert_allclose(total[p > 0], steady.approach[p > 0], atol=1e-10 * scale)
+    np.testing.assert_allclose(modes.T @ (w * p), load, atol=1e-9 * 1e3)
+    assert np.ptp(p[np.isclose(r, r[0])]) > 0.1 * p.max()

@@ -1,6 +1,7 @@
 """Checkpoints, drafts and locks on disk."""
 
 import errno
+import json
 import os
 
 import numpy as np
@@ -8,11 +9,14 @@ import pytest
 
 import thermowear as tw
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint, write_checkpoint
+from thermowear.output.folder import finite
 from thermowear.output.lock import Lock
 from thermowear.output.quantities import HISTORY
 from thermowear.output.replacing import final_name, replacing
+from thermowear.output.resuming import read_run
 from thermowear.output.tables import RowWriter, read
 from thermowear.simulation import HistoryRow
+from thermowear.simulation.checkpoint import Checkpoint
 
 ABOUT, ARRAYS = {"time": 0.1, "case": {"title": "µ"}}, {"a0": np.arange(3.0), "b@1": np.eye(2)}
 
@@ -22,7 +26,7 @@ def test_a_checkpoint_is_read_as_it_was_written(tmp_path):
     assert read_checkpoint(tmp_path) is None
     write_checkpoint(tmp_path, ABOUT, ARRAYS)
     about, arrays = read_checkpoint(tmp_path)
-    assert about == {"format": 1} | ABOUT
+    assert about == ABOUT
     assert arrays.keys() == ARRAYS.keys()
     for name, values in ARRAYS.items():
         np.testing.assert_array_equal(arrays[name], values)
@@ -56,9 +60,73 @@ def test_other_files_are_refused(content, tmp_path):
 
 
 def test_a_later_format_is_refused(tmp_path):
-    write_checkpoint(tmp_path, ABOUT | {"format": 2}, ARRAYS)
-    with pytest.raises(tw.CaseError, match="format 2"):
+    write_checkpoint(tmp_path, ABOUT | {"format": 3}, ARRAYS)
+    with pytest.raises(tw.CaseError, match="format 3"):
         read_checkpoint(tmp_path)
+
+
+CRAFTED = {
+    "another shape": {"a0": np.arange(4.0)},
+    "not a number": {"a0": np.array([0.0, np.nan, 2.0])},
+    "another type": {"a0": np.arange(3)},
+    "one more": {"a1": np.arange(3.0)},
+}
+
+
+@pytest.mark.parametrize("changed", CRAFTED.values(), ids=CRAFTED)
+def test_what_was_not_written_is_refused(changed, tmp_path):
+    """requirement: a checkpoint that somebody or something has changed ends in one line."""
+    write_checkpoint(tmp_path, ABOUT, ARRAYS)
+    with np.load(tmp_path / CHECKPOINT) as file:
+        content = dict(file)
+    np.savez(tmp_path / CHECKPOINT, **content | changed)
+    with pytest.raises(tw.CaseError, match="damaged") as caught:
+        read_checkpoint(tmp_path)
+    assert len(caught.value.faults) == 1
+
+
+@pytest.mark.parametrize("about", ["[]", "1", "null", "{", '"text"', "{}"])
+def test_a_head_of_something_else_is_refused(about, tmp_path):
+    np.savez(tmp_path / CHECKPOINT, about=np.array(about))
+    with pytest.raises(tw.CaseError, match=r"checkpoint\.npz: cannot be read"):
+        read_checkpoint(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "outline",
+    [
+        '{"array": "b"}',
+        '{"rows": "HistoryRow", "of": {"time": {"array": "a"}}}',
+        '{"rows": "HistoryRow", "of": {"time": 3}}',
+        '{"state": "WornContact", "of": {}}',
+        '{"state": "Popen", "of": {}}',
+        '{"dict": [1]}',
+        "{}",
+        "not JSON",
+    ],
+)
+def test_outlines_of_something_else_are_refused(outline):
+    """requirement: whatever an outline says, it is a state that is known, or one line."""
+    with pytest.raises(tw.CaseError, match="--resume"):
+        Checkpoint([outline], {"a": np.arange(3.0)}).state(0)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"status": "done"}', "[" * 100_000])
+def test_a_run_of_something_else_is_refused(text, tmp_path):
+    (tmp_path / "run.json").write_text(text)
+    with pytest.raises(tw.CaseError, match="no run to resume"):
+        read_run(tmp_path)
+
+
+def test_numbers_that_are_not_finite(tmp_path):
+    """requirement: a summary is JSON that every program reads, and says where numbers lack."""
+    summary = {"a": np.inf, "b": [1.0, -np.inf], "c": {"d": np.nan}, "e": 2.0, "f": None}
+    found = json.loads(json.dumps(finite(summary), allow_nan=False))
+    said = found.pop("not_finite")
+    assert found == {"a": None, "b": [1.0, None], "c": {"d": None}, "e": 2.0, "f": None}
+    assert said.keys() == {"a", "b.1", "c.d"}
+    assert said["b.1"].startswith("-inf")
+    assert "not_finite" not in finite({"a": 1.0})
 
 
 def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):

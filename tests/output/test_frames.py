@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from thermowear.cli import main
-from thermowear.output.frames import FRAMES, frame_files, remove_frames
+from thermowear.output.frames import FRAMES, frame_files, keep_indexed, remove_frames
 from thermowear.output.quantities import HISTORY, INTERFACE
 from thermowear.output.tables import read
 
@@ -85,3 +85,18 @@ def test_a_broken_index_is_said(text, tmp_path):
     (tmp_path / "frames.pvd").write_text(text, encoding="utf-8")
     with pytest.raises(ValueError, match=r"frames\.pvd"):
         frame_files(tmp_path)
+
+
+def test_what_a_killed_run_left_is_removed(folder, tmp_path):
+    """requirement: files of frames between index and removal are gone after going on."""
+    import shutil
+
+    place = tmp_path / FRAMES
+    shutil.copytree(folder / FRAMES, place)
+    whole = {path.name for path in place.iterdir()}
+    for left in ("fields_00003.vtu", "interface_00003.csv", "track_00009.csv"):
+        (place / left).write_text("left behind")
+    (place / ".fields_00005.vtu.part").write_text("half")
+    (place / "notes.txt").write_text("mine")
+    keep_indexed(place)
+    assert {path.name for path in place.iterdir()} == whole | {"notes.txt"}

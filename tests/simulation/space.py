@@ -68,5 +68,5 @@ def changed(tables: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
         if value is None:
             del table[key]
         else:
-            table[key] = value
+            table[key] = copy.deepcopy(value)
     return result

@@ -50,12 +50,12 @@ def test_shape_and_temperature_of_a_hot_ring():
 
 
 def test_locking_is_said():
-    """requirement: degree 1 with a Poisson ratio near 1/2 does not pass in silence."""
+    """requirement: degree 1 at the largest Poisson ratio that it may have is not silent."""
     notes = Notes()
     mesh = "mesh.degree=1", "mesh.elements=8"
-    case = starter("cylinder-on-block", *LINE, "bodies.cylinder.poisson_ratio=0.499999", *mesh)
+    case = starter("cylinder-on-block", *LINE, "bodies.cylinder.poisson_ratio=0.45", *mesh)
     result = run(case, observer=notes)
-    assert estimates(result)["pressure"] > 0.3
+    assert estimates(result)["pressure"] > 0.1
     (text,) = [text for text in notes.texts if "discretisation error" in text]
     assert "run --accuracy" in text
 

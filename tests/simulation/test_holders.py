@@ -37,6 +37,14 @@ def test_it_locks_where_friction_carries_more_than_the_lever():
         solved(BLOCK, None, *COARSE, "motion.velocity=50 mm/s", "geometry.pivot_height=400 mm")
 
 
+def test_a_cold_punch_that_locks_says_nothing_of_heat():
+    """requirement: the reason for no equilibrium is the case's own: friction, not its heat."""
+    small = ("mesh.degree=2", "mesh.elements=8", INITIAL)
+    with pytest.raises(ComputationError, match="friction along the faces") as caught:
+        solved(TILTING, None, *small, "contact.friction=20.0")
+    assert "heat" not in str(caught.value)
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("sense", [-1, 1])
 def test_a_block_that_tilts(friction, sense):

@@ -1,6 +1,7 @@
 """Runs that start from a worn shape."""
 
 import csv
+import os
 
 import numpy as np
 import pytest
@@ -49,6 +50,14 @@ def test_a_shape_from_another_mesh(steady):
     ("rows", "text"),
     [
         (None, "cannot be read"),
+        ([], "is empty"),
+        ([["s_m", "shape_m"], [0, 0], [0.1, 1e300]], "beyond 1e100 m"),
+        ([["s_m", "shape_m"], [0, 0], [0.1, "inf"]], "no numbers"),
+        ([["s_m", "shape_m"], [0, 0], [100, 0.02]], "is it in metres?"),
+        ([["s_m", "shape_m"], [0, 0], [0.05, 30], [0.1, 0]], "are they in metres?"),
+        ([["s_m", "shape_m"], [0, 0], [0.1, 0], [0.1, 1e-6]], "different shapes at s_m = 0.1"),
+        ([["s_m", "shape_m"], [0, 0], [0, 0]], "one place only"),
+        ([["s_m;shape_m"], ["0;0"], ["0,1;0"]], "columns between commas"),
         ([["a", "b"], [1, 2], [3, 4]], "no columns s_m and shape_m"),
         ([["s_m", "shape_m"], [0, 0]], "no columns s_m and shape_m with numbers"),
         ([["s_m", "shape_m"], [0, 0], [0.1, "much"]], "no numbers"),
@@ -66,3 +75,29 @@ def test_faults(tmp_path, rows, text):
     (line,) = caught.value.args
     assert line.startswith("geometry.initial_shape: ")
     assert text in line
+
+
+def test_a_pipe_is_no_shape(tmp_path):
+    """requirement: what may never end is not waited for."""
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(CaseError, match="is a pipe"):
+        solved(RUNNING_IN, None, *COARSE, f"geometry.initial_shape={str(tmp_path / 'pipe')!r}")
+
+
+def test_doubled_places_of_one_shape(steady, tmp_path):
+    """requirement: a place that is there twice with one shape is there once."""
+    _, file = steady
+    twice = tmp_path / "twice.csv"
+    head, *rows = file.read_text().splitlines()
+    twice.write_text("\n".join([head, *rows, *rows[::-1]]))
+    first, second = (
+        solved(
+            RUNNING_IN,
+            None,
+            *COARSE,
+            f"geometry.initial_shape={str(name)!r}",
+            "analysis={type='initial'}",
+        )
+        for name in (file, twice)
+    )
+    assert second.interface.pressure == pytest.approx(first.interface.pressure, rel=1e-12)

@@ -1,9 +1,14 @@
 """Running-in whose meshes follow the worn faces."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
 from thermowear.reference.growing_contact import growing_point
+from thermowear.simulation import geometry_update
+from thermowear.simulation.building import build
 from thermowear.verification.growing import worn_half_width
 from thermowear.verification.starter import run_starter
 
@@ -42,6 +47,29 @@ def test_the_face_of_the_mesh_is_where_it_was_worn_to(worn_ring):
     assert interface.y == pytest.approx(interface.wear_1, abs=1e-3 * interface.wear_1.max())
     assert interface.x.min() == pytest.approx(0.02)
     assert interface.x.max() == pytest.approx(0.12)
+
+
+def test_systems_of_earlier_meshes_are_given_up(monkeypatch):
+    """requirement: deep wear keeps no more than the last meshes and the next ones in memory."""
+    made, most = [], 0
+
+    def counted(*args):
+        nonlocal most
+        found = build(*args)
+        made.append(weakref.ref(found.elastic))
+        most = max(most, sum(one() is not None for one in made))
+        return found
+
+    monkeypatch.setattr(geometry_update, "build", counted)
+    few = ("mesh.degree=2", "mesh.elements=2", 'analysis.end_time="25 h"')
+    gc.collect()
+    gc.disable()
+    try:
+        found = run_starter("annular-punch-deep", *few, "analysis.output_times=[]")
+    finally:
+        gc.enable()
+    assert found.summary["geometry_updates"] >= 4
+    assert most <= 3
 
 
 def test_little_wear_moves_nothing():

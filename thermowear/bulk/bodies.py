@@ -41,6 +41,11 @@ class Bodies:
         """Local indices of the facets of a surface, ghosts included."""
         return self.facet_tags.find(self.surface_tag(surface))
 
+    def parts_of_cells(self, cells: np.ndarray) -> np.ndarray:
+        """Position in `names` of the part that each local cell belongs to, which has a material."""
+        tags = self.cell_tags
+        return tags.values[np.searchsorted(tags.indices, cells)].astype(np.int64) - 1
+
     def per_body(self, values: dict[str, float]) -> fem.Function:
         """A function that is constant on each body."""
         space = fem.functionspace(self.mesh, ("Discontinuous Lagrange", 0))

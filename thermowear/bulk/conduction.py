@@ -20,6 +20,10 @@ from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 from .factor import Factor
 
+_HIDDEN = 1e-8
+"""Part of the flows between a node and its neighbours that counts as heat turned over where there
+is no other: rounding errors are 1e-8 of that."""
+
 
 @dataclass(frozen=True)
 class Conduction:
@@ -82,6 +86,16 @@ class Conduction:
         """Rise [K] due to nodal heat [W] and the given temperatures."""
         return self.given + self.respond(heat + self.lifted)
 
+    def holding(self, given: np.ndarray) -> Conduction:
+        """The same bodies with other given rises (n_owned,), zero in the free values [K]."""
+        return replace(self, given=given, lifted=-multiply(self.conductivity, given))
+
+    def per_ambient(self) -> np.ndarray:
+        """Nodal heat per rise of the surroundings, and of what comes in, (n_owned,) [W/K]."""
+        ones = np.ones(len(self.fixed))
+        heat = multiply(self.cooling, ones)
+        return heat if self.carried is None else heat + multiply(self.carried, ones)
+
     def storing(self, step: float) -> Conduction:
         """Conduction at the end of an implicit Euler step of time [s].
 
@@ -114,17 +128,31 @@ class Conduction:
         assert self.capacity is not None
         return multiply(self.capacity, rise)
 
+    def rounding(self, rise: np.ndarray) -> float:
+        """Least heat flow that a balance of a rise (n_owned,) can be relative to [W].
+
+        Bodies of one temperature turn over nothing but rounding errors.
+        """
+        size = float(np.abs(self.conductivity.getDiagonal().getArray()) @ np.abs(rise))
+        return _HIDDEN * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
+
     def losses(
-        self, rise: np.ndarray, heat: np.ndarray, storage: np.ndarray | None = None
+        self,
+        rise: np.ndarray,
+        heat: np.ndarray,
+        storage: np.ndarray | None = None,
+        ambient: float = 0.0,
     ) -> tuple[float, float, float]:
         """Heat that leaves by cooling, by given temperatures, and with a body that passes [W].
 
         Parameters
         ----------
         rise, heat : ndarray, shape (n_owned,)
-            A state and the nodal heat of the contact that goes with it.
+            A state and the nodal heat, of the contact and of `per_ambient`, that goes with it.
         storage : ndarray, shape (n_owned,), optional
             Rate of what the nodes store, see `stored` [W].
+        ambient : float, optional
+            Rise of the surroundings [K].
 
         Returns
         -------
@@ -133,13 +161,23 @@ class Conduction:
         """
         cooled, carried = self._per_rise
         left = self._into_given(rise, heat if storage is None else heat - storage)
-        parts = np.array([cooled @ rise, left.sum(), carried @ rise])
+        above = rise - ambient
+        parts = np.array([cooled @ above, left.sum(), carried @ above])
         return tuple(sum_over_ranks(self.space.mesh.comm, parts))
 
-    def turnover(self, rise: np.ndarray, heat: np.ndarray) -> float:
-        """Magnitude of what crosses cooled surfaces and those with a given temperature [W]."""
-        size = np.abs(multiply(self.cooling, rise)).sum()
-        size += np.abs(self._into_given(rise, heat)).sum()
+    def turnover(
+        self,
+        rise: np.ndarray,
+        heat: np.ndarray,
+        storage: np.ndarray | None = None,
+        ambient: float = 0.0,
+    ) -> float:
+        """Magnitude of what crosses cooled surfaces and those with a given temperature [W].
+
+        Parameters as in `losses`.
+        """
+        size = np.abs(multiply(self.cooling, rise - ambient)).sum()
+        size += np.abs(self._into_given(rise, heat if storage is None else heat - storage)).sum()
         return float(sum_over_ranks(self.space.mesh.comm, size))
 
     def _into_given(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:

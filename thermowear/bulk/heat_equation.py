@@ -92,9 +92,7 @@ def conduction(
         density = bodies.per_body(capacities) * T * test
         capacity = _assembled(model.integral(mesh, density, measure))
 
-    fixed, values = _given(bodies, space, given)
-    if even is not None:
-        fixed, values = even.whole(fixed, values)
+    fixed, values = given_rises(bodies, space, given, even)
     factor = factorised(space, conductivity, bath, fixed, carried is None, even)
     lifted = -multiply(conductivity, values)
     return Conduction(
@@ -144,8 +142,10 @@ def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface
     assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on matrix
 
 
-def _given(bodies: Bodies, space, given: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Which owned values are fixed, and to what."""
+def given_rises(
+    bodies: Bodies, space: fem.FunctionSpace, given: dict[str, float], even: EvenPaths | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which owned values are fixed, and to what: linear in the rises that are given by surface."""
     count = owned(space)
     fixed, values = np.zeros(count, dtype=bool), np.zeros(count)
     for surface, rise in given.items():
@@ -154,4 +154,4 @@ def _given(bodies: Bodies, space, given: dict[str, float]) -> tuple[np.ndarray, 
         )
         mine = dofs[dofs < count]
         fixed[mine], values[mine] = True, rise
-    return fixed, values
+    return (fixed, values) if even is None else even.whole(fixed, values)

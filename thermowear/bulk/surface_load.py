@@ -1,4 +1,4 @@
-"""Forces spread evenly over named surfaces."""
+"""Forces spread evenly over named surfaces, and pressures on them."""
 
 from __future__ import annotations
 
@@ -25,9 +25,7 @@ def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callab
     force : ndarray, shape (gdim,)
         Of the whole ring, or of the thickness [N].
     """
-    bodies, mesh = elastic.bodies, elastic.bodies.mesh
-    tag = bodies.surface_tag(surface)
-    measure = ufl.Measure("ds", domain=mesh, subdomain_data=bodies.facet_tags)(tag)
+    mesh, measure = elastic.bodies.mesh, _measure(elastic, surface)
     one = fem.Constant(mesh, PETSc.ScalarType(1.0))
     local = fem.assemble_scalar(compiled(elastic.model.integral(mesh, one, measure)))
     area = mesh.comm.allreduce(local, op=MPI.SUM)
@@ -35,7 +33,27 @@ def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callab
     return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
 
 
+def pressure_work(elastic: Elasticity, surface: str, pressure: float) -> Callable:
+    """The same of a pressure [Pa], along the inward normal."""
+    mesh, measure = elastic.bodies.mesh, _measure(elastic, surface)
+    traction = -fem.Constant(mesh, PETSc.ScalarType(pressure)) * ufl.FacetNormal(mesh)
+    return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
+
+
 def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.ndarray:
     """Nodal loads of a force on a surface [N], owned rows; see `surface_work`. Every rank calls."""
     work = surface_work(elastic, surface, force)
     return assembled(compiled(work(ufl.TestFunction(elastic.space))))
+
+
+def surface_pressure(elastic: Elasticity, surface: str, pressure: float) -> np.ndarray:
+    """Nodal loads of a pressure [Pa], along the inward normal [N], owned rows. Every rank calls."""
+    work = pressure_work(elastic, surface, pressure)
+    return assembled(compiled(work(ufl.TestFunction(elastic.space))))
+
+
+def _measure(elastic: Elasticity, surface: str) -> ufl.Measure:
+    """Integration over a surface, exact on straight facets."""
+    bodies = elastic.bodies
+    measure = ufl.Measure("ds", domain=bodies.mesh, subdomain_data=bodies.facet_tags)
+    return measure(bodies.surface_tag(surface))

@@ -126,11 +126,11 @@ class VaryingConduction(Conduction):
         tangents = ((p.matrix, p.slope(reference) * rise - p.excess(rise)) for p in self.parts)
         return _products(len(rise), tangents)
 
-    def losses(self, rise, heat, storage=None):
-        return super().losses(rise, heat + self._held_back(rise), storage)
+    def losses(self, rise, heat, storage=None, ambient=0.0):
+        return super().losses(rise, heat + self._held_back(rise), storage, ambient)
 
-    def turnover(self, rise, heat):
-        return super().turnover(rise, heat + self._held_back(rise))
+    def turnover(self, rise, heat, storage=None, ambient=0.0):
+        return super().turnover(rise, heat + self._held_back(rise), storage, ambient)
 
     def _held_back(self, rise: np.ndarray) -> np.ndarray:
         """Nodal heat that flows off as it would not at constant conductivity [W]."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from ..errors import quoted
 from . import units
 from .section import KeyFault, Number, Section
 
@@ -28,8 +30,8 @@ Frames = Annotated[int, Field(ge=0, le=1000, strict=True)]
 
 def _all_different(output_times: tuple[float, ...]) -> None:
     """Refuse times that would share a file."""
-    names = [f"{t:g}" for t in output_times]
-    twice = [name for name in names if names.count(name) > 1]
+    counts = Counter(f"{t:g}" for t in output_times)
+    twice = [name for name, count in counts.items() if count > 1]
     if twice:
         raise KeyFault("output_times", f"{twice[0]} s is there twice (to six digits)")
 
@@ -124,7 +126,7 @@ def _jump(value: Any) -> Any:
     whole = isinstance(value, int) and not isinstance(value, bool)
     if value == "auto" or (whole and value >= 1):
         return value
-    raise ValueError(f'found {value!r}; must be "auto" or a whole number, at least 1')
+    raise ValueError(f'found {quoted(value)}; must be "auto" or a whole number, at least 1')
 
 
 class Fretting(Section):

@@ -7,12 +7,13 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter, model_validator
 
+from ..errors import quoted
 from . import units
 from .factors import must_increase, must_match
 from .section import KeyFault, Section
 
 
-def harmonic_mean(a: float, b: float) -> float:
+def harmonic_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """``2 a b / (a + b)``: of two things in series."""
     return 2 * a * b / (a + b)
 
@@ -32,7 +33,9 @@ class PressureConductance(Section):
     type: Literal["pressure"]
     coefficient: units.PerLength
 
-    def value(self, pressure: np.ndarray, conductivity: float, hardness: float) -> np.ndarray:
+    def value(
+        self, pressure: np.ndarray, conductivity: np.ndarray, hardness: np.ndarray
+    ) -> np.ndarray:
         """Conductance [W/(m² K)] at pressures [Pa], by the harmonic means of both bodies."""
         return self.coefficient * conductivity * np.asarray(pressure) / hardness
 
@@ -83,7 +86,7 @@ def _read(data: Any) -> Any:
         raise KeyFault("type", f"missing; must be {_ALLOWED}")
     kind = data["type"]
     if not isinstance(kind, str) or kind not in _KINDS:
-        raise KeyFault("type", f"found {kind!r}; must be {_ALLOWED}")
+        raise KeyFault("type", f"found {quoted(kind)}; must be {_ALLOWED}")
     return _KINDS[kind].model_validate(data)
 
 

@@ -1,4 +1,4 @@
-"""What must hold between the tables of cases whose load or speed changes in time."""
+"""What must hold between the tables of cases in which something changes in time."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ _CONSTANT = ("moment", "moments", "tangential_force", "surfaces")
 
 
 def courses(case: Case) -> Iterator[Fault]:
-    """Loads change in a transient and in a fretting analysis, speeds in a transient one."""
-    analysis, load = case.analysis, case.load.history
-    speed = None if case.motion is None else case.motion.history
+    """Loads change in a transient and in a fretting analysis, all else in a transient one."""
+    analysis, load, histories = case.analysis, case.load.history, case.histories
     if load is not None:
         if isinstance(analysis, Transient):
             yield from _of_the_force(case, load)
@@ -32,11 +31,19 @@ def courses(case: Case) -> Iterator[Fault]:
                 f"is for a transient or fretting analysis, not for {analysis.type}",
             )
     if not isinstance(analysis, Transient):
-        if speed is not None and not isinstance(analysis, Fretting):  # which has no motion at all
-            yield "motion.history", f"is for a transient analysis, not for {analysis.type}"
-    elif analysis.until is not None and (load is not None or speed is not None):
-        which = "load.history" if load is not None else "motion.history"
+        refused = histories.keys() - {"load.history"}
+        if isinstance(analysis, Fretting):  # which has neither motion nor heat at all
+            refused &= {"contact.friction_history"}
+        for key in sorted(refused):
+            yield key, f"is for a transient analysis, not for {analysis.type}"
+    elif analysis.until is not None and histories:
+        which = next(iter(histories))
         yield "analysis.until", f"nothing is steady under {which}; give end_time alone"
+    if case.contact.friction_history is not None:
+        if case.contact.friction == 0.0:
+            yield "contact.friction_history", "changes nothing: contact.friction is 0"
+        elif case.motion is None and isinstance(analysis, Transient):
+            yield "contact.friction_history", "changes nothing: without [motion] nothing slides"
 
 
 def _of_the_force(case: Case, history: History) -> Iterator[Fault]:

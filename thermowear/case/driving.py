@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import model_validator
 
 from . import units
-from .history import History, SpeedHistory
+from .history import FactorHistory, History
 from .section import KeyFault, Section
 
 FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
@@ -44,7 +44,8 @@ class Load(Section):
     """What presses body 1 on body 2.
 
     Exactly one of force, mean pressure and approach; a holder that only turns may have a moment
-    instead, and one that is fixed needs forces on surfaces.
+    instead, and one that is fixed needs forces or pressures on surfaces. Pressures on surfaces may
+    also press alone.
 
     Attributes
     ----------
@@ -53,7 +54,8 @@ class Load(Section):
     force : float or None
         Of the whole ring, or of the thickness, along the press [N].
     approach : float or None
-        How far the holder moves along the press from where it stands in the mesh [m].
+        How far the holder moves along the press, towards body 2, from where it stands in the mesh
+        [m].
     lever : float or None
         Distance along x from the pivot to the line of the force [m].
     point : tuple of float or None
@@ -67,6 +69,10 @@ class Load(Section):
         Along x, for a holder that is free along it [N].
     surfaces : dict of str to float
         Forces along the press, spread evenly over surfaces of body 1, whose holder is fixed [N].
+    pressure : dict of str to float
+        Pressures on surfaces of either body, normal to them and towards the body, in addition to
+        all other loads and constant in time. What they press body 1 with along a free motion of
+        its holder is in equilibrium with the contact, too [Pa].
     history : History or None
         What changes: the loads of a fretting analysis, the force of a transient one.
     """
@@ -80,6 +86,7 @@ class Load(Section):
     moments: tuple[units.SignedMoment, units.SignedMoment] | None = None
     tangential_force: units.SignedForce | None = None
     surfaces: dict[str, units.Force] = {}
+    pressure: dict[str, units.Pressure] = {}
     history: History | None = None
 
 
@@ -95,7 +102,7 @@ class Motion(Section):
         Of body 1 over body 2 along x; negative: against it [m/s].
     amplitude, frequency : float or None
         Body 1 slides to and fro, ``x = amplitude sin(2 π frequency t)`` [m, Hz].
-    history : SpeedHistory or None
+    history : FactorHistory or None
         How the speed of a transient analysis changes.
     """
 
@@ -103,7 +110,7 @@ class Motion(Section):
     velocity: units.Velocity | None = None
     amplitude: units.Length | None = None
     frequency: units.Frequency | None = None
-    history: SpeedHistory | None = None
+    history: FactorHistory | None = None
 
     @property
     def one_way(self) -> Motion:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from .geometry import Geometry
+
 if TYPE_CHECKING:
     from .schema import Case
 
@@ -50,11 +52,15 @@ def load(case: Case) -> Iterator[Fault]:
         if sum(given) > 0 or load.lever is not None or load.point is not None:
             yield "load", "a holder that only turns needs a moment, or a force and its lever"
     elif not free:
-        if sum(given) > 0 or not load.surfaces:
-            yield "load", "a fixed holder (holder.free = []) needs load.surfaces, and nothing else"
+        if sum(given) > 0 or not (load.surfaces or load.pressure):
+            yield (
+                "load",
+                "a fixed holder (holder.free = []) needs load.surfaces or load.pressure, and "
+                "nothing else",
+            )
     elif load.surfaces:
         yield "load.surfaces", "is for a fixed holder (holder.free = [])"
-    elif sum(given) != 1:
+    elif sum(given) > 1 or (sum(given) == 0 and not load.pressure):
         yield "load", "needs exactly one of force, mean_pressure and approach"
     if load.mean_pressure is not None and case.geometry.contact_area() is None:
         yield "load.mean_pressure", "this geometry has no nominal contact area; give the force"
@@ -75,6 +81,28 @@ def load(case: Case) -> Iterator[Fault]:
             yield f"load.{key}", f"is for {model} models"
     if load.tangential_force is not None and "x" not in free:
         yield "load.tangential_force", 'is for a holder that is free along it: holder.free = ["x"…]'
+
+
+def surface_pressure(case: Case) -> Iterator[Fault]:
+    """Pressures on surfaces that can be loaded, in analyses that know them."""
+    geometry, load = case.geometry, case.load
+    refused = dict.fromkeys(geometry.contact, "is in the contact, whose pressure is computed")
+    refused |= dict.fromkeys(geometry.symmetry, "lies on a plane of symmetry; nothing acts there")
+    refused[geometry.fixed] = "is fixed; a pressure on it has no effect"
+    for name in load.pressure:
+        if name in refused:
+            yield f"load.pressure.{name}", refused[name]
+    if not load.pressure:
+        return
+    if case.analysis.type == "fretting":
+        yield "load.pressure", "is not for a fretting analysis, which follows the holder alone"
+    alone = case.force() is None and case.approach() is None
+    if alone and type(geometry).expected_zone is not Geometry.expected_zone:
+        yield (
+            "load",
+            "needs one of force, mean_pressure and approach beside load.pressure: "
+            f"{geometry.type!r} is meshed for the contact that it leads to",
+        )
 
 
 def motion(case: Case) -> Iterator[Fault]:

@@ -6,16 +6,24 @@ file by its ``type`` as soon as that room is imported.
 
 from __future__ import annotations
 
+import importlib
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, get_args
 
-from pydantic import BeforeValidator, SerializeAsAny
+from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo, model_validator
+from pydantic.fields import FieldInfo
 
+from ..errors import quoted
+from .paths import UserFile
 from .section import KeyFault, Section, Switch
 from .units import Length
 
 _KNOWN: dict[str, type[Geometry]] = {}
+
+_APART = 1e7
+"""Ratio of the sizes of a geometry at most: coordinates have 16 digits, and meshes some layers."""
 
 
 @dataclass(frozen=True)
@@ -61,11 +69,15 @@ class Geometry(Section):
         Contact faces of body 1 and body 2.
     held, fixed : str
         Surface of body 1 on the rigid holder; fixed surface of body 2.
+    unmeshed : tuple of str
+        Keys of lengths that are no size of a mesh.
     slides_across : bool
         Whether body 1 may slide across its axis, as a ball does on a flat, or across its section.
+    from_file : bool
+        Whether the mesh was made elsewhere, so that it can be wrong as the case can.
     initial_shape : str or None
         File with the worn shape to start from (a design, as ``shape`` writes it, or ``profile.csv``
-        of an earlier run), relative to the current directory.
+        of an earlier run).
     """
 
     name: ClassVar[str]
@@ -76,15 +88,44 @@ class Geometry(Section):
     held: ClassVar[str]
     fixed: ClassVar[str]
 
+    unmeshed: ClassVar[tuple[str, ...]] = ("thickness", "length_unit")
     slides_across: ClassVar[bool] = False
+    from_file: ClassVar[bool] = False
 
     type: str
-    initial_shape: str | None = None
+    initial_shape: UserFile | None = None
 
     def __init_subclass__(cls, **kwargs: Any):
         super().__init_subclass__(**kwargs)
         if cls.__dict__.get("name"):  # bases of several geometries have none
             _KNOWN[cls.name] = cls
+
+    @model_validator(mode="after")
+    def _of_one_order(self):
+        """Sizes many orders apart are slips of a unit, and cannot be meshed."""
+        sizes = self.sizes()
+        if not sizes:
+            return self
+        middle = sorted(sizes.values())[len(sizes) // 2]
+        wrong = max(sizes, key=lambda key: abs(math.log(sizes[key] / middle)))
+        other = (min if sizes[wrong] >= middle else max)(sizes, key=lambda key: sizes[key])
+        ratio = sizes[wrong] / sizes[other]
+        if max(ratio, 1 / ratio) > _APART:
+            raise KeyFault(
+                wrong,
+                f"found {sizes[wrong]:g} m beside {other} = {sizes[other]:g} m; sizes of a "
+                f"geometry must be within a factor {_APART:g} of each other (a slip in a unit?)",
+            )
+        return self
+
+    def sizes(self) -> dict[str, float]:
+        """The lengths that the meshes are made from, by their keys [m]."""
+        keys = [key for key, field in type(self).model_fields.items() if _is_length(field)]
+        return {
+            key: getattr(self, key)
+            for key in keys
+            if key not in self.unmeshed and getattr(self, key)
+        }
 
     @property
     def symmetry(self) -> tuple[str, ...]:
@@ -117,6 +158,11 @@ class Geometry(Section):
         return None
 
     @property
+    def duty(self) -> float | None:
+        """Part of a turn for which a point of body 2 is under body 1, at every radius, in space."""
+        return None
+
+    @property
     def sector(self) -> float:
         """Part of the circumference that an axisymmetric body 1 takes up."""
         return 1.0
@@ -127,10 +173,26 @@ class Geometry(Section):
         return {}
 
     @property
-    def facing(self) -> tuple[str, str]:
-        """What touches: each body, or the first of its zones, which bears its contact face."""
+    def facing(self) -> tuple[str | None, str | None]:
+        """What touches: each body, or the first of its zones, which bears its contact face.
+
+        None where only the mesh can tell.
+        """
         first, second = (self.parts_of(body)[:2][-1] for body in self.bodies)
         return first, second
+
+    @property
+    def set_of(self) -> dict[str, str]:
+        """Cell sets of a mesh file by the zones that stand for them."""
+        return {}
+
+    def sets_of(self, body: str) -> tuple[str, ...]:
+        """Cell sets of a mesh file that a body is made of."""
+        return ()
+
+    def with_cell_sets(self, sets: dict[str, tuple[str, ...]]) -> Geometry:
+        """The geometry with zones for cell sets of bodies, by body; as it is where it has none."""
+        return self
 
     @property
     def passes(self) -> bool:
@@ -168,6 +230,19 @@ class Geometry(Section):
         """
         return None
 
+    def check_zone(self, zone: tuple[float, float]) -> None:
+        """Refuse a zone where the faces cannot touch, or that cannot be meshed.
+
+        Parameters
+        ----------
+        zone : tuple of float
+            Range of x, as `expected_zone` gives it [m].
+
+        Raises
+        ------
+        CaseError
+        """
+
     def build(self, mesh, zone: tuple[float, float] | None):
         """Mesh both bodies.
 
@@ -183,6 +258,20 @@ class Geometry(Section):
         thermowear.geometry.tagged.TaggedMesh
         """
         raise NotImplementedError
+
+    def check(self, mesh, case) -> None:
+        """Check a mesh that was not made here: nothing, where it was.
+
+        Parameters
+        ----------
+        mesh : thermowear.geometry.tagged.TaggedMesh
+        case : thermowear.case.schema.Case
+
+        Raises
+        ------
+        CaseError
+            If it cannot be what the case says it is.
+        """
 
 
 class PlaneGeometry(Geometry):
@@ -222,24 +311,34 @@ class HalvableGeometry(PlaneGeometry):
 
 
 def known_geometries() -> dict[str, type[Geometry]]:
-    """All geometries that can be named in a case file."""
+    """All geometries that can be named in a case file, by their names in order.
+
+    Their room, which knows this one, is imported by its name where nobody has done so yet.
+    """
+    importlib.import_module("...geometry", __name__)
     return dict(sorted(_KNOWN.items()))
 
 
-def _pick(data: Any) -> Any:
+def _is_length(field: FieldInfo) -> bool:
+    """Whether a key holds a length greater than 0, or may do so."""
+    optional = (getattr(part, "__metadata__", ()) for part in get_args(field.annotation))
+    return any(Length.__metadata__[0] in marks for marks in (field.metadata, *optional))
+
+
+def _pick(data: Any, info: ValidationInfo) -> Any:
     if isinstance(data, Geometry):
         return data
     if not isinstance(data, dict):
-        raise ValueError(f"found {data!r}; needs a table")
+        raise ValueError(f"found {quoted(data)}; needs a table")
     if "type" not in data:
         raise KeyFault("type", f"missing; one of: {', '.join(known_geometries())}")
     try:
-        kind = _KNOWN[data["type"]]
+        kind = known_geometries()[data["type"]]
     except (KeyError, TypeError):
         raise KeyFault(
-            "type", f"found {data['type']!r}; must be one of: {', '.join(known_geometries())}"
+            "type", f"found {quoted(data['type'])}; must be one of: {', '.join(known_geometries())}"
         ) from None
-    return kind.model_validate(data)
+    return kind.model_validate(data, context=info.context)
 
 
 AnyGeometry = Annotated[SerializeAsAny[Geometry], BeforeValidator(_pick)]

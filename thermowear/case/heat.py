@@ -1,14 +1,17 @@
-"""Friction heat and where it goes."""
+"""Heat: by friction, from the surroundings, and where it goes."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, PlainSerializer, PlainValidator, TypeAdapter, ValidationInfo
 
+from ..errors import quoted
 from . import units
 from .conductance import Conductance
+from .history import Course, TemperatureHistory
 from .section import Section, Switch
 
 
@@ -19,14 +22,37 @@ def _share(value: Any) -> Any:
         return float(value)
     if value == "effusivity":
         return value
-    raise ValueError(f'found {value!r}; must be at least 0 and at most 1, or "effusivity"')
+    raise ValueError(f'found {quoted(value)}; must be at least 0 and at most 1, or "effusivity"')
 
 
 Partition = Annotated[float | Literal["effusivity"], BeforeValidator(_share)]
 
 
+_CONSTANT = TypeAdapter(units.Temperature)
+
+
+def _temperature(data: Any, info: ValidationInfo) -> Any:
+    """A constant where it is a quantity, else a history, or the name of a file with one."""
+    in_a_file = isinstance(data, str) and data.strip().lower().endswith(".csv")
+    if in_a_file or isinstance(data, dict | TemperatureHistory):
+        return TemperatureHistory.model_validate(data, context=info.context)
+    return _CONSTANT.validate_python(data)
+
+
+def _written(value: Any) -> Any:
+    return value.model_dump() if isinstance(value, Section) else _CONSTANT.dump_python(value)
+
+
+GivenTemperature = Annotated[
+    float | TemperatureHistory, PlainValidator(_temperature), PlainSerializer(_written)
+]
+"""A constant [K], or a history."""
+
+
 class Heat(Section):
-    """Friction heat.
+    """Temperatures of the bodies, what heats them, and where the heat goes.
+
+    Friction heats where the bodies slide; pressed together at rest they conduct.
 
     Attributes
     ----------
@@ -46,10 +72,17 @@ class Heat(Section):
         Temperature of both bodies at the start, by default the ambient one [K].
     ambient : float
         Temperature of the surroundings, and of the stress-free state [K].
+    ambient_history : TemperatureHistory or None
+        Of the surroundings, where their temperature changes in time; the stress-free state keeps
+        `ambient`.
     cooling : dict of str to float
         Heat transfer coefficients of named surfaces [W/(m² K)].
-    temperature : dict of str to float
+    temperature : dict of str to float or TemperatureHistory
         Given temperatures of named surfaces [K].
+    flux : dict of str to float
+        Heat into the body through named surfaces, per area; negative: out of it [W/m²].
+    power : dict of str to float
+        Likewise of whole surfaces, spread evenly: of the whole ring, or of the thickness [W].
     """
 
     conductance: Conductance | None = None
@@ -59,5 +92,28 @@ class Heat(Section):
     transient: Switch = False
     initial: units.Temperature | None = None
     ambient: units.Temperature = 293.15
+    ambient_history: TemperatureHistory | None = None
     cooling: dict[str, units.HeatTransfer] = {}
-    temperature: dict[str, units.Temperature] = {}
+    temperature: dict[str, GivenTemperature] = {}
+    flux: dict[str, units.HeatFlux] = {}
+    power: dict[str, units.Power] = {}
+
+    @property
+    def histories(self) -> Mapping[str, Course]:
+        """What changes in time, by its key."""
+        found = {
+            f"temperature.{surface}": value
+            for surface, value in self.temperature.items()
+            if isinstance(value, TemperatureHistory)
+        }
+        if self.ambient_history is not None:
+            found["ambient_history"] = self.ambient_history
+        return found
+
+    @property
+    def driven(self) -> bool:
+        """Whether anything but friction makes the bodies warmer or colder than the ambient."""
+        given = [*self.temperature.values(), self.ambient if self.initial is None else self.initial]
+        return bool(self.flux or self.power or self.ambient_history) or any(
+            value != self.ambient for value in given
+        )

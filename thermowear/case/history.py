@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
+from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import TypeAdapter, ValidationError, ValidationInfo, model_validator
 
 from . import units
+from .csv_columns import Columns, read_columns
 from .factors import NotNegative, must_increase, must_match
+from .paths import UserFile
 from .section import KeyFault, Section, Switch
 
+_PATH = TypeAdapter(UserFile)
 _CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
 
 
 class Course(Section):
     """Base of what is given at instants: straight lines between them, constant before and after.
+
+    A table of lists, or a CSV file with a column for each of them: the name of the file instead of
+    the table, or ``file`` in the table beside keys that are no lists.
 
     Attributes
     ----------
@@ -25,8 +33,31 @@ class Course(Section):
         From the last instant on it goes on as from the first one, again and again.
     """
 
+    COLUMNS: ClassVar[dict[str, str]]
+    """Lists that a CSV file may hold, with a unit that fits each; empty for plain numbers."""
+
     time: tuple[units.Instant, ...]
     repeat: Switch = False
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _from_file(cls, data: Any, handler, info: ValidationInfo):
+        data = {"file": data} if isinstance(data, str) else data
+        if not isinstance(data, dict) or "file" not in data:
+            return handler(data)
+        name, others = data["file"], {key: data[key] for key in data if key != "file"}
+        if not isinstance(name, str):
+            raise KeyFault("file", "must be the name of a CSV file")
+        path = _PATH.validate_python(name, context=info.context)
+        columns = read_columns(Path(path), cls.COLUMNS)
+        for key in columns.values:
+            if key in others:
+                raise KeyFault(key, f"is a column of {columns.name} already")
+        try:
+            return handler(others | columns.values)
+        except ValidationError as error:
+            _charge(error, columns)
+            raise
 
     @model_validator(mode="after")
     def _in_order(self):
@@ -62,14 +93,27 @@ class Course(Section):
         return tuple(float(time) for time in times if 0 < time <= end)
 
 
-class SpeedHistory(Course):
-    """Sliding that changes: the motion of the case times a factor.
+def _charge(error: ValidationError, columns: Columns) -> None:
+    """Refuse a value of a file with its line; other faults are those of the table."""
+    for fault in error.errors(include_url=False):
+        place = fault["loc"]
+        if len(place) == 2 and place[0] in columns.values and isinstance(place[1], int):
+            said = fault.get("ctx", {}).get("error", fault["msg"])
+            said = str(said).replace("Input should be", "must be")
+            line = columns.lines[place[1]]
+            raise ValueError(f"{columns.name}, line {line}: {place[0]}: {said}") from None
+
+
+class FactorHistory(Course):
+    """What changes by a factor: the motion of the case, or its friction.
 
     Attributes
     ----------
     factor : tuple of float
         One of them at least greater than 0.
     """
+
+    COLUMNS = {"time": "s", "factor": ""}
 
     factor: tuple[NotNegative, ...]
 
@@ -82,8 +126,32 @@ class SpeedHistory(Course):
         return self
 
     def factor_at(self, time: float) -> float:
-        """Factor of the speed at a time [s]."""
+        """Factor at a time [s]."""
         return float(np.interp(self.instant(time), self.time, self.factor))
+
+
+class TemperatureHistory(Course):
+    """Temperature of a surface, or of the surroundings.
+
+    Attributes
+    ----------
+    temperature : tuple of float
+        [K]
+    """
+
+    COLUMNS = {"time": "s", "temperature": "degC"}
+
+    temperature: tuple[units.Temperature, ...]
+
+    @model_validator(mode="after")
+    def _fits(self):
+        must_match("temperature", self.temperature, self.time, "times")
+        self._closes("temperature", self.temperature)
+        return self
+
+    def at(self, time: float) -> float:
+        """Temperature [K] at a time [s]."""
+        return float(np.interp(self.instant(time), self.time, self.temperature))
 
 
 class History(Course):
@@ -99,6 +167,14 @@ class History(Course):
         From there to the end the loads of a fretting analysis may be repeated, cycle by cycle; by
         default the first of the instants with the loads of the last one [s].
     """
+
+    COLUMNS = {
+        "time": "s",
+        "force": "kN",
+        "approach": "um",
+        "tangential_force": "N",
+        "tangential_displacement": "um",
+    }
 
     force: tuple[units.LeastForce, ...] | None = None
     approach: tuple[units.Length, ...] | None = None
@@ -122,7 +198,11 @@ class History(Course):
         start = self.cycle_start
         if start is not None:
             if not self.time[0] <= start < self.time[-1]:
-                raise KeyFault("cycle_start", "must lie in time, before its end")
+                raise KeyFault(
+                    "cycle_start",
+                    f"found {start:g} s; must be at least {self.time[0]:g} s and less than "
+                    f"{self.time[-1]:g} s, the ends of time",
+                )
             if not self._as_at_the_end(start):
                 raise KeyFault("cycle_start", "a cycle must end with the loads that it begins with")
         return self

@@ -10,7 +10,10 @@ from typing import Any, get_args, get_type_hints
 
 from pydantic import ValidationError
 
-from ..errors import CaseError
+from ..errors import MOST_FAULTS, CaseError, quoted, shortened
+from ..user_files import read_text
+from .bounds import LARGEST_FILE, MOST_PARTS, check_keys, check_tables
+from .paths import FOLDER
 from .schema import Case
 from .section import KeyFault, Section
 
@@ -42,7 +45,8 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
     Parameters
     ----------
     source : str, Path or dict
-        A case file, or its tables.
+        A case file, or its tables. Paths in a file are meant from its folder, and else, with a
+        warning, from the current one, as those in tables are.
     overrides : tuple of str
         ``KEY=VALUE`` each, with the key's path (``mesh.degree=6``); the value as in TOML, or plain
         text.
@@ -57,21 +61,28 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
         One line per fault.
     """
     tables = source if isinstance(source, dict) else _read(Path(source))
+    context = None if isinstance(source, dict) else {FOLDER: str(Path(source).absolute().parent)}
     for text in overrides:
         tables = _override(tables, text)
+    check_tables(tables)
     try:
-        return Case.model_validate(tables)
+        return Case.model_validate(tables, context=context)
     except ValidationError as error:
-        raise CaseError(*(_line(fault) for fault in error.errors())) from None
+        found = error.errors(include_url=False)
+        lines = [_line(fault) for fault in found[:MOST_FAULTS]]
+        raise CaseError(*lines, more=len(found) - len(lines)) from None
 
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        text = read_text(path, LARGEST_FILE)
     except OSError as error:
         raise CaseError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise CaseError(f"{path}: is not text in UTF-8") from None
+    except ValueError as error:
+        raise CaseError(f"{path}: {error}") from None
+    check_keys(text, str(path))
+    try:
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers or nesting beyond Python's limits too
         raise CaseError(f"{path}: is not valid TOML: {error}") from None
 
@@ -80,21 +91,39 @@ def _override(tables: dict[str, Any], text: str) -> dict[str, Any]:
     """A copy of the tables with one key set."""
     key, equals, value = text.partition("=")
     path = [part.strip() for part in key.split(".")]
+    given = f"--set {shortened(text, 100)}"
     if not equals or not all(path):
-        raise CaseError(f"--set {text}: must be KEY=VALUE, such as mesh.degree=6")
-    try:
-        parsed = tomllib.loads(f"value = {value}")["value"]
-    except (ValueError, RecursionError):
-        parsed = value.strip()
+        raise CaseError(f"{given}: must be KEY=VALUE, such as mesh.degree=6")
+    if len(path) > MOST_PARTS:
+        raise CaseError(f"{given}: a key of {len(path)} parts; at most {MOST_PARTS}")
+    parsed = _value(given, value)
     result = table = dict(tables)
     for part in path[:-1]:
         below = table.get(part, {})
         if not isinstance(below, dict):
-            raise CaseError(f"--set {text}: {part} is not a table")
+            raise CaseError(f"{given}: {part} is not a table")
         table[part] = dict(below)
         table = table[part]
     table[path[-1]] = parsed
     return result
+
+
+def _value(given: str, text: str) -> Any:
+    """The value behind ``--set KEY=``: as in TOML, or plain text.
+
+    Raises
+    ------
+    CaseError
+        If there is more than one: further lines would set keys that nobody hears of.
+    """
+    check_keys(text, given)
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text.strip()
+    if len(parsed) > 1:
+        raise CaseError(f"{given}: has another key behind a line break; give each its own --set")
+    return parsed["value"]
 
 
 def _line(fault: Any) -> str:
@@ -106,7 +135,7 @@ def _line(fault: Any) -> str:
     if fault["type"] == "union_tag_not_found":
         return f"{path}.type: missing; must be one of {_ANALYSES}"
     if fault["type"] == "union_tag_invalid":
-        return f"{path}.type: found {fault['input']['type']!r}; must be one of {_ANALYSES}"
+        return f"{path}.type: found {quoted(fault['input']['type'])}; must be one of {_ANALYSES}"
     if fault["type"] == "value_error":
         error = fault["ctx"]["error"]
         return f"{path}.{error.key}: {error}" if isinstance(error, KeyFault) else f"{path}: {error}"
@@ -115,7 +144,7 @@ def _line(fault: Any) -> str:
     message = _MESSAGES.get(fault["type"], fault["msg"]).format(**fault.get("ctx", {}))
     if fault["type"] == "missing" or isinstance(fault["input"], dict):
         return f"{path}: {message}"
-    return f"{path}: found {fault['input']!r}; {message}"
+    return f"{path}: found {quoted(fault['input'])}; {message}"
 
 
 def _suggestion(location: tuple[Any, ...]) -> str:

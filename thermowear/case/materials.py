@@ -1,4 +1,4 @@
-"""The material of a body, or the name of the body whose material it shares."""
+"""The materials of a body, or the name of the body whose material it shares."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from typing import Annotated
 
 from pydantic import Field
 
+from ..errors import quoted
 from . import units
 from .factors import ExpansionFactor, TemperatureFactor
 from .section import Number, Section
 
 
-class Body(Section):
-    """Material of a body, or the name of the body whose material it shares.
+class Properties(Section):
+    """Base: a material, or the name of the body whose material it shares.
 
     Attributes
     ----------
@@ -47,6 +48,28 @@ class Body(Section):
         return math.sqrt(k * rho * c)
 
 
+class Material(Properties):
+    """Material of a cell set in a body."""
+
+
+class Body(Properties):
+    """Material of a body, and those of cell sets in it.
+
+    Attributes
+    ----------
+    materials : dict of str to Material
+        By cell sets of a mesh file that lie in the body. Its other cells have the body's own
+        material, which may be left out where the file's sets that the body is made of all have one.
+    """
+
+    materials: dict[str, Material] = {}
+
+    @property
+    def has_own(self) -> bool:
+        """Whether the body has a material of its own, beside those of its cell sets."""
+        return bool(self.model_fields_set - {"materials"})
+
+
 def resolve_like(bodies: dict[str, Body], name: str) -> str:
     """Follow ``like`` from body to body.
 
@@ -57,9 +80,14 @@ def resolve_like(bodies: dict[str, Body], name: str) -> str:
     """
     seen = [name]
     while (other := bodies[seen[-1]].like) is not None:
-        if other not in bodies:
-            raise ValueError(f"like = {other!r} names no body; one of: {', '.join(bodies)}")
+        check_named(bodies, other)
         if other in seen:
-            raise ValueError(f"like = {other!r} leads back to itself")
+            raise ValueError(f"like = {quoted(other)} leads back to itself")
         seen.append(other)
     return seen[-1]
+
+
+def check_named(bodies: dict[str, Body], name: str) -> None:
+    """Raise a `ValueError` where `like` names no body."""
+    if name not in bodies:
+        raise ValueError(f"like = {quoted(name)} names no body; one of: {', '.join(bodies)}")

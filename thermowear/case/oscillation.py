@@ -86,7 +86,8 @@ def _cycles(case: Case, analysis: Fretting, history: History) -> Iterator[Fault]
     late = [t for t in analysis.output_times if not history.time[0] <= t <= end]
     if late:
         where = "load.history.time" if count == 1 else "the cycles"
-        yield "analysis.output_times", f"{late[0]:g} s lies outside {where}"
+        limits = f"from {history.time[0]:g} s to {end:g} s"
+        yield "analysis.output_times", f"{late[0]:g} s lies outside {where}, {limits}"
 
 
 def _key(case: Case) -> str:
@@ -114,4 +115,5 @@ def _to_and_fro(case: Case, analysis: Reciprocating, motion: Motion) -> Iterator
     if count is not None and motion.frequency is not None:
         late = [t for t in analysis.output_times if t > count / motion.frequency]
         if late:
-            yield "analysis.output_times", f"{late[0]:g} s lies after the last cycle"
+            end = count / motion.frequency
+            yield "analysis.output_times", f"{late[0]:g} s lies after the last cycle, {end:g} s"

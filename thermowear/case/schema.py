@@ -10,20 +10,25 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from ..errors import CaseError
+from ..errors import CaseError, quoted
 from . import units
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .checks import check
 from .conductance import PressureConductance, TabulatedConductance, harmonic_mean
 from .driving import Holder, Load, Motion
+from .facing import Facing, material_of
 from .factors import Factors
 from .geometry import AnyGeometry, Pressing
 from .heat import Heat
-from .materials import Body, resolve_like
+from .history import Course, FactorHistory
+from .materials import Body, Properties
 from .section import Number, Section, Switch
 from .wear import WearTable
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
+_MOST_NODES = 2_000_000
+"""Of displacement: their matrices fill the memory of today's workstations."""
+
 Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
 Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
 
@@ -32,12 +37,12 @@ def _pressure_degree(value: Any) -> Any:
     whole = isinstance(value, int) and not isinstance(value, bool)
     if value is None or value == "lobatto" or (whole and 1 <= value <= 10):
         return value
-    raise ValueError(f'found {value!r}; must be a whole number from 1 to 10, or "lobatto"')
+    raise ValueError(f'found {quoted(value)}; must be a whole number from 1 to 10, or "lobatto"')
 
 
 def _variant(value: Any) -> Any:
     if isinstance(value, bool | float):  # equal to 1 in Python, but not what was asked for
-        raise ValueError(f"found {value!r}; must be 1, 0 or -1")
+        raise ValueError(f"found {quoted(value)}; must be 1, 0 or -1")
     return value
 
 
@@ -87,6 +92,8 @@ class Contact(Section):
         Coefficient of friction in the direction of sliding.
     friction_factor : Factors
         Of it, by the mean temperature of both faces, pressure and speed.
+    friction_history : FactorHistory or None
+        How the friction of a transient analysis changes in time, by a factor.
     transverse_friction : float
         Coefficient of friction across it, on faces that are not level (Páczelt and Mróz's mu_d).
     compliance : float or None
@@ -108,6 +115,7 @@ class Contact(Section):
 
     friction: Annotated[Number, Field(ge=0.0)] = 0.0
     friction_factor: Factors = Factors()
+    friction_history: FactorHistory | None = None
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
     compliance: units.Compliance | None = None
     method: Literal["condensed", "penalty", "nitsche"] = "condensed"
@@ -139,6 +147,9 @@ class Case(Section):
 
     @model_validator(mode="after")
     def _consistent(self):
+        sets = {name: tuple(body.materials) for name, body in self.bodies.items() if body.materials}
+        if sets:
+            object.__setattr__(self, "geometry", self.geometry.with_cell_sets(sets))
         check(self)
         return self
 
@@ -170,38 +181,70 @@ class Case(Section):
         return Pressing(self.force(), self.approach(), 1 / softness)
 
     @property
+    def histories(self) -> dict[str, Course]:
+        """What changes in time, by the path of its key."""
+        found: dict[str, Course | None] = {
+            "load.history": self.load.history,
+            "motion.history": None if self.motion is None else self.motion.history,
+            "contact.friction_history": self.contact.friction_history,
+        }
+        if self.heat is not None:
+            found |= {f"heat.{key}": course for key, course in self.heat.histories.items()}
+        return {key: course for key, course in found.items() if course is not None}
+
+    @property
+    def friction_varies(self) -> bool:
+        """Whether the coefficient of friction depends on time, temperature, pressure or speed."""
+        contact = self.contact
+        return bool(contact.friction_factor.depends_on) or contact.friction_history is not None
+
+    @property
     def varies(self) -> bool:
         """Whether friction, wear or conductance depend on temperature, pressure or speed."""
         tables = (self.contact.friction_factor, *(law.factor for law in self.wear.values()))
         conductance = None if self.heat is None else self.heat.conductance
         return isinstance(conductance, Section) or any(table.depends_on for table in tables)
 
-    def partition(self) -> float:
-        """Part of the friction heat that is set free on body 1."""
+    def notes(self) -> list[str]:
+        """What the case leaves to a default that changes the answer and is easily taken wrongly."""
+        friction = self.contact.friction
+        unsaid = {
+            name: friction**-law.pressure_exponent
+            for name, law in self.wear.items()
+            if "per" not in law.model_fields_set and friction > 0.0
+        }
+        return [
+            f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
+            f'Archard\'s k multiplies p: with per = "pressure" it wears {ratio:.3g} times as fast'
+            for name, ratio in unsaid.items()
+        ]
+
+    def partition(self, facing: Facing) -> float | np.ndarray:
+        """Part of the friction heat that is set free on body 1, at points (n,) or everywhere."""
         assert self.heat is not None
         share = self.heat.partition
         if isinstance(share, float):
             return share
-        e1, e2 = (self.material(part).effusivity for part in self.geometry.facing)
+        e1, e2 = facing.of(self, "effusivity")
         return e1 / (e1 + e2)
 
-    def conductance(self, pressure: np.ndarray) -> np.ndarray | None:
+    def conductance(self, pressure: np.ndarray, facing: Facing) -> np.ndarray | None:
         """Contact conductance at points [W/(m² K)]; None: perfect contact.
 
         Parameters
         ----------
         pressure : ndarray, shape (n,)
             [Pa]
+        facing : Facing
+            Parts that touch there.
         """
         assert self.heat is not None
         given = self.heat.conductance
         if isinstance(given, TabulatedConductance):
             return given.value(pressure)
         if isinstance(given, PressureConductance):
-            facing = [self.material(part) for part in self.geometry.facing]
             k, hardness = (
-                harmonic_mean(*(getattr(body, key) for body in facing))
-                for key in ("conductivity", "hardness")
+                harmonic_mean(*facing.of(self, key)) for key in ("conductivity", "hardness")
             )
             return given.value(pressure, k, hardness)
         return None if given is None else np.full(np.shape(pressure), given)
@@ -213,19 +256,32 @@ class Case(Section):
         ----------
         zone : tuple of float, optional
             Range of x [m].
+
+        Raises
+        ------
+        CaseError
+            If it has more nodes than can be computed, or lies beyond the axis.
         """
         if zone is None:
             zone = self.geometry.expected_zone(self.pressing())
         mesh = self.geometry.build(self.mesh, zone)
+        nodes = len(mesh.cells) * self.mesh.degree ** mesh.points.shape[1]
+        if nodes > _MOST_NODES:
+            raise CaseError(
+                f"mesh: {len(mesh.cells)} cells of degree {self.mesh.degree} have about "
+                f"{nodes / 1e6:.2g} million nodes, at most {_MOST_NODES / 1e6:g} million can be "
+                "computed; look for a slip in a unit of the geometry, or lower mesh.elements or "
+                "mesh.degree"
+            )
         x = mesh.points[:, 0]
         if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():
             raise CaseError("geometry: x is the radius of an axisymmetric mesh, found x < 0")
+        self.geometry.check(mesh, self)
         return mesh
 
-    def material(self, part: str) -> Body:
-        """The material of a body, ``like`` followed to its end; a zone may have its body's."""
-        given = part if part in self.bodies else self.geometry.zones[part]
-        return self.bodies[resolve_like(self.bodies, given)]
+    def material(self, part: str) -> Properties:
+        """The material of a part, ``like`` followed to its end; a zone may have its body's."""
+        return material_of(self, part)[1]
 
 
 def as_plain(case: Case) -> dict[str, Any]:

@@ -1,17 +1,11 @@
 """What all tables of a case file have in common."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Switch = Annotated[bool, Field(strict=True)]
-
-
-class Section(BaseModel):
-    """A table of the case file: no unknown keys, no changes once read."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, validate_default=False)
 
 
 class KeyFault(ValueError):
@@ -20,3 +14,37 @@ class KeyFault(ValueError):
     def __init__(self, key: str, text: str):
         self.key = key
         super().__init__(text)
+
+
+class Section(BaseModel):
+    """A table of the case file: no unknown keys, no changes once read.
+
+    A list of quantities may be written as its numbers and their common unit:
+    ``time = { values = [0, 1, 2], unit = "s" }``.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, validate_default=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_units(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            return data
+        return {key: _quantities(key, value) for key, value in data.items()}
+
+
+def _quantities(key: str, value: Any) -> Any:
+    """A list of quantities from numbers and their unit; anything else as it is."""
+    if not isinstance(value, dict) or not value.keys() >= {"values", "unit"}:
+        return value
+    for other in value.keys() - {"values", "unit"}:
+        raise KeyFault(f"{key}.{other}", "unknown key; a list with one unit has values and unit")
+    numbers, unit = value["values"], value["unit"]
+    if not isinstance(unit, str) or not unit.strip():
+        raise KeyFault(f"{key}.unit", 'must be the unit of all values, such as "s"')
+    if not isinstance(numbers, list):
+        raise KeyFault(f"{key}.values", "must be a list of numbers")
+    for i, number in enumerate(numbers):
+        if isinstance(number, bool) or not isinstance(number, int | float):
+            raise KeyFault(f"{key}.values.{i}", "must be a number, as its unit stands beside it")
+    return [f"{number!r} {unit}" for number in numbers]

@@ -38,7 +38,8 @@ def condensed_only(case: Case) -> str | None:
         return "a stability analysis"
     if case.heat is not None and case.heat.transient:
         return "temperatures in time"
-    if case.varies and case.analysis.type in ("initial", "transient"):
+    changes = case.varies or case.contact.friction_history is not None
+    if changes and case.analysis.type in ("initial", "transient"):
         return "friction, wear or conductance that change"
     if hot and any(getattr(body, key) is not None for body in bodies for key in _OF_BODIES):
         return "conductivity or expansion that change"

@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
 
+from ..errors import quoted
 from .factors import Factors
 from .section import KeyFault, Number, Section
 from .units import parse, registry
@@ -49,7 +50,8 @@ class Wear(Section):
         b and a.
     spread : str
         ``"in-place"``: the body wears where it is pressed; ``"track"``: a body 2 that passes under
-        body 1 wears evenly along its whole track.
+        body 1 wears along its whole track: evenly under a plane body 1; a turning disk at each
+        radius, by the part of a turn for which it is under the pad.
     factor : Factors
         Of the coefficient, by the temperature of the body's own face, pressure and speed.
     """
@@ -63,7 +65,11 @@ class Wear(Section):
 
     @model_validator(mode="after")
     def _unit_fits(self):
-        if not 0 < self.coefficient_si() < math.inf:
+        try:
+            number = self.coefficient_si()
+        except (OverflowError, ZeroDivisionError):
+            number = math.inf
+        if not 0 < number < math.inf:
             raise KeyFault("coefficient", f'found "{_text(self.coefficient)}"; out of range in SI')
         return self
 
@@ -92,7 +98,7 @@ def _update(value: Any) -> Any:
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if value in ("auto", "never") or (number and 0.0 < value <= 1.0):
         return value
-    raise ValueError(f'found {value!r}; must be "auto", "never", or a number up to 1')
+    raise ValueError(f'found {quoted(value)}; must be "auto", "never", or a number up to 1')
 
 
 class WearTable(Section):

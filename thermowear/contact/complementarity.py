@@ -17,10 +17,10 @@ from ..errors import ComputationError
 from .lemke import lemke
 
 _TOLERANCE = 1e-9
-_ADVICE = (
-    "with friction heat this happens beyond the critical sliding speed (thermoelastic "
-    "instability): reduce the speed, or the expansion, or the friction"
-)
+
+
+class NoEquilibrium(ComputationError):
+    """No pressure satisfies Signorini's conditions and carries the load."""
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,9 @@ def solve_contact(
 
     Raises
     ------
-    ComputationError
-        If there is no solution.
+    NoEquilibrium
+        If there is no solution. The reason is known to who made the compliance: friction that
+        locks the body, or friction heat beyond the critical speed.
     """
     # measured from where the faces are near: a far start would leave no digits to the deflection
     origin = np.linalg.lstsq(modes, gap, rcond=None)[0]
@@ -91,7 +92,7 @@ def _solve(problem: _Problem, start: np.ndarray | None) -> ContactSolution:
             return _checked(problem, solution)
     solution = _with_active(problem, _pressing_by_lemke(problem))
     if solution is None:
-        raise ComputationError("contact: the load cannot be carried by the contact zone")
+        raise NoEquilibrium("contact: the load cannot be carried by the contact zone")
     return _checked(problem, solution)
 
 
@@ -174,9 +175,7 @@ def _checked(problem: _Problem, solution: ContactSolution) -> ContactSolution:
         or np.any(unbalanced > _TOLERANCE * (carried + np.abs(problem.load)))
     )
     if wrong or not np.all(np.isfinite(λ)):
-        raise ComputationError(
-            f"contact: no pressure satisfies the contact conditions at this load; {_ADVICE}"
-        )
+        raise NoEquilibrium("contact: no pressure satisfies the contact conditions at this load")
     return ContactSolution(np.maximum(λ, 0.0), solution.motion, solution.active)
 
 
@@ -195,5 +194,5 @@ def _pressing_by_lemke(problem: _Problem) -> np.ndarray:
     right = np.concatenate([problem.gap * size, -force, force])
     solution = lemke(matrix, right / np.abs(right).max())
     if solution is None:
-        raise ComputationError(f"contact: no equilibrium found; {_ADVICE}")
+        raise NoEquilibrium("contact: no equilibrium found")
     return solution[:m] > 1e-12 * solution[:m].max()

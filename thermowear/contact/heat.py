@@ -15,9 +15,21 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..bulk.conduction import Conduction
+from ..errors import ComputationError
 from ..parallel import sum_over_ranks
 from .condensation import CondensedContact
 from .traces import distributed
+
+_REGULARITY = 1e-12
+"""Part of the bodies' own resistance that stands for an infinite one: functions of the heat flux
+that differ only where nothing crosses stay independent."""
+_DIRECT = 10.0
+"""Largest conductance across which heat goes point by point, over that of a layer of the bodies as
+thick as the functions are wide."""
+_NO_WAY_OUT = (
+    "heat: a body is heated that nothing cools and that touches nothing, so that it has no steady "
+    "temperature; give it heat.cooling, heat.temperature, or heat.gap_conductance"
+)
 
 
 @dataclass(frozen=True)
@@ -69,7 +81,7 @@ class InterfaceHeat:
         that is taken out again here [W/(m² K)].
     response : tuple of ndarray, shape (n, n)
         Face rise per heat flux at the points, the bath included [m² K/W].
-    partition : float
+    partition : float or ndarray, shape (n,)
         Part of the friction heat set free on body 1.
     """
 
@@ -78,35 +90,55 @@ class InterfaceHeat:
     traces: tuple[sp.csr_matrix, sp.csr_matrix]
     shift: float
     response: tuple[np.ndarray, np.ndarray]
-    partition: float
+    partition: float | np.ndarray
 
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Couple the faces.
+
+        Up to a conductance ``k``, some times that of the bodies, heat crosses point by point:
+        ``c = h (T2 - T1)``. Finite elements that do not match cannot follow a larger one point by
+        point, and no small difference of temperatures may be multiplied by a large number: what
+        is above, ``h - k``, has a resistance ``r = 1/(h - k)``, zero in perfect contact, and an
+        unknown of moderate size, ``z = Ψ μ``. With ``η = 1/(1 + k r)`` it gives both the heat that
+        crosses, ``η z``, and the jump of the temperature, ``r η z = (1 - η) z / k``, which is
+        imposed weakly by the test functions ``η Ψ``. The equations are symmetric and regular from
+        no conductance to an infinite one.
 
         Parameters
         ----------
         conductance : ndarray, shape (n,)
             Of the contact, or of the gap, at each point [W/(m² K)]; infinite where both faces have
             the same temperature.
+
+        Raises
+        ------
+        ComputationError
+            If no heat can leave a body that is heated.
         """
-        n, s = len(self.weights), self.shift
-        Θ1, Θ2 = self.response
-        perfect = np.isinf(conductance)
-        h = np.where(perfect, 0.0, conductance)
-        modes = self.basis[:, np.any(self.basis[perfect] > 0, axis=0)] * perfect[:, None]
-        modes = modes[:, self.weights @ modes > 0]
-        tie, count = modes.T * self.weights, modes.shape[1]
-        identity = np.eye(n)
+        n, s, (Θ1, Θ2) = len(self.weights), self.shift, self.response
+        own = _DIRECT * s * self.basis.shape[1]
+        direct = np.minimum(conductance, own)
+        passing, held_back = _parts(own, conductance - direct)
+        resisting = held_back * (passing + _REGULARITY * held_back) / own
+        crossing = passing[:, None] * self.basis
+        jump = crossing.T * self.weights
+        resisted = (self.basis.T * (self.weights * resisting)) @ self.basis
+        sizes = np.sqrt(np.diag(resisted) + np.einsum("in,nm,mi->i", jump, Θ1 + Θ2, crossing))
+        crossing, jump = crossing / sizes, jump / sizes[:, None]
+        identity, count = np.eye(n), len(sizes)
         matrix = np.block(
             [
-                [identity - Θ1 * (s - h), -Θ1 * h, -Θ1 @ modes],
-                [-Θ2 * h, identity - Θ2 * (s - h), Θ2 @ modes],
-                [-tie, tie, np.zeros((count, count))],
+                [identity - Θ1 * (s - direct), -Θ1 * direct, -Θ1 @ crossing],
+                [-Θ2 * direct, identity - Θ2 * (s - direct), Θ2 @ crossing],
+                [-jump, jump, -resisted / np.outer(sizes, sizes)],
             ]
         )
-        rise = np.linalg.solve(matrix, np.eye(2 * n + count, 2 * n))
-        crossing = h[:, None] * (rise[n : 2 * n] - rise[:n]) + modes @ rise[2 * n :]
-        return HeatExchange(self, rise[: 2 * n], crossing)
+        try:
+            rise = np.linalg.solve(matrix, np.eye(2 * n + count, 2 * n))
+        except np.linalg.LinAlgError:
+            raise ComputationError(_NO_WAY_OUT) from None
+        across = direct[:, None] * (rise[n : 2 * n] - rise[:n]) + crossing @ rise[2 * n :]
+        return HeatExchange(self, rise[: 2 * n], across)
 
     def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
         """Nodal heat of the contact [W], owned rows; with what the bath gives where asked."""
@@ -152,6 +184,11 @@ class HeatExchange:
         return crossing + s * T1, s * T2 - crossing
 
     @cached_property
+    def crossing_per_friction_heat(self) -> np.ndarray:
+        """Heat from body 2 to body 1 per friction heat, shape (n, n)."""
+        return self.crossing @ self._alone
+
+    @cached_property
     def per_friction_heat(self) -> tuple[np.ndarray, np.ndarray]:
         """Heat into both bodies, that of the bath included, per friction heat, shape (n, n)."""
         first, second = self.into_bath(self._alone)
@@ -195,7 +232,7 @@ def condense_heat(
     basis: np.ndarray,
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     shift: float,
-    partition: float,
+    partition: float | np.ndarray,
 ) -> InterfaceHeat:
     """Condense conduction to the contact points; parameters as in `InterfaceHeat`.
 
@@ -229,6 +266,13 @@ def condense_distortion(
         sum_over_ranks(comm, (trace.T @ adjoint).T * face.weights) for trace in face.traces
     )
     return ThermalDistortion((first, second))
+
+
+def _parts(own: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
+    inverse = np.full(len(conductance), np.inf)
+    np.divide(own, conductance, out=inverse, where=conductance > 0)
+    return 1 / (1 + inverse), own / (own + conductance)
 
 
 def gap_per_rise(thermal_load: PETSc.Mat, contact: CondensedContact) -> np.ndarray:

@@ -21,11 +21,14 @@ class Drive:
         Generalised force: force along a translation [N], moment of a rotation [N m].
     amount : float or None
         Given motion [m or rad].
+    dead : float
+        Constant generalised force on body 1 that does not come from the holder [N or N m].
     """
 
     motion: RigidMotion
     load: float | None = None
     amount: float | None = None
+    dead: float = 0.0
 
     def __post_init__(self):
         if (self.load is None) == (self.amount is None):
@@ -71,9 +74,14 @@ class Holder:
 
     @property
     def load(self) -> np.ndarray:
-        """F on the free motions, shape (k,) [N or N m]."""
+        """Of the holder on the free motions, shape (k,) [N or N m]."""
         given = [drive.load for drive in self.drives if drive.load is not None]
         return np.array(given, dtype=float)
+
+    @property
+    def dead(self) -> np.ndarray:
+        """Constant forces on the free motions beside the holder's, shape (k,) [N or N m]."""
+        return np.array([drive.dead for drive in self.drives if drive.load is not None], float)
 
     @property
     def imposed(self) -> np.ndarray:

@@ -122,11 +122,11 @@ class SlipWear:
         slip : ndarray, shape (m,)
             Amount of slip of the increment, in the mean of each function [m].
         """
-        return self._each(pressure, slip, WearLaw.rate)
+        return self._each(pressure, slip, lambda law, *at: law.rate(*at))
 
     def slopes(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
         """Their derivatives by the pressure, shape (n_wearing, m) [m/Pa]."""
-        return self._each(pressure, slip, WearLaw.slope)
+        return self._each(pressure, slip, lambda law, *at: law.slope(*at))
 
     def _each(self, pressure, slip, of_law) -> np.ndarray:
         if self.duration == 0.0:

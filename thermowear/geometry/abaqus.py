@@ -1,39 +1,60 @@
 """Reading nodes, elements and their sets from an Abaqus input file.
 
-Understood are ``*NODE``, ``*ELEMENT``, ``*NSET``, ``*ELSET`` and ``*SURFACE``; the rest is passed
-over. Parts and assemblies are read as if they were one.
+Understood are ``*NODE``, ``*ELEMENT``, ``*NSET``, ``*ELSET`` and ``*SURFACE``. Parts and assemblies
+are read as if they were one. Cards that make or move nodes and elements are refused, as are other
+files; the rest (materials, steps) is passed over.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from .contents import Block, Contents, numbering, parsed
+
 _PLANE = re.compile(r"(CPS|CPE|CPEG|CAX|M3D|STRI|S|DC2D|DCAX|WARP2D|R3D)(3|4|6|8|9)(?!\d)")
 _LINE = re.compile(r"(T2D|T3D|B2|B3|SAX|R2D|RAX|DC1D|W2D|W3D)\d*")
+_CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
 _CORNERS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
+_LINES = {2: "line", 3: "line3"}
+_REFUSED = {
+    "INCLUDE": "takes in another file; a mesh has to be in one file",
+    "MANIFEST": "takes in other files; a mesh has to be in one file",
+    "SYSTEM": "turns the coordinates of nodes; write the nodes as they lie",
+    **dict.fromkeys(
+        ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY"),
+        "makes nodes or elements; write all of them",
+    ),
+}
+"""Cards that would change the mesh."""
+_MOST_SETS = 10_000
+_READ = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE")
 
-RawBlock = tuple[int, int, np.ndarray, dict[str, np.ndarray]]
-"""Dimension, corners, nodes and sets of elements of one type."""
+Member = int | str | tuple[int, int, int] | np.ndarray
+"""Of a set: a number, the name of another set, a range (first, last, step), or numbers."""
 
 
-def read_abaqus(text: str) -> tuple[np.ndarray, list[RawBlock], dict[str, np.ndarray]]:
+def read_abaqus(text: str) -> Contents:
     """Read the text of an input file.
 
-    Returns
-    -------
-    points : ndarray, shape (n_points, 3)
-    blocks : list
-        Elements, and one block of lines for each surface.
-    node_sets : dict of str to ndarray of int
+    Raises
+    ------
+    ValueError
+        If it is broken, or has cards that would change the mesh.
     """
     deck = _Deck()
     for keyword, options, lines in _cards(text):
-        read = getattr(deck, f"read_{keyword.lower()}", None)
-        if read is not None:
-            read(options, [[part.strip() for part in line.split(",")] for line in lines])
+        if keyword in _REFUSED:
+            raise ValueError(f"*{keyword} {_REFUSED[keyword]}")
+        if keyword == "INSTANCE" and lines:
+            raise ValueError("*INSTANCE moves a part; write the nodes as they lie")
+        if keyword in _READ:
+            if "INPUT" in options:
+                raise ValueError(f"*{keyword} takes in another file; a mesh has to be in one file")
+            getattr(deck, f"read_{keyword.lower()}")(options, lines)
     return deck.result()
 
 
@@ -59,88 +80,193 @@ class _Deck:
     """What has been read so far; numbers are those of the file."""
 
     def __init__(self) -> None:
-        self.points: dict[int, list[float]] = {}
-        self.blocks: list[tuple[int, int, dict[int, list[int]]]] = []
-        self.node_sets: dict[str, set[int]] = {}
-        self.element_sets: dict[str, set[int]] = {}
-        self.surfaces: dict[str, list[tuple[str, int]]] = {}
+        self.tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
+        self.points: list[np.ndarray] = [np.empty((0, 3))]
+        self.blocks: list[_Elements] = []
+        self.node_sets: dict[str, list[Member]] = {}
+        self.element_sets: dict[str, list[Member]] = {}
+        self.surfaces: dict[str, list[tuple[int | str, int]]] = {}
 
-    def read_node(self, options, rows) -> None:
-        for number, *place in rows:
-            self.points[int(number)] = [float(x) for x in (*place, 0.0, 0.0)[:3]]
-            if "NSET" in options:
-                self.node_sets.setdefault(options["NSET"], set()).add(int(number))
+    def read_node(self, options, lines) -> None:
+        if options.get("SYSTEM", "R").upper() != "R":
+            raise ValueError("*NODE, SYSTEM= is no Cartesian one; write x, y and z")
+        table = _table(lines)[:, :4]
+        self.tags.append(_whole(table[:, 0]))
+        self.points.append(np.pad(table[:, 1:], ((0, 0), (0, 4 - table.shape[1]))))
+        if "NSET" in options:
+            self.node_sets.setdefault(options["NSET"], []).append(self.tags[-1])
 
-    def read_element(self, options, rows) -> None:
-        kind = options.get("TYPE", "").upper()
-        flat = [int(part) for row in rows for part in row]
+    def read_element(self, options, lines) -> None:
+        kind, words = options.get("TYPE", "").upper(), len(lines[0].split(",")) if lines else 0
         plane = _PLANE.match(kind)
         if plane:
-            count = int(plane[2])
-            shape = (2, _CORNERS[count])
-        elif _LINE.match(kind) and rows:
-            count, shape = len(rows[0]) - 1, (1, 2)
+            count, corners = int(plane[2]), _CORNERS[int(plane[2])]
+            name = _CELLS[count]
+        elif _LINE.match(kind) and words - 1 in _LINES:
+            count, corners = words - 1, 2
+            name = _LINES[count]
         else:
             raise ValueError(f"elements of type {kind or '?'} are of no use here")
+        flat = _whole(parsed(",".join(lines), f"*ELEMENT, TYPE={kind}", ","))
         if len(flat) % (count + 1):
             raise ValueError(f"an element of type {kind} does not have {count} nodes")
-        table = [flat[i : i + count + 1] for i in range(0, len(flat), count + 1)]
-        self.blocks.append((*shape, {row[0]: row[1:] for row in table}))
+        table = flat.reshape(-1, count + 1)
+        self.blocks.append(_Elements(name, corners, table[:, 0], table[:, 1:]))
         if "ELSET" in options:
-            self.element_sets.setdefault(options["ELSET"], set()).update(row[0] for row in table)
+            self.element_sets.setdefault(options["ELSET"], []).append(table[:, 0])
 
-    def read_nset(self, options, rows) -> None:
-        _extend(self.node_sets, options.get("NSET", ""), options, rows)
+    def read_nset(self, options, lines) -> None:
+        self.node_sets.setdefault(options.get("NSET", ""), []).extend(_members(options, lines))
 
-    def read_elset(self, options, rows) -> None:
-        _extend(self.element_sets, options.get("ELSET", ""), options, rows)
+    def read_elset(self, options, lines) -> None:
+        self.element_sets.setdefault(options.get("ELSET", ""), []).extend(_members(options, lines))
 
-    def read_surface(self, options, rows) -> None:
+    def read_surface(self, options, lines) -> None:
         name, kind = options.get("NAME", ""), options.get("TYPE", "ELEMENT").upper()
+        rows = [_words(line) for line in lines]
         if kind == "NODE":
-            _extend(self.node_sets, name, {}, [row[:1] for row in rows])
-        elif kind == "ELEMENT":
-            sides = [(row[0], row[1].upper()) for row in rows if len(row) > 1]
-            self.surfaces[name] = [(of, int(s[1:])) for of, s in sides if s[1:].isdigit()]
+            firsts = [row[0] for row in rows]
+            self.node_sets.setdefault(name, []).extend(_members({}, firsts))
+        elif kind == "ELEMENT" and all(len(row) > 1 and _is_side(row[1]) for row in rows):
+            self.surfaces[name] = [(_member(row[0]), int(row[1][1:])) for row in rows]
 
-    def result(self) -> tuple[np.ndarray, list[RawBlock], dict[str, np.ndarray]]:
-        number = {node: i for i, node in enumerate(self.points)}
-        blocks: list[RawBlock] = []
-        for dim, corners, elements in self.blocks:
-            nodes = np.array([[number[n] for n in row] for row in elements.values()])
-            at = {element: i for i, element in enumerate(elements)}
-            sets = {
-                name: np.array([at[e] for e in sorted(members) if e in at])
-                for name, members in self.element_sets.items()
-                if not members.isdisjoint(at)
-            }
-            blocks.append((dim, corners, nodes.astype(np.int64), sets))
+    def result(self) -> Contents:
+        if max(len(self.node_sets), len(self.element_sets), len(self.surfaces)) > _MOST_SETS:
+            raise ValueError(f"it has more than {_MOST_SETS} sets")
+        tags, points = self._nodes()
+        positions = numbering(tags)
+        self._merge()
+        elements = np.concatenate([np.empty(0, int), *(block.numbers for block in self.blocks)])
+        ordered = np.sort(elements)
+        double = ordered[1:][ordered[1:] == ordered[:-1]]
+        if len(double):
+            raise ValueError(
+                f"element {double[0]} is there twice; numbers must differ between parts too"
+            )
+        sets = {name: _resolved(name, self.element_sets, elements) for name in self.element_sets}
+        blocks = []
+        for block in self.blocks:
+            mine = {n: np.flatnonzero(np.isin(block.numbers, found)) for n, found in sets.items()}
+            own = {name: at for name, at in mine.items() if len(at)}
+            blocks.append(Block(block.kind, positions(block.nodes), own))
         for name, sides in self.surfaces.items():
-            lines = [[number[n] for n in line] for of, s in sides for line in self._lines(of, s)]
-            if lines:
-                blocks.append((1, 2, np.array(lines), {name: np.arange(len(lines))}))
+            lines = [self._sides(of, side, sets) for of, side in sides]
+            nodes = positions(np.concatenate([np.empty((0, 2), int), *lines]))
+            if len(nodes):
+                blocks.append(Block("line", nodes, {name: np.arange(len(nodes))}))
         node_sets = {
-            name: np.array(sorted(number[n] for n in members))
-            for name, members in self.node_sets.items()
+            name: np.sort(positions(_resolved(name, self.node_sets, tags)))
+            for name in self.node_sets
         }
-        return np.array(list(self.points.values())), blocks, node_sets
+        return Contents(points, blocks, node_sets)
 
-    def _lines(self, of: str, side: int) -> Iterator[list[int]]:
-        """Corners of one side of an element, or of the elements of a set."""
-        members = {int(of)} if of.isdigit() else self.element_sets.get(of, set())
-        for dim, corners, elements in self.blocks:
-            for element in members & elements.keys() if dim == 2 else ():
-                nodes = elements[element]
-                yield [nodes[(side - 1) % corners], nodes[side % corners]]
+    def _merge(self) -> None:
+        """One block for all cards of a kind."""
+        kinds: dict[str, list[_Elements]] = {}
+        for block in self.blocks:
+            kinds.setdefault(block.kind, []).append(block)
+        self.blocks = [
+            _Elements(
+                kind,
+                parts[0].corners,
+                np.concatenate([part.numbers for part in parts]),
+                np.concatenate([part.nodes for part in parts]),
+            )
+            for kind, parts in kinds.items()
+        ]
+
+    def _nodes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Numbers and places; a node that is there twice must be at one place."""
+        tags, points = np.concatenate(self.tags), np.concatenate(self.points)
+        order = np.argsort(tags, kind="stable")
+        again = np.zeros(len(tags), dtype=bool)
+        again[1:] = tags[order[1:]] == tags[order[:-1]]
+        moved = again[1:] & np.any(points[order[1:]] != points[order[:-1]], axis=1)
+        if moved.any():
+            number = tags[order[1:]][moved][0]
+            raise ValueError(f"node {number} is there twice; numbers must differ between parts too")
+        kept = np.sort(order[~again])
+        return tags[kept], points[kept]
+
+    def _sides(self, of: int | str, side: int, sets: dict[str, np.ndarray]) -> np.ndarray:
+        """Corners of one side of an element, or of the elements of a set, shape (n, 2)."""
+        members = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
+        found: list[np.ndarray] = [np.empty((0, 2), dtype=np.int64)]
+        for block in self.blocks:
+            if block.corners > 2:
+                ends = block.nodes[:, [(side - 1) % block.corners, side % block.corners]]
+                found.append(ends[np.isin(block.numbers, members)])
+        return np.concatenate(found)
 
 
-def _extend(sets: dict[str, set[int]], name: str, options, rows) -> None:
-    """Add the members of a card to a set: numbers, ranges, or other sets."""
-    members = sets.setdefault(name, set())
-    for row in rows:
+@dataclass(frozen=True)
+class _Elements:
+    """Elements of one card: their numbers, and those of their nodes."""
+
+    kind: str
+    corners: int
+    numbers: np.ndarray
+    nodes: np.ndarray
+
+
+def _words(line: str) -> list[str]:
+    return [part.strip() for part in line.split(",")]
+
+
+def _table(lines: list[str]) -> np.ndarray:
+    """Numbers of lines of one card; entries that are left out are 0, shape (n, at least 4)."""
+    widths = {line.count(",") for line in lines}
+    if len(widths) == 1 and not any(",," in line or ", ," in line for line in lines):
+        return parsed(",".join(lines), "*NODE", ",").reshape(len(lines), -1)
+    rows = [[*_words(line), "", "", ""][:4] for line in lines]
+    return np.array([[float(word or 0.0) for word in row] for row in rows]).reshape(-1, 4)
+
+
+def _whole(values: np.ndarray) -> np.ndarray:
+    """Numbers of nodes or elements."""
+    if not np.all(np.abs(values) < 2**53) or np.any(values != np.rint(values)):
+        raise ValueError("a number of a node or an element is not a whole one")
+    return values.astype(np.int64)
+
+
+def _is_side(label: str) -> bool:
+    return label[:1] in "Ss" and label[1:] in ("1", "2", "3", "4")
+
+
+def _member(word: str) -> int | str:
+    return int(word) if word.isdigit() else word
+
+
+def _members(options, lines) -> Iterator[Member]:
+    """Members of a card: numbers, ranges, or names of other sets."""
+    for line in lines:
+        words = [word for word in _words(line) if word]
         if "GENERATE" in options:
-            first, last, *step = (int(part) for part in row)
-            members.update(range(first, last + 1, *step))
-            continue
-        for part in row:
-            members.update({int(part)} if part.isdigit() else sets.get(part, set()))
+            first, last, *step = (int(word) for word in words)
+            yield first, last, step[0] if step else 1
+        else:
+            yield from map(_member, words)
+
+
+def _resolved(name: str, sets: dict[str, list[Member]], known: np.ndarray) -> np.ndarray:
+    """Numbers of a set that are known; those of a range that are not are left out.
+
+    A range may be as long as it likes: it costs no more than the numbers that there are.
+    """
+    found: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
+    waiting, seen = [name], {name}
+    while waiting:
+        members = sets.get(waiting.pop(), [])
+        found.append(np.array([m for m in members if isinstance(m, int)], dtype=np.int64))
+        found += [m for m in members if isinstance(m, np.ndarray)]
+        for member in members:
+            if isinstance(member, str) and member not in seen:
+                seen.add(member)
+                waiting.append(member)
+            elif isinstance(member, tuple):
+                first, last, step = member
+                if step < 1:
+                    raise ValueError(f"the set {name} has a range with the step {step}")
+                inside = (known >= first) & (known <= last) & ((known - first) % step == 0)
+                found.append(known[inside])
+    return np.unique(np.concatenate(found))

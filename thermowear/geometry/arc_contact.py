@@ -1,7 +1,7 @@
 """What geometries share whose body 1 fits a circle of a turning body 2.
 
-Body 2 is a whole ring (a disk with a bore, a drum) about the origin. Angles are measured from the
-vertical, positive towards +x.
+Body 2 is a whole ring (a disk with a bore, a drum) about the origin. Angles are measured from
+12 o'clock (the direction +y), clockwise: positive towards +x.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class ArcContact(PlaneGeometry):
     Attributes
     ----------
     arc_start, arc_end : float
-        Angles at the edges of the contact [rad].
+        Angles at the edges of the contact, clockwise from 12 o'clock (+y) [rad].
     rest : str
         Surface of body 2 that is left of its contact circle.
     """
@@ -50,11 +50,13 @@ class ArcContact(PlaneGeometry):
         return self
 
     def check_arc(self, limit: float) -> None:
-        """Refuse arcs beyond an angle from the vertical on either side."""
+        """Refuse arcs beyond an angle from 12 o'clock (+y) on either side."""
         for key, angle in (("arc_start", self.arc_start), ("arc_end", self.arc_end)):
             if abs(angle) > limit:
                 raise KeyFault(
-                    key, f"{degrees(angle)} must be within {degrees(limit)} of the vertical"
+                    key,
+                    f"{degrees(angle)} must be within {degrees(limit)} of 12 o'clock (+y), on "
+                    "either side",
                 )
 
     @property

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import CaseError
-from .file_contents import Block, Contents
+from .cell_checks import oriented
+from .contents import Block, Contents
 from .nodes import CORNERS
-from .orders import boundary, compact, turned
+from .orders import boundary, compact
 from .tagged import TaggedMesh
 
 _TYPES = {corners: name for name, corners in CORNERS.items()}
 _ORDERS = {(3, 3): 1, (3, 6): 2, (3, 10): 3, (4, 4): 1, (4, 8): 2, (4, 9): 2, (4, 16): 3}
 """Geometric order by numbers of corners and nodes."""
+_FARTHEST, _SMALLEST = 1e6, 1e-8
+"""Distance of nodes from the origin, and size of both bodies, that a solid can have [m]."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,8 @@ def assemble(contents: Contents, bodies: list[Named], surfaces: list[Named]) -> 
     CaseError
         One line, charged to the key at fault.
     """
-    points = _plane(contents.points)
     found = [_cells_of(contents, body) for body in bodies]
+    points = _plane(contents.points, np.concatenate([block.nodes.ravel() for block in found]))
     _only_one_type(found)
     _apart(found, bodies)
     corners = found[0].corners
@@ -49,7 +51,10 @@ def assemble(contents: Contents, bodies: list[Named], surfaces: list[Named]) -> 
     # nodes that both bodies have are doubled, or the bodies would be glued together
     cells = [nodes + i * len(points) for i, nodes in enumerate(cells)]
     points = np.concatenate([points] * len(cells))
-    cells = [_the_right_way_round(points, nodes, kind, order) for nodes in cells]
+    cells = [
+        oriented(points, nodes, kind, order, body.name)
+        for nodes, body in zip(cells, bodies, strict=True)
+    ]
     edges = [boundary(kind, order, nodes) for nodes in cells]
     original = len(points) // len(cells)
     picked = [_edges_of(contents, surface, edges, bodies, original) for surface in surfaces]
@@ -69,11 +74,25 @@ def assemble(contents: Contents, bodies: list[Named], surfaces: list[Named]) -> 
     )
 
 
-def _plane(points: np.ndarray) -> np.ndarray:
-    extent = np.ptp(points, axis=0).max(initial=0.0)
-    if not np.isfinite(points).all() or extent == 0.0:
-        raise CaseError("geometry.path: the file has nodes without a place, or all at one place")
-    if points.shape[1] == 3 and np.ptp(points[:, 2]) > 1e-9 * extent:
+def _plane(points: np.ndarray, used: np.ndarray) -> np.ndarray:
+    """Nodes in the plane; those of the bodies must be where a body can be."""
+    places = points[np.unique(used)]
+    if not np.isfinite(places).all():
+        raise CaseError("geometry.path: the bodies have nodes without a place")
+    farthest = places[np.unravel_index(np.abs(places).argmax(), places.shape)[0]]
+    if np.abs(farthest).max() > _FARTHEST:
+        where = ", ".join(f"{x:.6g}" for x in farthest)
+        raise CaseError(
+            f"geometry.path: a node lies at ({where}) m; nodes may lie up to {_FARTHEST:g} m away "
+            "(geometry.length_unit says what 1 in the file stands for)"
+        )
+    extent = np.ptp(places, axis=0).max(initial=0.0)
+    if extent < _SMALLEST:
+        raise CaseError(
+            f"geometry.path: the bodies have a size of {extent:.3g} m; at least {_SMALLEST:g} m "
+            "(geometry.length_unit says what 1 in the file stands for)"
+        )
+    if points.shape[1] == 3 and np.ptp(places[:, 2]) > 1e-9 * extent:
         raise CaseError("geometry.path: the nodes do not lie in a plane z = const")
     return np.ascontiguousarray(points[:, :2])
 
@@ -95,7 +114,7 @@ def _cells_of(contents: Contents, body: Named) -> Block:
     shape = shapes.pop()
     if shape not in _ORDERS:
         raise CaseError(f"{body.key}: cells with {shape[1]} nodes are not supported")
-    return Block(2, shape[0], nodes, {})
+    return Block(blocks[0].kind, nodes, {})
 
 
 def _listed(shapes) -> str:
@@ -137,23 +156,12 @@ def _completed(
     return points, result
 
 
-def _the_right_way_round(points, nodes: np.ndarray, kind: str, order: int) -> np.ndarray:
-    """Cells with their nodes counter-clockwise."""
-    x, y = np.moveaxis(points[nodes[:, : CORNERS[kind]]], 2, 0)
-    area = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
-    if np.any(np.abs(area) <= 1e-12 * np.abs(area).max()):
-        raise CaseError("geometry.path: the file has cells without area")
-    nodes = nodes.copy()
-    nodes[area < 0] = nodes[area < 0][:, turned(kind, order)]
-    return nodes
-
-
 def _edges_of(
     contents: Contents, surface: Named, edges: list[np.ndarray], bodies: list[Named], copies: int
 ) -> np.ndarray:
     """Boundary edges of a surface; the nodes of body i are those of the file plus i * copies."""
-    belongs = _membership(contents, surface)
-    masks = [belongs(of_body - i * copies) for i, of_body in enumerate(edges)]
+    original = [of_body - i * copies for i, of_body in enumerate(edges)]
+    masks = _members(contents, surface, original, bodies)
     allowed = range(len(edges)) if surface.body is None else [surface.body]
     result = np.concatenate([edges[i][masks[i]] for i in allowed])
     if not len(result):
@@ -162,14 +170,61 @@ def _edges_of(
     return result
 
 
-def _membership(contents: Contents, surface: Named) -> Callable[[np.ndarray], np.ndarray]:
-    """Which edges, by their nodes, belong to a surface of the file: a set of lines or of nodes."""
+def _members(
+    contents: Contents, surface: Named, edges: list[np.ndarray], bodies: list[Named]
+) -> list[np.ndarray]:
+    """Which boundary edges of each body belong to a surface: to its lines, or its nodes."""
     name = surface.in_file
     lines = [b.nodes[b.sets[name]] for b in contents.blocks if b.dim == 1 and name in b.sets]
     if lines:
-        wanted = {frozenset(pair) for part in lines for pair in part[:, :2].tolist()}
-        return lambda edges: np.array([frozenset(e) in wanted for e in edges[:, :2].tolist()])
+        wanted = [_pairs(part) for part in lines]
+        own = [_pairs(of_body[:, :2]).ravel() for of_body in edges]
+        _no_line_lost(contents, surface, wanted, np.concatenate(own), bodies)
+        every = np.concatenate([part.ravel() for part in wanted])
+        return [np.isin(of_body, every) for of_body in own]
     if name in contents.node_sets:
-        members = contents.node_sets[name]
-        return lambda edges: np.all(np.isin(edges, members), axis=1)
+        nodes = contents.node_sets[name]
+        return [np.all(np.isin(of_body, nodes), axis=1) for of_body in edges]
     raise _unknown(surface, sorted({*contents.names(1), *contents.node_sets}), "surface")
+
+
+def _pairs(nodes: np.ndarray) -> np.ndarray:
+    """A number for each two nodes of lines, shape (n_lines, n_pairs).
+
+    One of them stands for both ends of the line, in whichever order a format lists the nodes.
+    """
+    one, other = np.triu_indices(nodes.shape[1], 1)
+    low, high = (
+        np.minimum(nodes[:, one], nodes[:, other]),
+        np.maximum(nodes[:, one], nodes[:, other]),
+    )
+    return high * (high - 1) // 2 + low
+
+
+def _no_line_lost(
+    contents: Contents,
+    surface: Named,
+    wanted: list[np.ndarray],
+    own: np.ndarray,
+    bodies: list[Named],
+) -> None:
+    """Refuse a surface with lines that bound nothing; those of further bodies are left out."""
+    lost = [part for lines in wanted for part in lines[~np.isin(lines, own).any(axis=1)]]
+    if not lost:
+        return
+    names = {body.in_file for body in bodies}
+    others = [np.empty(0, dtype=np.int64)]
+    for block in contents.blocks:
+        if block.dim == 2:
+            used = [at for name, at in block.sets.items() if name in names]
+            rest = np.delete(block.nodes, np.concatenate(used) if used else [], axis=0)
+            corners = rest[:, : block.corners]
+            ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
+            others.append(_pairs(ends).ravel())
+    further = np.concatenate(others)
+    count = sum(not np.isin(part, further).any() for part in lost)
+    if count:
+        raise CaseError(
+            f"{surface.key}: {count} of {sum(map(len, wanted))} lines of {surface.in_file!r} are "
+            "on the boundary of no body"
+        )

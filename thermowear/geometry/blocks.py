@@ -10,6 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .limits import check_count
+
+SAME = 1e-9
+"""Relative: lengths that differ by less are the same, written in other units."""
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -62,9 +67,12 @@ def growing(
 ) -> list[Interval]:
     """Fill ``start…end`` with elements that grow from `first` by ``1/grading`` up to `largest`.
 
-    `end` may lie below `start`: the elements grow from `start` in any case.
+    `end` may lie below `start`: the elements grow from `start` in any case. Where both are the same
+    but for rounding there is nothing to fill.
     """
     span = abs(end - start)
+    if span <= SAME * max(abs(start), abs(end)):
+        return []
     ratio = 1.0 / grading
     if grading == 1.0:
         return _oriented([Interval(start, end, _count(span, largest))])
@@ -84,6 +92,7 @@ def growing(
 
 def _count(span: float, largest: float) -> int:
     """Equal elements that fill a span, none larger than asked."""
+    check_count(span / largest)
     return max(1, math.ceil(span / largest - 1e-9))
 
 
@@ -92,8 +101,10 @@ def growing_from_both(
 ) -> list[Interval]:
     """Fill ``start…end`` (upwards) with elements that grow from both ends to the middle.
 
-    `first` are the sizes at start and end.
+    `first` are the sizes at start and end; nothing is filled as in `growing`.
     """
+    if abs(end - start) <= SAME * max(abs(start), abs(end)):
+        return []
     middle = (start + end) / 2
     lower = growing(start, middle, first[0], grading, largest)
     upper = growing(end, middle, first[1], grading, largest)
@@ -148,6 +159,7 @@ def add_grid(model, columns: list[Interval], rows: list[Interval]) -> Grid:
     columns, rows : list of Interval
         Consecutive, upwards; the directions of the first and second coordinate.
     """
+    check_count(*(sum(i.elements for i in intervals) for intervals in (columns, rows)))
     geo = model.geo
     xs = [columns[0].start] + [c.end for c in columns]
     ys = [rows[0].start] + [r.end for r in rows]

@@ -14,6 +14,7 @@ import numpy as np
 import scipy
 
 from ..errors import CaseError
+from ..user_files import read_bytes
 
 HEADERS = (
     "body",
@@ -24,6 +25,7 @@ HEADERS = (
 """Columns of the table; ``body`` is 1 or 2."""
 _NOT_NEEDED = ("s_m", "shape_m", "shape_along_press_m")
 _FEWEST = 4
+_LARGEST = 100_000_000  # bytes of a file that carries a design
 _COMMENTS = {
     ".msh": ("$Comments", "$EndComments"),
     ".vtu": ("<!--", "-->"),
@@ -176,7 +178,7 @@ def read_table(path: Path) -> np.ndarray | None:
     OSError, ValueError
         If it cannot be read.
     """
-    lines = path.read_text("utf-8", errors="replace").splitlines()
+    lines = read_bytes(path, _LARGEST).decode("utf-8-sig", errors="replace").splitlines()
     heads = [k for k, line in enumerate(lines) if "depth_m" in line.split(",")]
     if not heads:
         return None
@@ -199,7 +201,7 @@ def from_table(table: np.ndarray, gdim: int) -> Design:
     Raises
     ------
     ValueError
-        If a column is missing, or has entries that are no numbers.
+        If a column is missing, has entries that are no numbers, or depths beyond the face's size.
     """
     columns = table.dtype.names or ()
     needed = [name for name in HEADERS if name not in _NOT_NEEDED]
@@ -211,11 +213,17 @@ def from_table(table: np.ndarray, gdim: int) -> Design:
     bodies = np.unique(table["body"])
     if len(bodies) != 1 or bodies[0] not in (1, 2):
         raise ValueError("has other numbers than 1, or 2, all along the column body")
+    places = np.array([table[f"{axis}_m"] for axis in "xyz"[:gdim]])
+    deepest, extent = np.abs(table["depth_m"]).max(), np.ptp(places, axis=1).max()
+    if not deepest < extent:
+        raise ValueError(
+            f"has depths up to {deepest:.3g} m on a face of {extent:.3g} m; are they in metres?"
+        )
     nothing = np.full(len(table), np.nan)
     s, shape, along = (table[h] if h in columns else nothing for h in _NOT_NEEDED)
     return Design(
         body=int(bodies[0]),
-        points=np.column_stack([table[f"{axis}_m"] for axis in "xyz"[:gdim]]),
+        points=places.T,
         s=s,
         normals=np.column_stack([table[f"normal_{axis}"] for axis in "xyz"[:gdim]]),
         shape=shape,

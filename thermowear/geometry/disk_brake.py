@@ -13,6 +13,8 @@ from __future__ import annotations
 import math
 from typing import Literal
 
+from ..case.geometry import keyed
+from .blocks import SAME
 from .pads_on_disk import PadsOnDisk
 from .stacked import Section, Stacked
 
@@ -26,19 +28,21 @@ class DiskBrake(PadsOnDisk, Stacked):
     name = "disk-brake"
     models = ("axisymmetric",)
     widest_pad = 360.0
-    surfaces = (
-        "pad_face",
-        "pad_back",
-        "pad_inside",
-        "pad_outside",
-        "disk_face",
-        "disk_middle",
-        "disk_outside",
-        "disk_inside",
-        "disk_rest",
-    )
 
     type: Literal["disk-brake"]
+
+    @keyed
+    def surfaces(self) -> tuple[str, ...]:
+        pad = (f"pad_{part}" for part in ("face", "back", "inside", "outside"))
+        disk = (f"disk_{part}" for part in ("face", "middle", "outside", "inside"))
+        return *pad, *disk, *(() if self.covers_disk else ("disk_rest",))
+
+    @property
+    def covers_disk(self) -> bool:
+        """Whether the pads are as wide as the disk, which leaves no free ring of its face."""
+        return math.isclose(
+            self.pad_inner_radius, self.disk_inner_radius, rel_tol=SAME
+        ) and math.isclose(self.pad_outer_radius, self.disk_outer_radius, rel_tol=SAME)
 
     @property
     def upper(self) -> Section:

@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from .blocks import Interval, graded_face, growing, smallest
+from .blocks import SAME, Interval, graded_face, growing, smallest
 from .hexes import Lattice, ends_of, level, mesh_lattice
 from .pads_on_disk import PadsOnDisk
 from .quads import Body, tagged_bodies
@@ -59,6 +59,10 @@ class DiskSector(PadsOnDisk):
     @property
     def rotation_center(self) -> tuple[float, float]:
         return (0.0, 0.0)
+
+    @property
+    def duty(self) -> float:
+        return self.pad_angle / (2 * math.pi)
 
     def build(self, mesh, zone=None):
         order = min(mesh.degree, _ORDER)
@@ -122,10 +126,12 @@ class DiskSector(PadsOnDisk):
         return (self.pad_inner_radius + self.pad_outer_radius) / 2
 
     def _under_pad(self, p: np.ndarray) -> np.ndarray:
-        x, y, _ = p.mean(axis=1).T
-        r = np.hypot(x, y)
-        between = (self.pad_inner_radius < r) & (r < self.pad_outer_radius)
-        return between & (np.abs(np.arctan2(y, x)) < self.pad_angle / 2)
+        """Which facets have all their nodes under the pad or at its edges."""
+        r, angle = np.hypot(p[..., 0], p[..., 1]), np.abs(np.arctan2(p[..., 1], p[..., 0]))
+        between = (r > (1 - SAME) * self.pad_inner_radius) & (
+            r < (1 + SAME) * self.pad_outer_radius
+        )
+        return np.all(between & (angle < (1 + SAME) * self.pad_angle / 2), axis=1)
 
 
 def _turned(p: np.ndarray) -> np.ndarray:

@@ -19,6 +19,8 @@ from .polar import Division
 from .quads import Sheet
 
 _LONGEST = math.radians(170.0)
+_ON_THE_LINE = 1e-9
+"""Part of the pivot's distance: an arm as short as that is zero but for rounding."""
 
 
 class DrumBrake(InsideRing):
@@ -31,7 +33,8 @@ class DrumBrake(InsideRing):
     lining_thickness, shoe_thickness : float
         Radial [m].
     pivot : tuple of float
-        Point about which the shoe turns [m].
+        Point about which the shoe turns; an end of the lining may lie on the line through it and
+        the centre, where turning does not press [m].
     """
 
     name = "drum-brake"
@@ -51,7 +54,9 @@ class DrumBrake(InsideRing):
     def _fits(self):
         if not self.arc_end - self.arc_start <= _LONGEST:
             raise KeyFault(
-                "arc_end", f"the lining must be at most {degrees(_LONGEST)} of the drum long"
+                "arc_end",
+                f"the lining takes {degrees(self.arc_end - self.arc_start)} of the drum; must be "
+                f"at most {degrees(_LONGEST)}",
             )
         if not self.held_radius > 0:
             raise KeyFault(
@@ -64,13 +69,22 @@ class DrumBrake(InsideRing):
 
     def _check_pivot(self) -> None:
         if not math.hypot(*self.pivot) < self.drum_radius:
-            raise KeyFault("pivot", "must lie inside the drum")
-        at_start, at_end = (self.normal_arm(angle) for angle in self.arc)
-        if not min(at_start, at_end) > 0 and not max(at_start, at_end) < 0:
             raise KeyFault(
                 "pivot",
-                "must lie in a direction from the centre that meets the lining neither forwards "
-                "nor backwards: turning would press one part of the shoe and lift the other",
+                f"lies {math.hypot(*self.pivot):g} m from the centre; must be less than "
+                f"drum_radius {self.drum_radius:g} m",
+            )
+        ends = [self.normal_arm(angle) for angle in self.arc]
+        rounding = _ON_THE_LINE * math.hypot(*self.pivot)
+        outwards = min(ends) >= -rounding and max(ends) > rounding
+        inwards = max(ends) <= rounding and min(ends) < -rounding
+        if not outwards and not inwards:
+            raise KeyFault(
+                "pivot",
+                f"lies at {degrees(math.atan2(*self.pivot))} clockwise from 12 o'clock (+y); must "
+                f"lie neither within the lining, {degrees(self.arc_start)} to "
+                f"{degrees(self.arc_end)}, nor opposite to it, its ends excepted: turning would "
+                "press one part of the shoe and lift the other",
             )
 
     def normal_arm(self, angle: float) -> float:

@@ -1,74 +1,34 @@
-"""What a mesh file holds, whatever its format: nodes, elements, and sets of them by name."""
+"""Reading a mesh file, of which nothing is believed: neither its ending nor what it says.
+
+Only meshes are read. A file is looked at before any reader gets it, and no reader carries out
+commands, opens other files or writes any.
+"""
 
 from __future__ import annotations
 
-import contextlib
-import io
+import os
+import stat
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
 
 from ..errors import CaseError
 from .abaqus import read_abaqus
-from .gmsh_session import gmsh_model
+from .contents import Contents, shown
+from .gmsh_file import read_gmsh
+from .isolated import read_isolated
 
-_SHAPES = {
-    "line": (1, 2),
-    "line3": (1, 2),
-    "line4": (1, 2),
-    "triangle": (2, 3),
-    "triangle6": (2, 3),
-    "triangle10": (2, 3),
-    "quad": (2, 4),
-    "quad8": (2, 4),
-    "quad9": (2, 4),
-    "quad16": (2, 4),
-}
-"""Dimension and corners of the elements of meshio that are of use."""
+_LARGEST = 32 * 2**20
+"""Bytes: half a million nodes as text, more than can be solved in a section; read in seconds."""
 
 
-@dataclass
-class Contents:
-    """A mesh file.
+@dataclass(frozen=True)
+class _Kind:
+    """A format: its name, how its files begin, and its reader."""
 
-    Attributes
-    ----------
-    points : ndarray, shape (n_points, 2 or 3)
-        In the file's unit of length.
-    blocks : list of Block
-    node_sets : dict of str to ndarray of int
-    """
-
-    points: np.ndarray
-    blocks: list[Block]
-    node_sets: dict[str, np.ndarray] = field(default_factory=dict)
-
-    def names(self, dim: int) -> list[str]:
-        """Names of sets of elements of a dimension."""
-        found = [block.sets for block in self.blocks if block.dim == dim]
-        return sorted({name for sets in found for name in sets})
-
-
-@dataclass
-class Block:
-    """Elements of one type.
-
-    Attributes
-    ----------
-    dim, corners : int
-        Dimension and number of corners.
-    nodes : ndarray of int64, shape (n_elements, n_nodes)
-        In gmsh's order.
-    sets : dict of str to ndarray of int
-        Elements of each named set.
-    """
-
-    dim: int
-    corners: int
-    nodes: np.ndarray
-    sets: dict[str, np.ndarray]
+    name: str
+    heads: tuple[bytes, ...]
+    read: Callable[[Path], Contents]
 
 
 def read_contents(path: Path) -> Contents:
@@ -79,102 +39,60 @@ def read_contents(path: Path) -> Contents:
     CaseError
         One line, charged to ``geometry.path``.
     """
-    reader = _READERS.get(path.suffix.lower())
-    if reader is None:
-        raise CaseError(f"geometry.path: {path}: unknown ending; one of: {', '.join(_READERS)}")
+    kind = _KINDS.get(path.suffix.lower())
+    if kind is None:
+        raise CaseError(f"geometry.path: {path}: unknown ending; one of: {', '.join(_KINDS)}")
     try:
-        path.open("rb").close()
-        with contextlib.redirect_stdout(io.StringIO()):
-            contents = reader(path)
-    except CaseError:
-        raise
+        _look_at(path, kind)
+        contents = kind.read(path).checked()
     except OSError as error:
         raise CaseError(f"geometry.path: {path} cannot be read: {error.strerror}") from None
-    except (Exception, SystemExit) as error:  # readers raise whatever a broken file leads them to
+    except Exception as error:  # readers raise whatever a broken file leads them to
         reason = " ".join(str(error).split()) or type(error).__name__
         raise CaseError(f"geometry.path: {path} cannot be read: {reason}") from None
-    if not any(block.dim == 2 and len(block.nodes) for block in contents.blocks):
+    if not any(block.dim == 2 for block in contents.blocks):
         raise CaseError(f"geometry.path: {path} has no plane cells")
     return contents
 
 
+def _look_at(path: Path, kind: _Kind) -> None:
+    """Refuse what is no file, too large, or begins as no file of a format does."""
+    about = os.stat(path)
+    if stat.S_ISDIR(about.st_mode):
+        raise ValueError("Is a directory")
+    if not stat.S_ISREG(about.st_mode):
+        raise ValueError("it is no file but a pipe or a device")
+    if about.st_size > _LARGEST:
+        raise ValueError(
+            f"it has {about.st_size / 2**20:.0f} MB; a mesh may have {_LARGEST / 2**20:.0f} MB"
+        )
+    with path.open("rb") as file:
+        head = file.read(4096).removeprefix(b"\xef\xbb\xbf").lstrip()
+    if not head:
+        raise ValueError("it is empty")
+    if not head.startswith(kind.heads):
+        raise ValueError(
+            f"it is no {kind.name}, as it begins with {shown(head.splitlines()[0])}; only meshes "
+            "are read, commands are never carried out"
+        )
+
+
 def _read_abaqus(path: Path) -> Contents:
-    points, blocks, node_sets = read_abaqus(path.read_text(encoding="utf-8", errors="replace"))
-    return Contents(points, [Block(*block) for block in blocks], node_sets)
+    return read_abaqus(path.read_text(encoding="utf-8-sig", errors="replace"))
 
 
 def _read_gmsh(path: Path) -> Contents:
-    with gmsh_model("file") as gmsh:
-        gmsh.merge(str(path))
-        model = gmsh.model
-        if model.getEntities(3):
-            raise ValueError("it has three-dimensional cells; a plane section is needed")
-        tags, coordinates, _ = model.mesh.getNodes()
-        number = np.full(int(tags.max(initial=0)) + 1, -1, dtype=np.int64)
-        number[tags.astype(np.int64)] = np.arange(len(tags))
-        blocks = []
-        for dim, entity in model.getEntities(2) + model.getEntities(1):
-            groups = model.getPhysicalGroupsForEntity(dim, entity)
-            names = [model.getPhysicalName(dim, group) or str(group) for group in groups]
-            for kind, ids, nodes in zip(*model.mesh.getElements(dim, entity), strict=True):
-                corners = model.mesh.getElementProperties(kind)[5]
-                of_elements = number[nodes.astype(np.int64)].reshape(len(ids), -1)
-                every = np.arange(len(ids))
-                blocks.append(Block(dim, corners, of_elements, dict.fromkeys(names, every)))
-        return Contents(coordinates.reshape(-1, 3), blocks)
+    return read_gmsh(path.read_bytes().removeprefix(b"\xef\xbb\xbf"))
 
 
-def _read_meshio(path: Path) -> Contents:
-    import meshio
-
-    mesh = meshio.read(path)
-    blocks = []
-    for index, cells in enumerate(mesh.cells):
-        if cells.type == "vertex":
-            continue
-        if cells.type not in _SHAPES:
-            raise ValueError(f"it has cells of type {cells.type}, which are of no use here")
-        sets = _sets_of_block(mesh, index)
-        blocks.append(Block(*_SHAPES[cells.type], np.asarray(cells.data, dtype=np.int64), sets))
-    return Contents(np.asarray(mesh.points, dtype=float), blocks, _node_sets(mesh))
+def _by_libraries(path: Path) -> Contents:
+    return read_isolated(path, path.suffix.lower())
 
 
-def _sets_of_block(mesh, index: int) -> dict[str, np.ndarray]:
-    """Sets by name (families of .med), or by the numbers of integer data (.vtu, .xdmf)."""
-    found: dict[str, list[np.ndarray]] = {}
-    for key, data in mesh.cell_data.items():
-        values = np.asarray(data[index])
-        if values.ndim != 1 or not np.issubdtype(values.dtype, np.integer):
-            continue
-        families = getattr(mesh, "cell_tags", {}) if key == "cell_tags" else None
-        for value in np.unique(values):
-            names = [str(value)] if families is None else families.get(value, [])
-            for name in names:
-                found.setdefault(name, []).append(np.flatnonzero(values == value))
-    return {name: np.unique(np.concatenate(parts)) for name, parts in found.items()}
-
-
-def _node_sets(mesh) -> dict[str, np.ndarray]:
-    """Sets of nodes of .med."""
-    values = mesh.point_data.get("point_tags", np.empty(0))
-    found: dict[str, list[np.ndarray]] = {}
-    for family, names in getattr(mesh, "point_tags", {}).items():
-        for name in names:
-            found.setdefault(name, []).append(np.flatnonzero(values == family))
-    return {name: np.concatenate(parts) for name, parts in found.items()}
-
-
-def _read_xdmf(path: Path) -> Contents:
-    try:
-        return _read_meshio(path)
-    except KeyError:  # of meshio's table of the types that it knows beside others
-        raise ValueError("cells of this kind are not understood in .xdmf; use .msh") from None
-
-
-_READERS: dict[str, Callable[[Path], Contents]] = {
-    ".msh": _read_gmsh,
-    ".inp": _read_abaqus,
-    ".vtu": _read_meshio,
-    ".xdmf": _read_xdmf,
-    ".med": _read_meshio,
+_KINDS = {
+    ".msh": _Kind("mesh of gmsh", (b"$MeshFormat", b"$Comments"), _read_gmsh),
+    ".inp": _Kind("input file of Abaqus", (b"*",), _read_abaqus),
+    ".vtu": _Kind("unstructured grid of VTK", (b"<?xml", b"<VTKFile", b"<!--"), _by_libraries),
+    ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), _by_libraries),
+    ".med": _Kind("MED file", (b"\x89HDF\r\n\x1a\n",), _by_libraries),
 }

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .blocks import Interval, sizes
+from .limits import MOST_HEXAHEDRA, check_count
 from .nodes import reference_nodes
 from .orders import boundary
 from .quads import Body
@@ -39,6 +40,7 @@ class Lattice:
 
 def mesh_lattice(lattice: Lattice, order: int) -> Body:
     """Cells of an order on a lattice."""
+    check_count(*(len(ends) - 1 for ends in lattice.ends), most=MOST_HEXAHEDRA)
     u, v, w = (_nodes(ends, order) for ends in lattice.ends)
     if lattice.closed:
         v = v[:-1]

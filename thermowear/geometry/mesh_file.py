@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_serializer, model_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, model_serializer, model_validator
 
 from ..case.geometry import HalvableGeometry, keyed
+from ..case.paths import UserFile
 from ..case.section import KeyFault
 from ..case.units import Area, Length
 from .assembly import Named, assemble
+from .cell_sets import Union, divided, joined
 from .file_contents import read_contents
+from .mesh_checks import check_mesh
+from .pair_checks import check_pair
 
 _KEYS = {
     "body_names": "bodies",
@@ -25,6 +29,16 @@ _KEYS = {
 """Attributes whose keys have the names of what every geometry answers."""
 
 
+def _cell_sets(value: Any) -> Any:
+    names = [value] if isinstance(value, str) else value
+    if isinstance(names, list | tuple) and names and all(isinstance(name, str) for name in names):
+        return value if isinstance(value, str) else tuple(names)
+    raise ValueError(f"found {value!r}; must be text in quotation marks, or a list of such names")
+
+
+CellSets = Annotated[str | tuple[str, ...], BeforeValidator(_cell_sets)]
+
+
 class MeshFile(HalvableGeometry):
     """Which file, and what is what in it.
 
@@ -35,12 +49,12 @@ class MeshFile(HalvableGeometry):
     Attributes
     ----------
     path : str
-        ``.msh``, ``.inp``, ``.vtu``, ``.xdmf`` or ``.med``; relative to the current directory.
+        ``.msh``, ``.inp``, ``.vtu``, ``.xdmf`` or ``.med``.
     length_unit : float
         What 1 in the file stands for [m].
-    body_names : dict of str to str
+    body_names : dict of str to str or tuple of str
         Key ``bodies``: name in the file of body 1 (held and loaded) and body 2, by their names
-        in the case.
+        in the case; several names: the body is all of their cells together.
     contact_names : tuple of str
         Key ``contact``: contact faces of body 1 and body 2.
     held_name, fixed_name : str
@@ -56,17 +70,19 @@ class MeshFile(HalvableGeometry):
 
     name = "file"
     models = ("axisymmetric", "plane-strain", "plane-stress")
+    from_file = True
 
     type: Literal["file"]
-    path: str
+    path: UserFile
     length_unit: Length = 1.0
-    body_names: dict[str, str] = Field(alias="bodies")
+    body_names: dict[str, CellSets] = Field(alias="bodies")
     contact_names: tuple[str, str] = Field(alias="contact")
     held_name: str = Field(alias="held")
     fixed_name: str = Field(alias="fixed")
     symmetry_names: tuple[str, ...] = Field(alias="symmetry", default=())
     surface_names: dict[str, str] = Field(alias="surfaces", default={})
     contact_area_given: Area | None = Field(alias="contact_area", default=None)
+    _with_material: dict[str, tuple[str, ...]] = PrivateAttr(default={})
 
     @model_validator(mode="after")
     def _complete(self):
@@ -117,14 +133,50 @@ class MeshFile(HalvableGeometry):
     def contact_area(self) -> float | None:
         return self.contact_area_given
 
+    @property
+    def set_of(self) -> dict[str, str]:
+        return {
+            f"{body}.{name}": name for body, names in self._with_material.items() for name in names
+        }
+
+    @property
+    def zones(self) -> dict[str, str]:
+        return {
+            f"{body}.{name}": body for body, sets in self._with_material.items() for name in sets
+        }
+
+    @property
+    def facing(self) -> tuple[str | None, str | None]:
+        first, second = (None if name in self._with_material else name for name in self.bodies)
+        return first, second
+
+    def sets_of(self, body: str) -> tuple[str, ...]:
+        names = self.body_names[body]
+        return (names,) if isinstance(names, str) else names
+
+    def with_cell_sets(self, sets: dict[str, tuple[str, ...]]) -> MeshFile:
+        result = self.model_copy()
+        result._with_material = {body: sets[body] for body in self.bodies if body in sets}
+        return result
+
     def build(self, mesh, zone):
         contents = read_contents(Path(self.path))
-        bodies = [
-            Named(name, in_file, f"geometry.bodies.{name}")
-            for name, in_file in self.body_names.items()
+        unions = [
+            Union(name, self.sets_of(name), f"geometry.bodies.{name}") for name in self.bodies
         ]
+        contents = replace(contents, points=contents.points * self.length_unit)
+        contents, bodies = joined(contents, unions)
         tagged = assemble(contents, bodies, list(self._purposes().values()))
-        return replace(tagged, points=tagged.points * self.length_unit)
+        owners = [self.bodies.index(body) for body in self.zones.values()]
+        sets = [
+            Named(zone, name, f"bodies.{zone.removesuffix(name)}materials.{name}", owner)
+            for (zone, name), owner in zip(self.set_of.items(), owners, strict=True)
+        ]
+        return divided(tagged, contents, bodies, sets)
+
+    def check(self, mesh, case):
+        check_mesh(mesh, self, case.model)
+        check_pair(mesh, case)
 
     def _purposes(self) -> dict[str, Named]:
         """All surfaces by their names in the case."""

@@ -17,6 +17,10 @@ from .quads import Body, mesh_body, tagged_bodies
 ORDER = 3
 """Of the cells; nodes lie on an arc, points between them within 3e-4 h⁴/R³ of it."""
 
+_THINNEST = 1e-6
+"""Width of a contact at least, as a part of the block's half width: 10 000 times the tolerance for
+places in the mesh, and finer than any element."""
+
 Claim = Callable[[np.ndarray], np.ndarray]
 """Which edges, given by the places of their nodes, lie on a surface."""
 
@@ -103,7 +107,7 @@ class OnBlock(Geometry):
         return float(ends[0]), float(ends[-1])
 
     def build(self, mesh, zone):
-        self._check(zone)
+        self.check_zone(zone)
         upper, block = self.bodies
         upper_body, upper_claims = self.upper_body(mesh, zone)
         ends, *rows = self.block_ends(mesh, zone)
@@ -116,11 +120,17 @@ class OnBlock(Geometry):
         bodies = {upper: upper_body, block: mesh_body(sheets, ORDER)}
         return tagged_bodies(bodies, {surface: claims[surface] for surface in self.surfaces})
 
-    def _check(self, zone: tuple[float, float]) -> None:
+    def check_zone(self, zone: tuple[float, float]) -> None:
         outer = zone[1] if self.right_only else max(-zone[0], zone[1])
         if not outer > max(zone[0], 0.0):
             raise CaseError(
                 f"geometry: a contact from x = {zone[0]:.3g} to {zone[1]:.3g} m is none"
+            )
+        least = _THINNEST * self.block_reach
+        if not zone[1] - zone[0] >= least:
+            raise CaseError(
+                f"geometry: the contact is expected to be {zone[1] - zone[0]:.3g} m wide; beside "
+                f"this {self.block_key} it can be meshed from {least:.3g} m on"
             )
         limits = self.upper_limits() | {self.block_key: 0.75 * self.block_reach}
         for key, limit in limits.items():

@@ -5,11 +5,13 @@ The contact lies at y = 0, in the middle of the strip.
 
 from __future__ import annotations
 
+import math
 from typing import ClassVar
 
 from ..case.geometry import PlaneGeometry, keyed
 from ..case.section import KeyFault
 from ..case.units import Length
+from .blocks import SAME
 from .face_ends import growth
 from .stacked import Section, Stacked
 
@@ -21,7 +23,8 @@ class OnStrip(Stacked, PlaneGeometry):
 
     Attributes
     ----------
-    strip_length, strip_height : float [m]
+    strip_length, strip_height : float
+        The strip is as long as the face of body 1 at least [m].
     """
 
     name: ClassVar[str] = ""
@@ -45,8 +48,14 @@ class OnStrip(Stacked, PlaneGeometry):
     @keyed
     def surfaces(self) -> tuple[str, ...]:
         upper = (f"{self.bodies[0]}_{part}" for part in ("face", "top", "left", "right"))
-        strip = (f"strip_{part}" for part in ("face", "bottom", "right", "left", "top"))
-        return *upper, *strip
+        strip = (f"strip_{part}" for part in ("face", "bottom", "right", "left"))
+        return *upper, *strip, *(() if self.covers_strip else ("strip_top",))
+
+    @property
+    def covers_strip(self) -> bool:
+        """Whether the face is as wide as the strip is long, which leaves nothing of its top."""
+        start, end = self.lower_face
+        return math.isclose(end - start, self.strip_length, rel_tol=SAME)
 
     @property
     def face_width(self) -> float:
@@ -76,9 +85,8 @@ class OnStrip(Stacked, PlaneGeometry):
     def check_strip(self) -> None:
         """Raise a `KeyFault` where the face is wider than the strip is long."""
         start, end = self.lower_face
-        if not end - start < self.strip_length:
+        if not end - start <= self.strip_length and not self.covers_strip:
             raise KeyFault(
                 "strip_length",
-                f"{self.strip_length:g} m must be greater than the width of the face "
-                f"{end - start:g} m",
+                f"{self.strip_length:g} m must be at least the width of the face {end - start:g} m",
             )

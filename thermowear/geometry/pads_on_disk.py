@@ -11,6 +11,7 @@ from pydantic import model_validator
 from ..case.geometry import Geometry
 from ..case.section import KeyFault
 from ..case.units import Angle, Length
+from .blocks import SAME
 
 
 class PadsOnDisk(Geometry):
@@ -21,9 +22,10 @@ class PadsOnDisk(Geometry):
     pad_inner_radius, pad_outer_radius, pad_thickness : float [m]
     pad_angle : float
         That the pads on one side of the disk take up together [rad].
-    disk_inner_radius, disk_outer_radius : float [m]
+    disk_inner_radius, disk_outer_radius : float
+        Those of the pads, or beyond them [m].
     disk_thickness : float
-        Of the whole disk [m].
+        Of the whole disk: half of it is meshed [m].
     widest_pad : float
         Largest `pad_angle` that can be meshed [deg].
     """
@@ -48,8 +50,10 @@ class PadsOnDisk(Geometry):
         names = ("disk_inner_radius", "pad_inner_radius", "pad_outer_radius", "disk_outer_radius")
         for smaller, larger in pairwise(names):
             a, b = getattr(self, smaller), getattr(self, larger)
-            if not a < b:
+            if not a < b and larger == "pad_outer_radius":
                 raise KeyFault(smaller, f"{a:g} m must be less than {larger} {b:g} m")
+            if not a <= b * (1 + SAME):
+                raise KeyFault(smaller, f"{a:g} m must be at most {larger} {b:g} m")
         if not 0 < self.pad_angle <= math.radians(self.widest_pad) * (1 + 1e-12):
             raise KeyFault(
                 "pad_angle",

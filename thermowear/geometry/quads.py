@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .limits import check_count
 from .nodes import reference_nodes
 from .orders import boundary
 from .tagged import TaggedMesh
@@ -59,6 +60,7 @@ class Body:
 
 def grid(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Corners of the cells of a tensor grid, shape (n_columns * n_rows, 4, 2)."""
+    check_count(len(columns) - 1, len(rows) - 1)
     x, y = np.meshgrid(columns, rows, indexing="ij")
     p = np.stack([x, y], axis=-1)
     corners = np.stack([p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]], axis=2)

@@ -87,6 +87,7 @@ def _meshed(
     middle, size = every.mean(axis=0), np.ptp(every, axis=0).max()
     scaled = [replace(line, edges=(line.edges - middle) / size) for line in lines]
     tags = [mesh.bodies.index(part) + 1 for part in parts]
+    tags = [tag for tag in tags if np.any(mesh.cell_tags == tag)]
     with gmsh_model("worn body") as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", algorithm)
         gmsh.option.setNumber("Mesh.RecombinationAlgorithm", _FULL_QUADS)

@@ -15,6 +15,7 @@ from typing import Protocol
 
 import numpy as np
 
+from .limits import check_count
 from .quads import Sheet, ruled
 
 _SLENDER = 2.9
@@ -22,6 +23,9 @@ _SLENDER = 2.9
 
 _TALL = 5.4
 """Ratio from which they are joined in a narrower ring of their own."""
+
+_IN_RING = 500
+"""Cells that a ring may have, for an estimate of how many there will be."""
 
 
 class Outline(Protocol):
@@ -77,6 +81,7 @@ def _growing(start: float, end: float, growth: float, largest: float) -> np.ndar
     """Distances from start to end that grow geometrically, by steps up to `largest`."""
     if start == end:
         return np.array([start])
+    check_count((end - start) / largest, _IN_RING)
     found = [start]
     while found[-1] < end:
         found.append(found[-1] + min((growth - 1) * found[-1], largest))

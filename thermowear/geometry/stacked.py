@@ -1,4 +1,4 @@
-"""What geometries share that are a rectangle on a wider one: a ring on a plate, a block on a strip.
+"""What geometries share that are a rectangle on another: a ring on a plate, a block on a strip.
 
 The contact lies at y = 0; body 1 is above. Columns and rows of elements go straight through.
 """
@@ -27,13 +27,13 @@ class Section:
 
 
 class Stacked(Geometry):
-    """Base: both bodies are rectangles and body 2 is wider on both sides.
+    """Base: both bodies are rectangles; body 2 goes on beside the face, or ends where it ends.
 
     Attributes
     ----------
     surfaces : tuple of str
         Of body 1 the face, top, left and right; of body 2 the face, bottom and right, then, where
-        they have names, the left and what the face leaves of the top.
+        they have names, the left and what the face leaves of the top, if anything.
     cell_order : int
         Geometric order of the cells.
     """

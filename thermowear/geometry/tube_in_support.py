@@ -20,6 +20,9 @@ from .on_block import ORDER
 from .polar import Polar, incomplete
 from .quads import mesh_body, tagged_bodies
 
+_THINNEST = 1e-6
+"""Width of a contact at least, as a part of the tube's radius."""
+
 _EXPECTED, _LARGEST, _FACE = map(math.radians, (60.0, 75.0, 80.0))
 """Angles from the bottom: of an expected contact at most, of one that can be meshed, of a face."""
 
@@ -89,6 +92,9 @@ class TubeInSupport(PlaneGeometry):
         x = self.tube_radius * math.sin(min(a / self.tube_radius, _EXPECTED))
         return -x, x
 
+    def check_zone(self, zone):
+        self._angles(zone)
+
     def build(self, mesh, zone):
         radius, hole = self.tube_radius, self.hole_radius
         angles = self._angles(zone)
@@ -115,7 +121,7 @@ class TubeInSupport(PlaneGeometry):
     def _angles(self, zone: tuple[float, float]) -> tuple[float, float]:
         """A zone of contact as angles of the tube."""
         outer, limit = max(map(abs, zone)), self.tube_radius * math.sin(_LARGEST)
-        if not zone[0] < zone[1]:
+        if not zone[1] - zone[0] > _THINNEST * self.tube_radius:
             raise CaseError(
                 f"geometry: a contact from x = {zone[0]:.3g} to {zone[1]:.3g} m is none"
             )

@@ -12,7 +12,7 @@ from .minimum import Minimum, least_wear_dissipation, minimise
 from .motions import RigidMotion, rotation, translation
 from .perturbation import admissible_changes
 from .rates import WearVectors, wear_vectors
-from .spreading import InPlace, Share, Spreading, Track
+from .spreading import InPlace, Rings, Share, Spreading, Track, rings
 from .steady import SteadyWear, steady_pressure
 from .wear import WearLaw
 
@@ -23,6 +23,7 @@ __all__ = [
     "NotCarried",
     "PowerFunctional",
     "RigidMotion",
+    "Rings",
     "SelfLocking",
     "Share",
     "Spreading",
@@ -35,6 +36,7 @@ __all__ = [
     "friction_dissipation",
     "least_wear_dissipation",
     "minimise",
+    "rings",
     "rotation",
     "steady_pressure",
     "translation",

@@ -2,16 +2,16 @@
 
 Wanted are a pressure p and multipliers V (rigid-body wear velocities) with::
 
-    p >= 0,   s = h(p) + S - R V >= 0,   p s = 0        h(p) = Σ_i g_i p^e_i
-    Tᵀ w p = F,   S = Σ_points Σ_i a_i p^e_i
+    p >= 0,   s = h(p) + N S - R V >= 0,   p s = 0        h(p) = Σ_i g_i p^e_i
+    Tᵀ w p = F,   S_k = Σ_points a_k p^e_k
 
-where s is the rate at which the faces part and S the wear that is spread over a track. Where
-``T = R`` and S = 0 these are the conditions of a convex minimum; friction (``T ≠ R``) makes them
-unsymmetric. p and s are unknowns of their own and stay positive on the way, so that exponents far
-from 1 and points at the edge of the contact cost no accuracy: Mehrotra's predictor-corrector method
-(SIAM J. Optim. 2 (1992) 575; Nocedal and Wright, Numerical Optimization, 2006, section 14.2), whose
-steps are Newton steps on all conditions, damped so that nothing becomes negative. It starts from
-uniform pressure.
+where s is the rate at which the faces part, S the means of wear that is spread over a track, and N
+how much of each of them every point has. Where ``T = R`` and S = 0 these are the conditions of a
+convex minimum; friction (``T ≠ R``) makes them unsymmetric. p and s are unknowns of their own and
+stay positive on the way, so that exponents far from 1 and points at the edge of the contact cost no
+accuracy: Mehrotra's predictor-corrector method (SIAM J. Optim. 2 (1992) 575; Nocedal and Wright,
+Numerical Optimization, 2006, section 14.2), whose steps are Newton steps on all conditions, damped
+so that nothing becomes negative. It starts from uniform pressure.
 """
 
 from __future__ import annotations
@@ -44,12 +44,46 @@ class PowerSum:
 
     def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Value and derivative at positive pressures, shape (n,) each."""
-        terms = self.factors * pressure ** self.exponents[:, None]
+        terms = self.terms(pressure)
         return terms.sum(axis=0), self.exponents @ terms / pressure
+
+    def terms(self, pressure: np.ndarray) -> np.ndarray:
+        """Each of its summands, shape (m, n)."""
+        return self.factors * pressure ** self.exponents[:, None]
 
     def scaled(self, pressure: np.ndarray, value: float) -> PowerSum:
         """The same in units of a pressure at each point and of a value."""
-        return PowerSum(self.factors * pressure ** self.exponents[:, None] / value, self.exponents)
+        return PowerSum(self.terms(pressure) / value, self.exponents)
+
+
+@dataclass(frozen=True)
+class Common:
+    """Means of rates that points have in common.
+
+    Attributes
+    ----------
+    means : PowerSum
+        The summands at the points of each mean, factors of shape (K, n).
+    reach : ndarray, shape (n, K)
+        N: how much of each mean each point has.
+    """
+
+    means: PowerSum
+    reach: np.ndarray
+
+    @classmethod
+    def none(cls, n: int) -> Common:
+        """No mean at all, at n points."""
+        return cls(PowerSum(np.zeros((0, n)), np.zeros(0)), np.zeros((n, 0)))
+
+    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The means (K,), and their derivatives at positive pressures, shape (K, n)."""
+        terms = self.means.terms(pressure)
+        return terms.sum(axis=1), self.means.exponents[:, None] * terms / pressure
+
+    def scaled(self, pressure: np.ndarray, value: float) -> Common:
+        """The same in units of a pressure at each point and of a value."""
+        return Common(self.means.scaled(pressure, value), self.reach)
 
 
 @dataclass(frozen=True)
@@ -61,7 +95,7 @@ class Solution:
     pressure : ndarray, shape (n,)
     velocity : ndarray, shape (k,)
         V.
-    spread : float
+    common : ndarray, shape (K,)
         S.
     regular : bool
         Whether a larger load is met by larger wear: a positive determinant, as without friction.
@@ -69,7 +103,7 @@ class Solution:
 
     pressure: np.ndarray
     velocity: np.ndarray
-    spread: float
+    common: np.ndarray
     regular: bool
 
 
@@ -79,7 +113,7 @@ def solve(
     force_modes: np.ndarray,
     load: np.ndarray,
     local: PowerSum,
-    spread: PowerSum | None = None,
+    common: Common | None = None,
 ) -> Solution | None:
     """Pressure and multipliers; None where the method finds none.
 
@@ -91,8 +125,10 @@ def solve(
         R and T; the columns of R are independent.
     load : ndarray, shape (k,)
         F; nothing to solve where it is zero.
-    local, spread : PowerSum
-        h and the summands of S.
+    local : PowerSum
+        h.
+    common : Common, optional
+        S and N.
     """
     share = weights / weights.sum()
     # motions orthonormal over the face: neither pivots nor units of rotations matter
@@ -103,7 +139,7 @@ def solve(
         share[:, None] * (force_modes @ basis),
         basis.T @ load / weights.sum(),
         local,
-        spread or PowerSum(np.zeros((1, len(weights))), np.ones(1)),
+        common or Common.none(len(weights)),
     )
     force = np.linalg.norm(conditions.goal)
     if force == 0:
@@ -128,14 +164,15 @@ class _Conditions:
     approach, carried : ndarray, shape (n, k)
         R, and T with the weights.
     goal : ndarray, shape (k,)
-    local, spread : PowerSum
+    local : PowerSum
+    common : Common
     """
 
     approach: np.ndarray
     carried: np.ndarray
     goal: np.ndarray
     local: PowerSum
-    spread: PowerSum
+    common: Common
 
     def scaled(self, pressure: np.ndarray, rate: float) -> _Conditions:
         """The same in units of a pressure at each point and of a rate."""
@@ -144,12 +181,13 @@ class _Conditions:
             pressure[:, None] * self.carried / np.linalg.norm(self.goal),
             self.goal / np.linalg.norm(self.goal),
             self.local.scaled(pressure, rate),
-            self.spread.scaled(pressure, rate),
+            self.common.scaled(pressure, rate),
         )
 
     def rate(self, multipliers: np.ndarray) -> np.ndarray:
-        """``R V - S`` at the points, from the multipliers ``(V, S)``."""
-        return self.approach @ multipliers[:-1] - multipliers[-1]
+        """``R V - N S`` at the points, from the multipliers ``(V, S)``."""
+        k = len(self.goal)
+        return self.approach @ multipliers[:k] - self.common.reach @ multipliers[k:]
 
 
 class _Linearised:
@@ -157,27 +195,28 @@ class _Linearised:
 
     def __init__(self, conditions: _Conditions, pressure, parting, multipliers):
         worn, slope = conditions.local.at(pressure)
-        passed, passed_slope = conditions.spread.at(pressure)
+        passed, passed_slope = conditions.common.at(pressure)
         rate = conditions.rate(multipliers)
-        k = len(conditions.goal)
+        self.loads = k = len(conditions.goal)
         self.pressure, self.parting = pressure, parting
         self.worn = worn
         self.misfit = worn - rate - parting
         self.balance = np.append(
-            conditions.carried.T @ pressure - conditions.goal, multipliers[-1] - passed.sum()
+            conditions.carried.T @ pressure - conditions.goal, multipliers[k:] - passed
         )
-        self.modes = np.column_stack([conditions.approach, np.full(len(rate), -1.0)])
-        self.borne = np.column_stack([conditions.carried, -passed_slope])
+        self.modes = np.column_stack([conditions.approach, -conditions.common.reach])
+        self.borne = np.column_stack([conditions.carried, -passed_slope.T])
         self.compliance = 1 / (slope + parting / pressure)
         self.tangent = self.borne.T @ (self.compliance[:, None] * self.modes)
-        self.tangent[k, k] += 1.0
+        self.tangent[k:, k:] += np.eye(len(passed))
         self.rate_scale = np.abs(rate).max()
 
     def error(self) -> float:
         """Largest violation of any condition, relative."""
         apart = np.minimum(self.pressure / self.pressure.max(), self.parting / self.rate_scale)
-        rates = np.abs(np.append(self.misfit, self.balance[-1])) / self.rate_scale
-        return float(np.max([np.abs(self.balance[:-1]).max(), rates.max(), apart.max()]))
+        k = self.loads
+        rates = np.abs(np.append(self.misfit, self.balance[k:])) / self.rate_scale
+        return float(np.max([np.abs(self.balance[:k]).max(), rates.max(), apart.max()]))
 
     def step(self, product: np.ndarray):
         """Newton step to where the product p s has changed by `product`: of V and S, p, s."""
@@ -192,19 +231,21 @@ class _Linearised:
 def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
     """The solution from a positive pressure on, with motions as the conditions have them."""
     worn = conditions.local.at(start)[0]
-    unit = float(worn.mean() + conditions.spread.at(start)[0].sum())
+    common = conditions.common.reach @ conditions.common.at(start)[0]
+    unit = float((worn + common).mean())
     found = _iterate(conditions.scaled(start, unit))
     if found is None:
         return None
     pressure, multipliers, regular = found
-    return Solution(start * pressure, unit * multipliers[:-1], unit * multipliers[-1], regular)
+    k = len(conditions.goal)
+    return Solution(start * pressure, unit * multipliers[:k], unit * multipliers[k:], regular)
 
 
 @np.errstate(all="ignore")  # where there is no solution the numbers run out of range
 def _iterate(conditions: _Conditions) -> tuple[np.ndarray, np.ndarray, bool] | None:
     """Pressure, multipliers ``(V, S)`` and regularity, from pressure 1 on."""
     pressure = np.ones(len(conditions.approach))
-    multipliers = np.append(conditions.goal, 0.0)
+    multipliers = np.append(conditions.goal, np.zeros(conditions.common.reach.shape[1]))
     parting = conditions.local.at(pressure)[0] - conditions.rate(multipliers)
     parting = np.maximum(parting, 1.0)
     for _ in range(STEPS):

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..errors import ComputationError
 from .locking import why_no_steady_state
-from .primal_dual import PowerSum, solve
+from .primal_dual import Common, PowerSum, solve
 from .spreading import InPlace, Spreading
 from .wear import WearLaw
 
@@ -112,9 +112,7 @@ def steady_pressure(
         force_modes,
         load,
         local=_power_sum(laws, speed, factors, [way.share for way in spread]),
-        spread=_power_sum(
-            laws, speed, factors, [0.0 if way.row is None else way.row for way in spread]
-        ),
+        common=_common(laws, speed, factors, spread),
     )
     if found is None or not found.regular:
         raise why_no_steady_state(weights, normal_modes, force_modes, load)
@@ -136,6 +134,22 @@ def _power_sum(laws: Sequence[WearLaw], speed: np.ndarray, factors, portions) ->
     each = zip(portions, laws, factors, strict=True)
     Z = [portion * factor * law.factor(speed) for portion, law, factor in each]
     return PowerSum(np.array(Z), np.array([law.pressure_exponent for law in laws]))
+
+
+def _common(
+    laws: Sequence[WearLaw], speed: np.ndarray, factors, spread: Sequence[Spreading]
+) -> Common | None:
+    """The means of the bodies' rates that points have in common; None without any."""
+    found = [
+        (way.rows * (factor * law.factor(speed)), law.pressure_exponent, way.reach(len(speed)))
+        for law, way, factor in zip(laws, spread, factors, strict=True)
+        if way.rows is not None
+    ]
+    if not found:
+        return None
+    rows, exponents, reach = zip(*found, strict=True)
+    each = np.repeat(exponents, [len(weights) for weights in rows])
+    return Common(PowerSum(np.vstack(rows), each), np.hstack(reach))
 
 
 def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:

@@ -10,6 +10,8 @@ from math import pi
 from rich.console import Console
 from rich.table import Table
 
+from ..balances import BALANCES, holds
+
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
 
 
@@ -138,10 +140,14 @@ def print_checks(console: Console, checks: list) -> None:
 
 
 def _highlights(summary: dict):
+    for key, balance in BALANCES.items():
+        error = summary.get(key)
+        if error is not None and not holds(error):
+            yield f"NOT BALANCED: {balance.name}", f"relative error {error:.1e}"
     yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
     low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
     yield "pressure", f"{low:.5g} … {high:.5g} MPa{_within(summary, 'pressure', 'max_pressure')}"
-    yield "approach", f"{summary['approach_m'] * 1e6:.5g} µm"
+    yield "approach of the holder, towards body 2", f"{summary['approach_m'] * 1e6:.5g} µm"
     if summary["shape_range_m"] > 0:
         shape = f"{summary['shape_range_m'] * 1e6:.5g} µm{_within(summary, 'shape')}"
         yield "shape, highest to lowest", shape
@@ -149,9 +155,13 @@ def _highlights(summary: dict):
         hottest = f"{summary['max_temperature_K'] - 273.15:.5g} °C"
         yield "highest temperature", f"{hottest}{_within(summary, 'temperature')}"
         yield "friction power", f"{summary['friction_power_W']:.6g} W"
+    if summary.get("contact_heat_1_W") is not None and summary["friction_power_W"] == 0.0:
+        yield "heat from body 1 to body 2", f"{summary['contact_heat_2_W']:.6g} W"
+    if summary.get("prescribed_heat_W") is not None:
+        yield "heat through surfaces", f"{summary['prescribed_heat_W']:.6g} W"
     if summary.get("peak_temperature_K") is not None:
         peak, time = summary["peak_temperature_K"] - 273.15, summary["peak_temperature_time_s"]
-        yield "hottest on the way", f"{peak:.5g} °C at {time:.5g} s"
+        yield "hottest face on the way", f"{peak:.5g} °C at {time:.5g} s"
     if summary.get("max_cell_peclet_number") is not None:
         peclet = f"cell Péclet number up to {summary['max_cell_peclet_number']:.3g}"
         yield "heat carried along", f"{summary['heat_advection']}, {peclet}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import platform
 import re
@@ -11,6 +12,7 @@ from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import tomli_w
 
@@ -154,7 +156,7 @@ class ResultsFolder:
         if result.modes is not None:
             write_points(self.path / "mode.csv", MODES, result.modes)
         rounded = {name: round(value, 4) for name, value in seconds.items()}
-        self._write_json("summary.json", result.summary | {"seconds": rounded})
+        self._write_json("summary.json", finite(result.summary) | {"seconds": rounded})
 
     def close(self, status: str, message: str = "") -> None:
         """Record how the run ended: ``done``, ``failed`` or ``interrupted``."""
@@ -178,7 +180,8 @@ class ResultsFolder:
         self._write_json("run.json", self._run)
 
     def _write_json(self, name: str, content: dict) -> None:
-        self._write(name, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+        text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+        self._write(name, f"{text}\n")
 
     def _write(self, name: str, text: str) -> None:
         with replacing(self.path / name) as draft:
@@ -190,6 +193,28 @@ def is_ours(path: Path) -> bool:
     if path.name == "report.html":
         return is_report(path)
     return bool(_OURS.fullmatch(final_name(path)))
+
+
+def finite(summary: dict[str, Any]) -> dict[str, Any]:
+    """A summary as JSON can hold it: null where a number is not finite.
+
+    What it was stands in ``not_finite``, by the paths of the keys.
+    """
+    others: dict[str, str] = {}
+
+    def cleared(path: str, value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: cleared(f"{path}.{key}", inner) for key, inner in value.items()}
+        if isinstance(value, list | tuple):
+            return [cleared(f"{path}.{k}", inner) for k, inner in enumerate(value)]
+        if isinstance(value, float) and not math.isfinite(value):
+            size = "too large for a number, or without bound"
+            others[path] = "not a number" if math.isnan(value) else f"{value:+f}: {size}"
+            return None
+        return value
+
+    found = {key: cleared(key, value) for key, value in summary.items()}
+    return found | {"not_finite": others} if others else found
 
 
 def now() -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -9,12 +10,13 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from .quantities import INTERFACE, TRACK
-from .replacing import replacing
+from .replacing import final_name, replacing
 from .tables import write_points
 from .vtu import write_fields
 
 FRAMES = "frames"
 _INDEX = "frames.pvd"
+_FRAME = re.compile(r"fields_\d{5,}\.vtu|(interface|track)_\d{5,}\.csv")
 
 
 @dataclass(frozen=True)
@@ -47,16 +49,16 @@ class FrameFiles:
         """There in a reciprocating analysis only."""
         return self.place / f"track_{self.number:05d}.csv"
 
-    def remove(self) -> None:
-        for path in (self.fields, self.interface, self.track):
-            path.unlink(missing_ok=True)
+    @property
+    def files(self) -> tuple[Path, ...]:
+        return self.fields, self.interface, self.track
 
 
 def write_frame(place: Path, frame) -> None:
     """Write a frame in single precision, which pictures do not tell from double.
 
-    The index names a frame only while all of its files are there. Frames that are given up, and
-    those of a later step that an earlier run has reached, are removed.
+    The index names a frame only while all of its files are there. Frames that are given up, those
+    of a later step that an earlier run has reached, and what a killed run has left are removed.
 
     Parameters
     ----------
@@ -73,9 +75,7 @@ def write_frame(place: Path, frame) -> None:
     earlier = [old for old in frame_files(place) if old.number != new.number]
     kept = [o for o in earlier if o.number < new.number and o.number % frame.every == 0]
     _write_index(place, [*kept, new])
-    for old in earlier:
-        if old not in kept:
-            old.remove()
+    _remove_others(place, [*kept, new])
 
 
 def frame_files(place: Path) -> list[FrameFiles]:
@@ -98,13 +98,27 @@ def frame_files(place: Path) -> list[FrameFiles]:
     return [FrameFiles(t, number, place) for (t, _), number in zip(found, numbers, strict=True)]
 
 
+def keep_indexed(place: Path) -> None:
+    """Remove what a run that was killed has left beside the frames of the index."""
+    if place.is_dir():
+        _remove_others(place, frame_files(place))
+
+
 def remove_frames(place: Path) -> None:
     """Remove what `write_frame` has written, and the folder if nothing else is in it."""
-    for pattern in ("fields_*.vtu", "interface_*.csv", "track_*.csv", _INDEX, f".{_INDEX}.part"):
-        for path in place.glob(pattern):
-            path.unlink()
+    _remove_others(place, [])
+    for name in (_INDEX, f".{_INDEX}.part"):
+        (place / name).unlink(missing_ok=True)
     if not any(place.iterdir()):
         place.rmdir()
+
+
+def _remove_others(place: Path, frames: list[FrameFiles]) -> None:
+    """Remove files of frames, whole or half written, that are none of these."""
+    kept = {path for frame in frames for path in frame.files}
+    for path in place.iterdir():
+        if path not in kept and _FRAME.fullmatch(final_name(path)):
+            path.unlink()
 
 
 def _write_index(place: Path, frames: list[FrameFiles]) -> None:

@@ -88,7 +88,7 @@ HEAT = {
     "speed": Quantity("speed_m_per_s", "sliding speed", "m/s"),
     "normal_force": Quantity("normal_force_N", "normal force", "N"),
     "friction_power": Quantity("friction_power_W", "friction power", "kW", 1e-3),
-    "heat_in": Quantity("heat_in_J", "friction heat so far", "kJ", 1e-3),
+    "heat_in": Quantity("heat_in_J", "heat put in so far", "kJ", 1e-3),
     "heat_stored": Quantity("heat_stored_J", "heat stored", "kJ", 1e-3),
     "heat_lost": Quantity("heat_lost_J", "heat lost", "kJ", 1e-3),
     "balance_error": Quantity("balance_relative_error", "imbalance of heat", "1"),

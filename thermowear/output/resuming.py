@@ -13,6 +13,7 @@ from ..case.comparison import forbidden_changes, irrelevant_changes_only
 from ..errors import CaseError
 from .checkpoint import read_checkpoint
 from .folder import ResultsFolder, now, versions
+from .frames import FRAMES, keep_indexed
 
 _ANEW = "--overwrite starts it from the beginning"
 
@@ -43,6 +44,10 @@ class ResumedFolder(ResultsFolder):
         """Take it as it is, and remember how often it was taken."""
         resumes = [*self._before.get("resumes", []), {"at": now(), "from_s": self._time}]
         self._run |= {"started": self._before["started"], "resumes": resumes}
+        try:
+            keep_indexed(self.path / FRAMES)
+        except ValueError as error:
+            raise CaseError(f"--resume: {error}; {_ANEW}") from None
 
     def abandon(self) -> None:
         """Be as if nobody had tried to go on."""
@@ -60,9 +65,12 @@ def read_run(path: Path) -> dict[str, Any]:
         If there is none.
     """
     try:
-        return json.loads((path / "run.json").read_text("utf-8"))
-    except (OSError, ValueError):
-        raise CaseError(f"-o {path}: there is no run to resume") from None
+        found = json.loads((path / "run.json").read_text("utf-8"))
+    except (OSError, ValueError, RecursionError):
+        found = None
+    if not isinstance(found, dict) or not {"status", "started"} <= found.keys():
+        raise CaseError(f"-o {path}: there is no run to resume")
+    return found
 
 
 def is_finished(path: Path, case: Case) -> bool:

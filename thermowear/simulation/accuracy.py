@@ -26,7 +26,6 @@ from ..contact.pairing import pair
 from ..errors import CaseError, ComputationError
 from ..laws import steady_pressure
 from .building import sliding_of
-from .drives import drives
 from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
 from .outcome import Outcome
 from .system import System
@@ -117,6 +116,8 @@ def _warmer(system: System, outcome: Outcome) -> tuple[WarmerFaces | None, str |
         return None, "isothermal"
     if heat.transient:
         return None, "not estimated where temperatures are followed in time"
+    if heat.flux or heat.power:
+        return None, "not estimated where heat is given on surfaces"
     if thermal.varies:
         return None, "not estimated where conductivity or expansion change with temperature"
     if heat.advection != "none":
@@ -216,7 +217,7 @@ def _finer(system: System) -> System:
     slides = sliding_of(case, model, pairing)
     assert slides is not None
     pull = slides.pull(pairing.normals, case.contact.friction, case.contact.transverse_friction)
-    holder = hold(pairing, pull, drives(case, pairing))
+    holder = hold(pairing, pull, system.holder.drives)
     return replace(
         system, pairing=pairing, slides=slides, pull=pull, speed=slides.speed, holder=holder
     )

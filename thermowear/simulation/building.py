@@ -8,6 +8,7 @@ import numpy as np
 
 from ..bulk.bodies import Bodies, distribute
 from ..bulk.kinematics import Model, section_model
+from ..case.facing import Facing
 from ..case.schema import Case
 from ..contact.face import gather_face
 from ..contact.holder import hold
@@ -15,9 +16,9 @@ from ..contact.pairing import Pairing
 from ..contact.sliding import Sliding, sliding
 from ..geometry.tagged import TaggedMesh
 from ..parallel import on_root
-from .contact_points import contact_points, worn_contact_points
+from .contact_points import contact_points, facing_parts, worn_contact_points
 from .drives import drives
-from .elastic_system import dead_load, elastic_system
+from .elastic_system import dead_load, dead_resultant, elastic_system
 from .parts import Parts, inputs
 from .phases import Phases
 from .system import System
@@ -70,10 +71,13 @@ def build(
     if slides is not None:
         friction = case.contact.friction, case.contact.transverse_friction
         pull, speed = slides.pull(pairing.normals, *friction), slides.speed
+    facing = facing_parts(bodies, pairing)
+    dead = dead_load(case, elastic)
+    driven = drives(case, pairing, lambda motion: dead_resultant(case, elastic, dead, motion)[0])
     thermal = parts.get(
         "conduction",
         made_from.conduction,
-        lambda: thermal_system(case, bodies, model, pairing, elastic, basis, phases),
+        lambda: thermal_system(case, bodies, model, pairing, elastic, basis, facing, phases),
     )
     return System(
         case=case,
@@ -82,12 +86,12 @@ def build(
         elastic=elastic,
         trace=trace,
         basis=basis,
-        holder=hold(pairing, pull, drives(case, pairing)),
+        holder=hold(pairing, pull, driven),
         slides=slides,
         pull=pull,
         speed=speed,
-        dead_load=dead_load(case, elastic),
-        thermal=None if thermal is None else _exchanging(thermal, case),
+        dead_load=dead,
+        thermal=None if thermal is None else _exchanging(thermal, case, facing),
         phases=phases,
         parts=parts,
         inputs=made_from,
@@ -113,9 +117,9 @@ def _paired(
     return worn_contact_points(case, model, worn, *faces)
 
 
-def _exchanging(thermal: ThermalSystem, case: Case) -> ThermalSystem:
+def _exchanging(thermal: ThermalSystem, case: Case, facing: Facing) -> ThermalSystem:
     """The same bodies with the partition of this case."""
-    return replace(thermal, face=replace(thermal.face, partition=case.partition()))
+    return replace(thermal, face=replace(thermal.face, partition=case.partition(facing)))
 
 
 def sliding_of(case: Case, model: Model, pairing: Pairing) -> Sliding | None:

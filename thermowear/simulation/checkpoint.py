@@ -17,7 +17,7 @@ from ..contact.coupled import CoupledSolution
 from ..contact.full_system import FullSolution
 from ..contact.heat import ThermalState
 from ..contact.stick_slip import StickSlipState
-from ..errors import CaseError
+from ..errors import CaseError, quoted
 from .contact_method import Contact
 from .heat_states import StoredHeat
 from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
@@ -72,10 +72,10 @@ class Checkpoint:
         """
         try:
             return _unpacked(json.loads(self.outlines[rank]), self.arrays)
-        except (KeyError, TypeError) as error:
+        except (LookupError, TypeError, ValueError, AttributeError, StopIteration) as error:
             raise CaseError(
-                f"--resume: the checkpoint is one of another version of thermowear ({error}); "
-                "--overwrite starts from the beginning"
+                f"--resume: the checkpoint is one of another version of thermowear "
+                f"({quoted(error)}); --overwrite starts from the beginning"
             ) from None
 
 

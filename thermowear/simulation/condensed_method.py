@@ -4,13 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..contact.complementarity import ContactSolution, solve_contact
+from ..contact.complementarity import ContactSolution, NoEquilibrium, solve_contact
 from ..contact.condensation import CondensedContact
 from ..errors import ComputationError
-from .contact_method import Contact, WearRates, newton_with_wear
+from .contact_method import Contact, Slope, WearRates, newton_with_wear
 from .system import System
 
 _TURNS = 60
+_HOT = (
+    "with friction heat this happens beyond the critical sliding speed (thermoelastic "
+    "instability): reduce the speed, or the expansion, or the friction"
+)
+_LOCKED = (
+    "friction along the faces locks body 1 or tips it over an edge: lower contact.friction, turn "
+    "the motion round, or change the line of the load or the free motions of the holder"
+)
+_TIPPED = (
+    "the load lifts body 1 off or tips it over an edge: change the line of the load or the free "
+    "motions of the holder"
+)
 
 
 class CondensedMethod:
@@ -30,6 +42,13 @@ class CondensedMethod:
         self.note: str | None = None
 
     def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
+        try:
+            return self._balanced(gap, slope, guess, conditions, heat)
+        except NoEquilibrium as error:
+            cold = _LOCKED if conditions.friction.any() else _TIPPED
+            raise ComputationError(f"{error}; {cold if heat is None else _HOT}") from None
+
+    def _balanced(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
         bodies = self._rubbed(conditions.friction)
         compliance, weak = bodies.compliance, bodies.weak(gap + self._dead)
         if heat is None:
@@ -84,10 +103,12 @@ class CondensedMethod:
         return self._rubbing[1]
 
     def _solved(
-        self, contact: CondensedContact, compliance, weak, slope, guess: Contact | None, load
+        self, contact: CondensedContact, compliance, weak, slope: Slope, guess, load
     ) -> Contact:
-        if slope.any():
-            compliance = compliance + contact.weighted.T @ (slope[:, None] * contact.basis)
+        if slope.point.any():
+            compliance = compliance + contact.weighted.T @ (slope.point[:, None] * contact.basis)
+        if len(slope.rows):
+            compliance = compliance + contact.weak(slope.reach) @ (slope.rows @ contact.basis)
         solution = solve_contact(
             compliance,
             weak,

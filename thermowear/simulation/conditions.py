@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..case.history import History, SpeedHistory
+from ..case.history import FactorHistory, History
 from ..contact.heat import ThermalState
 from .system import System
 
@@ -67,8 +67,8 @@ def _difference(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(a - b).max() / max(np.abs(a).max(), np.abs(b).max()))
 
 
-def _part(course: History | SpeedHistory | None, time: float) -> float:
-    """How much of a load or a speed there is; none where rounding of the time alone leaves some."""
+def _part(course: History | FactorHistory | None, time: float) -> float:
+    """How much of a load, speed or friction there is; none where rounding alone leaves some."""
     part = 1.0 if course is None else course.factor_at(time)
     return part if part > _ROUNDING else 0.0
 
@@ -86,9 +86,7 @@ class Surroundings:
         self._case = system.case
         bodies = self._case.geometry.bodies
         self._laws = [(index, self._case.wear[bodies[index]]) for index in system.laws]
-        motion = self._case.motion
-        courses = (self._case.load.history, None if motion is None else motion.history)
-        self._courses = [course for course in courses if course is not None]
+        self._courses = list(self._case.histories.values())
         self._lasting: tuple[bytes, Conditions] | None = None
 
     def at(
@@ -120,9 +118,9 @@ class Surroundings:
         moved = _part(None if motion is None else motion.history, time)
         speed = moved * system.speed
         temperatures = self._temperatures(faces)
-        friction = self._friction(temperatures, pressure, speed)
+        friction = self._friction(time, temperatures, pressure, speed)
         return Conditions(
-            load=pressed * system.holder.load,
+            load=pressed * system.holder.load + system.holder.dead,
             speed=speed,
             friction=friction,
             wear=self._wear(temperatures, pressure, speed, friction),
@@ -130,7 +128,7 @@ class Surroundings:
         )
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Times up to an end at which loads or speed change their course [s]."""
+        """Times up to an end at which something changes its course [s]."""
         return tuple(t for course in self._courses for t in course.corners(end))
 
     def _temperatures(self, faces: ThermalState | None):
@@ -139,10 +137,11 @@ class Surroundings:
         ambient = self._system.thermal.ambient
         return faces.rise[0] + ambient, faces.rise[1] + ambient
 
-    def _friction(self, temperatures, pressure, speed) -> np.ndarray:
+    def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
         mean = None if temperatures is None else (temperatures[0] + temperatures[1]) / 2
-        factors = self._case.contact.friction_factor
-        return self._system.friction * factors.value(mean, pressure, speed)
+        contact = self._case.contact
+        present = _part(contact.friction_history, time) * self._system.friction
+        return present * contact.friction_factor.value(mean, pressure, speed)
 
     def _wear(self, temperatures, pressure, speed, friction) -> np.ndarray:
         """Factors by table, and of a friction that is not the nominal one."""
@@ -150,7 +149,7 @@ class Surroundings:
         for row, (index, wear) in enumerate(self._laws):
             own = None if temperatures is None else temperatures[index]
             result[row] = wear.factor.value(own, pressure, speed)
-            if wear.per == "friction-stress" and self._case.contact.friction_factor.depends_on:
+            if wear.per == "friction-stress" and self._case.friction_varies:
                 result[row] *= (friction / self._system.friction) ** wear.pressure_exponent
         return result
 
@@ -158,6 +157,6 @@ class Surroundings:
         heat = self._case.heat
         if heat is None:
             return np.zeros(len(pressure))
-        given = self._case.conductance(pressure)
+        given = self._case.conductance(pressure, self._system.facing)
         closed = np.inf if given is None else given
         return np.where(touching, closed, heat.gap_conductance or 0.0)

@@ -48,7 +48,7 @@ class ContactMethod(Protocol):
     def solve(
         self,
         gap: np.ndarray,
-        slope: np.ndarray,
+        slope: Slope,
         guess: Contact | None,
         conditions: Conditions,
         heat: HeatStage | None,
@@ -59,8 +59,8 @@ class ContactMethod(Protocol):
         ----------
         gap : ndarray, shape (n,)
             Without pressure, heat and motion of the holder [m].
-        slope : ndarray, shape (n,)
-            Gap that each point's own pressure opens in addition to the bodies [m/Pa].
+        slope : Slope
+            Gap that the pressures open in addition to the bodies [m/Pa].
         guess : Contact or None
         conditions : Conditions
         heat : HeatStage or None
@@ -83,6 +83,42 @@ class ContactMethod(Protocol):
 
     def opening(self, contact: Contact) -> float:
         """Largest change of the gap by the bodies' deformation [m]."""
+
+
+@dataclass(frozen=True)
+class Slope:
+    """Derivative of a local opening of the gap by the pressures.
+
+    Attributes
+    ----------
+    point : ndarray, shape (n,)
+        By the pressure on the spot [m/Pa].
+    rows : ndarray, shape (k, n)
+        Of k means by the pressures at the points [m/Pa].
+    reach : ndarray, shape (n, k)
+        How much of each mean each point has.
+    """
+
+    point: np.ndarray
+    rows: np.ndarray
+    reach: np.ndarray
+
+    @classmethod
+    def on_the_spot(cls, point: np.ndarray) -> Slope:
+        """Without means."""
+        return cls(point, np.zeros((0, len(point))), np.zeros((len(point), 0)))
+
+    def times(self, step: float) -> Slope:
+        """The same for a longer or shorter step."""
+        return Slope(step * self.point, step * self.rows, self.reach)
+
+    def softer_by(self, point: np.ndarray) -> Slope:
+        """The same with something more that opens on the spot (n,) [m/Pa]."""
+        return Slope(self.point + point, self.rows, self.reach)
+
+    def opened(self, pressure: np.ndarray) -> np.ndarray:
+        """By a pressure (n,) [m]."""
+        return self.point * pressure + self.reach @ (self.rows @ pressure)
 
 
 @dataclass(frozen=True)
@@ -112,15 +148,17 @@ class WearRates:
             rates[row] = spread.rate(self.factors[row] * law.rate(pressure, self.speed))
         return rates
 
-    def slope(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivative of their sum by the pressure on the spot, shape (n,) [m/s/Pa].
-
-        What a track has in common hardly changes with the pressures: their sum is the load.
-        """
-        slopes = np.zeros_like(self.factors)
-        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
-            slopes[row] = spread.share * self.factors[row] * law.slope(pressure, self.speed)
-        return slopes.sum(axis=0)
+    def slope(self, pressure: np.ndarray) -> Slope:
+        """Derivative of their sum by the pressures [m/s/Pa]."""
+        n = len(pressure)
+        point, rows, reach = np.zeros(n), [np.zeros((0, n))], [np.zeros((n, 0))]
+        for law, spread, factor in zip(self.laws, self.spreads, self.factors, strict=True):
+            local = factor * law.slope(pressure, self.speed)
+            point += spread.share * local
+            if spread.varying_rows is not None:
+                rows.append(spread.varying_rows * local)
+                reach.append(spread.reach(n))
+        return Slope(point, np.vstack(rows), np.hstack(reach))
 
 
 def newton_with_wear(solve, rates: WearRates, step: float, guess: Contact) -> Contact:
@@ -129,7 +167,7 @@ def newton_with_wear(solve, rates: WearRates, step: float, guess: Contact) -> Co
     Parameters
     ----------
     solve : callable
-        Contact for a worn depth at zero pressure (n,), its slope by the pressure (n,), and a guess.
+        Contact for a worn depth at zero pressure (n,), its slope by the pressures, and a guess.
     rates : WearRates
     step : float
         [s]
@@ -142,11 +180,11 @@ def newton_with_wear(solve, rates: WearRates, step: float, guess: Contact) -> Co
     pressure = guess.pressure
     for _ in range(_NEWTON_STEPS):
         rate = step * rates(pressure).sum(axis=0)
-        slope = step * rates.slope(pressure)
-        guess = solve(rate - slope * pressure, slope, guess)
+        slope = rates.slope(pressure).times(step)
+        guess = solve(rate - slope.opened(pressure), slope, guess)
         change = guess.pressure - pressure
         pressure = guess.pressure
         exact = step * rates(pressure).sum(axis=0)
-        if np.abs(exact - rate - slope * change).max() <= 1e-11 * np.abs(exact).max():
+        if np.abs(exact - rate - slope.opened(change)).max() <= 1e-11 * np.abs(exact).max():
             return guess
     raise ComputationError("contact: Newton's method for the implicit step of wear failed")

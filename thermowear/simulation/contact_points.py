@@ -1,4 +1,4 @@
-"""Where the faces of a case are integrated: contact points and pressure space."""
+"""Where the faces of a case are integrated: contact points, pressure space, parts that touch."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..bulk.bodies import Bodies
 from ..bulk.kinematics import Model
+from ..case.facing import Facing
 from ..case.schema import Case
 from ..contact.face import Face
+from ..contact.facets import parts_of_facets
 from ..contact.pairing import Pairing, pair, paired
 from ..contact.pressure import pressure_basis
 from ..contact.projection import ahead
@@ -106,3 +109,9 @@ def _basis(case: Case, pairing: Pairing) -> np.ndarray:
     degree = case.contact.pressure_degree
     assert degree != "lobatto"
     return pressure_basis(pairing, degree or max(case.mesh.degree - 1, 1))
+
+
+def facing_parts(bodies: Bodies, pairing: Pairing) -> Facing:
+    """The parts of both bodies that touch at the contact points. Every rank calls."""
+    first, second = (parts_of_facets(bodies, side.face)[side.facet] for side in pairing.sides)
+    return Facing(bodies.names, (first, second))

@@ -34,6 +34,7 @@ def steady_design(system: System, body: int) -> Design:
     """
     found = steady_state(system)
     state, pairing = body_state(system, found.contact), system.pairing
+    state.require_balance()
     pressure = found.wear.pressure
     open_by = state.opening + system.softness * pressure + pairing.gap
     modes = system.holder.modes

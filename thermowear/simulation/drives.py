@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..case.schema import Case
@@ -13,19 +15,25 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
 _TURNS = {"rotation-x": (1.0, 0.0, 0.0), "rotation-y": (0.0, 1.0, 0.0)}
 
 
-def drives(case: Case, pairing: Pairing) -> tuple[Drive, ...]:
+def drives(case: Case, pairing: Pairing, dead: Callable[[RigidMotion], float]) -> tuple[Drive, ...]:
     """The motions that the holder makes, along the press first, and what is given along each.
 
     A force acts along the press at the point of the load, so that its generalised force on any
     motion m is ``F press·m(point)``; moments add to that what they do on a rotation.
+
+    Parameters
+    ----------
+    case : Case
+    pairing : Pairing
+    dead : callable
+        Generalised force on a motion of body 1 that does not come from the holder [N or N m].
     """
-    names = case.holder.free
-    motions = [_motion(case, name, pairing) for name in names]
-    if case.approach() is None:
-        return tuple(Drive(m, load=_load(case, m, names)) for m in motions)
+    names, approach = case.holder.free, case.approach()
     return tuple(
-        Drive(m, amount=case.approach()) if name == "z" else Drive(m, load=_load(case, m, names))
-        for name, m in zip(names, motions, strict=True)
+        Drive(m, amount=approach, dead=float(dead(m)))
+        if approach is not None and name == "z"
+        else Drive(m, load=_load(case, m, names), dead=float(dead(m)))
+        for name, m in ((name, _motion(case, name, pairing)) for name in names)
     )
 
 

@@ -8,10 +8,12 @@ import scipy.sparse as sp
 from ..bulk.bodies import Bodies
 from ..bulk.elasticity import Elasticity, ElasticMaterial, elasticity
 from ..bulk.kinematics import Model
-from ..bulk.surface_load import surface_load
+from ..bulk.surface_load import surface_load, surface_pressure
 from ..case.schema import Case
 from ..contact.pairing import Pairing
 from ..contact.traces import gap_trace
+from ..laws.motions import RigidMotion
+from ..parallel import sum_over_ranks
 
 
 def elastic_system(
@@ -46,7 +48,24 @@ def dead_load(case: Case, elastic: Elasticity) -> np.ndarray | None:
         surface_load(elastic, surface, force * press)
         for surface, force in case.load.surfaces.items()
     ]
+    loads += [surface_pressure(elastic, *given) for given in case.load.pressure.items()]
     return np.sum(loads, axis=0) if loads else None
+
+
+def dead_resultant(
+    case: Case, elastic: Elasticity, forces: np.ndarray | None, motion: RigidMotion
+) -> np.ndarray:
+    """Generalised force of nodal forces on a rigid motion of body 1 and of body 2, shape (2,).
+
+    Every rank calls.
+    """
+    if forces is None:
+        return np.zeros(2)
+    nodes = elastic.nodes()
+    work = (forces.reshape(nodes.shape) * motion.at(nodes)).sum(axis=1)
+    upper = elastic.owned_by(*case.geometry.parts_of(case.geometry.bodies[0]))
+    parts = np.array([work[upper].sum(), work[~upper].sum()])
+    return sum_over_ranks(elastic.bodies.mesh.comm, parts)
 
 
 def _elastic_material(case: Case, body: str) -> ElasticMaterial:

@@ -16,7 +16,7 @@ from ..bulk.enriched import EnrichedProblem
 from ..bulk.field import owned
 from ..bulk.heat_equation import conducting, transferring
 from ..bulk.kinematics import Model
-from ..bulk.surface_load import surface_work
+from ..bulk.surface_load import pressure_work, surface_work
 from ..bulk.surplus import surplus_space
 from ..contact.heat import InterfaceHeat, Resting
 from ..contact.tangential import tangents
@@ -116,6 +116,8 @@ class EnrichedBodies:
         press = system.press
         for surface, force in system.case.load.surfaces.items():
             loads = loads + problem.loads(surface_work(system.elastic, surface, force * press))
+        for given in system.case.load.pressure.items():
+            loads = loads + problem.loads(pressure_work(system.elastic, *given))
         return loads
 
 
@@ -172,7 +174,9 @@ def _conducting(system: System, model: Model) -> EnrichedProblem:
     assert system.thermal is not None
     conduction, case, bodies = system.thermal.conduction, system.case, system.bodies
     degree = case.mesh.degree
-    materials, cooling = conducting_bodies(case)
+    materials, times = conducting_bodies(case)
+    assert case.heat is not None
+    cooling = {surface: times[surface] * h for surface, h in case.heat.cooling.items()}
     conductivities = {part: material.conductivity for part, material in materials.items()}
     surplus = surplus_space(bodies.mesh, degree)
     terms = [conducting(bodies, model, conductivities, degree + 1)]

@@ -120,7 +120,8 @@ class FrettingRecord:
         if instant.is_output:
             with self._system.phases("output"):
                 self._frictions[leg.end] = self._tables.friction(self.last)
-                self.outputs[leg.end] = self.interface()[2]
+                _, bodies, self.outputs[leg.end] = self.interface()
+                bodies.require_balance()
                 self._observer.output(leg.end, self.outputs[leg.end], self._frictions[leg.end])
         self._keep_frame(instant)
 

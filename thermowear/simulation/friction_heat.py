@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..balances import relative
 from ..bulk.conduction import Conduction
 from ..contact.heat import (
     InterfaceHeat,
@@ -33,10 +34,50 @@ _FEWEST = 3
 """Sizes of steps whose operators are kept in any case: those of a step, its half and its double."""
 _FILL = {2: 100, 3: 1000}
 """Entries of triangular factors per unknown, by dimension of the mesh."""
+_ROUNDING = 1e-3
+"""Of the heat that bodies have at the start: less than that is near to rounding of it."""
 _SHALLOW = 1e-3
 """Of the contact's length: heat that has gone so deep has changed nothing yet."""
 _HARDLY = 0.1
 """Rise of the faces that is not worth a smaller first step [K]."""
+
+
+class CondensedDistortion:
+    """Condenses thermal distortion to the pressure space.
+
+    Operators of heat keep this, not the friction heat that keeps them: in a circle of references
+    they would stay in memory when the meshes that they are of have been given up.
+
+    Parameters
+    ----------
+    system : System
+    thermal : ThermalSystem
+    """
+
+    def __init__(self, system: System, thermal: ThermalSystem):
+        self._system = system
+        self._thermal = thermal
+
+    def __call__(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
+        """Weak gap per heat at the faces, by a conduction; every rank calls."""
+        with self._system.phases("condense distortion"):
+            if conduction is not self._thermal.conduction:  # over a step of time
+                return condense_distortion(conduction, self.per_rise, face)
+            return self._system.parts.get(
+                "distortion",
+                self._system.inputs.conduction,
+                lambda: condense_distortion(conduction, self.per_rise, face),
+            )
+
+    @cached_property
+    def per_rise(self) -> np.ndarray:
+        """Weak gap per nodal rise of temperature."""
+        system = self._system
+        return system.parts.get(
+            "gap per rise",
+            system.inputs.elasticity,
+            lambda: gap_per_rise(self._thermal.load, system.contact),
+        )
 
 
 class FrictionHeat:
@@ -53,30 +94,34 @@ class FrictionHeat:
         self._thermal = thermal
         self._steps: OrderedDict[float, HeatOperators] = OrderedDict()
         self._distorts = system.case.contact.method == "condensed"
+        self.condensed = CondensedDistortion(system, thermal)
+        heat = system.case.heat
+        self._driven = heat is not None and heat.driven
 
     @cached_property
     def steady(self) -> ConductingStage:
         """Temperatures that do not change any more."""
         thermal = self._thermal
         operators = HeatOperators(thermal.conduction, thermal.face, self.condensed)
-        still = np.zeros(len(thermal.conduction.fixed))
+        load = thermal.loads.at(0.0)
         resting = self._system.parts.get(
             "at rest",
             (self._system.inputs.conduction, self._distorts),
-            lambda: self.at_rest(thermal.conduction.solve(still)),
+            lambda: self.at_rest(thermal.conduction.solve(load.heat)),
         )
-        return ConductedHeat(operators, None, resting)
+        return ConductedHeat(operators, load, load.heat, resting)
 
-    def after(self, before: StoredHeat, step: float) -> ConductingStage:
-        """The end of an implicit Euler step [s]; every rank calls."""
+    def after(self, before: StoredHeat, step: float, time: float) -> ConductingStage:
+        """The end of an implicit Euler step, at a time [s]; every rank calls."""
         if step not in self._steps:
             self._steps[step] = self._operators(step)
             if len(self._steps) > self._kept:
                 self._steps.popitem(last=False)
         self._steps.move_to_end(step)
-        operators = self._steps[step]
-        stored = before.content / step
-        return ConductedHeat(operators, stored, self.at_rest(operators.conduction.solve(stored)))
+        operators, load = self._steps[step], self._thermal.loads.at(time)
+        supplied = load.heat + before.content / step
+        alone = load.on(operators.conduction).solve(supplied)
+        return ConductedHeat(operators, load, supplied, self.at_rest(alone))
 
     @cached_property
     def frozen(self) -> FrozenHeat:
@@ -84,8 +129,8 @@ class FrictionHeat:
         conduction = self._thermal.conduction
         rise = np.where(conduction.fixed, conduction.given, self._thermal.initial)
         resting = self.at_rest(rise)
-        largest = float(np.abs(resting.rise).max())
-        return FrozenHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(2), largest), resting)
+        largest = max(float(np.abs(resting.rise).max()), self._largest(rise))
+        return FrozenHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(3), largest), resting)
 
     def at_moment(self, stored: StoredHeat) -> FrozenHeat:
         """A later moment, of which the temperatures are known; every rank calls."""
@@ -108,7 +153,7 @@ class FrictionHeat:
         content = self._thermal.conduction.stored(rise)
         same = replace(stored, rise=rise, content=content)
         taken = former.balance(stored).stored - self.balance(same).stored
-        return replace(same, turnover=stored.turnover + np.array([0.0, taken]))
+        return replace(same, turnover=stored.turnover + np.array([0.0, taken, abs(taken)]))
 
     def stored(
         self,
@@ -132,14 +177,17 @@ class FrictionHeat:
         friction_heat : ndarray, shape (n,)
             Likewise [W/m²].
         """
-        conduction, face = self._thermal.conduction, self._thermal.face
+        conduction, face, load = self._thermal.conduction, self._thermal.face, heat.load
         rise = heat.rise(faces)
         content = conduction.stored(rise)
         storage = (content - before.content) / step
-        lost = sum(conduction.losses(rise, face.nodal_heat(faces, bath=False), storage))
+        nodal = face.nodal_heat(faces, bath=False) + load.heat
+        lost = sum(conduction.losses(rise, nodal, storage, load.ambient))
         made = float(face.weights @ friction_heat)
-        largest = max(before.largest, float(np.abs(faces.rise).max()))
-        turnover = before.turnover + step * np.array([made, lost])
+        outside = conduction.turnover(rise, nodal, storage, load.ambient)
+        exchanged = made + load.magnitude + outside
+        largest = max(before.largest, float(np.abs(faces.rise).max()), self._largest(rise))
+        turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])
         return StoredHeat(rise, content, turnover, largest)
 
     def memory(self) -> Any:
@@ -154,11 +202,14 @@ class FrictionHeat:
         conduction, face = self._thermal.conduction, self._thermal.face
         faces = self.steady.faces(conditions, pressure)
         rise = self.steady.rise(faces)
-        heat = face.nodal_heat(faces, bath=False)
+        load = self.steady.load
+        heat = face.nodal_heat(faces, bath=False) + load.heat
         made = float(face.weights @ (conditions.heating * pressure))
         lost = sum(conduction.losses(rise, heat))
-        scale = max(made, conduction.turnover(rise, heat))
-        return Warmth(faces, rise, abs(lost - made) / scale if scale > 0 else 0.0)
+        scale = max(made + load.magnitude, conduction.turnover(rise, heat))
+        if made + load.magnitude == 0.0:  # hardly anything may flow at all
+            scale = max(scale, conduction.rounding(rise))
+        return Warmth(faces, rise, relative(lost - made - load.prescribed, scale))
 
     def momentary(self, stored: StoredHeat, faces: ThermalState) -> Warmth:
         """Temperatures that are followed in time; the balance is that of all the heat so far."""
@@ -166,9 +217,25 @@ class FrictionHeat:
 
     def balance(self, stored: StoredHeat) -> HeatBalance:
         """Where all the heat so far has gone; every rank calls."""
-        made, lost = (float(heat) for heat in stored.turnover)
-        gained = (stored.content - self.frozen.stored.content).sum()
-        return HeatBalance(made, float(sum_over_ranks(self._system.comm, gained)), lost)
+        made, lost, exchanged = (float(heat) for heat in stored.turnover)
+        before = self.frozen.stored.content
+        gained = stored.content - before
+        sums = np.array([gained.sum(), np.abs(gained).sum(), np.abs(before).sum()])
+        gain, shifted, had = (float(heat) for heat in sum_over_ranks(self._system.comm, sums))
+        return HeatBalance(made, gain, lost, max(exchanged, shifted, _ROUNDING * had))
+
+    def difference(self, one: StoredHeat, other: StoredHeat) -> float:
+        """Largest difference of the temperatures inside the bodies [K]; every rank calls.
+
+        Zero where friction alone heats them: their faces show the errors of a step then.
+        """
+        return self._largest(one.rise - other.rise)
+
+    def _largest(self, rise: np.ndarray) -> float:
+        """Largest rise inside of bodies that not friction alone heats [K]; every rank calls."""
+        if not self._driven:
+            return 0.0
+        return max(self._system.comm.allgather(float(np.abs(rise).max(initial=0.0))))
 
     @property
     def ambient(self) -> float:
@@ -179,32 +246,23 @@ class FrictionHeat:
         """A step to begin with: heat goes not deep in it, or makes the faces hardly warmer [s].
 
         Half-spaces under a constant flux q are warmer by ``2 q √(t/π)/√(k ρ c)``. Infinite where
-        there is no friction heat [W/m²] to begin with.
+        there is no heat to begin with, neither by friction [W/m²] nor otherwise.
         """
+        case, thermal = self._system.case, self._thermal
+        if self._driven:
+            return (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
         if friction_heat == 0.0:
             return np.inf
-        case, thermal = self._system.case, self._thermal
-        effusivities = (case.material(part).effusivity for part in case.geometry.facing)
-        parts = case.partition(), 1 - case.partition()
-        steepest = max(f / e for f, e in zip(parts, effusivities, strict=True)) * friction_heat
+        share = case.partition(self._system.facing)
+        first, second = self._system.facing.of(case, "effusivity")
+        steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
         through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
         return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
 
     def at_rest(self, rise: np.ndarray) -> Resting:
         """What a nodal rise (n_owned,) does to the interface; every rank calls."""
-        per_rise = self._per_rise if self._distorts else None
+        per_rise = self.condensed.per_rise if self._distorts else None
         return at_rest(rise, self._thermal.face.traces, self._system.comm, per_rise)
-
-    def condensed(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
-        """Thermal distortion condensed to the pressure space; every rank calls."""
-        with self._system.phases("condense distortion"):
-            if conduction is not self._thermal.conduction:  # over a step of time
-                return condense_distortion(conduction, self._per_rise, face)
-            return self._system.parts.get(
-                "distortion",
-                self._system.inputs.conduction,
-                lambda: condense_distortion(conduction, self._per_rise, face),
-            )
 
     @cached_property
     def _kept(self) -> int:
@@ -214,15 +272,6 @@ class FrictionHeat:
         numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes
         least = min(self._system.comm.allgather(_MEMORY / (8 * numbers)))
         return max(int(least), _FEWEST)
-
-    @cached_property
-    def _per_rise(self) -> np.ndarray:
-        system = self._system
-        return system.parts.get(
-            "gap per rise",
-            system.inputs.elasticity,
-            lambda: gap_per_rise(self._thermal.load, system.contact),
-        )
 
     def _operators(self, step: float) -> HeatOperators:
         steady = self._thermal.face

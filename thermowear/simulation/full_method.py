@@ -44,6 +44,7 @@ class FullMethod:
 
     def solve(self, gap, slope, guess: Contact | None, conditions, heat) -> Contact:
         start, load = None if guess is None else guess.memory, conditions.load
+        slope = slope.point  # means are of turning disks in space, which is for condensed contact
         if heat is None:
             return self._result(self._solved(gap, slope, start, load, self._dead, None))
         pressure = np.zeros(len(gap)) if guess is None else guess.pressure

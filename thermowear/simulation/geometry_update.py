@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..balances import relative, require
 from ..bulk.kinematics import section_model
 from ..bulk.transfer import transferred
 from ..contact.worn_face import WornFace
@@ -144,7 +145,9 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
         taken[index] = face.depths(amounts[index])
     motion = combined(system.holder.motions, state.contact.motion)
     due = np.array([taken[index] @ system.weights for index in faces])
-    errors = np.abs(lost[list(faces)] - due) / np.abs(due).max()
+    total = before.lost + lost
+    error = max(before.volume_error, _volume_error(lost[list(faces)] - due, total))
+    require(geometry_volume_error=error)
     worn = replace(
         before,
         mesh=mesh,
@@ -153,12 +156,17 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
         depth=system.moved + taken,
         lacking=before.carried(before.lacking, system.pairing),
         holder=(motion.translation, motion.rotation),
-        lost=before.lost + lost,
+        lost=total,
         updates=before.updates + 1,
         quality=min(before.quality, quality),
-        volume_error=max(before.volume_error, float(errors.max())),
+        volume_error=error,
     )
     return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
+
+
+def _volume_error(missing: np.ndarray, lost: np.ndarray) -> float:
+    """Volumes that an update takes off too little or too much, of what is lost so far."""
+    return relative(float(np.abs(missing).max()), float(np.abs(lost).max()))
 
 
 def _followed(

@@ -79,6 +79,7 @@ class GrowthModel:
         self._elastic, self._space = elastic, space
         self._friction = conditions.heating[:, None] * (system.basis @ space.pressures)
         self._fields: np.ndarray | None = None
+        self._crossing: np.ndarray | None = None
         self._rates: list[float] = []
 
     def begin(self) -> None:
@@ -114,12 +115,13 @@ class GrowthModel:
             Zero: steady [1/s].
         """
         conduction, face = self._conducting(rate)
-        into = face.exchange(self._conditions.conductance).per_friction_heat
+        exchange = face.exchange(self._conditions.conductance)
         nodal = sum(
             trace @ (face.weights[:, None] * (share @ self._friction))
-            for trace, share in zip(face.traces, into, strict=True)
+            for trace, share in zip(face.traces, exchange.per_friction_heat, strict=True)
         )
-        self._extend(conduction.respond(np.asarray(nodal)))
+        crossing = exchange.crossing_per_friction_heat @ self._friction
+        self._extend(conduction.respond(np.asarray(nodal)), crossing)
         self._rates.append(rate)
 
     def _conducting(self, rate: float) -> tuple[Conduction, InterfaceHeat]:
@@ -141,9 +143,9 @@ class GrowthModel:
         assert conduction.capacity is not None
         at = heat.at_rest(X)
         T1, T2 = at.rise
-        weights, f = system.weights[:, None], self._thermal.face.partition
-        h = self._conditions.conductance[:, None]
-        exchanged = weights * np.where(np.isinf(h), 0.0, h) * (T2 - T1)  # ties hold in each field
+        weights = system.weights[:, None]
+        f = np.reshape(self._thermal.face.partition, (-1, 1))
+        exchanged = weights * self._crossing  # the law of the contact holds in each field
         carried = np.zeros((X.shape[1],) * 2)
         if conduction.carried is not None:
             carried = self._product(conduction.carried, X)
@@ -156,16 +158,21 @@ class GrowthModel:
             stored=self._product(conduction.capacity, X),
         )
 
-    def _extend(self, fields: np.ndarray) -> None:
-        """Take up what is new of some fields, columns of shape (n_owned,)."""
-        known = np.zeros((len(fields), 0)) if self._fields is None else self._fields
+    def _extend(self, fields: np.ndarray, crossing: np.ndarray) -> None:
+        """Take up what is new of some fields (n_owned, q), and the heat that crosses (n, q)."""
+        if self._fields is None or self._crossing is None:
+            self._fields, self._crossing = fields[:, :0], crossing[:, :0]
         for least in (_NEW, 0.0):  # twice: what is left of a small difference is not orthogonal
-            fields = fields / np.sqrt(np.diag(self._gram(fields, fields)))
-            fields = fields - known @ self._gram(known, fields)
+            scale = 1 / np.sqrt(np.diag(self._gram(fields, fields)))
+            known = self._gram(self._fields, fields * scale)
+            fields = fields * scale - self._fields @ known
+            crossing = crossing * scale - self._crossing @ known
             sizes, mixing = np.linalg.eigh(self._gram(fields, fields))
             kept = sizes > least
-            fields = fields @ (mixing[:, kept] / np.sqrt(sizes[kept]))
-        self._fields = np.hstack([known, fields])
+            combined = mixing[:, kept] / np.sqrt(sizes[kept])
+            fields, crossing = fields @ combined, crossing @ combined
+        self._fields = np.hstack([self._fields, fields])
+        self._crossing = np.hstack([self._crossing, crossing])
 
     def _gram(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
         return sum_over_ranks(self._system.comm, left.T @ right)

@@ -19,6 +19,7 @@ from ..contact.heat import (
 )
 from .conditions import Conditions
 from .heat_states import StoredHeat
+from .thermal_loads import ThermalLoad
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,10 @@ class ConductingStage(HeatStage, Protocol):
     """Heat that the bodies conduct, as opposed to that of the first moment."""
 
     @property
+    def load(self) -> ThermalLoad:
+        """What heats or cools the bodies beside friction."""
+
+    @property
     def unheated(self) -> ThermalState:
         """The faces without any heat at the contact."""
 
@@ -117,13 +122,16 @@ class ConductedHeat:
     Attributes
     ----------
     operators : HeatOperators
-    stored : ndarray or None, shape (n_owned,)
-        Nodal heat that the bodies have stored before, per time [W]; None in a steady state.
+    load : ThermalLoad
+    supplied : ndarray, shape (n_owned,)
+        Nodal heat beside that of the contact: of the loads, and what the bodies have stored before,
+        per time [W].
     resting : Resting
     """
 
     operators: HeatOperators
-    stored: np.ndarray | None
+    load: ThermalLoad
+    supplied: np.ndarray
     resting: Resting
 
     @property
@@ -139,10 +147,8 @@ class ConductedHeat:
 
     def rise(self, faces: ThermalState) -> np.ndarray:
         """Temperature rise of the bodies, shape (n_owned,) [K]."""
-        heat = self.operators.face.nodal_heat(faces, bath=True)
-        if self.stored is not None:
-            heat = heat + self.stored
-        return self.operators.conduction.solve(heat)
+        heat = self.operators.face.nodal_heat(faces, bath=True) + self.supplied
+        return self.load.on(self.operators.conduction).solve(heat)
 
     def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
         """What heat does to the condensed interface."""

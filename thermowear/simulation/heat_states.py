@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..balances import relative
 from ..contact.heat import ThermalState
 
 
@@ -19,10 +20,11 @@ class StoredHeat:
         Of the nodes over the ambient [K].
     content : ndarray, shape (n_owned,)
         Heat that the nodes have stored over the ambient [J].
-    turnover : ndarray, shape (2,)
-        Friction heat made so far, and heat lost [J].
+    turnover : ndarray, shape (3,)
+        Heat put in so far by friction and through surfaces, heat lost, and the magnitude of all
+        that has come in or gone out [J].
     largest : float
-        Rise of the faces so far, either way [K].
+        Rise of the faces so far, either way; of the bodies where not friction alone heats them [K].
     """
 
     rise: np.ndarray
@@ -65,15 +67,19 @@ class HeatBalance:
     Attributes
     ----------
     made, stored, lost : float
-        By friction, in the bodies, and to their surroundings [J].
+        By friction and through surfaces with a given flux or power, in the bodies, and to their
+        surroundings [J].
+    moved : float
+        Magnitude of all heat that has come in, gone out, or gone from one place to another [J].
     """
 
     made: float
     stored: float
     lost: float
+    moved: float
 
     @property
     def error(self) -> float:
         """What is missing, relative to the largest of them."""
-        scale = max(abs(self.made), abs(self.stored), abs(self.lost))
-        return abs(self.made - self.stored - self.lost) / scale if scale > 0 else 0.0
+        scale = max(abs(self.made), abs(self.stored), abs(self.lost), self.moved)
+        return relative(self.made - self.stored - self.lost, scale)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .conditions import Conditions, Surroundings
-from .contact_method import Contact, ContactMethod, WearRates, newton_with_wear
+from .contact_method import Contact, ContactMethod, Slope, WearRates, newton_with_wear
 from .friction_heat import FrictionHeat
 from .heat_stages import FrozenHeat, HeatStage
 from .heat_states import HeatBalance
@@ -138,7 +138,7 @@ class InterfaceProblem:
         What depends on the state is that of the end of the step, but for the points that exchange
         heat: those that have touched before.
         """
-        heat, last = self._heat_at_end(before, step), guess.contact
+        heat, last = self._heat_at_end(before, step, time), guess.contact
 
         def respond(conditions: Conditions) -> WornContact:
             nonlocal last
@@ -183,6 +183,12 @@ class InterfaceProblem:
         assert state.stored is not None
         return self._heat.balance(state.stored)
 
+    def difference_inside(self, one: WornContact, other: WornContact) -> float:
+        """Largest difference of temperatures inside the bodies [K]; every rank calls."""
+        if self._heat is None or one.stored is None or other.stored is None:
+            return 0.0
+        return self._heat.difference(one.stored, other.stored)
+
     def memory(self) -> Any:
         """What the next states depend on beside the last one; see `recall`."""
         return None if self._heat is None else self._heat.memory()
@@ -193,7 +199,7 @@ class InterfaceProblem:
             self._heat.recall(memory)
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Times up to an end at which loads or speed change their course [s]."""
+        """Times up to an end at which something changes its course [s]."""
         return self._surroundings.corners(end)
 
     def first_step(self, state: WornContact) -> float:
@@ -236,12 +242,12 @@ class InterfaceProblem:
         pressure = np.full(len(self._gap), (self._system.case.force() or area) / area)
         return Contact(pressure, np.zeros(0), None)
 
-    def _heat_at_end(self, before: WornContact, step: float) -> HeatStage | None:
+    def _heat_at_end(self, before: WornContact, step: float, time: float) -> HeatStage | None:
         if self._heat is None:
             return None
         if before.stored is None:
             return self._heat.steady
-        return self._heat.after(before.stored, step)
+        return self._heat.after(before.stored, step, time)
 
     def _moved_on(self, before, state, step, conditions, heat) -> WornContact:
         """A state with what has accumulated in a step."""
@@ -272,12 +278,14 @@ class InterfaceProblem:
             return Contact(np.zeros(len(gap)), motion, None)
 
         def solve(opened, slope, last):
-            return self._method.solve(gap + opened, self._softness + slope, last, conditions, heat)
+            softer = slope.softer_by(self._softness)
+            return self._method.solve(gap + opened, softer, last, conditions, heat)
 
         still = np.zeros(len(gap))
+        rigid = Slope.on_the_spot(still)
         if guess is not None and guess.memory is None:
             guess = None
         if step == 0.0 or not self._laws:
-            return solve(still, still, guess)
-        guess = guess or solve(still, still, None)
+            return solve(still, rigid, guess)
+        guess = guess or solve(still, rigid, None)
         return newton_with_wear(solve, self._rates(conditions), step, guess)

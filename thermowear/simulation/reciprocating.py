@@ -127,7 +127,8 @@ class _Record:
         if moment.is_output:
             with self._system.phases("output"):
                 time = moment.time
-                self.outputs[time] = self.in_the_middle()[3]
+                _, _, state, self.outputs[time] = self.in_the_middle()
+                state.require_balance()
                 self.tracks[time] = self.worn_track()
                 self._observer.output(time, self.outputs[time], track=self.tracks[time])
         number, shown = len(self.rows) - 1, self.in_the_middle

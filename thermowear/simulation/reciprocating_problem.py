@@ -150,6 +150,10 @@ class ReciprocatingProblem:
         """Nothing changes its course."""
         return ()
 
+    def difference_inside(self, one: WornContact, other: WornContact) -> float:
+        """Nothing is warm."""
+        return 0.0
+
     def first_step(self, state: WornContact) -> float:
         """A step in which wear is small against the elastic deflection of the bodies [s]."""
         opened = np.einsum("jmn,jn->jm", self._contacts.compliance, state.pressure)

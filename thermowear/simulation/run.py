@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from ..balances import judged
 from ..case.schema import Case
 from .accuracy import estimate_errors
 from .condensed_method import CondensedMethod
@@ -25,6 +26,7 @@ from .small_wear import not_small
 from .stability import stability
 from .summary import summarise
 from .system import System
+from .untouched import touching
 from .without_time import initial, steady, unworn
 
 _UNPAIRED = 1e-6
@@ -59,7 +61,7 @@ def run(
     ------
     ComputationError
         If there is no answer at all; a transient run that stops on its way is returned, with what
-        stopped it.
+        stopped it, and a run whose balances do not hold likewise.
     """
     if comm is None:
         from mpi4py import MPI
@@ -70,7 +72,7 @@ def run(
     system = prepare(case, comm, phases)
     outcome = analyse(system, observer, saved)
     with phases("error estimate"):
-        outcome = judged(system, outcome, observer)
+        outcome = estimated(system, outcome, observer)
     with phases("fields"):
         fields = sample(outcome.system or system, outcome.state, outcome.motion)
     return conclude(system, outcome, fields)
@@ -89,6 +91,8 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
             "stays out of the contact"
         )
+    for text in system.case.notes():
+        observer.note(text)
     before = () if saved is None else (saved.of(system),)
     outcome = _ANALYSES[system.case.analysis.type](system, observer, *before)
     if outgrown(outcome.system or system, outcome.contact.pressure):
@@ -96,13 +100,16 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
+    outcome, apart = touching(system, outcome)
+    if apart is not None:
+        observer.note(apart)
     large = not_small(system, outcome.interface)
     if large is not None:
         observer.note(large)
     return outcome
 
 
-def judged(system: System, outcome: Outcome, observer: Observer) -> Outcome:
+def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
     """The outcome with estimates of its discretisation error in the summary; warns of large ones.
 
     Every rank calls.
@@ -117,18 +124,19 @@ def judged(system: System, outcome: Outcome, observer: Observer) -> Outcome:
 
 
 def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:
-    """What a run returns."""
+    """What a run returns. One whose balances do not hold has failed, and keeps its results."""
     system = outcome.system or system
+    summary = summarise(system, outcome)
     return Result(
         outcome.interface,
         profile(system, outcome.interface),
-        summarise(system, outcome),
+        summary,
         outcome.history,
         outcome.outputs,
         fields,
         outcome.friction,
         outcome.track,
-        outcome.stopped,
+        outcome.stopped or judged(summary),
         outcome.heat,
         outcome.modes,
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ..case.analyses import Transient
-from ..case.schema import Case
 from ..errors import ComputationError
 from .guarded import go_through
 from .observer import Observer
@@ -54,15 +53,15 @@ def running_in(system: System, observer: Observer, before: RunningIn | None = No
 def _principle(system: System) -> SteadyState | None:
     """The steady state that a running-in tends to; None where there is none.
 
-    There is none where nothing presses in the end, where the contact grows, where load or speed
-    change in time, or where the principle has no solution.
+    There is none where nothing presses in the end, where the contact grows, where something is
+    given over time, or where the principle has no solution.
     """
     settings = system.case.analysis
     assert isinstance(settings, Transient)
     free, grows = system.holder.free, any(beyond(system))
     if not (len(free) and free.all()) or (grows and settings.until is None):
         return None
-    if _changes(system.case) or not system.laws:
+    if system.case.histories or not system.laws:
         return None
     try:
         return steady_state(system)
@@ -70,9 +69,3 @@ def _principle(system: System) -> SteadyState | None:
         if settings.until == "steady":
             raise
         return None
-
-
-def _changes(case: Case) -> bool:
-    """Whether load or speed change in time."""
-    motion = case.motion
-    return case.load.history is not None or (motion is not None and motion.history is not None)

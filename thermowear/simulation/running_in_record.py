@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..balances import require
 from ..errors import ComputationError
 from ..laws.motions import RigidMotion, combined
 from .checkpoint import can_be_packed
@@ -111,7 +112,21 @@ class RunningInRecord:
         return self._loop.problem
 
     def keep(self, moment: Moment) -> None:
-        """Take up a step."""
+        """Take up a step.
+
+        Raises
+        ------
+        ComputationError
+            If its balances do not hold; then the last step before it stays the last.
+        """
+        if self._problem.stores_heat:
+            error = self._problem.heat_balance(moment.state).error
+            require(heat_balance_relative_error=error)
+        interface = None
+        if moment.is_output:
+            with self._system.phases("output"):
+                _, _, state, interface = self.bodies(moment)
+            state.require_balance()
         conditions = self._problem.conditions(moment.state, moment.time)
         speed = self._mean(conditions.speed)
         slid = moment.step * (self._speed + speed) / 2  # no step passes a corner of the speed
@@ -121,10 +136,10 @@ class RunningInRecord:
         if self._problem.stores_heat:
             self.heat.append(self._heat_row(moment, conditions))
             self._observer.heat(self.heat[-1])
-        if moment.is_output:
+        if interface is not None:
             with self._system.phases("output"):
-                self.outputs[moment.time] = self.bodies(moment)[3]
-                self._observer.output(moment.time, self.outputs[moment.time])
+                self.outputs[moment.time] = interface
+                self._observer.output(moment.time, interface)
         number = len(self.rows) - 1
         self._film.take(self._system, number, moment.time, lambda: self.bodies(moment))
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..balances import relative, require
 from ..contact.heat import ThermalState
 from ..contact.holder import Drive, hold
 from ..contact.tangential import tangents
@@ -76,6 +77,12 @@ class BodyState:
     heat_error: float
     force_error: float
 
+    def require_balance(self) -> None:
+        """Raise a `ComputationError` where heat or forces are not balanced."""
+        require(equilibrium_relative_error=self.force_error)
+        if self.thermal is not None:
+            require(heat_balance_relative_error=self.heat_error)
+
 
 def body_state(system: System, contact: ContactState) -> BodyState:
     """Solve the bodies for what the contact does to them. Every rank calls."""
@@ -101,13 +108,14 @@ def body_state(system: System, contact: ContactState) -> BodyState:
 
 
 def _force_error(system: System, contact: ContactState, displacement, loads) -> float:
-    """How far the supports' reactions are from what the holder gives, relative to it.
+    """How far the supports' reactions are from what the holder gives and the contact carries.
 
     Along every motion of the holder it must push body 1 with its load, or with what the contact
-    carries where the motion is given, and the support must push body 2 back.
+    carries where the motion is given, and the support must push body 2 back; across them the
+    guides do. Relative to the sum of the magnitudes, of all forces for translations.
     """
     pressure, shear = contact.pressure, contact.shear
-    drives = system.holder.drives or (Drive(translation(system.press), amount=0.0),)
+    drives = (*system.holder.drives, *_across(system))
     holder = hold(system.pairing, system.pull, drives)
     weights, points = system.weights, system.pairing.points
     nodes = system.elastic.nodes()
@@ -119,20 +127,29 @@ def _force_error(system: System, contact: ContactState, displacement, loads) -> 
         along = tangents(system.pairing.normals)[0]
         moved = np.array([motion.at(points) for motion in holder.motions])
         carried = carried - weights * shear * np.einsum("kni,ni->kn", moved, along)
-    dead = np.zeros_like(displacement) if system.dead_load is None else system.dead_load
-    errors, scales = [], []
-    pressed = _part(contact.conditions.load, system.holder.load)
-    for drive, share in zip(holder.drives, carried, strict=True):
+    errors, scales = np.zeros(len(drives)), np.zeros(len(drives))
+    pressed = _part(contact.conditions.load - system.holder.dead, system.holder.load)
+    for k, (drive, share) in enumerate(zip(holder.drives, carried, strict=True)):
         moved = drive.motion.at(nodes)
         work = (reactions * moved).sum(axis=1)
-        parts = work[upper].sum(), work[~upper].sum(), dead @ moved.ravel()
-        held, supported, given = sum_over_ranks(system.comm, np.array(parts))
+        parts = work[upper].sum(), work[~upper].sum(), np.abs(work).sum()
+        held, supported, borne = sum_over_ranks(system.comm, np.array(parts))
+        given = system.dead_resultant(drive.motion)
         found = share.sum()
         # the largest of a history of loads may be over
-        load = found if drive.load is None or shear is not None else pressed * drive.load
-        errors.append(max(abs(held + given - load), abs(supported + found)))
-        scales.append(np.abs(share).sum() + abs(given))
-    return float(max(e / s if s > 0 else 0.0 for e, s in zip(errors, scales, strict=True)))
+        due = found - given[0] if drive.load is None or shear is not None else pressed * drive.load
+        errors[k] = np.maximum(abs(held - due), abs(supported + given[1] + found))
+        scales[k] = max(np.abs(share).sum() + np.abs(given).sum(), borne)
+    shifts = np.array([not drive.motion.rotation.any() for drive in drives])
+    scales[shifts] = scales[shifts].max()
+    return max(relative(e, s) for e, s in zip(errors, scales, strict=True))
+
+
+def _across(system: System) -> list[Drive]:
+    """Translations along the axes that balance whatever the holder does, without a load."""
+    gdim = system.pairing.points.shape[1]
+    axes = [system.press] if system.case.model == "axisymmetric" else np.eye(gdim)
+    return [Drive(translation(axis), amount=0.0) for axis in axes]
 
 
 def _part(load: np.ndarray, largest: np.ndarray) -> float:

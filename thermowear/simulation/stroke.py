@@ -106,7 +106,9 @@ def moved(system: System, offset: float, way: int) -> System:
         pairing=pairing,
         trace=gap_trace(elastic.space, pairing),
         basis=basis,
-        holder=hold(in_place, pull, drives(case, in_place)),
+        holder=hold(
+            in_place, pull, drives(case, in_place, lambda motion: system.dead_resultant(motion)[0])
+        ),
         slides=slides,
         pull=pull,
         speed=slides.speed,
@@ -131,7 +133,7 @@ def condensed(stroke: list[Position], grid: Track) -> CoupledContacts:
         seen=np.array(seen),
         modes=np.array([contact.modes for contact in contacts]),
         force_modes=np.array([contact.force_modes for contact in contacts]),
-        load=systems[0].holder.load,
+        load=systems[0].holder.load + systems[0].holder.dead,
     )
 
 

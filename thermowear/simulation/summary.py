@@ -9,6 +9,8 @@ from ..contact.zones import contact_zones
 from .drives import applied, guides, reference_point
 from .outcome import Outcome
 from .system import System
+from .thermal_loads import ThermalLoad
+from .thermal_system import ThermalSystem
 
 _GUIDES = {
     "x": "guide_force_N",
@@ -32,7 +34,8 @@ def summarise(system: System, outcome: Outcome) -> dict:
     """All numbers of ``summary.json`` but the seconds. Quantities that do not exist are None."""
     case, w = system.case, system.weights
     contact, interface = outcome.contact, outcome.interface
-    p, friction = contact.pressure, contact.conditions.friction * contact.pressure
+    p, sliding = contact.pressure, system.slides is not None
+    friction = sliding * contact.conditions.friction * p  # at rest there is none
     system = system.rubbing(contact.conditions.friction)
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
@@ -59,6 +62,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "approach_m": float(outcome.motion.at(reference_point(case)) @ system.press),
         "max_temperature_K": _number(outcome.state.hottest),
         "friction_power_W": float(w @ (contact.conditions.heating * p)),
+        **_conducted(system, outcome),
         "heat_balance_relative_error": _number(outcome.state.heat_error),
         "equilibrium_relative_error": outcome.state.force_error,
         "rigid_wear_velocity_m_per_s": None,
@@ -74,7 +78,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
 def _friction(system: System, outcome: Outcome) -> dict[str, float]:
     """The coefficients where it presses, and their mean by force, where they are not constant."""
     pressure = outcome.contact.pressure
-    if not system.case.contact.friction_factor.depends_on or not pressure.any():
+    if not system.case.friction_varies or not pressure.any():
         return {}
     friction, carries = outcome.contact.conditions.friction, pressure > 0
     return {
@@ -84,6 +88,22 @@ def _friction(system: System, outcome: Outcome) -> dict[str, float]:
     }
 
 
+def _conducted(system: System, outcome: Outcome) -> dict[str, float]:
+    """Heat into both bodies: at the contact, and through surfaces with a given flux or power."""
+    thermal, faces = system.thermal, outcome.state.thermal
+    if thermal is None or faces is None:
+        return {}
+    into = (float(system.weights @ flux) for flux in faces.flux)
+    found = {f"contact_heat_{body}_W": heat for body, heat in enumerate(into, 1)}
+    load = _thermal_load(thermal, outcome)
+    return found | ({"prescribed_heat_W": load.prescribed} if load.magnitude > 0.0 else {})
+
+
+def _thermal_load(thermal: ThermalSystem, outcome: Outcome) -> ThermalLoad:
+    """The thermal loads at the end."""
+    return thermal.loads.at(outcome.history[-1].time if outcome.history else 0.0)
+
+
 def _passing(system: System, outcome: Outcome) -> dict:
     """What a body 2 that passes under body 1 does with heat, and where heat leaves the bodies."""
     thermal, rise, heat = system.thermal, outcome.state.rise, system.case.heat
@@ -91,7 +111,9 @@ def _passing(system: System, outcome: Outcome) -> dict:
         return {}
     advection = thermal.conduction.advection
     stabilised = advection is not None and advection.stabilised
-    cooled, _, carried = thermal.conduction.losses(rise, np.zeros(len(rise)))
+    ambient = _thermal_load(thermal, outcome).ambient
+    still = np.zeros(len(rise))
+    cooled, _, carried = thermal.conduction.losses(rise, still, ambient=ambient)
     leaves = advection is not None and system.case.geometry.rotation_center is None
     return {
         "heat_advection": "stabilised" if stabilised else heat.advection,
@@ -128,7 +150,8 @@ def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
     for name, motion in guides(case).items():
         if name not in case.holder.free:
             work = np.einsum("ni,ni->n", motion.at(points), system.pull)
-            reaction = float(system.weights @ (pressure * work)) - applied(case, motion)
+            given = applied(case, motion) + float(system.dead_resultant(motion)[0])
+            reaction = float(system.weights @ (pressure * work)) - given
             reactions[_GUIDES[name]] = 0.0 if case.geometry.symmetry else reaction
     return reactions
 

@@ -10,6 +10,7 @@ import scipy.sparse as sp
 
 from ..bulk.bodies import Bodies
 from ..bulk.elasticity import Elasticity
+from ..case.facing import Facing
 from ..case.schema import Case
 from ..contact.condensation import CondensedContact, Influence, influence
 from ..contact.holder import Holder, hold
@@ -17,8 +18,11 @@ from ..contact.pairing import Pairing
 from ..contact.sliding import Sliding
 from ..contact.traces import vector_trace
 from ..laws import WearLaw
-from ..laws.spreading import InPlace, Share, Spreading, Track, coverage
+from ..laws.motions import RigidMotion
+from ..laws.spreading import InPlace, Share, Spreading, Track, rings
 from ..parallel import sum_over_ranks
+from .contact_points import facing_parts
+from .elastic_system import dead_resultant
 from .parts import Inputs, Parts
 from .phases import Phases
 from .thermal_system import ThermalSystem
@@ -47,7 +51,7 @@ class System:
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
     dead_load : ndarray or None, shape (n_owned,)
-        Nodal forces of loads on surfaces [N].
+        Nodal forces of forces and pressures on surfaces [N].
     thermal : ThermalSystem or None
     phases : Phases
     parts : Parts
@@ -92,6 +96,15 @@ class System:
         opened = self.trace.T @ self.elastic.solve(self.dead_load)
         return self.pairing.gap + sum_over_ranks(self.comm, opened)
 
+    def dead_resultant(self, motion: RigidMotion) -> np.ndarray:
+        """Generalised force of the dead load on a motion of either body, shape (2,) [N or N m]."""
+        return dead_resultant(self.case, self.elastic, self.dead_load, motion)
+
+    @cached_property
+    def facing(self) -> Facing:
+        """The parts that touch at the contact points."""
+        return facing_parts(self.bodies, self.pairing)
+
     @property
     def press(self) -> np.ndarray:
         """Unit vector along which body 1 is pressed on, shape (gdim,)."""
@@ -130,6 +143,9 @@ class System:
         geometry = self.case.geometry
         if self.case.wear[geometry.bodies[index]].spread == "in-place":
             return InPlace()
+        if geometry.duty is not None:
+            arms = self.pairing.points[:, :2] - np.array(geometry.rotation_center)
+            return rings(np.linalg.norm(arms, axis=1), self.weights, geometry.duty)
         if geometry.track is None:
             return Share(geometry.sector)
         assert geometry.thickness_factor is not None  # tracks are those of plane models
@@ -141,7 +157,7 @@ class System:
         if self.worn is not None:
             volumes = volumes + self.worn.lost
         for index, spread in self.spreads.items():
-            volumes[index] /= coverage(spread)
+            volumes[index] /= spread.coverage
         return volumes
 
     @cached_property

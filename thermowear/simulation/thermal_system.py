@@ -22,11 +22,13 @@ from ..bulk.varying import (
     varying_conduction,
     varying_expansion,
 )
+from ..case.facing import Facing
 from ..case.schema import Case
 from ..contact.heat import InterfaceHeat, bath_matrix, condense_heat
 from ..contact.pairing import Pairing
 from ..contact.traces import value_trace
 from .phases import Phases
+from .thermal_loads import ThermalLoads, temperature_at, thermal_loads
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,8 @@ class ThermalSystem:
     conduction : Conduction
     load : petsc4py.PETSc.Mat
         G: nodal forces per nodal rise [N/K].
+    loads : ThermalLoads
+        What heats or cools the bodies beside friction.
     face : InterfaceHeat
     ambient : float
         [K]
@@ -51,6 +55,7 @@ class ThermalSystem:
 
     conduction: Conduction
     load: PETSc.Mat
+    loads: ThermalLoads
     face: InterfaceHeat
     ambient: float
     initial: float
@@ -74,6 +79,7 @@ def thermal_system(
     pairing: Pairing,
     elastic: Elasticity,
     basis: np.ndarray,
+    facing: Facing,
     phases: Phases,
 ) -> ThermalSystem | None:
     """Assemble and condense conduction; None without heat. Every rank calls."""
@@ -84,19 +90,27 @@ def thermal_system(
         space = lagrange_space(bodies.mesh, case.mesh.degree)
         upper, lower = pairing.sides
         traces = (value_trace(space, upper), value_trace(space, lower))
-        materials, cooling = conducting_bodies(case)
-        shift = max(m.conductivity for m in materials.values()) / pairing.extent
-        given = {name: value - heat.ambient for name, value in heat.temperature.items()}
+        materials, times = conducting_bodies(case)
+        cooling = {surface: times[surface] * h for surface, h in heat.cooling.items()}
+        shift = max(_conductivities(case, materials)) / pairing.extent
+        given = {
+            name: temperature_at(value, 0.0) - heat.ambient
+            for name, value in heat.temperature.items()
+        }
         bath = bath_matrix(space, traces, pairing.weights, shift)
         passage = _passage(case)
         conducting = conduction(bodies, model, space, materials, cooling, given, bath, passage)
         load = elastic.thermal_load(space)
+        loads = thermal_loads(heat, bodies, model, conducting, times)
         conducting, expansions = _varying(case, conducting, bodies, model, elastic, materials)
     with phases("condense conduction"):
-        face = condense_heat(conducting, pairing.weights, basis, traces, shift, case.partition())
+        partition = case.partition(facing)
+        face = condense_heat(conducting, pairing.weights, basis, traces, shift, partition)
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
-    return ThermalSystem(conducting, load, face, heat.ambient, initial, diffusivity, expansions)
+    return ThermalSystem(
+        conducting, load, loads, face, heat.ambient, initial, diffusivity, expansions
+    )
 
 
 def _varying(
@@ -121,6 +135,17 @@ def _varying(
     )
 
 
+def _conductivities(case: Case, materials: dict[str, ThermalMaterial]) -> list[float]:
+    """Of all parts at the ambient temperature, tables included [W/(m K)]."""
+    assert case.heat is not None
+    factors = [case.material(part).conductivity_factor for part in materials]
+    ambient = np.array(case.heat.ambient)
+    return [
+        material.conductivity * (1.0 if factor is None else float(factor.value(ambient)))
+        for material, factor in zip(materials.values(), factors, strict=True)
+    ]
+
+
 def _passage(case: Case) -> Passage | None:
     """How body 2 passes under body 1; None where that is left out of the conduction."""
     heat, geometry, motion = case.heat, case.geometry, case.motion
@@ -143,18 +168,15 @@ def thermal_material(case: Case, part: str) -> ThermalMaterial:
 
 
 def conducting_bodies(case: Case) -> tuple[dict[str, ThermalMaterial], dict[str, float]]:
-    """Materials by part and heat transfer by surface, for the modelled sector.
+    """Materials by part, and how many times each surface counts, for the modelled sector.
 
     Under a body 1 that takes up a sector, all of a turning body 2 comes by and is heated: what
     conducts, stores and cools is the whole ring.
     """
-    assert case.heat is not None
     geometry = case.geometry
     moving, sector = geometry.bodies[1], geometry.sector
     materials = {part: thermal_material(case, part) for part in geometry.parts}
     for part in geometry.parts_of(moving):
         materials[part] = materials[part].times(1 / sector)
-    whole = {
-        s: h / sector if s.startswith(f"{moving}_") else h for s, h in case.heat.cooling.items()
-    }
-    return materials, whole
+    times = {s: 1 / sector if s.startswith(f"{moving}_") else 1.0 for s in geometry.surfaces}
+    return materials, times

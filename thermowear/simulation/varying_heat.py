@@ -21,6 +21,7 @@ from .heat_stages import ConductedHeat, Coupling
 from .heat_states import StoredHeat
 from .system import System
 from .tangents import LastTangents, TangentOperators, Tangents
+from .thermal_loads import ThermalLoad
 from .thermal_system import ThermalSystem
 
 _TURNS = 60
@@ -52,16 +53,20 @@ class VaryingFrictionHeat(FrictionHeat):
     @property
     def steady(self) -> VaryingHeat:
         if self._lasting is None:
-            self._lasting = VaryingHeat(self, Tangents(self, None), None, self._conduction.given)
+            load = self._thermal.loads.at(0.0)
+            start = self._conduction.given
+            self._lasting = VaryingHeat(self, Tangents(self, None), load, load.heat, start)
         return self._lasting
 
-    def after(self, before: StoredHeat, step: float) -> VaryingHeat:
+    def after(self, before: StoredHeat, step: float, time: float) -> VaryingHeat:
         if step not in self._tangents:
             self._tangents[step] = Tangents(self, step)
             if len(self._tangents) > self._kept:
                 self._tangents.popitem(last=False)
         self._tangents.move_to_end(step)
-        return VaryingHeat(self, self._tangents[step], before.content / step, before.rise)
+        load = self._thermal.loads.at(time)
+        supplied = load.heat + before.content / step
+        return VaryingHeat(self, self._tangents[step], load, supplied, before.rise)
 
     def memory(self) -> LastTangents:
         steps = {step: tangents.reference for step, tangents in self._tangents.items()}
@@ -72,8 +77,8 @@ class VaryingFrictionHeat(FrictionHeat):
             self._tangents[step] = Tangents(self, step, reference)
         if memory.steady is not None:
             reference, rise, change = memory.steady
-            tangents = Tangents(self, None, reference)
-            self._lasting = VaryingHeat(self, tangents, None, rise, change)
+            tangents, load = Tangents(self, None, reference), self._thermal.loads.at(0.0)
+            self._lasting = VaryingHeat(self, tangents, load, load.heat, rise, change)
 
     def at_rest(self, rise: np.ndarray) -> Resting:
         faces = at_rest(rise, self._thermal.face.traces, self._system.comm).rise
@@ -91,22 +96,25 @@ class VaryingFrictionHeat(FrictionHeat):
 
     def gap_per_rise(self, rise: np.ndarray) -> np.ndarray:
         """Weak gap per small change of a nodal rise, shape (n_owned, m)."""
-        result = self._per_rise
+        result = self.condensed.per_rise
         for part, per_rise in self._per_excess:
             result = result + part.slope(rise)[:, None] * per_rise
         return result
 
     def about(
-        self, operators: TangentOperators, stored: np.ndarray | None, rise: np.ndarray
+        self,
+        operators: TangentOperators,
+        load: ThermalLoad,
+        supplied: np.ndarray,
+        rise: np.ndarray,
     ) -> ConductedHeat:
         """Linear heat about a rise, by operators of a rise that is near; every rank calls."""
-        heat = self._conduction.remainder(rise, operators.reference)
-        heat = heat if stored is None else heat + stored
-        alone = operators.conduction.solve(heat)
+        heat = self._conduction.remainder(rise, operators.reference) + supplied
+        alone = load.on(operators.conduction).solve(heat)
         traces, comm = self._thermal.face.traces, self._system.comm
         faces = at_rest(alone, traces, comm).rise
         changed = sum_over_ranks(comm, operators.per_rise.T @ (alone - rise))
-        return ConductedHeat(operators, heat, Resting(faces, self._opening(rise) + changed))
+        return ConductedHeat(operators, load, heat, Resting(faces, self._opening(rise) + changed))
 
     def far(self, rise: np.ndarray, other: np.ndarray) -> float:
         """How different two rises are, relative to the larger one; every rank calls."""
@@ -116,7 +124,7 @@ class VaryingFrictionHeat(FrictionHeat):
 
     def _opening(self, rise: np.ndarray) -> np.ndarray:
         """Weak gap that a rise opens, shape (m,) [m³]."""
-        opening = self._per_rise.T @ rise
+        opening = self.condensed.per_rise.T @ rise
         for part, per_rise in self._per_excess:
             opening = opening + per_rise.T @ part.excess(rise)
         return sum_over_ranks(self._system.comm, opening)
@@ -135,8 +143,9 @@ class VaryingHeat:
     ----------
     heat : VaryingFrictionHeat
     tangents : Tangents
-    stored : ndarray or None, shape (n_owned,)
-        Nodal heat that the bodies have stored before, per time [W]; None in a steady state.
+    load : ThermalLoad
+    supplied : ndarray, shape (n_owned,)
+        See `ConductedHeat` [W].
     rise : ndarray, shape (n_owned,)
         To start from [K].
     change : float, optional
@@ -147,16 +156,18 @@ class VaryingHeat:
         self,
         heat: VaryingFrictionHeat,
         tangents: Tangents,
-        stored: np.ndarray | None,
+        load: ThermalLoad,
+        supplied: np.ndarray,
         rise: np.ndarray,
         change: float = np.inf,
     ):
         self._heat = heat
         self._tangents = tangents
-        self._stored = stored
+        self.load = load
+        self._supplied = supplied
         self._rise = rise
         self._last = change
-        self._linear = heat.about(tangents.near(rise), stored, rise)
+        self._linear = heat.about(tangents.near(rise), load, supplied, rise)
 
     def memory(self) -> tuple[np.ndarray | None, np.ndarray, float]:
         """Where its tangents were made, its temperatures, and their last change."""
@@ -204,6 +215,6 @@ class VaryingHeat:
             return change
         slow = change > _SLOW * self._last
         operators = self._tangents.at(rise) if slow else self._tangents.near(rise)
-        self._linear = self._heat.about(operators, self._stored, rise)
+        self._linear = self._heat.about(operators, self.load, self._supplied, rise)
         self._rise, self._last = rise, np.inf if slow else change
         return change

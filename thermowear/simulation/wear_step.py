@@ -88,6 +88,9 @@ class WearProblem(Protocol):
         ComputationError
         """
 
+    def difference_inside(self, one: WornContact, other: WornContact) -> float:
+        """Largest difference of temperatures inside the bodies, where that matters [K]."""
+
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end that steps must not pass over [s]."""
 
@@ -124,8 +127,9 @@ def advance_with_error(
         After the two half steps.
     float
         Largest of the errors of pressure, of wear, and of temperatures that are followed in time:
-        relative to the largest pressure, to the largest depth worn and to the largest rise of the
-        faces so far, 10 K at least. What rounding makes of a pressure that vanishes in the end is
+        relative to the largest pressure, to the largest depth worn and to the largest rise so far,
+        10 K at least. Temperatures are those of the faces, and those inside the bodies where not
+        friction alone heats them. What rounding makes of a pressure that vanishes in the end is
         no error of the step.
     """
     whole = advance(problem, state, time, step)
@@ -138,10 +142,12 @@ def advance_with_error(
         _relative(halves.worn - whole.worn, float(halves.worn.max(initial=0.0))),
     ]
     if halves.stored is not None and halves.faces is not None and whole.faces is not None:
+        largest = max(halves.stored.largest, _LEAST_RISE)
         errors += [
-            _relative(ours - theirs, max(halves.stored.largest, _LEAST_RISE))
+            _relative(ours - theirs, largest)
             for ours, theirs in zip(halves.faces.rise, whole.faces.rise, strict=True)
         ]
+        errors.append(problem.difference_inside(halves, whole) / largest)
     return halves, max(errors) / 3.0
 
 

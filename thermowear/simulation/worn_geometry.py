@@ -50,7 +50,7 @@ class WornGeometry:
         Of surfaces, whose contact points stay where they are on their facets; None in a section.
     volume_error : float
         Largest difference so far of what a mesh has lost in an update and the volume worn off,
-        relative to it.
+        relative to what is lost so far.
     renewed : dict of int to NewFace
         Faces that the last update has divided anew, by index of the body. Their depth is that of
         the smooth curve through the nodes of the former face.

@@ -26,3 +26,15 @@ def starter_text(name: str) -> str:
     if name not in starters():
         raise CaseError(f"init {name}: no such starter case; one of: {', '.join(starters())}")
     return (resources.files(__name__) / f"{name}.toml").read_text("utf-8")
+
+
+def starter_files(name: str) -> dict[str, bytes]:
+    """Files that a starter case reads from its own folder, by their names.
+
+    Raises
+    ------
+    CaseError
+        If there is none of that name.
+    """
+    path = tomllib.loads(starter_text(name))["geometry"].get("path")
+    return {} if path is None else {path: (resources.files(__name__) / path).read_bytes()}

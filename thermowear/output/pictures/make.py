@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from ...balances import violated
 from ...errors import CaseError, ComputationError
 from .animation import FPS, check_film, has_frames
 from .curves import draw_history, draw_interface, draw_wear
@@ -31,7 +33,7 @@ def make_pictures(folder: Path) -> list[str]:
     Returns
     -------
     list of str
-        What could not be drawn and why, one line each.
+        What could not be drawn and why, and which balances do not hold, one line each.
 
     Raises
     ------
@@ -54,12 +56,19 @@ def make_pictures(folder: Path) -> list[str]:
     draw_cycles(folder)
     draw_track(folder)
     draw_modes(folder)
+    notes = [f"{folder}: not balanced: {line}" for line in violated(_summary(folder))]
     if not (folder / "fields.vtu").is_file():
-        return [f"{folder}: no fields.vtu, so no pictures of the bodies"]
+        return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]
     reasons = {"the bodies": _render("bodies", str(folder))}
     if has_frames(folder):
         reasons["the animation"] = _animate(folder, folder / "animation.gif", FPS)
-    return [f"{what} could not be drawn: {why}" for what, why in reasons.items() if why]
+    return notes + [f"{what} could not be drawn: {why}" for what, why in reasons.items() if why]
+
+
+def _summary(folder: Path) -> dict:
+    """The summary of a run; empty where there is none."""
+    path = folder / "summary.json"
+    return json.loads(path.read_bytes()) if path.is_file() else {}
 
 
 def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:

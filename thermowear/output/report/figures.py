@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from ...balances import ALLOWED, BALANCES, holds
 from .engineering import NOTHING, number, quantity, split_key
 
 GROUPS = {
@@ -52,12 +53,15 @@ GROUPS = {
     },
     "Heat and energy": {
         "max_temperature_K": "highest temperature",
-        "peak_temperature_K": "highest temperature on the way",
+        "peak_temperature_K": "highest temperature of the faces on the way",
         "peak_temperature_time_s": "time of the highest temperature",
         "friction_power_W": "friction power",
+        "prescribed_heat_W": "heat through surfaces with a given flux or power",
+        "contact_heat_1_W": "heat into body 1 at the contact",
+        "contact_heat_2_W": "heat into body 2 at the contact",
         "heat_advection": "heat carried along",
         "max_cell_peclet_number": "largest cell Péclet number",
-        "heat_in_J": "friction heat",
+        "heat_in_J": "heat put in",
         "heat_stored_J": "heat stored",
         "heat_lost_J": "heat lost",
         "heat_cooled_W": "heat lost by cooling",
@@ -94,11 +98,6 @@ _CELSIUS = {
     "peak_temperature_K",
 }  # a difference in K must not be turned to °C: only what is known
 _UNITS = {"seconds": "s"}  # of keys that do not end in theirs
-_BALANCES = {
-    "equilibrium_relative_error": "equilibrium",
-    "heat_balance_relative_error": "heat balance",
-}
-_ALLOWED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -147,13 +146,13 @@ def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
 def balances(summary: dict[str, Any]) -> list[Balance]:
     """The balances of a summary against what is allowed."""
     found = []
-    for key, label in _BALANCES.items():
+    for key, kept in BALANCES.items():
         error = summary.get(key)
         if isinstance(error, int | float):
             text = f"{error:.1e}" if math.isfinite(error) else NOTHING
-            found.append(Balance(label, f"{text} (allowed {_ALLOWED:g})", abs(error) <= _ALLOWED))
+            found.append(Balance(kept.name, f"{text} (allowed {ALLOWED:g})", holds(error)))
         elif key in summary:
-            found.append(Balance(label, NOTHING, None))
+            found.append(Balance(kept.name, NOTHING, None))
     return found
 
 

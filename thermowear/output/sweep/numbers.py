@@ -23,7 +23,9 @@ _NUMBERS = {
     "max_pressure_Pa": Quantity("", "largest pressure", "MPa", 1e-6),
     "place": Quantity("", "place of the largest pressure, x", "mm", 1e3),
     "max_temperature_K": Quantity("", "highest temperature", "°C", 1.0, -273.15),
-    "peak_temperature_K": Quantity("", "highest temperature on the way", "°C", 1.0, -273.15),
+    "peak_temperature_K": Quantity(
+        "", "highest temperature of the faces on the way", "°C", 1.0, -273.15
+    ),
     "heat_carried_out_W": Quantity("", "heat carried out", "W"),
     "shape_range_m": Quantity("", "range of the worn shape", "µm", 1e6),
     "rigid_wear_velocity_m_per_s": Quantity("", "wear rate along the press", "nm/s", 1e9),

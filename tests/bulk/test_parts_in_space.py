@@ -1,0 +1,40 @@
+"""Parts of a body in space that have materials of their own."""
+
+from dataclasses import replace
+
+from mpi4py import MPI
+
+import numpy as np
+
+from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.kinematics import Spatial
+from thermowear.bulk.surface_load import surface_pressure
+from thermowear.geometry.hexes import Lattice, level, mesh_lattice
+from thermowear.geometry.quads import tagged_bodies
+
+COMM = MPI.COMM_WORLD
+ENDS = (np.linspace(0.0, 0.02, 3), np.linspace(0.0, 0.01, 3), np.array([0.0, 0.01, 0.03, 0.04]))
+
+
+def bar():
+    """A bar of three layers of 10, 20 and 10 mm, the middle one a part; pressed at its top."""
+    body = mesh_lattice(Lattice(ENDS, lambda p: p), 1)
+    middles = body.points[body.cells].mean(axis=1)[:, 2]
+    body = replace(body, zones={"core": np.flatnonzero((middles > 0.01) & (middles < 0.03))})
+    surfaces = {"bar_bottom": lambda p: level(p, 0.0), "bar_top": lambda p: level(p, 0.04)}
+    return tagged_bodies({"bar": body}, surfaces)
+
+
+def test_layers_in_series():
+    """requirement: each gives way by p h/E under a pressure on the top."""
+    bodies = distribute(bar() if COMM.rank == 0 else None, COMM)
+    materials = {"bar": ElasticMaterial(2e9, 0.0), "core": ElasticMaterial(5e10, 0.0)}
+    elastic = elasticity(bodies, Spatial(), 2, materials, ["bar_bottom"])
+    u = elastic.solve(surface_pressure(elastic, "bar_top", 3e6)).reshape(-1, 3)
+    top = np.abs(elastic.nodes()[:, 2] - 0.04) < 1e-12
+    np.testing.assert_allclose(u[top, 2], -3e6 * (0.02 / 2e9 + 0.02 / 5e10), rtol=1e-9)
+    parts = bodies.parts_of_cells(np.arange(bodies.mesh.topology.index_map(3).size_local))
+    assert COMM.allreduce(int(parts.sum())) == 4
+    assert bodies.names == ("bar", "core")
+    assert COMM.allreduce(len(parts)) == 12

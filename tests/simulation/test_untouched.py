@@ -1,0 +1,78 @@
+"""Contacts in which nothing touches at the end."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import thermowear as tw
+from thermowear.errors import ComputationError
+from thermowear.simulation.observer import Observer
+from thermowear.simulation.untouched import touching
+
+from ..case.starter import HERTZ, tables
+
+
+class Notes(Observer):
+    def __init__(self):
+        self.texts = []
+
+    def note(self, text):
+        self.texts.append(text)
+
+
+def punch(**load):
+    changes = {"mesh.degree": 2, "mesh.elements": 4, "load": load, "geometry.half": False}
+    changes["contact.positioning"] = False
+    return tw.load(tables(HERTZ, changes))
+
+
+def test_a_beam_that_does_not_touch_is_said():
+    """
+    requirement: pressure 0 never leaves without a word.
+    """
+    notes = Notes()
+    changes = {"geometry.gap": "5 mm", "mesh.degree": 2, "mesh.elements": 8}
+    assert tw.run(tw.load(tables("beam-on-foundation", changes)), observer=notes).stopped is None
+    assert any(text.startswith("nothing touches at the end") for text in notes.texts)
+
+
+@pytest.fixture(scope="module")
+def apart():
+    """A system, and an outcome of it that has no pressure."""
+    from mpi4py import MPI
+
+    from thermowear.simulation.phases import Phases
+    from thermowear.simulation.preparation import prepare
+    from thermowear.simulation.without_time import initial
+
+    def made(case):
+        system = prepare(case, MPI.COMM_SELF, Phases())
+        outcome = initial(system, Observer())
+        nothing = np.zeros(len(system.weights))
+        contact = replace(outcome.contact, pressure=nothing)
+        gap = np.full(len(nothing), 2e-6)
+        return system, replace(
+            outcome, contact=contact, interface=replace(outcome.interface, gap=gap)
+        )
+
+    return made
+
+
+def test_a_given_approach_may_leave_the_faces_apart(apart):
+    """
+    requirement: said, with how far they are apart.
+    """
+    outcome, note = touching(*apart(punch(approach="0.05 mm")))
+    assert outcome.stopped is None
+    assert note == "nothing touches at the end; the faces are 2 µm apart at least"
+
+
+def test_a_pressing_force_has_to_be_carried(apart):
+    """
+    requirement: a force that nothing carries is a failed computation, results kept.
+    """
+    outcome, note = touching(*apart(punch(force="1 kN")))
+    assert note is None
+    assert isinstance(outcome.stopped, ComputationError)
+    assert str(outcome.stopped).startswith("nothing carries the pressing force of 1000 N")

@@ -1,0 +1,90 @@
+"""The balances that every run must keep: forces, heat, and volume worn off.
+
+They are computed by other means than the solution, so that an error of either shows. A run that
+does not keep them ends as a failed computation; its results stay readable.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .errors import ComputationError
+
+ALLOWED = 1e-6
+"""Largest relative error of a balance."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """A balance: its name, what its error is relative to, and what to try where it fails."""
+
+    name: str
+    scale: str
+    remedy: str
+
+
+BALANCES = {
+    "equilibrium_relative_error": Balance(
+        "equilibrium",
+        "the forces on the bodies",
+        "the stiffness is too ill-conditioned: use Poisson ratios farther from 0.5, stiffnesses of "
+        "the parts of a body that differ by less, or a lower mesh.degree",
+    ),
+    "heat_balance_relative_error": Balance(
+        "heat balance",
+        "the heat turned over",
+        "some heat has hardly a way out: check heat.cooling and heat.temperature, and use "
+        "conductivities and cooling that differ by less",
+    ),
+    "geometry_volume_error": Balance(
+        "worn volume",
+        "the volume worn off",
+        "the moved mesh does not follow the worn face: use more elements along the contact "
+        "(mesh.elements) or a smaller wear.update",
+    ),
+}
+"""By their key in the summary."""
+
+
+def holds(error: float) -> bool:
+    """Whether a relative error is small enough; not a number is not."""
+    return abs(error) <= ALLOWED
+
+
+def relative(missing: float, scale: float) -> float:
+    """What is missing of a balance, relative to a scale; infinite where it is not a number."""
+    if missing == 0.0:
+        return 0.0
+    error = abs(missing) / scale if scale > 0.0 else math.inf
+    return error if math.isfinite(error) else math.inf
+
+
+def violated(summary: Mapping[str, Any]) -> list[str]:
+    """A line for each balance of a summary that does not hold: which, by how much, what to do."""
+    return [
+        f"the {balance.name} has a relative error of {summary[key]:.1e} of {balance.scale} "
+        f"(allowed: {ALLOWED:g}); {balance.remedy}"
+        for key, balance in BALANCES.items()
+        if isinstance(summary.get(key), int | float) and not holds(summary[key])
+    ]
+
+
+def judged(summary: Mapping[str, Any]) -> ComputationError | None:
+    """The error of a run whose balances do not hold; None where they do."""
+    found = violated(summary)
+    return ComputationError("not balanced: " + "; ".join(found)) if found else None
+
+
+def require(**errors: float) -> None:
+    """Raise the error of balances, by their keys, that do not hold.
+
+    Raises
+    ------
+    ComputationError
+    """
+    error = judged(errors)
+    if error is not None:
+        raise error

@@ -1,0 +1,132 @@
+"""Reading meshes as gmsh writes them: ``.msh`` of the formats 2 and 4, as text or binary.
+
+gmsh itself takes a file that does not begin as a mesh does for a script and runs its commands, so
+it is never asked to open one. The grammar is in the reference manual of gmsh, section "MSH file
+format".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .contents import Contents, numbering, shown
+from .gmsh_elements import elements_2, elements_4, entities, nodes_2, nodes_4
+from .gmsh_numbers import Binary, Numbers, Text
+
+_READ = ("MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements")
+_PASSED_OVER = (
+    *("Comments", "Periodic", "PartitionedEntities", "GhostElements", "Parametrizations"),
+    *("NodeData", "ElementData", "ElementNodeData", "InterpolationScheme"),
+)
+_SECTION = re.compile(rb"\$(\w+)[ \t]*\r?\n")
+_NAME = re.compile(r'\s*(\d+)\s+(-?\d+)\s+"([^"\n]*)"\s*')
+
+
+def read_gmsh(data: bytes) -> Contents:
+    """Read the bytes of a file.
+
+    Raises
+    ------
+    ValueError
+        If it is anything but a mesh, or a broken one.
+    """
+    sections = dict(_sections(data))
+    for name in ("MeshFormat", "Nodes", "Elements"):
+        if name not in sections:
+            raise ValueError(f"it has no section ${name}")
+    form = _format(sections["MeshFormat"])
+    names = _physical_names(sections.get("PhysicalNames", b""))
+    if form.version == 2:
+        tags, points = nodes_2(form.numbers(sections, "Nodes"))
+        blocks = elements_2(form.numbers(sections, "Elements"), form.binary)
+    else:
+        known = "Entities" in sections
+        groups = entities(form.numbers(sections, "Entities"), form.minor) if known else {}
+        tags, points = nodes_4(form.numbers(sections, "Nodes"), form.minor)
+        blocks = elements_4(form.numbers(sections, "Elements"), form.minor, groups)
+    positions = numbering(tags)
+    return Contents(points, [block.named(names, positions) for block in blocks])
+
+
+def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
+    """Name and body of each section; there is nothing else in a mesh."""
+    at = 0
+    found: set[str] = set()
+    while at < len(data):
+        start = _SECTION.match(data, at)
+        if start is None:
+            if data[at : at + 1].isspace():
+                at += 1
+                continue
+            line, number = data[at:].split(b"\n", 1)[0], 1 + data.count(b"\n", 0, at)
+            raise ValueError(
+                f"line {number}, {shown(line)}, belongs to no section of a "
+                "mesh; commands are never carried out"
+            )
+        name = start[1].decode("ascii", "replace")
+        if name not in (*_READ, *_PASSED_OVER):
+            raise ValueError(f"the section ${name} is none of a mesh")
+        if name in found and name in _READ:
+            raise ValueError(f"the section ${name} is there twice")
+        end = data.find(b"$End" + start[1], start.end())
+        if end < 0:
+            raise ValueError(f"the section ${name} does not end")
+        if not found - {"Comments"} and name not in ("MeshFormat", "Comments"):
+            raise ValueError("it does not begin with $MeshFormat")
+        found.add(name)
+        yield name, data[start.end() : end]
+        at = end + len(b"$End") + len(name)
+
+
+@dataclass(frozen=True)
+class _Format:
+    """Main and minor version, and how numbers are written."""
+
+    version: int
+    minor: int
+    order: str
+    """``""`` of text, ``"<"`` or ``">"`` of binary files."""
+    size: int
+    """Bytes of a ``size_t``."""
+
+    @property
+    def binary(self) -> bool:
+        return bool(self.order)
+
+    def numbers(self, sections: dict[str, bytes], name: str) -> Numbers:
+        body = sections[name]
+        if not self.binary:
+            return Text(name, body)
+        if self.version == 2:
+            count, _, body = body.partition(b"\n")
+            return Binary(name, body, self.order, self.size, int(count))
+        return Binary(name, body, self.order, self.size, None)
+
+
+def _format(body: bytes) -> _Format:
+    first, _, rest = body.partition(b"\n")
+    words = first.split()
+    version, _, minor = words[0].decode("ascii").partition(".") if words else ("", "", "")
+    if len(words) != 3 or version not in ("2", "4") or minor[:1] not in ("", "0", "1", "2"):
+        raise ValueError(f"the format {shown(first)} is not read; save it as version 4.1 or 2.2")
+    size = int(words[2])
+    if words[1] == b"0":
+        return _Format(int(version), int(minor[:1] or 0), "", size)
+    order = {b"\1\0\0\0": "<", b"\0\0\0\1": ">"}.get(rest[:4])
+    if order is None or size not in (4, 8) or (version == "4" and minor[:1] in ("", "0")):
+        raise ValueError("this kind of binary file is not read; save it as version 4.1")
+    return _Format(int(version), int(minor[:1] or 0), order, size)
+
+
+def _physical_names(body: bytes) -> dict[tuple[int, int], str]:
+    """Names by dimension and number of their group."""
+    _, *lines = body.decode("utf-8", "replace").strip().splitlines() or [""]
+    found = {}
+    for line in lines:
+        entry = _NAME.fullmatch(line)
+        if entry is None:
+            raise ValueError(f"{shown(line.encode())} is no physical name")
+        found[int(entry[1]), int(entry[2])] = entry[3]
+    return found

@@ -1,0 +1,71 @@
+"""Mesh files that libraries read, in a process of its own.
+
+Readers of XML and HDF5 files may be made to crash, to hang or to take all memory by a file that is
+broken or hostile; a process of their own, with bounds, keeps that from the program.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from .contents import Block, Contents
+
+_READER = Path(__file__).with_name("isolated_reader.py")
+_SECONDS = 60
+"""At the longest, however little processor time it takes."""
+_MEMORY = 2**30
+"""For the libraries and a small file [bytes]; of address space, which is more than is used."""
+_PER_BYTE = 16
+"""Memory that a byte of a file may take."""
+_LONGEST = 300
+"""Characters of a reason."""
+
+
+def read_isolated(path: Path, ending: str) -> Contents:
+    """Read a .vtu, .xdmf or .med file.
+
+    Raises
+    ------
+    ValueError
+        If it is broken, refers to other files, or takes more memory or time than a mesh may.
+    """
+    memory = _MEMORY + _PER_BYTE * path.stat().st_size
+    command = [sys.executable, "-P", str(_READER), str(path.resolve()), ending, str(memory)]
+    single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+    try:
+        done = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_SECONDS,
+            env=os.environ | single,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"reading it took more than {_SECONDS} s") from None
+    if done.returncode == 1:
+        reason = done.stderr.decode("utf-8", "replace").rpartition("\n")[2]
+        raise ValueError(reason[:_LONGEST] or "it is broken")
+    if done.returncode:
+        raise ValueError("its reader was stopped: the file is broken, or takes too long to read")
+    return _unpacked(done.stdout)
+
+
+def _unpacked(data: bytes) -> Contents:
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        arrays = dict(file)
+    about = json.loads(str(arrays["about"]))
+    blocks = [
+        Block(kind, arrays[f"nodes_{index}"], {}) for index, kind in enumerate(about["kinds"])
+    ]
+    for number, (index, name) in enumerate(about["sets"]):
+        blocks[index].sets[name] = arrays[f"set_{number}"]
+    sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(about["node_sets"])}
+    return Contents(arrays["points"], blocks, sets)

@@ -1,0 +1,304 @@
+"""Program that reads a mesh file with libraries, run by `isolated` in a process of its own.
+
+Started by its path, so that nothing of this package is imported. The file may be hostile: memory
+and processor time are bounded, no file can be written, and none but the named one (and an HDF5 file
+beside an .xdmf) is opened. What it finds goes to the standard output as ``.npz``.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+_SECONDS = 20
+"""Of processor time."""
+_XDMF = {
+    "Polyvertex": "vertex",
+    "Polyline": "line",
+    "Edge_3": "line3",
+    "Triangle": "triangle",
+    "Triangle_6": "triangle6",
+    "Tri_6": "triangle6",
+    "Quadrilateral": "quad",
+    "Quadrilateral_8": "quad8",
+    "Quad_8": "quad8",
+    "Quadrilateral_9": "quad9",
+    "Quad_9": "quad9",
+}
+_MIXED = {
+    1: ("vertex", 1),
+    2: ("line", 2),
+    4: ("triangle", 3),
+    5: ("quad", 4),
+    0x22: ("line3", 3),
+    0x23: ("quad9", 9),
+    0x24: ("triangle6", 6),
+    0x25: ("quad8", 8),
+}
+"""Type and nodes of cells by their number in mixed topologies, see XdmfTopologyType.cpp."""
+_COUNTED = (1, 2)
+"""Mixed cells whose number of nodes stands behind their type."""
+
+
+class _Mesh:
+    """Like a mesh of meshio, as far as it is used here."""
+
+    def __init__(self, points, cells, cell_data):
+        self.points, self.cells, self.cell_data, self.point_data = points, cells, cell_data, {}
+
+
+def read(path: Path, ending: str) -> dict[str, np.ndarray]:
+    """Arrays that say all of a mesh, see `isolated.read_isolated`."""
+    if ending == ".med":
+        _no_links(path)
+        from meshio.med import read as reader
+
+        mesh = reader(str(path))
+        cells = [(block.type, block.data) for block in mesh.cells]
+    elif ending == ".vtu":
+        _no_entities(path)
+        from meshio.vtu import read as reader
+
+        mesh = reader(str(path))
+        cells = [(block.type, block.data) for block in mesh.cells]
+    else:
+        _no_entities(path)
+        mesh = _read_xdmf(path)
+        cells = mesh.cells
+    arrays = {"points": np.asarray(mesh.points, dtype=float)}
+    about = {"kinds": [kind for kind, _ in cells], "sets": [], "node_sets": []}
+    for index, (_, nodes) in enumerate(cells):
+        arrays[f"nodes_{index}"] = np.asarray(nodes, dtype=np.int64)
+        for name, members in _sets_of_block(mesh, index).items():
+            arrays[f"set_{len(about['sets'])}"] = members
+            about["sets"].append([index, name])
+    for name, members in _node_sets(mesh).items():
+        arrays[f"node_set_{len(about['node_sets'])}"] = members
+        about["node_sets"].append(name)
+    return arrays | {"about": np.array(json.dumps(about))}
+
+
+def _sets_of_block(mesh, index: int) -> dict[str, np.ndarray]:
+    """Sets by name (families of .med), or by the numbers of integer data (.vtu, .xdmf)."""
+    found: dict[str, list[np.ndarray]] = {}
+    for key, data in mesh.cell_data.items():
+        values = np.asarray(data[index])
+        if values.ndim != 1 or not np.issubdtype(values.dtype, np.integer):
+            continue
+        families = getattr(mesh, "cell_tags", {}) if key == "cell_tags" else None
+        for value in np.unique(values):
+            names = [str(value)] if families is None else families.get(value, [])
+            for name in names:
+                found.setdefault(name, []).append(np.flatnonzero(values == value))
+    return {name: np.unique(np.concatenate(parts)) for name, parts in found.items()}
+
+
+def _node_sets(mesh) -> dict[str, np.ndarray]:
+    """Sets of nodes of .med."""
+    values = mesh.point_data.get("point_tags", np.empty(0))
+    found: dict[str, list[np.ndarray]] = {}
+    for family, names in getattr(mesh, "point_tags", {}).items():
+        for name in names:
+            found.setdefault(name, []).append(np.flatnonzero(values == family))
+    return {name: np.concatenate(parts) for name, parts in found.items()}
+
+
+def _no_entities(path: Path) -> None:
+    """Refuse what makes an XML file more than the text that it is."""
+    from xml.parsers import expat
+
+    def refuse(*_) -> None:
+        raise ValueError("it has a document type declaration (<!DOCTYPE>), which no mesh needs")
+
+    def begin(name: str, _) -> None:
+        if name.rpartition(":")[2].rpartition("}")[2] == "include":
+            raise ValueError("it includes another file; a mesh has to be in one file")
+
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = refuse
+    parser.StartElementHandler = begin
+    data = path.read_bytes()
+    raw = data.find(b"<AppendedData")  # its bytes need not be XML
+    try:
+        parser.Parse(data if raw < 0 else data[:raw], raw < 0)
+    except expat.ExpatError as error:
+        raise ValueError(f"it is not XML: {error}") from None
+    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
+        refuse()
+
+
+def _no_links(path: Path) -> None:
+    """Refuse HDF5 files that take data from other files."""
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        seen: set[int] = set()
+        groups: list = [file]
+        while groups:
+            group = groups.pop()
+            number = h5py.h5o.get_info(group.id).addr
+            if number in seen:
+                continue
+            seen.add(number)
+            for name in group:
+                link = group.get(name, getlink=True)
+                if not isinstance(link, h5py.HardLink):
+                    raise ValueError(f"its entry {name!r} is a link; a mesh has to be in one file")
+                entry = group[name]
+                if isinstance(entry, h5py.Group):
+                    groups.append(entry)
+                elif isinstance(entry, h5py.Dataset) and (entry.external or entry.is_virtual):
+                    raise ValueError(f"its entry {name!r} is kept in another file")
+
+
+def _read_xdmf(path: Path) -> _Mesh:
+    """The mesh of an XDMF file with one grid, data in it or in an HDF5 file beside it."""
+    from xml.etree import ElementTree as ET
+
+    grids = ET.parse(path).getroot().findall("./Domain/Grid")
+    if len(grids) != 1 or grids[0].get("GridType", "Uniform") != "Uniform":
+        raise ValueError("an .xdmf file must have one uniform grid")
+    parts = {tag: grids[0].findall(tag) for tag in ("Geometry", "Topology", "Attribute")}
+    if len(parts["Geometry"]) != 1 or len(parts["Topology"]) != 1:
+        raise ValueError("the grid needs one Geometry and one Topology")
+    geometry, topology = parts["Geometry"][0], parts["Topology"][0]
+    width = {"XY": 2, "XYZ": 3}.get(_type(geometry, "Geometry") or "XYZ", 0)
+    points = _item(path, geometry).reshape(-1, width) if width else None
+    if points is None:
+        raise ValueError(f"points of the kind {_type(geometry, 'Geometry')} are not supported")
+    kind, data = _type(topology, "Topology"), _item(path, topology)
+    if kind == "Mixed":
+        cells, at = _mixed(data.ravel())
+    elif kind in _XDMF:
+        cells = [(_XDMF[kind], data.reshape(len(data), -1))]
+        at = [np.arange(len(data))]
+    else:
+        raise ValueError(f"cells of the kind {kind} are not supported in .xdmf")
+    values = {
+        str(entry.get("Name")): _item(path, entry)
+        for entry in parts["Attribute"]
+        if entry.get("Center") == "Cell"
+    }
+    of_blocks = {}
+    for name, value in values.items():
+        if len(value) != sum(map(len, at)):
+            raise ValueError(f"the attribute {name} has another number of values than cells")
+        squeezed = value[:, 0] if value.ndim == 2 and value.shape[1] == 1 else value
+        of_blocks[name] = [squeezed[members] for members in at]
+    return _Mesh(points, cells, of_blocks)
+
+
+def _type(entry, tag: str) -> str | None:
+    return entry.get(f"{tag}Type", entry.get("Type"))
+
+
+def _item(path: Path, entry) -> np.ndarray:
+    """Data of an element, in the file or in an HDF5 file beside it."""
+    items = entry.findall("DataItem")
+    if len(items) != 1 or "Reference" in items[0].attrib:
+        raise ValueError(f"a {entry.tag} needs one DataItem of its own")
+    item = items[0]
+    kind = item.get("DataType", item.get("NumberType", "Float"))
+    if kind not in ("Float", "Int", "UInt"):
+        raise ValueError(f"data of the type {kind} are not supported")
+    shape = [int(word) for word in (item.get("Dimensions") or "").split()]
+    text = (item.text or "").strip()
+    if item.get("Format", "XML") == "XML":
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # of words that are no numbers
+            values = np.fromstring(text, float if kind == "Float" else np.int64, sep=" ")
+    elif item.get("Format") == "HDF":
+        values = _heavy(path, text)
+    else:
+        raise ValueError(f"data of the format {item.get('Format')} are kept in other files")
+    if values.size != np.prod(shape, dtype=float):
+        raise ValueError(f"a DataItem of {entry.tag} has other dimensions than it says")
+    return values.reshape(shape)
+
+
+def _heavy(path: Path, text: str) -> np.ndarray:
+    """A data set of an HDF5 file in the same folder."""
+    import h5py
+
+    name, _, inside = text.partition(":")
+    beside = path.parent / name
+    if Path(name).name != name or not beside.is_file() or beside.is_symlink():
+        raise ValueError(f"its data are in {name!r}, which is no file beside it")
+    _no_links(beside)
+    with h5py.File(beside, "r") as file:
+        return np.asarray(file[inside][()])
+
+
+def _mixed(data: np.ndarray) -> tuple[list[tuple[str, np.ndarray]], list[np.ndarray]]:
+    """Blocks of cells of one type each, and which cells of the file they are."""
+    starts: dict[int, list[int]] = {}
+    members: dict[int, list[int]] = {}
+    at, cell = 0, 0
+    values = [int(value) for value in data]
+    while at < len(values):
+        number = values[at]
+        if number not in _MIXED:
+            raise ValueError(f"cells of XDMF's type {number} are not supported")
+        kind, count = _MIXED[number]
+        at += 1
+        if number in _COUNTED:
+            if values[at : at + 1] != [count]:
+                raise ValueError(f"cells of the type {kind} must have {count} nodes")
+            at += 1
+        starts.setdefault(number, []).append(at)
+        members.setdefault(number, []).append(cell)
+        at, cell = at + count, cell + 1
+    if at != len(values):
+        raise ValueError("the last cell is not complete")
+    blocks = [
+        (_MIXED[n][0], data[np.array(first)[:, None] + np.arange(_MIXED[n][1])])
+        for n, first in starts.items()
+    ]
+    return blocks, [np.array(cells) for cells in members.values()]
+
+
+def _bounded(memory: int) -> None:
+    """From now on, take no more memory [bytes] and processor time, and write no file."""
+    import resource
+
+    for limit, most in (
+        (resource.RLIMIT_AS, memory),
+        (resource.RLIMIT_CPU, _SECONDS),
+        (resource.RLIMIT_FSIZE, 0),
+        (resource.RLIMIT_CORE, 0),
+    ):
+        _, hard = resource.getrlimit(limit)
+        bound = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(limit, (bound, hard))
+
+
+def main(path: str, ending: str, memory: str) -> int:
+    """Write the arrays, or one line with the reason why there are none."""
+    out = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what libraries print is no result
+    _bounded(int(memory))
+    try:
+        arrays = read(Path(path), ending)
+        packed = io.BytesIO()
+        np.savez(packed, allow_pickle=False, **arrays)
+    except MemoryError:
+        reason = "it takes more memory than a mesh may"
+    except (Exception, SystemExit) as error:  # readers raise whatever a broken file leads them to
+        reason = " ".join(str(error).split()) or type(error).__name__
+        reason = {"KeyError": f"it has no entry {reason}"}.get(type(error).__name__, reason)
+    else:
+        out.write(packed.getbuffer())
+        out.close()
+        return 0
+    sys.stderr.write(f"\n{reason}")
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

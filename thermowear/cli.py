@@ -105,6 +105,11 @@ def _parser() -> argparse.ArgumentParser:
         "--resume", action="store_true", help="go on with the run that was stopped there"
     )
     run.add_argument("--no-pictures", dest="pictures", action="store_false")
+    run.add_argument(
+        "--accuracy",
+        action="store_true",
+        help="repeat the case one degree coarser and finer, and print all three side by side",
+    )
 
     sweep = _command(commands, "sweep", _sweep, "compute all combinations of values of keys")
     _add_case(sweep)

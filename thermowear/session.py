@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from . import load
 from .case import Case, as_plain
+from .discretisations import COMPARED, side_by_side
 from .errors import CaseError, UnwritableError
 from .output.checkpoint import CHECKPOINT
-from .output.console import Progress, Terminal, print_summary
+from .output.console import Progress, Terminal, print_discretisations, print_summary
 from .output.folder import ResultsFolder
 from .output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from .parallel import on_root
@@ -115,12 +117,18 @@ def run_session(chosen, comm, import_seconds: float) -> int:
             phases = Phases(recorder.phase)
             phases.add("import", import_seconds)
             result = run(case, comm, recorder, phases, saved)
+            if chosen.accuracy and result.stopped is None:
+                with phases("coarser and finer"):
+                    others = side_by_side(chosen.case, tuple(chosen.overrides), comm)
+                result = replace(result, summary=result.summary | others)
             with phases("write"):
                 on_root(comm, lambda: _writing(lambda: folder.finish(result, phases.seconds)))
             if chosen.pictures:
                 with phases("pictures"):
                     on_root(comm, lambda: _writing(lambda: _draw(path, console)))
         print_summary(console, result.summary, phases.seconds)
+        if chosen.accuracy and result.stopped is None:
+            print_discretisations(console, result.summary, COMPARED)
         console.print(f"results in {path}")
         if result.stopped is not None:
             raise result.stopped

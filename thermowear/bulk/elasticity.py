@@ -9,7 +9,7 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 import ufl
-from dolfinx import default_scalar_type, fem
+from dolfinx import fem
 from dolfinx import mesh as dmesh
 from dolfinx.fem.petsc import assemble_matrix
 
@@ -62,6 +62,21 @@ class Elasticity:
         λ, μ, m = self.lame
         ε = self.model.strain(self.bodies.mesh, u)
         return self.model.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
+
+    def virtual_work(self, u, δu, degree: int):
+        """Form of the work of the stress of one displacement on the strain of another [J].
+
+        `degree` is that of the polynomials for which the quadrature is meant.
+        """
+        measure = section_measure(self.bodies.mesh, degree)
+        return _virtual_work(self.bodies.mesh, self.model, self.lame, u, δu, measure)
+
+    def thermal_work(self, rise, δu, degree: int):
+        """Form of the work of thermal stress of a temperature rise on a displacement [J]."""
+        mesh = self.bodies.mesh
+        ε = self.model.strain(mesh, δu)
+        measure = section_measure(mesh, degree)
+        return self.model.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] under nodal loads [N], owned rows, one or several columns."""
@@ -139,13 +154,10 @@ def elasticity(
     space = lagrange_space(mesh, degree, mesh.geometry.dim)
     lame = _lame(bodies, model, materials)
     u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
-    λ, μ, _ = lame
-    ε, δε = model.strain(mesh, u), model.strain(mesh, δu)
-    energy = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
-    form = model.integral(mesh, energy, section_measure(mesh, degree))
+    form = _virtual_work(mesh, model, lame, u, δu, section_measure(mesh, degree))
     stiffness = assemble_matrix(compiled(form))
     stiffness.assemble()
-    fixed = _fixed(bodies, model, space, clamped, {0: symmetric, 1: rollers})
+    fixed = fixed_values(bodies, model, space, clamped, {0: symmetric, 1: rollers})
     factor = Factor(supported(stiffness, fixed), dim=mesh.topology.dim)
     return Elasticity(bodies, model, space, stiffness, fixed, factor, lame)
 
@@ -160,6 +172,13 @@ def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
     return result
 
 
+def _virtual_work(mesh, model: Model, lame, u, δu, measure):
+    λ, μ, _ = lame
+    ε, δε = model.strain(mesh, u), model.strain(mesh, δu)
+    density = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
+    return model.integral(mesh, density, measure)
+
+
 def _lame(bodies: Bodies, model: Model, materials: dict[str, ElasticMaterial]):
     λ, μ, m = {}, {}, {}
     for name, material in materials.items():
@@ -169,24 +188,31 @@ def _lame(bodies: Bodies, model: Model, materials: dict[str, ElasticMaterial]):
     return bodies.per_body(λ), bodies.per_body(μ), bodies.per_body(m)
 
 
-def _fixed(bodies: Bodies, model: Model, space, clamped, guided) -> np.ndarray:
-    """Which owned values the supports and the planes or axis of symmetry hold at zero.
+def fixed_values(bodies: Bodies, model: Model, space, clamped, guided) -> np.ndarray:
+    """Which owned values of a space the supports and planes or axis of symmetry hold at zero.
 
-    Surfaces by the component that they guide.
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    space : dolfinx.fem.FunctionSpace
+        Of vectors.
+    clamped : sequence of str
+        Surfaces held in all directions.
+    guided : dict of int to sequence of str
+        Surfaces by the component that they hold.
     """
     mesh = bodies.mesh
     tdim = mesh.topology.dim
-    zero = default_scalar_type(0)
+    bs, count = space.dofmap.index_map_bs, space.dofmap.index_map.size_local
     held = np.zeros(owned(space), dtype=bool)
     for component in range(mesh.geometry.dim):
         facets = [bodies.facets(surface) for surface in clamped]
         facets += [bodies.facets(surface) for surface in guided.get(component, ())]
         if component == 0:
             facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, model.on_axis))
-        dofs = fem.locate_dofs_topological(
-            space.sub(component), tdim - 1, np.unique(np.concatenate(facets)).astype(np.int32)
+        nodes = fem.locate_dofs_topological(
+            space, tdim - 1, np.unique(np.concatenate(facets)).astype(np.int32)
         )
-        condition = fem.dirichletbc(zero, dofs, space.sub(component))
-        indices, count = condition.dof_indices()
-        held[indices[:count]] = True
+        held[nodes[nodes < count] * bs + component] = True
     return held

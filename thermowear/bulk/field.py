@@ -24,6 +24,12 @@ def reference_element(mesh, degree: int):
     )
 
 
+def basis_element(space: fem.FunctionSpace):
+    """The scalar element of a space, scalar or of vectors, to tabulate."""
+    element = space.ufl_element()
+    return (element.sub_elements[0] if space.dofmap.index_map_bs > 1 else element).basix_element
+
+
 def owned(space: fem.FunctionSpace) -> int:
     """Number of values this rank owns."""
     return space.dofmap.index_map.size_local * space.dofmap.index_map_bs

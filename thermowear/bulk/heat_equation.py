@@ -74,10 +74,8 @@ def conduction(
         even = EvenPaths(bodies, space, passage)
     elif passage is not None:
         moving = advection(bodies, model, space, passage, conductivities, capacities)
-    flow = bodies.per_body(conductivities) * ufl.inner(ufl.grad(T), ufl.grad(δT))
     measure = section_measure(mesh, degree)
-    form = model.integral(mesh, flow, measure)
-    conductivity = _assembled(form)
+    conductivity = _assembled(conducting(bodies, model, conductivities, degree)(T, δT))
     cooled = conductivity.duplicate()
     cooled.zeroEntries()
     for surface, h in cooling.items():
@@ -120,14 +118,27 @@ def _assembled(form) -> PETSc.Mat:
     return matrix
 
 
-def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):
-    """Add ``∫ h T δT dS`` of one surface; all surfaces share one compiled form."""
+def conducting(bodies: Bodies, model: Model, conductivities: dict[str, float], degree: int):
+    """Bilinear form of conduction, as a function of a trial and a test function [W K]."""
+    mesh, k = bodies.mesh, bodies.per_body(conductivities)
+    measure = section_measure(mesh, degree)
+    return lambda T, δT: model.integral(mesh, k * ufl.inner(ufl.grad(T), ufl.grad(δT)), measure)
+
+
+def transferring(bodies: Bodies, model: Model, surface: str, h: float):
+    """Bilinear form ``∫ h T δT dS`` of one surface, as a function of both; all share one kernel."""
     mesh = bodies.mesh
-    rise, δrise = ufl.TrialFunction(space), ufl.TestFunction(space)
     facets = exterior_facet_domain(mesh, bodies.facets(surface))
     ds = ufl.Measure("ds", domain=mesh, subdomain_data=[(1, facets)])
     coefficient = fem.Constant(mesh, default_scalar_type(h))
-    form = model.integral(mesh, coefficient * rise * δrise, ds(1))
+    return lambda T, δT: model.integral(mesh, coefficient * T * δT, ds(1))
+
+
+def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):
+    """Add ``∫ h T δT dS`` of one surface."""
+    form = transferring(bodies, model, surface, h)(
+        ufl.TrialFunction(space), ufl.TestFunction(space)
+    )
     assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on matrix
 
 

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from mpi4py import MPI
 from petsc4py import PETSc
 
 import numpy as np
 import ufl
 from dolfinx import fem
-from dolfinx.fem.petsc import assemble_vector
 
-from .compiled import compiled
+from .compiled import assembled, compiled
 from .elasticity import Elasticity
 
 
-def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.ndarray:
-    """Nodal loads of a force on a surface [N], owned rows. Every rank calls.
+def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callable:
+    """Form of the work of a force on a surface, as a function of the displacement [J].
 
     Parameters
     ----------
@@ -29,14 +30,26 @@ def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.nda
     local = fem.assemble_scalar(compiled(elastic.model.integral(mesh, one, measure)))
     area = mesh.comm.allreduce(local, op=MPI.SUM)
     traction = fem.Constant(mesh, np.asarray(force, dtype=PETSc.ScalarType) / area)
-    return _nodal(elastic, traction, measure)
+    return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
+
+
+def pressure_work(elastic: Elasticity, surface: str, pressure: float) -> Callable:
+    """The same of a pressure [Pa], along the inward normal."""
+    mesh, measure = elastic.bodies.mesh, _measure(elastic, surface)
+    traction = -fem.Constant(mesh, PETSc.ScalarType(pressure)) * ufl.FacetNormal(mesh)
+    return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
+
+
+def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.ndarray:
+    """Nodal loads of a force on a surface [N], owned rows; see `surface_work`. Every rank calls."""
+    work = surface_work(elastic, surface, force)
+    return assembled(compiled(work(ufl.TestFunction(elastic.space))))
 
 
 def surface_pressure(elastic: Elasticity, surface: str, pressure: float) -> np.ndarray:
     """Nodal loads of a pressure [Pa], along the inward normal [N], owned rows. Every rank calls."""
-    mesh = elastic.bodies.mesh
-    size = fem.Constant(mesh, PETSc.ScalarType(pressure))
-    return _nodal(elastic, -size * ufl.FacetNormal(mesh), _measure(elastic, surface))
+    work = pressure_work(elastic, surface, pressure)
+    return assembled(compiled(work(ufl.TestFunction(elastic.space))))
 
 
 def _measure(elastic: Elasticity, surface: str) -> ufl.Measure:
@@ -44,14 +57,3 @@ def _measure(elastic: Elasticity, surface: str) -> ufl.Measure:
     bodies = elastic.bodies
     measure = ufl.Measure("ds", domain=bodies.mesh, subdomain_data=bodies.facet_tags)
     return measure(bodies.surface_tag(surface))
-
-
-def _nodal(elastic: Elasticity, traction, measure: ufl.Measure) -> np.ndarray:
-    """Nodal loads of a traction, owned rows [N]."""
-    mesh, δu = elastic.bodies.mesh, ufl.TestFunction(elastic.space)
-    work = elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
-    vector = assemble_vector(compiled(work))
-    vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
-    result = vector.getArray().copy()
-    vector.destroy()
-    return result

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
 
-from ..bulk.field import owned, reference_element
+from ..bulk.field import basis_element, owned
 from .pairing import Pairing, Side
 
 
@@ -70,14 +70,30 @@ def _local_values(space: fem.FunctionSpace, side: Side):
     """Local nodes, points and basis values at the points whose cell this rank owns."""
     mesh = space.mesh
     mine = np.flatnonzero(side.face.rank[side.facet] == mesh.comm.rank)
-    element = reference_element(mesh, space.ufl_element().degree)
+    element = basis_element(space)
     reference = reference_points(side, mine, element.cell_type)
     if len(mine) == 0:  # basix takes no empty lists
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64), np.empty(0)
     values = element.tabulate(0, reference)[0].reshape(len(mine), -1)
-    nodes = space.dofmap.list[side.face.cell[side.facet[mine]]].astype(np.int64)
+    cells = side.face.cell[side.facet[mine]]
+    if not element.dof_transformations_are_permutations:  # those are part of the dofmap
+        values = _oriented(mesh, element, cells, values)
+    nodes = space.dofmap.list[cells].astype(np.int64)
     point = np.repeat(mine, nodes.shape[1])
     return nodes.ravel(), point, values.ravel()
+
+
+def _oriented(mesh, element, cells: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Reference basis values, a row a point, turned as the edges and facets of the cells are."""
+    mesh.topology.create_entity_permutations()
+    orientation = mesh.topology.get_cell_permutation_info()[cells]
+    result = np.empty_like(values)
+    for kind in np.unique(orientation):
+        chosen = orientation == kind
+        turned = np.ascontiguousarray(values[chosen].T)
+        element.T_apply(turned.reshape(-1), turned.shape[1], int(kind))
+        result[chosen] = turned.T
+    return result
 
 
 def reference_points(side: Side, chosen: np.ndarray, cell_type) -> np.ndarray:

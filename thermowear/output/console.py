@@ -99,6 +99,24 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
     console.print(times)
 
 
+def print_discretisations(console: Console, summary: dict, keys: tuple[str, ...]) -> None:
+    """Numbers of a case on a coarser, its own and a finer discretisation, side by side."""
+    coarser, finer = (summary[f"{name}_discretisation"] for name in ("coarser", "finer"))
+    shown = {"coarser": coarser, "this case": summary, "finer": finer}
+    table = Table(box=None, padding=(0, 2, 0, 0))
+    table.add_column("quantity")
+    for name in shown:
+        table.add_column(name, justify="right")
+    for key in keys:
+        values = [numbers.get(key) for numbers in shown.values()]
+        if any(value is not None for value in values):
+            table.add_row(key, *("" if value is None else f"{value:.6g}" for value in values))
+    console.print(table)
+    for name, numbers in (("coarser", coarser), ("finer", finer)):
+        ended = f"failed: {numbers['failed']}" if "failed" in numbers else numbers["changes"]
+        console.print(f"{name}: {ended}", highlight=False, markup=False)
+
+
 def print_checks(console: Console, checks: list) -> None:
     """A line for each `thermowear.verification.Check`, the sources, and the count."""
     head = ("id", "quantity", "computed", "reference", "error", "allowed", "verdict")
@@ -128,12 +146,14 @@ def _highlights(summary: dict):
             yield f"NOT BALANCED: {balance.name}", f"relative error {error:.1e}"
     yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
     low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
-    yield "pressure", f"{low:.5g} … {high:.5g} MPa"
+    yield "pressure", f"{low:.5g} … {high:.5g} MPa{_within(summary, 'pressure', 'max_pressure')}"
     yield "approach of the holder, towards body 2", f"{summary['approach_m'] * 1e6:.5g} µm"
     if summary["shape_range_m"] > 0:
-        yield "shape, highest to lowest", f"{summary['shape_range_m'] * 1e6:.5g} µm"
+        shape = f"{summary['shape_range_m'] * 1e6:.5g} µm{_within(summary, 'shape')}"
+        yield "shape, highest to lowest", shape
     if summary["max_temperature_K"] is not None:
-        yield "highest temperature", f"{summary['max_temperature_K'] - 273.15:.5g} °C"
+        hottest = f"{summary['max_temperature_K'] - 273.15:.5g} °C"
+        yield "highest temperature", f"{hottest}{_within(summary, 'temperature')}"
         yield "friction power", f"{summary['friction_power_W']:.6g} W"
     if summary.get("contact_heat_1_W") is not None and summary["friction_power_W"] == 0.0:
         yield "heat from body 1 to body 2", f"{summary['contact_heat_2_W']:.6g} W"
@@ -167,6 +187,13 @@ def _highlights(summary: dict):
         yield "disturbances", _growing(summary)
     if summary.get("distance_from_steady") is not None:
         yield "distance from steady", f"{summary['distance_from_steady']:.2e}"
+
+
+def _within(summary: dict, *quantities: str) -> str:
+    """Estimated discretisation error of a quantity, the largest of several; "" without any."""
+    keys = (f"{quantity}_error_estimate_relative" for quantity in quantities)
+    known = [summary[key] for key in keys if summary.get(key) is not None]
+    return f"   (error about {100 * max(known):.2g} %)" if known else ""
 
 
 def _critical(summary: dict, which: str) -> str:

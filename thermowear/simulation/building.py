@@ -67,7 +67,7 @@ def build(
         elastic, trace = parts.get(
             "elasticity", made_from.elasticity, lambda: elastic_system(case, model, bodies, pairing)
         )
-    slides = _sliding(case, model, pairing)
+    slides = sliding_of(case, model, pairing)
     pull, speed = pairing.normals, np.zeros(len(pairing.weights))
     if slides is not None:
         friction = case.contact.friction, case.contact.transverse_friction
@@ -124,7 +124,7 @@ def _exchanging(thermal: ThermalSystem, case: Case, facing: Facing) -> ThermalSy
     return replace(thermal, face=replace(thermal.face, partition=case.partition(facing)))
 
 
-def _sliding(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
+def sliding_of(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
     """How body 1 slides; None where nothing does."""
     if case.motion is None:
         return None

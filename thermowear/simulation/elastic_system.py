@@ -29,17 +29,16 @@ def elastic_system(
     """
     geometry = case.geometry
     materials = {name: _elastic_material(case, name) for name in geometry.parts}
-    clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
-    elastic = elasticity(
-        bodies,
-        model,
-        case.mesh.degree,
-        materials,
-        clamped,
-        geometry.symmetry,
-        geometry.rollers,
-    )
+    clamped, symmetric, rollers = supports(case)
+    elastic = elasticity(bodies, model, case.mesh.degree, materials, clamped, symmetric, rollers)
     return elastic, gap_trace(elastic.space, pairing)
+
+
+def supports(case: Case) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]:
+    """Surfaces that are clamped, on a plane of symmetry, and on rollers."""
+    geometry = case.geometry
+    clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
+    return clamped, geometry.symmetry, geometry.rollers
 
 
 def dead_load(case: Case, elastic: Elasticity) -> np.ndarray | None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from ..balances import judged
 from ..case.schema import Case
+from .accuracy import estimate_errors
 from .condensed_method import CondensedMethod
 from .fields import sample
 from .fretting import fretting
@@ -71,6 +72,8 @@ def run(
     phases = phases or Phases(observer.phase)
     system = prepare(case, comm, phases)
     outcome = analyse(system, observer, saved)
+    with phases("error estimate"):
+        outcome = estimated(system, outcome, observer)
     with phases("fields"):
         fields = sample(outcome.system or system, outcome.state, outcome.motion)
     return conclude(system, outcome, fields)
@@ -110,6 +113,20 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
     if large is not None:
         observer.note(large)
     return outcome
+
+
+def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
+    """The outcome with estimates of its discretisation error in the summary; warns of large ones.
+
+    Every rank calls.
+    """
+    if outcome.stopped is not None:
+        return outcome
+    estimates = estimate_errors(outcome.system or system, outcome)
+    warning = estimates.warning()
+    if warning is not None:
+        observer.note(warning)
+    return replace(outcome, extra=outcome.extra | estimates.summary())
 
 
 def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:

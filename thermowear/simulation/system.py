@@ -12,7 +12,7 @@ from ..bulk.bodies import Bodies
 from ..bulk.elasticity import Elasticity
 from ..case.facing import Facing
 from ..case.schema import Case
-from ..contact.condensation import CondensedContact, influence
+from ..contact.condensation import CondensedContact, Influence, influence
 from ..contact.holder import Holder, hold
 from ..contact.pairing import Pairing
 from ..contact.sliding import Sliding
@@ -158,16 +158,20 @@ class System:
             return np.zeros((2, len(self.weights)))
         return self.worn.moved(self.pairing)
 
+    @property
+    def influence(self) -> Influence:
+        """How the bodies answer the functions of the pressure space. Every rank calls."""
+        bodies = self.elastic, self.pairing, self.trace, self.basis
+        hot = self.thermal is not None
+        return self.parts.get(
+            "influence", self.inputs.elasticity, lambda: influence(*bodies, keep_whole=hot)
+        )
+
     @cached_property
     def contact(self) -> CondensedContact:
         """Elasticity condensed to the pressure space."""
-        hot = self.thermal is not None
-        bodies = self.elastic, self.pairing, self.trace, self.basis
         with self.phases("condense elasticity"):
-            answers = self.parts.get(
-                "influence", self.inputs.elasticity, lambda: influence(*bodies, keep_whole=hot)
-            )
-            return answers.condensed(self.traction, self.holder)
+            return self.influence.condensed(self.traction, self.holder)
 
     def rubbing(self, friction: np.ndarray) -> System:
         """The same bodies with coefficients of friction (n,) that are not the nominal one."""

@@ -90,7 +90,7 @@ def thermal_system(
         space = lagrange_space(bodies.mesh, case.mesh.degree)
         upper, lower = pairing.sides
         traces = (value_trace(space, upper), value_trace(space, lower))
-        materials, times = _round_the_ring(case)
+        materials, times = conducting_bodies(case)
         cooling = {surface: times[surface] * h for surface, h in heat.cooling.items()}
         shift = max(_conductivities(case, materials)) / pairing.extent
         given = {
@@ -167,7 +167,7 @@ def thermal_material(case: Case, part: str) -> ThermalMaterial:
     return ThermalMaterial(material.conductivity, material.density * material.specific_heat)
 
 
-def _round_the_ring(case: Case) -> tuple[dict[str, ThermalMaterial], dict[str, float]]:
+def conducting_bodies(case: Case) -> tuple[dict[str, ThermalMaterial], dict[str, float]]:
     """Materials by part, and how many times each surface counts, for the modelled sector.
 
     Under a body 1 that takes up a sector, all of a turning body 2 comes by and is heated: what

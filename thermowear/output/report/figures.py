@@ -76,6 +76,13 @@ GROUPS = {
         "dofs_displacement": "unknowns, displacement",
         "dofs_temperature": "unknowns, temperature",
         "contact_points": "contact points",
+        "pressure_error_estimate_relative": "estimated error of the pressure, in the mean",
+        "max_pressure_error_estimate_relative": "estimated error of the largest pressure",
+        "shape_error_estimate_relative": "estimated error of the shape",
+        "temperature_error_estimate_relative": "estimated error of the temperature",
+        "error_estimate_missing": "no error estimate",
+        "coarser_discretisation": "coarser",
+        "finer_discretisation": "finer",
     },
     "Times": {
         "time_s": "time at the end",

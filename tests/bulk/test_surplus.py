@@ -1,0 +1,57 @@
+"""What the next degree adds to Lagrange elements."""
+
+from __future__ import annotations
+
+from mpi4py import MPI
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from dolfinx import mesh as dmesh
+
+from thermowear.bulk.field import lagrange_space, total
+from thermowear.bulk.surplus import surplus_space
+
+MESHES = {
+    "quadrilateral": lambda: dmesh.create_unit_square(
+        MPI.COMM_WORLD, 2, 2, dmesh.CellType.quadrilateral
+    ),
+    "triangle": lambda: dmesh.create_unit_square(MPI.COMM_WORLD, 2, 2),
+    "tetrahedron": lambda: dmesh.create_unit_cube(MPI.COMM_WORLD, 1, 1, 1),
+}
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+@pytest.mark.parametrize("cell", MESHES)
+def test_space_and_surplus_make_the_next_degree(cell, degree):
+    """requirement: error estimates see all that the next degree would add, without a gap."""
+    mesh = MESHES[cell]()
+    surplus, low, high = (
+        surplus_space(mesh, degree),
+        lagrange_space(mesh, degree),
+        lagrange_space(mesh, degree + 1),
+    )
+    assert total(low) + total(surplus) == total(high)
+    field, same, none = fem.Function(surplus), fem.Function(high), fem.Function(low)
+    field.x.array[:] = np.linspace(-1.0, 2.0, len(field.x.array))
+    same.interpolate(field)
+    none.interpolate(field)
+    squares = [fem.assemble_scalar(fem.form(f**2 * ufl.dx)) for f in (field, same - field)]
+    assert squares[1] < 1e-20 * squares[0]  # continuous: a jump would be lost in the next degree
+    assert np.abs(none.x.array).max() < 1e-12 * np.abs(same.x.array).max()
+
+
+def test_hexahedra_take_what_leads():
+    """requirement: in space the surplus is that of edges; x³ is in the sum of both."""
+    mesh = dmesh.create_unit_cube(MPI.COMM_WORLD, 1, 1, 1, dmesh.CellType.hexahedron)
+    surplus, low = surplus_space(mesh, 2), lagrange_space(mesh, 2)
+    assert total(surplus) == 12
+    x = ufl.SpatialCoordinate(mesh)
+    u, v, field = ufl.TrialFunction(surplus), ufl.TestFunction(surplus), fem.Function(low)
+    field.interpolate(lambda p: p[0] ** 3)
+    from dolfinx.fem.petsc import LinearProblem
+
+    left = LinearProblem(u * v * ufl.dx, (x[0] ** 3 - field) * v * ufl.dx).solve()
+    missed = fem.assemble_scalar(fem.form((x[0] ** 3 - field - left) ** 2 * ufl.dx))
+    assert missed < 1e-20

@@ -1,0 +1,120 @@
+"""What the next degree adds to a space of Lagrange elements: its hierarchical surplus.
+
+The polynomials of degree k + 1 that vanish at the nodes of degree k. On an edge with Gauss-Lobatto
+nodes that is one function, ``(1 - s²) P'_k(s)``, so that the surplus is continuous from cell to
+cell, and orthogonal in energy to what an interval of degree k can do (Szabó and Babuška, Finite
+Element Analysis (1991), 6.1). On hexahedra only its products with linear functions of the other
+directions are taken: the others are of higher total degree, and ten times as much work.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import product
+
+import basix
+import basix.ufl
+import numpy as np
+from dolfinx import fem
+
+_LEGENDRE = basix.PolynomialType.legendre
+_ZERO = 1e-10
+
+
+def surplus_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
+    """The surplus of `field.lagrange_space` of a degree, scalar or of vectors."""
+    cell = mesh.basix_cell()
+    element = _element(basix.CellType[cell] if isinstance(cell, str) else cell, degree)
+    if components:
+        element = basix.ufl.blocked_element(element, shape=(components,))
+    return fem.functionspace(mesh, element)
+
+
+@cache
+def _element(cell: basix.CellType, degree: int):
+    """The scalar element; its values are moments on edges, and inside facets and cells."""
+    geometry, topology = np.asarray(basix.geometry(cell)), basix.topology(cell)
+    edges_only = cell == basix.CellType.hexahedron
+    dim = len(topology) - 1
+    points: list[list[np.ndarray]] = [[] for _ in range(4)]
+    moments: list[list[np.ndarray]] = [[] for _ in range(4)]
+    for d, (entities, kinds) in enumerate(
+        zip(topology, basix.cell.subentity_types(cell), strict=True)
+    ):
+        for corners, kind in zip(entities, kinds, strict=True):
+            at, weights = np.zeros((0, dim)), np.zeros((0, 0))
+            if d == 1 or (d > 1 and not edges_only):
+                local, weights = _moments(kind, degree)
+                at = _placed(kind, geometry[corners], local)
+            points[d].append(np.ascontiguousarray(at))
+            moments[d].append(np.ascontiguousarray(weights[:, None, :, None]))
+    span = _products(cell, degree) if edges_only else _vanishing(cell, degree, inside=False)
+    return basix.ufl.custom_element(
+        cell,
+        [],
+        np.ascontiguousarray(span),
+        points,
+        moments,
+        0,
+        basix.MapType.identity,
+        basix.SobolevSpace.H1,
+        False,
+        1,
+        degree + 1,
+    )
+
+
+def _vanishing(cell: basix.CellType, degree: int, inside: bool) -> np.ndarray:
+    """Polynomials of degree k + 1 that vanish at the nodes of degree k, by orthonormal ones.
+
+    Those `inside` vanish on the boundary of the cell, too.
+    """
+    low, high = (
+        basix.create_element(basix.ElementFamily.P, cell, k, basix.LagrangeVariant.gll_warped)
+        for k in (degree, degree + 1)
+    )
+    nodes = np.asarray(low.points)
+    if inside:
+        boundary = [i for entities in high.entity_dofs[:-1] for dofs in entities for i in dofs]
+        nodes = np.vstack([nodes, np.asarray(high.points)[boundary]])
+    values = np.asarray(basix.tabulate_polynomials(_LEGENDRE, cell, degree + 1, nodes))
+    left, sizes, _ = np.linalg.svd(values)
+    return left[:, np.count_nonzero(sizes > _ZERO * sizes[0]) :].T
+
+
+@cache
+def _moments(kind: basix.CellType, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points in an edge, a facet or a cell and, by functions of it, weights of moments there."""
+    points, weights = _quadrature(kind, 2 * degree + 2)
+    values = basix.tabulate_polynomials(_LEGENDRE, kind, degree + 1, points)
+    return points, _vanishing(kind, degree, inside=True) @ values * weights
+
+
+def _quadrature(cell: basix.CellType, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    points, weights = basix.make_quadrature(cell, degree)
+    return np.asarray(points), np.asarray(weights)
+
+
+def _placed(kind: basix.CellType, corners: np.ndarray, local: np.ndarray) -> np.ndarray:
+    """Points of an edge or a facet in the cell whose corners these are."""
+    units = np.asarray(basix.geometry(kind))
+    along = [np.flatnonzero((units == unit).all(axis=1))[0] for unit in np.eye(units.shape[1])]
+    return corners[0] + local @ (corners[along] - corners[0])
+
+
+def _products(cell: basix.CellType, degree: int) -> np.ndarray:
+    """The surplus along each direction times linear functions of the others, orthonormalised."""
+    line = basix.CellType.interval
+    inner = _vanishing(line, degree, inside=True)
+    points, weights = _quadrature(cell, 2 * degree + 4)
+    dim = points.shape[1]
+    functions = []
+    for i in range(dim):
+        column = np.ascontiguousarray(points[:, i : i + 1])
+        along = (inner @ basix.tabulate_polynomials(_LEGENDRE, line, degree + 1, column))[0]
+        others = [points[:, j] for j in range(dim) if j != i]
+        for ends in product((False, True), repeat=dim - 1):
+            linear = [x if end else 1 - x for x, end in zip(others, ends, strict=True)]
+            functions.append(along * np.prod(linear, axis=0))
+    values = basix.tabulate_polynomials(_LEGENDRE, cell, degree + 1, points)
+    return np.linalg.qr(values @ (np.array(functions) * weights).T)[0].T

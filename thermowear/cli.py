@@ -238,9 +238,9 @@ def _validate(chosen) -> int:
         print(f"note: {text}", file=sys.stderr)
     about = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
     if case.geometry.from_file:
-        from .geometry.mesh_checks import described
+        from .geometry.mesh_checks import described, whole_bodies
 
-        about += described(case.tagged_mesh())
+        about += described(whole_bodies(case.tagged_mesh(), case.geometry))
     print(f"{chosen.case}: ok ({', '.join(about)})")
     return 0
 

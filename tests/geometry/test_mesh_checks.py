@@ -163,17 +163,6 @@ def test_spoilt_meshes(name, tmp_path):
     assert expected in line
 
 
-def test_a_closed_contact_face(tmp_path):
-    """
-    requirement: a contact face has two ends; here it is all round a hole.
-    """
-    mesh = blocks(columns=(3, 6), rows=(3, 2))
-    _, hole = mesh.cells.pop(4)
-    mesh.lines = [line for line in mesh.lines if line[0] != "PUNCH_FACE"]
-    mesh.lines += [("PUNCH_FACE", [hole[k], hole[(k + 1) % 4]]) for k in range(4)]
-    assert "'PUNCH_FACE' is a closed curve" in fault(tmp_path, mesh)
-
-
 def test_curved_cells(tmp_path):
     """
     requirement: det J of curved cells is looked at all over, not at their corners.

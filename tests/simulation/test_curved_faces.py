@@ -122,7 +122,7 @@ def test_faces_side_by_side_are_refused(tmp_path, round_body):
     tables = case_tables(path, FORCE)
     tables["geometry"] |= {"contact": ["upper_end", "lower_end"]}
     tables["geometry"] |= {"held": "upper_face", "fixed": "lower_face"}
-    with pytest.raises(CaseError, match="do not lie opposite each other"):
+    with pytest.raises(CaseError, match="does not look down"):
         tw.run(tw.load(tables))
 
 

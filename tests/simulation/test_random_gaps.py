@@ -12,6 +12,7 @@ from thermowear.case.starters import starter_text
 from thermowear.parallel import sum_over_ranks
 from thermowear.simulation.building import build
 from thermowear.simulation.conditions import Surroundings
+from thermowear.simulation.contact_method import Slope
 from thermowear.simulation.phases import Phases
 from thermowear.simulation.preparation import interface_problem
 
@@ -45,7 +46,9 @@ def test_no_wrong_pressure_is_returned(tables, method):
         gap, force = random_problem(system, rng)
         object.__setattr__(system.holder.drives[0], "load", force)
         conditions = Surroundings(system).at(0.0, nothing, None, everywhere)
-        found = interface_problem(system)._method.solve(gap, nothing, None, conditions, None)
+        found = interface_problem(system)._method.solve(
+            gap, Slope.on_the_spot(nothing), None, conditions, None
+        )
         p, w = found.pressure, system.weights
         assert p.min() >= 0
         assert system.holder.carried(p, w)[0] == pytest.approx(force, rel=1e-8)

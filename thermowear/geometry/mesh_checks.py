@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..errors import CaseError, CaseNote
 from .tagged import TaggedMesh
 
 if TYPE_CHECKING:
+    from ..case.geometry import Geometry
     from .mesh_file import MeshFile
 
 _LEVEL = 1e-6
@@ -27,6 +29,7 @@ def check_mesh(mesh: TaggedMesh, geometry: MeshFile, model: str) -> None:
         If surfaces share edges, a contact face is no curve, a piece of a body is not held, or a
         surface of symmetry does not lie in a plane x = const.
     """
+    mesh = whole_bodies(mesh, geometry)
     _no_shared_edges(mesh)
     for surface in geometry.contact:
         _one_curve(_ends(mesh, surface), surface)
@@ -36,6 +39,15 @@ def check_mesh(mesh: TaggedMesh, geometry: MeshFile, model: str) -> None:
         if model == "axisymmetric":
             raise CaseError("geometry.half: an axisymmetric model has no plane of symmetry")
         _symmetry(mesh, geometry)
+
+
+def whole_bodies(mesh: TaggedMesh, geometry: Geometry) -> TaggedMesh:
+    """The mesh with the cells of each body under one tag, those of its cell sets included."""
+    tags = np.zeros_like(mesh.cell_tags)
+    for number, body in enumerate(geometry.bodies, start=1):
+        parts = [mesh.bodies.index(part) + 1 for part in geometry.parts_of(body)]
+        tags[np.isin(mesh.cell_tags, parts)] = number
+    return replace(mesh, cell_tags=tags, bodies=geometry.bodies)
 
 
 def described(mesh: TaggedMesh) -> list[str]:
@@ -74,7 +86,7 @@ def _no_shared_edges(mesh: TaggedMesh) -> None:
 
 
 def _one_curve(ends: np.ndarray, surface: str) -> None:
-    """A contact face is one open curve."""
+    """A contact face is one curve, open or closed."""
     nodes, compact, count = np.unique(ends, return_inverse=True, return_counts=True)
     pairs = compact.reshape(ends.shape)
     links = scipy.sparse.coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(nodes), len(nodes)))
@@ -83,11 +95,6 @@ def _one_curve(ends: np.ndarray, surface: str) -> None:
         raise CaseError(
             f"geometry.contact: the edges of {surface!r} are in {parts} pieces; a contact face is "
             "one curve without branches"
-        )
-    if count.min() == 2:
-        raise CaseError(
-            f"geometry.contact: {surface!r} is a closed curve; a contact face has two ends, so "
-            "name the part of it that can touch"
         )
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import CaseError, CaseNote
-from .mesh_checks import length
+from .mesh_checks import length, whole_bodies
 from .orders import shape_functions
 from .tagged import TaggedMesh
 
@@ -68,7 +68,7 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
     CaseError
         If they overlap, lie apart or are squeezed by a good part of their size.
     """
-    faces = compared(mesh, case)
+    faces = compared(whole_bodies(mesh, case.geometry), case)
     height, overlap = faces.height, -faces.gap
     of_body = f"of {faces.body!r}, which is {length(height)} high"
     if overlap > _SQUEEZED * height:
@@ -117,7 +117,11 @@ def _check_pressure(case: Case, faces: Faces) -> None:
     force, area = case.force(), _area(case, faces)
     if force is None or area == 0.0:
         return
-    moduli = {name: case.material(name).young_modulus or np.inf for name in case.geometry.bodies}
+    moduli = {
+        part: case.material(part).young_modulus or np.inf
+        for body in case.geometry.bodies
+        for part in case.geometry.parts_of(body)
+    }
     softer = min(moduli, key=moduli.__getitem__)
     strain = force / area / moduli[softer]
     if strain > _SQUEEZED:
@@ -165,7 +169,7 @@ def compared(mesh: TaggedMesh, case: Case) -> Faces:
     gap = -_highest(-down[..., 1], down[..., 0], x) - _highest(up[..., 1], up[..., 0], x)
     heights = {
         name: float(np.ptp(mesh.points[np.unique(mesh.cells[mesh.cell_tags == tag]), 1]))
-        for tag, name in enumerate(mesh.bodies[:2], start=1)
+        for tag, name in enumerate(mesh.bodies, start=1)
     }
     body = min(heights, key=heights.__getitem__)
     return Faces(float(np.nanmin(gap)), (float(first), float(last)), heights[body], body)

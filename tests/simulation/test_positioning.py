@@ -184,7 +184,6 @@ def test_a_contact_that_outgrows_its_face(monkeypatch, half):
         result = tw.run(tw.load(tables(HERTZ, {}), keys), observer=listener)
         pressures.append(result.summary["max_pressure_Pa"])
         notes.append(listener.notes)
-    assert len(notes[0]) == 1
     assert "reaches the end of the contact face" in notes[0][0]
     assert notes[1] == []
     assert pressures[0] > 1.5 * pressures[1]

@@ -147,7 +147,9 @@ def test_two_ranks_give_the_serial_numbers(tmp_path):
     case.write_text(tomli_w.dumps(changed(PUNCH, other)), encoding="utf-8")
     (serial, _), (parallel, _) = summaries(tmp_path, case)
     for key, value in serial.items():
-        if isinstance(value, float) and not key.endswith("relative_error"):
+        if "error_estimate" in key:  # by an inner iteration
+            assert parallel[key] == pytest.approx(value, rel=1e-2), key
+        elif isinstance(value, float) and not key.endswith("relative_error"):
             near = 1e-8 * abs(serial["normal_force_N"] if key.endswith("_N") else value)
             assert parallel[key] == pytest.approx(value, rel=1e-8, abs=max(near, 1e-18)), key
 

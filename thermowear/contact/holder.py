@@ -109,8 +109,8 @@ def hold(pairing: Pairing, pull: np.ndarray, drives: list[Drive] | tuple[Drive, 
         ``n + mu e``, see `pairing`.
     drives : sequence of Drive
     """
-    shape = (len(drives), *pairing.points.shape)
-    moved = np.array([drive.motion.at(pairing.points) for drive in drives]).reshape(shape)
+    points = pairing.on_body_1
+    moved = np.array([drive.motion.at(points) for drive in drives]).reshape(-1, *points.shape)
     closing = np.einsum("kni,ni->nk", moved, pairing.normals)
     carrying = np.einsum("kni,ni->nk", moved, pull)
     return Holder(tuple(drives), closing, carrying)

@@ -96,7 +96,7 @@ def _motion(case: Case, name: str, pairing: Pairing) -> RigidMotion:
 
 def _closing_sense(turn: RigidMotion, pairing: Pairing) -> float:
     """+1 where an anticlockwise rotation closes the gap in the mean, -1 otherwise."""
-    closing = np.einsum("ni,ni->n", turn.at(pairing.points), pairing.normals)
+    closing = np.einsum("ni,ni->n", turn.at(pairing.on_body_1), pairing.normals)
     return 1.0 if pairing.weights @ closing >= 0.0 else -1.0
 
 

@@ -35,7 +35,7 @@ def interface_at(
     """
     state = body_state(system, contact)
     lost = system.pairing.gap + worn.sum(axis=0)
-    moved = motion.at(system.pairing.points)
+    moved = motion.at(system.pairing.on_body_1)
     gap = (
         lost
         + system.softness * contact.pressure

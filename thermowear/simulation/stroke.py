@@ -100,7 +100,8 @@ def moved(system: System, offset: float, way: int) -> System:
     slides = sliding(velocity, pairing.normals, geometry.press_direction)
     friction = case.contact.friction, case.contact.transverse_friction
     pull = slides.pull(pairing.normals, *friction)
-    in_place = replace(pairing, points=pairing.points - np.array([offset, 0.0]))
+    on_1, on_2 = pairing.sides
+    in_place = replace(pairing, sides=(replace(on_1, face=system.pairing.sides[0].face), on_2))
     return replace(
         system,
         pairing=pairing,

@@ -145,7 +145,7 @@ def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
 
     Of the whole: what the halves of a symmetric section push apart is in balance.
     """
-    case, points = system.case, system.pairing.points
+    case, points = system.case, system.pairing.on_body_1
     reactions = {}
     for name, motion in guides(case).items():
         if name not in case.holder.free:

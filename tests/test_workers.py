@@ -5,6 +5,8 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
@@ -63,3 +65,29 @@ def test_what_is_saved_after_ctrl_c_arrives(heeds_ctrl_c):
         work_off([1, 2, 3], 2, dawdle, hear, lambda *given: None)
     assert told == ["begun", "begun", "saved", "saved"]
     assert not multiprocessing.active_children()
+
+
+INTERRUPTED_IN_A_DESTRUCTOR = """
+import signal
+from thermowear.interrupts import deliver_again
+
+class Vector:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+
+deliver_again()
+try:
+    vector = Vector()
+    del vector
+    for _ in range(10**6):
+        pass
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+def test_an_interrupt_inside_a_destructor_is_not_lost():
+    """requirement: Ctrl-C while a matrix is given back still ends the run, without a traceback."""
+    command = [sys.executable, "-c", INTERRUPTED_IN_A_DESTRUCTOR]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("interrupted\n", "")

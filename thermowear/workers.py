@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 from multiprocessing import connection, get_context
 from typing import Any
 
+from .interrupts import deliver_again
+
 _SPAWN = get_context("spawn")  # a copy of a process that has started MPI would not work
 _PATIENCE = 60.0  # seconds that interrupted workers have to write down what they have
 
@@ -129,6 +131,7 @@ def _serve(pipe, work) -> None:
     """Do tasks until there are no more; in a process of its own."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    deliver_again()
     try:
         while (message := pipe.recv()) is not None:
             work(message[0], lambda said: _send(pipe, (said,)))

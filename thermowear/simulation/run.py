@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from numpy.linalg import LinAlgError
+
 from ..balances import judged
 from ..case.schema import Case
+from ..errors import CaseError, ComputationError
 from .accuracy import estimate_errors
 from .condensed_method import CondensedMethod
 from .fields import sample
@@ -122,7 +125,12 @@ def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
     """
     if outcome.stopped is not None:
         return outcome
-    estimates = estimate_errors(outcome.system or system, outcome)
+    try:
+        estimates = estimate_errors(outcome.system or system, outcome)
+    except (CaseError, ComputationError, LinAlgError) as error:  # the result stands without
+        return replace(
+            outcome, extra=outcome.extra | {"error_estimate_missing": {"all": str(error)}}
+        )
     warning = estimates.warning()
     if warning is not None:
         observer.note(warning)

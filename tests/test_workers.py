@@ -69,7 +69,11 @@ def test_what_is_saved_after_ctrl_c_arrives(heeds_ctrl_c):
 
 INTERRUPTED_IN_A_DESTRUCTOR = """
 import signal
+import time
 from thermowear.interrupts import deliver_again
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 class Vector:
     def __del__(self):
@@ -79,8 +83,7 @@ deliver_again()
 try:
     vector = Vector()
     del vector
-    for _ in range(10**6):
-        pass
+    time.sleep(60)
 except KeyboardInterrupt:
     print("interrupted")
 """

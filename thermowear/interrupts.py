@@ -5,17 +5,24 @@ from __future__ import annotations
 import _thread
 import signal
 import sys
+import threading
+
+_LATER = 0.01
+"""When the destructor has been left [s]."""
 
 
 def deliver_again() -> None:
-    """From now on raise such an interrupt once more when the destructor is left."""
+    """From now on raise such an interrupt once more, a moment later."""
     report = sys.unraisablehook
 
     def hook(unraisable) -> None:
-        if isinstance(unraisable.exc_value, KeyboardInterrupt):
-            heard = callable(signal.getsignal(signal.SIGINT))  # workers hear SIGTERM alone
-            _thread.interrupt_main(signal.SIGINT if heard else signal.SIGTERM)
-        else:
+        if not isinstance(unraisable.exc_value, KeyboardInterrupt):
             report(unraisable)
+            return
+        heard = callable(signal.getsignal(signal.SIGINT))  # workers hear SIGTERM alone
+        number = signal.SIGINT if heard else signal.SIGTERM
+        again = threading.Timer(_LATER, _thread.interrupt_main, (number,))
+        again.daemon = True
+        again.start()
 
     sys.unraisablehook = hook

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import _thread
 import signal
 import sys
 import threading
@@ -21,7 +20,8 @@ def deliver_again() -> None:
             return
         heard = callable(signal.getsignal(signal.SIGINT))  # workers hear SIGTERM alone
         number = signal.SIGINT if heard else signal.SIGTERM
-        again = threading.Timer(_LATER, _thread.interrupt_main, (number,))
+        main = threading.main_thread().ident
+        again = threading.Timer(_LATER, signal.pthread_kill, (main, number))
         again.daemon = True
         again.start()
 

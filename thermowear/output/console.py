@@ -84,6 +84,10 @@ class Progress:
             self._unsaid = ""
 
 
+_LEAST = 1e-3
+"""Smallest error that is told as a number [%]: those of quadrature alone are far below."""
+
+
 def print_summary(console: Console, summary: dict, seconds: dict[str, float]) -> None:
     """The numbers that matter and where the time went."""
     numbers = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
@@ -193,7 +197,10 @@ def _within(summary: dict, *quantities: str) -> str:
     """Estimated discretisation error of a quantity, the largest of several; "" without any."""
     keys = (f"{quantity}_error_estimate_relative" for quantity in quantities)
     known = [summary[key] for key in keys if summary.get(key) is not None]
-    return f"   (error about {100 * max(known):.2g} %)" if known else ""
+    if not known:
+        return ""
+    error = 100 * max(known)
+    return f"  (error about {error:.2g} %)" if error >= _LEAST else f"  (error below {_LEAST:g} %)"
 
 
 def _critical(summary: dict, which: str) -> str:

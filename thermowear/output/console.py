@@ -200,7 +200,7 @@ def _within(summary: dict, *quantities: str) -> str:
     if not known:
         return ""
     error = 100 * max(known)
-    return f"  (error about {error:.2g} %)" if error >= _LEAST else f"  (error below {_LEAST:g} %)"
+    return f"  (± {error:.2g} %)" if error >= _LEAST else f"  (± {_LEAST:g} %)"
 
 
 def _critical(summary: dict, which: str) -> str:

@@ -5,6 +5,11 @@ as much as an element turns where its edges are straight. Averaging at the corne
 within the facets makes the field of normals continuous (Yang, Laursen and Meng, Int. J. Numer.
 Meth. Engng 62 (2005) 1183), so that points opposite each other are unique. Edges of the face itself
 are kept.
+
+The blending functions of a facet of order p are the Radau polynomials of degree p, the linear ones
+where p = 1: they see nothing of polynomials of degree p - 2. On curved facets, whose normals are
+nearly continuous, the resultant of a pressure stays that of the facets themselves: for one that is
+uniform over the face, exactly that of the area which it covers.
 """
 
 from __future__ import annotations
@@ -12,6 +17,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+from numpy.polynomial import Legendre
 
 from .facets import lagrange, lagrange_bends, lagrange_slopes
 
@@ -78,7 +84,7 @@ def smooth_normals(
     turning : ndarray, shape (n, dim, gdim)
     """
     normal, turning = _raw(nodes, outward, facet, t)
-    values, slopes = _products(1, t)
+    values, slopes = _blending(nodes.shape[1] - 1, t)
     chosen = corrections[facet]
     blended = normal + np.einsum("nc,nci->ni", values, chosen)
     changing = turning + np.einsum("nkc,nci->nki", slopes, chosen)
@@ -89,7 +95,7 @@ def _raw(nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
     """Outward unit normals of the facets themselves, and their derivatives."""
     order, dim = nodes.shape[1] - 1, t.shape[1]
     on = nodes[facet].reshape(len(facet), -1, nodes.shape[-1])
-    _, slopes, bends = _products(order, t, second=True)
+    _, slopes, bends = _products(order, t)
     tangents = np.einsum("nka,nai->nki", slopes, on)
     bent = np.einsum("nkla,nai->nkli", bends, on)
     if dim == 1:
@@ -117,24 +123,44 @@ def _unit(vectors: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return unit, (slopes - along[:, :, None] * unit[:, None]) / size[:, None, None]
 
 
-def _products(order: int, t: np.ndarray, second: bool = False):
-    """Products of Lagrange polynomials of each parameter: values, first (and second) derivatives.
+def _blending(order: int, t: np.ndarray):
+    """Functions of the corners of a facet, 1 at one and 0 at the others: values and derivatives.
+
+    Products of ``(P_p(x) + P_{p-1}(x)) / 2``, the right Radau polynomial, and its mirror image for
+    the other end, with ``x = 2 t - 1`` and Legendre's polynomials P. Shapes as of `_products`.
+    """
+    right = Legendre([0.0] * (order - 1) + [0.5, 0.5], domain=[0.0, 1.0])
+    slope = right.deriv()
+    one = [
+        (
+            np.column_stack([right(1.0 - along), right(along)]),
+            np.column_stack([-slope(1.0 - along), slope(along)]),
+        )
+        for along in t.T
+    ]
+    if len(one) == 1:
+        return one[0][0], one[0][1][:, None]
+    (u, du), (v, dv) = one
+    return _times(u, v), np.stack([_times(du, v), _times(u, dv)], axis=1)
+
+
+def _times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Products of functions (n, i) of the first and (n, j) of the second parameter, (n, i j)."""
+    return np.einsum("na,nb->nab", a, b).reshape(len(a), -1)
+
+
+def _products(order: int, t: np.ndarray):
+    """Products of Lagrange polynomials of each parameter: values, first and second derivatives.
 
     Shapes (n, a), (n, dim, a) and (n, dim, dim, a), with a running over the nodes of a facet.
     """
-    kinds = [lagrange, lagrange_slopes, *((lagrange_bends,) if second else ())]
+    kinds = lagrange, lagrange_slopes, lagrange_bends
     one = [[kind(order, along) for kind in kinds] for along in t.T]
     if t.shape[1] == 1:
-        values, slopes, *bends = one[0]
-        return values, slopes[:, None], *(b[:, None, None] for b in bends)
-    (u, du, *ddu), (v, dv, *ddv) = one
-
-    def times(a, b):
-        return np.einsum("na,nb->nab", a, b).reshape(len(t), -1)
-
-    slopes = np.stack([times(du, v), times(u, dv)], axis=1)
-    if not second:
-        return times(u, v), slopes
-    mixed = times(du, dv)
-    rows = [[times(ddu[0], v), mixed], [mixed, times(u, ddv[0])]]
-    return times(u, v), slopes, np.stack([np.stack(row, axis=1) for row in rows], axis=1)
+        values, slopes, bends = one[0]
+        return values, slopes[:, None], bends[:, None, None]
+    (u, du, ddu), (v, dv, ddv) = one
+    slopes = np.stack([_times(du, v), _times(u, dv)], axis=1)
+    mixed = _times(du, dv)
+    rows = [[_times(ddu, v), mixed], [mixed, _times(u, ddv)]]
+    return _times(u, v), slopes, np.stack([np.stack(row, axis=1) for row in rows], axis=1)

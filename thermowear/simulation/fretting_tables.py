@@ -70,7 +70,7 @@ class FrettingTables:
     def friction(self, state: StickSlipState) -> FrictionInterface:
         """Sticking and slipping in a state."""
         system = self._system
-        points, pressure = system.pairing.points, system.basis @ state.pressure
+        points, pressure = system.pairing.on_body_1, system.basis @ state.pressure
         status = np.where(pressure > 0, np.where(self._sticking(state), 1, 2), 0)
         return FrictionInterface(
             x=points[:, 0],

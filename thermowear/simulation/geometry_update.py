@@ -9,6 +9,8 @@ import numpy as np
 from ..balances import relative, require
 from ..bulk.kinematics import section_model
 from ..bulk.transfer import transferred
+from ..contact.refinement import Rule
+from ..contact.surface import Surface
 from ..contact.worn_face import WornFace
 from ..errors import ComputationError
 from ..geometry.moved import MovableBody
@@ -151,6 +153,7 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
     worn = replace(
         before,
         mesh=mesh,
+        pieces=_kept_points(system, state, renewed),
         renewed={},
         at=along(system.pairing),
         depth=system.moved + taken,
@@ -162,6 +165,17 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
         volume_error=error,
     )
     return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
+
+
+def _kept_points(system: System, state: WornContact, renewed: dict[int, NewFace]) -> Rule | None:
+    """Contact points that stay where they are on the facets of body 1; None in a section.
+
+    Where contact holds point by point they stay in a section, too: no interpolation finds the gap
+    between points beside the edge of the wear so well that it closes at other ones.
+    """
+    on_surface = isinstance(system.pairing.sides[0].face, Surface)
+    pointwise = state.pointwise is not None and not renewed
+    return system.pairing.pieces if on_surface or pointwise else None
 
 
 def _volume_error(missing: np.ndarray, lost: np.ndarray) -> float:

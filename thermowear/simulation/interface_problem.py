@@ -118,7 +118,9 @@ class InterfaceProblem:
         time : float
             [s]
         """
-        edge = None if state.pointwise is None else self._method.edge(worn)
+        edge, geometry = state.pointwise, self._system.worn
+        if edge is not None and (geometry is None or geometry.pieces is None):
+            edge = self._method.edge(worn)  # the contact points are other ones
         if state.stored is None:
             found = self._lasting(worn, time, edge)
         else:

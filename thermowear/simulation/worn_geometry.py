@@ -47,7 +47,8 @@ class WornGeometry:
     quality : float
         Smallest scaled Jacobian of its cells so far.
     pieces : Rule or None
-        Of surfaces, whose contact points stay where they are on their facets; None in a section.
+        Of surfaces, and of sections with contact point by point at the edge of the wear: contact
+        points stay where they are on their facets. None where a section is paired anew.
     volume_error : float
         Largest difference so far of what a mesh has lost in an update and the volume worn off,
         relative to what is lost so far.

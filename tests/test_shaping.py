@@ -24,8 +24,18 @@ def run(*words: str) -> int:
     return main(["shape", *words, *SMALL])
 
 
-@pytest.mark.parametrize("ending", ["csv", "msh", "vtu", "step"])
-@pytest.mark.parametrize("name", ["annular-punch", "drum-brake", "rectangular-punch"])
+@pytest.mark.parametrize(
+    ("name", "ending"),
+    [
+        pytest.param(
+            name,
+            ending,
+            marks=() if name == "annular-punch" or ending == "msh" else pytest.mark.slow,
+        )
+        for name in ("annular-punch", "drum-brake", "rectangular-punch")
+        for ending in ("csv", "msh", "vtu", "step")
+    ],
+)
 def test_every_format_begins_a_run(name, ending, capsys):
     """requirement: ring, section and solid in all formats; a run can start from each of them."""
     assert run(f"{name}.toml", "-o", f"d.{ending}") == 0

@@ -167,7 +167,7 @@ def test_a_sweep_is_not_for_many_ranks(monkeypatch, capsys):
     assert "--processes" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("processes", ["1", "2"])
+@pytest.mark.parametrize("processes", ["1", pytest.param("2", marks=pytest.mark.slow)])
 def test_ctrl_c_keeps_what_is_done(tmp_path, processes):
     """
     requirement: Ctrl-C leaves a readable table of the variants that were computed; exit code 130.

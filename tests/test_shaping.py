@@ -11,6 +11,7 @@ from thermowear.cli import main
 from thermowear.geometry.gmsh_session import gmsh_model
 
 SMALL = ("--set", "mesh.degree=2", "--set", "mesh.elements=4")
+SLOW = pytest.mark.slow
 
 
 @pytest.fixture(autouse=True)
@@ -30,7 +31,7 @@ def run(*words: str) -> int:
         pytest.param(
             name,
             ending,
-            marks=() if name == "annular-punch" or ending == "msh" else pytest.mark.slow,
+            marks=SLOW if name != "annular-punch" and ending != "msh" else (),
         )
         for name in ("annular-punch", "drum-brake", "rectangular-punch")
         for ending in ("csv", "msh", "vtu", "step")

@@ -112,12 +112,19 @@ def running_in():
     return tw.run(tw.load(COLD_RUNNING_IN))
 
 
-@pytest.fixture
-def bodies_not_drawn(monkeypatch):
-    """Curves are drawn, but not the bodies, which takes a process and seconds."""
+@pytest.fixture(scope="module")
+def bodies_not_drawn():
+    """Curves and films are drawn, but not the bodies, which takes a process and seconds."""
     from thermowear.output.pictures import make
 
-    monkeypatch.setattr(make, "_render", lambda *_, **__: "")
+    render = make._render
+
+    def but_bodies(module, *arguments, **more):
+        return "" if module == "bodies" else render(module, *arguments, **more)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(make, "_render", but_bodies)
+        yield
 
 
 @pytest.fixture

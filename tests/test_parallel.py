@@ -55,7 +55,7 @@ def slow(*values):
         slow(COLD_RUNNING_IN, ["mesh.degree=6"]),
         slow(COLD_RUNNING_IN, ["mesh.degree=3", "mesh.bodies.plate.elements=7"]),
         slow(DEMOS / "cylinder_on_block.toml", ["contact.method=nitsche"]),
-        (DEMOS / "cylinder_stick_slip.toml", ["mesh.degree=2", "analysis.increments=4"]),
+        slow(DEMOS / "cylinder_stick_slip.toml", ["mesh.degree=2", "analysis.increments=4"]),
         slow(DEMOS / "disk_brake_stability.toml", ["mesh.degree=4"]),
         slow(DEMOS / "disk_brake_stop.toml", ["mesh.degree=3", "analysis.end_time=6 s"]),
     ],

@@ -172,7 +172,10 @@ def kill_and_resume(name, folder, uninterrupted, times):
     assert_resumes(name, folder, whole)
 
 
-@pytest.mark.parametrize("name", ["moved meshes", pytest.param("fretting", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name",
+    ["cold", *(pytest.param(n, marks=pytest.mark.slow) for n in ("moved meshes", "fretting"))],
+)
 def test_a_killed_run_goes_on_to_the_same_result(name, uninterrupted, tmp_path):
     """requirement: kill -9, then --resume: every table the same to 1e-12."""
     kill_and_resume(name, tmp_path / name, uninterrupted, times=1)

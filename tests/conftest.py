@@ -19,7 +19,14 @@ from thermowear.geometry.gmsh_session import gmsh_model, tagged_mesh
 # the same examples every time, so that a red test is the change's own; `make verify` looks for more
 settings.register_profile("fixed", derandomize=True, deadline=None)
 settings.register_profile("explore", max_examples=500, deadline=None)
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fixed"))
+EXPLORES = os.environ.get("HYPOTHESIS_PROFILE") == "explore"
+settings.load_profile("explore" if EXPLORES else "fixed")
+
+
+def examples(number: int) -> int:
+    """So many random examples in `make verify`, a quarter of them in `make test`."""
+    return number if EXPLORES else number // 4
+
 
 DEMOS = Path(__file__).parent.parent / "demos"
 HOT = DEMOS / "annular_punch.toml"
@@ -103,6 +110,21 @@ def hot_steady():
 def running_in():
     """The demo of running-in: cold, degree 8."""
     return tw.run(tw.load(COLD_RUNNING_IN))
+
+
+@pytest.fixture(scope="module")
+def bodies_not_drawn():
+    """Curves and films are drawn, but not the bodies, which takes a process and seconds."""
+    from thermowear.output.pictures import make
+
+    render = make._render
+
+    def but_bodies(module, *arguments, **more):
+        return "" if module == "bodies" else render(module, *arguments, **more)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(make, "_render", but_bodies)
+        yield
 
 
 @pytest.fixture

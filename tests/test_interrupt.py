@@ -26,7 +26,9 @@ def test_a_reader_that_goes_away_does_not_end_the_run(tmp_path):
     assert json.loads((tmp_path / "out" / "run.json").read_text())["status"] == "done"
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
+)
 def test_interrupted_run_leaves_readable_results(tmp_path, number):
     """requirement: what was computed before Ctrl-C is there, complete and consistent."""
     folder = tmp_path / "out"

@@ -172,7 +172,10 @@ def kill_and_resume(name, folder, uninterrupted, times):
     assert_resumes(name, folder, whole)
 
 
-@pytest.mark.parametrize("name", ["moved meshes", "fretting"])
+@pytest.mark.parametrize(
+    "name",
+    ["cold", *(pytest.param(n, marks=pytest.mark.slow) for n in ("moved meshes", "fretting"))],
+)
 def test_a_killed_run_goes_on_to_the_same_result(name, uninterrupted, tmp_path):
     """requirement: kill -9, then --resume: every table the same to 1e-12."""
     kill_and_resume(name, tmp_path / name, uninterrupted, times=1)
@@ -257,6 +260,7 @@ def test_a_row_that_was_not_written_to_its_end_is_written_again(uninterrupted, t
     assert_resumes("cold", folder, whole)
 
 
+@pytest.mark.slow
 def test_killed_before_anything_was_computed(uninterrupted, tmp_path):
     """requirement: then it begins at the beginning."""
     whole, _ = uninterrupted("cold")

@@ -73,11 +73,11 @@ def test_processes_do_not_change_the_numbers():
     """
     requirement: variants that share nothing are computed in processes of their own, to the same.
     """
-    over = ("--over", "mesh.elements=2,3,4", "--over", "contact.friction=0.1,0.2")
+    over = ("--over", "mesh.elements=2,3", "--over", "contact.friction=0.1,0.2")
     for processes in ("1", "2"):
         words = ["sweep", BLOCK, *SMALL[:2], *over, "--processes", processes, "--no-pictures"]
         assert main([*words, "-o", processes]) == 0
-    for number in range(1, 7):
+    for number in range(1, 5):
         one, two = (
             tables.read(Path(processes) / f"{number:03d}" / "interface.csv", INTERFACE)
             for processes in ("1", "2")
@@ -167,7 +167,7 @@ def test_a_sweep_is_not_for_many_ranks(monkeypatch, capsys):
     assert "--processes" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("processes", ["1", "2"])
+@pytest.mark.parametrize("processes", ["1", pytest.param("2", marks=pytest.mark.slow)])
 def test_ctrl_c_keeps_what_is_done(tmp_path, processes):
     """
     requirement: Ctrl-C leaves a readable table of the variants that were computed; exit code 130.

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import thermowear as tw
 from thermowear.case.starters import starters
 
+from ..conftest import examples
 from .starter import paths, tables
 
 PLACES = [(name, path) for name in starters() for path in paths(tables(name))]
@@ -49,7 +50,7 @@ def related(fault: str, path: str) -> bool:
 
 
 @given(place=st.sampled_from(PLACES), value=junk)
-@settings(max_examples=400, deadline=None, database=None)
+@settings(max_examples=examples(400), deadline=None, database=None)
 def test_junk_at_a_key_is_a_fault_at_that_key(place, value):
     """
     requirement: never a traceback; the fault is found where it was put.
@@ -63,7 +64,7 @@ def test_junk_at_a_key_is_a_fault_at_that_key(place, value):
 
 
 @given(place=st.sampled_from(PLACES), key=words.filter(lambda key: "." not in key), value=junk)
-@settings(max_examples=150, deadline=None, database=None)
+@settings(max_examples=examples(150), deadline=None, database=None)
 def test_a_key_of_junk_is_unknown(place, key, value):
     """
     requirement: unknown keys are refused in every table, by their path.
@@ -82,7 +83,7 @@ def test_a_key_of_junk_is_unknown(place, key, value):
 
 
 @given(text=st.text(max_size=60))
-@settings(max_examples=150, deadline=None, database=None)
+@settings(max_examples=examples(150), deadline=None, database=None)
 def test_any_override_is_taken_or_refused(text):
     """
     requirement: never a traceback for what stands behind --set.

@@ -18,7 +18,7 @@ from thermowear.cli import main
 
 from .mutations import CLASSES, mutated
 
-FEW, MANY, CHUNK = 300, 5_000, 500
+FEW, MANY, CHUNK = 100, 5_000, 500
 _HANGS = 20.0  # s of processor time
 
 

@@ -13,6 +13,7 @@ import thermowear as tw
 from thermowear.case import as_plain
 from thermowear.case.starters import starters
 
+from ..conftest import examples
 from .starter import FILE, FRETTING, GONE, HERTZ, PUNCH, RUNNING_IN, STEADY, tables
 
 FACTORS = {
@@ -150,7 +151,7 @@ exponents = st.floats(0.1, 10.0)
 
 
 @given(modulus=positive, friction=positive, nu=st.floats(-0.999, 0.499), a=exponents, b=exponents)
-@settings(max_examples=40, deadline=None, database=None)
+@settings(max_examples=examples(40), deadline=None, database=None)
 def test_numbers_are_written_out_exactly(modulus, friction, nu, a, b):
     """
     requirement: no digit is lost in case.resolved.toml, exponents in units included.

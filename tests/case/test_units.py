@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import thermowear as tw
 from thermowear.case.units import registry
 
+from ..conftest import examples
 from .starter import RUNNING_IN, STEADY, tables
 
 COEFFICIENT = "wear.punch.coefficient"
@@ -200,7 +201,7 @@ UNITS = {
 
 
 @given(data=st.data(), size=SIZES)
-@settings(max_examples=60, deadline=None, database=None)
+@settings(max_examples=examples(60), deadline=None, database=None)
 def test_any_two_units_agree(data, size):
     """
     requirement: a quantity means the same in every unit of its dimension.
@@ -215,7 +216,7 @@ def test_any_two_units_agree(data, size):
 
 
 @given(size=st.floats(min_value=1e-100, max_value=1e100))
-@settings(max_examples=60, deadline=None, database=None)
+@settings(max_examples=examples(60), deadline=None, database=None)
 def test_si_numbers_are_taken_as_they_are(size):
     """
     requirement: a number in SI units is not changed by reading it.

@@ -16,6 +16,8 @@ from thermowear.contact.complementarity import (
 )
 from thermowear.contact.lemke import lemke
 
+from ..conftest import examples
+
 
 def random_problem(seed, n, skew=0.0):
     """A compliance like an elastic one, a rough gap, one or two rigid directions."""
@@ -44,7 +46,7 @@ def violations(problem, solution):
     )
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), skew=st.sampled_from([0.0, 0.01]))
 def test_every_solution_satisfies_the_conditions(seed, n, skew):
     """requirement: no penetration, no tension, equilibrium, from any start."""
@@ -54,7 +56,7 @@ def test_every_solution_satisfies_the_conditions(seed, n, skew):
     assert violations(problem, solution) < 1e-8
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40), far=st.sampled_from([0.0, 50.0]))
 def test_a_given_approach_needs_no_modes(seed, n, far):
     """requirement: under displacement control, from any start; from far nothing touches."""
@@ -70,7 +72,7 @@ def test_a_given_approach_needs_no_modes(seed, n, far):
     assert not far or not λ.any()
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 40))
 def test_friction_in_the_section_enters_equilibrium(seed, n):
     """requirement: with forces that work on other modes than those that close the gap."""
@@ -87,7 +89,7 @@ def test_friction_in_the_section_enters_equilibrium(seed, n):
     assert forces.T @ solution.coefficients == pytest.approx(load, rel=1e-8, abs=1e-8)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(3, 30))
 def test_lemke_agrees_with_the_active_set(seed, n):
     """requirement: the fallback finds the same contact."""
@@ -137,7 +139,7 @@ def test_nearly_parallel_modes_from_a_start_that_cannot_carry():
     assert _pressing_by_lemke(_Problem(*problem, problem[2])).all()
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(1, 25))
 def test_lemke_on_positive_definite_problems(seed, n):
     """requirement: always ends, with w, z >= 0 and z·w = 0, degenerate ones included."""

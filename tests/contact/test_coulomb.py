@@ -12,6 +12,8 @@ from thermowear.contact.complementarity import solve_contact
 from thermowear.contact.coulomb import CoulombProblem, CoulombSolution, jacobian, residual, violated
 from thermowear.contact.coulomb_solver import _complementary, solve_directly, solve_patiently
 
+from ..conftest import examples
+
 
 def random_problem(seed, directions=1, forced=False):
     """A compliance that couples everything, rough gaps, friction that differs everywhere."""
@@ -64,7 +66,7 @@ def violations(problem, solution):
     return max(worst)
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(120), deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), directions=st.sampled_from([1, 1, 2]), forced=st.booleans())
 def test_every_solution_satisfies_the_conditions(seed, directions, forced):
     """requirement: gap, pressure, friction bound, slip against shear and equilibrium, also under

@@ -115,7 +115,7 @@ def test_locks_where_the_topology_says():
     """
     rng = np.random.default_rng(12)
     turned, lost = 0, 0
-    for _ in range(24):
+    for _ in range(14):
         patch, _, laws = curved_face(rng, friction=1.5, eccentric=0.0, motions=3)
         pivot = (*rng.uniform(-0.3, 0.3, 2), rng.uniform(0.0, 1.5))
         motions = [rotation((1, 0, 0), pivot), rotation((0, 1, 0), pivot)]

@@ -20,7 +20,7 @@ from ..conftest import COLD_RUNNING_IN
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory, bodies_not_drawn):
     """A short running-in with frames and the animation that the run draws of them."""
     path = tmp_path_factory.mktemp("animation") / "run"
     small = ["--set=mesh.degree=2", "--set=mesh.elements=4", "--set=analysis.end_time=5 s"]
@@ -121,6 +121,7 @@ def test_times_in_words(time, text):
     assert duration(time) == text
 
 
+@pytest.mark.slow
 def test_fps_and_name(folder, tmp_path):
     """requirement: --fps sets how long each is shown."""
     path = tmp_path / "slow.gif"
@@ -145,6 +146,7 @@ def test_mp4_goes_through_ffmpeg(folder, tmp_path, monkeypatch):
     assert path.stat().st_size == len(read_film(folder).states) * 900 * 560 * 3
 
 
+@pytest.mark.slow
 def test_ffmpeg_that_fails_is_heard(folder, tmp_path, monkeypatch, capsys):
     """requirement: exit code 2, its last word, and no half film."""
     tool = tmp_path / "ffmpeg"

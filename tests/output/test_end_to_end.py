@@ -51,7 +51,12 @@ QUICK = {
     RUNNING_IN: ("analysis.end_time=2 s", 'analysis.output_times=["1 s"]'),
     FRETTING: ("mesh.degree=2", "mesh.elements=12", "analysis.increments=3"),
     RECIPROCATING: ("mesh.degree=2", "analysis.cycles=4", 'analysis.output_times=["1 s"]'),
-    "annular-punch-deep": ("mesh.elements=2", "mesh.degree=2"),
+    "annular-punch-deep": ("mesh.elements=2", "mesh.degree=2")
+    + ("analysis.end_time=20 h", 'analysis.output_times=["10 h"]'),
+    "disk-sector": ("mesh.degree=2", "mesh.elements=4"),
+    "rectangular-punch": ("mesh.degree=2", "mesh.elements=4"),
+    "tube-in-support": ("mesh.degree=2", "analysis.cycles=8000")
+    + ('analysis.output_times=["200 s"]',),
     "cylinder-fretting": ("mesh.degree=2", "wear.cycles=20", 'analysis.output_times=["1 s"]'),
 }
 HEADS = {

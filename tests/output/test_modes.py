@@ -28,6 +28,7 @@ def drawn(path):
     return (np.abs(image - image[0, 0]).max(axis=2) > 0.05).mean()
 
 
+@pytest.mark.usefixtures("bodies_not_drawn")
 def test_swinging_bands(tmp_path, capsys):
     """requirement: the critical speeds are told, shapes are in mode.csv, and drawn."""
     folder, said = run(tmp_path, capsys, DISK, {"mesh.degree": 3, "mesh.elements": 6})

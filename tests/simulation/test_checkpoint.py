@@ -76,12 +76,14 @@ def assert_the_same(one, other):
             DEMOS / "disk_brake_stop.toml",
             ("mesh.degree=2", "analysis.end_time=2 s", SHORT, FADING.format("pad")),
             id="heat-in-time-varying",
+            marks=pytest.mark.slow,
         ),
         pytest.param(
             DEMOS / "annular_punch_deep.toml",
             ("mesh.degree=3", "mesh.elements=2", "analysis.end_time=30 h")
             + ("analysis.output_times=[]",),
             id="moved-meshes",
+            marks=pytest.mark.slow,
         ),
         pytest.param(
             COLD_RUNNING_IN,
@@ -90,7 +92,7 @@ def assert_the_same(one, other):
         ),
         pytest.param(
             DEMOS / "tube_in_support.toml",
-            ("mesh.elements=16", "analysis.cycles=20000", "analysis.output_times=['700 s']"),
+            ("mesh.elements=16", "analysis.cycles=10000", "analysis.output_times=['350 s']"),
             id="fretting",
         ),
         pytest.param(
@@ -164,7 +166,7 @@ def test_other_bodies_are_refused():
             run(case, None, None, None, dataclasses.replace(saved, **{name: other}))
 
 
-@pytest.mark.parametrize("jump", ["auto", 100])
+@pytest.mark.parametrize("jump", ["auto", pytest.param(100, marks=pytest.mark.slow)])
 def test_more_cycles_are_those_of_a_longer_run(jump):
     """requirement: a finished run of cycles may go on for more of them, within its tolerance."""
     few, many = (

@@ -57,6 +57,7 @@ def test_the_unworn_gap_stays_where_faces_are_slanted():
     assert after.gap[near] == pytest.approx(unworn[near], abs=2e-4 * deep)
 
 
+@pytest.mark.slow
 def test_pressures_go_on_after_an_update_of_a_steep_contact():
     """requirement: uniform over the contact, but for its edge; updates change next to nothing."""
     result = run_starter(*CYLINDER, "analysis.end_time=50 s")

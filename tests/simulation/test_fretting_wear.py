@@ -132,6 +132,7 @@ def test_jumps_change_little(sliding):
     assert coarse.max_wear_2 == close(fine.max_wear_2, rel=5e-2)
 
 
+@pytest.mark.slow
 def test_adaptive_jumps_are_those_of_all_cycles(adaptive, every):
     """requirement: depths and volumes of cycles one by one, from a few of them."""
     jumps = adaptive.friction.cycles
@@ -276,6 +277,7 @@ def test_an_interrupted_run_keeps_its_cycles():
     )
 
 
+@pytest.mark.usefixtures("bodies_not_drawn")
 def test_files_of_a_run(tmp_path, capsys):
     """requirement: cycles.csv has the cycles, interface.csv the depths; pictures of them."""
     file, folder = tmp_path / "case.toml", tmp_path / "results"

@@ -13,6 +13,7 @@ from thermowear.simulation import Observer
 from ..case.starter import GONE, HERTZ, PUNCH, RUNNING_IN, STEADY, solved, tables
 
 FULL = ("penalty", "nitsche")
+QUICK = (pytest.param("penalty", marks=pytest.mark.slow), "nitsche")
 SMALL = ("mesh.degree=3", "mesh.elements=8")
 
 
@@ -102,7 +103,7 @@ def hot_ring(method):
     return solved(STEADY, {"analysis": {"type": "initial"}, "wear": GONE}, *settings)
 
 
-@pytest.mark.parametrize("method", FULL)
+@pytest.mark.parametrize("method", QUICK)
 def test_hot_contact_is_that_of_condensed_contact(method, condensed_heat):
     """requirement: friction heat that lifts the edge off, by every method."""
     result, known = hot_ring(method), condensed_heat
@@ -139,7 +140,7 @@ def condensed_steps():
     return hot_steps("condensed")
 
 
-@pytest.mark.parametrize("method", FULL)
+@pytest.mark.parametrize("method", QUICK)
 def test_hot_steps(method, condensed_steps):
     """requirement: heat and wear together, step by step, by every method."""
     result, known = hot_steps(method), condensed_steps

@@ -72,6 +72,7 @@ def test_the_pressure_does_not_overshoot_at_a_travelling_edge():
     np.testing.assert_allclose(found[:, 1], uniform, rtol=5e-2)
 
 
+@pytest.mark.slow
 def test_finer_meshes_grow_alike():
     """requirement: half-width and depth do not depend on the elements that the edge passes."""
     law = growing_line(20e3, 10e-3, MODULUS, 1e-14)
@@ -85,6 +86,7 @@ def test_finer_meshes_grow_alike():
     np.testing.assert_allclose(grown(40), grown(80), rtol=5e-3)
 
 
+@pytest.mark.slow
 def test_a_tube_in_its_support():
     """requirement: on a curved face the zone grows by the same law, 1/R the difference of both."""
     changes = {

@@ -114,6 +114,7 @@ def steady(radii):
     return 50e6 * (0.12 + 0.02) / 2 / radii
 
 
+@pytest.mark.slow
 def test_temperatures_are_carried_over(hot):
     """requirement: the balance of heat closes at each step, temperatures and heat to 1e-3."""
     plain, anew = hot

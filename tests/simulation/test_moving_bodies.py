@@ -25,7 +25,15 @@ def turning(peclet, *overrides):
     return result, rises / result.summary["friction_power_W"]
 
 
-@pytest.mark.parametrize("peclet", [10, 100, 1000, 5000])
+@pytest.mark.parametrize(
+    "peclet",
+    [
+        10,
+        1000,
+        pytest.param(100, marks=pytest.mark.slow),
+        pytest.param(5000, marks=pytest.mark.slow),
+    ],
+)
 def test_coarse_meshes_do(peclet):
     """requirement: largest temperatures of both faces within 0.1 % of those of a finer mesh."""
     _, coarse = turning(peclet, "mesh.degree=3", "mesh.elements=8")
@@ -37,6 +45,7 @@ def test_coarse_meshes_do(peclet):
     assert result.summary["heat_balance_relative_error"] < 1e-9
 
 
+@pytest.mark.slow
 def test_heat_spread_is_the_limit_of_fast_rotation():
     """requirement: the mean temperatures of both faces come nearer like 1/√Pe."""
     _, even = turning(1000, 'heat.advection="spread"')
@@ -97,7 +106,8 @@ def test_the_console_says_how_heat_is_carried(capsys):
 
 
 @needs_mpirun
-@pytest.mark.parametrize("advection", ["resolved", pytest.param("spread", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("advection", ["resolved", "spread"])
 def test_two_ranks_give_the_serial_numbers(tmp_path, advection):
     """requirement: every number of the summary to 1e-8, also where a rank has no unknowns."""
     overrides = (f"heat.advection={advection}", "mesh.degree=3")

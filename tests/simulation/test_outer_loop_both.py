@@ -90,6 +90,7 @@ def lenses(tmp_path_factory):
     )
 
 
+@pytest.mark.slow
 def test_equal_bodies_stay_equal(lenses):
     """requirement: a symmetric problem stays symmetric; the contact is in the middle of both."""
     result = run(lenses)

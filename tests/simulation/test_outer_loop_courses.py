@@ -108,7 +108,7 @@ def test_temperatures_in_time_do_not_see_that_meshes_move():
             ),
             id="both",
         ),
-        pytest.param(STORED, id="heat-in-time"),
+        pytest.param(STORED, id="heat-in-time", marks=pytest.mark.slow),
     ],
 )
 def test_a_run_goes_on_after_an_update(case):

@@ -109,6 +109,7 @@ def grown(time):
     return run(starter("cylinder-on-block-growing", *keys), observer=notes), notes.found
 
 
+@pytest.mark.slow
 def test_a_contact_may_grow_past_its_zone():
     """requirement: over elements that were not made for it; a³ = a0³ + 1.5 k P' R s."""
     result, notes = grown(100)

@@ -106,6 +106,7 @@ def test_both_faces_move():
         assert summary[f"geometry_volume_{body}_m3"] > 0.7 * volume
 
 
+@pytest.mark.slow
 def test_a_pad_slides_along_its_curved_sides():
     """Points stay between its radii; pressure and wear are those of a pad that loses nothing."""
     moved, kept = (

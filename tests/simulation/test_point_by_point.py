@@ -36,10 +36,9 @@ def test_gap_is_closed_at_every_pressing_point():
     )
 
 
-def test_hot_steady_state(hot_steady):
+def test_hot_steady_state():
     """requirement: heat too crosses the interface point by point; the worn shape stays to 1e-3."""
-    result = run_starter("annular-punch", LOBATTO)
-    assert result.summary["shape_range_m"] == pytest.approx(
-        hot_steady.summary["shape_range_m"], rel=1e-3
-    )
+    result = run_starter("annular-punch", LOBATTO, "mesh.degree=5")
+    weak = run_starter("annular-punch", "mesh.degree=5")
+    assert result.summary["shape_range_m"] == pytest.approx(weak.summary["shape_range_m"], rel=1e-3)
     assert result.summary["heat_balance_relative_error"] < 1e-9

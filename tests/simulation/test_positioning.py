@@ -150,6 +150,7 @@ def falls(found, known):
     assert all(found[key] < 1.2 * known[key] for key in known), found
 
 
+@pytest.mark.slow
 def test_refinement_of_elements():
     """requirement: the peak converges with unpositioned elements, see `UNPOSITIONED`."""
     plain = ("contact.positioning=false", "mesh.degree=2", "mesh.grading=1.0")
@@ -172,7 +173,7 @@ class Listener(tw.simulation.Observer):
         self.notes.append(text)
 
 
-@pytest.mark.parametrize("half", [True, False])
+@pytest.mark.parametrize("half", [pytest.param(True, marks=pytest.mark.slow), False])
 def test_a_contact_that_outgrows_its_face(monkeypatch, half):
     """requirement: pressure cut off where the contact face ends is said; positioning mends it."""
     kind = type(tw.load(tables(HERTZ, {})).geometry)

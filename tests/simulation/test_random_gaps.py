@@ -1,7 +1,5 @@
 """Contact from far away, on rough faces: what comes back as converged is right."""
 
-import os
-
 from mpi4py import MPI
 
 import numpy as np
@@ -16,7 +14,9 @@ from thermowear.simulation.contact_method import Slope
 from thermowear.simulation.phases import Phases
 from thermowear.simulation.preparation import interface_problem
 
-TRIES = 200 if os.environ.get("HYPOTHESIS_PROFILE") == "explore" else 40
+from ..conftest import EXPLORES
+
+TRIES = 200 if EXPLORES else 10
 
 
 @pytest.fixture(scope="module")

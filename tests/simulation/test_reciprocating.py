@@ -296,6 +296,7 @@ def test_too_few_steps_are_an_error_with_results():
     assert result.history[-1].wear_volume_1 > 0
 
 
+@pytest.mark.usefixtures("bodies_not_drawn")
 def test_files_of_a_run(tmp_path, capsys):
     """requirement: track.csv and its picture, at the output times too."""
     file, folder = tmp_path / "case.toml", tmp_path / "results"

@@ -56,6 +56,7 @@ def test_methods_agree(method):
     assert depth(found) == pytest.approx(depth(known), rel=1e-2)
 
 
+@pytest.mark.slow
 def test_friction_bends_the_beam_on_its_way_only():
     """requirement: drag at the face presses right of the load harder if the beam moves there; the
     shape in the end does not know of it."""

@@ -50,6 +50,7 @@ def test_strokes_that_wear_deep():
     assert shallow == []
 
 
+@pytest.mark.slow
 def test_fretting_that_wears_deep():
     """requirement: the wear is held against the radius of the cylinder; nothing where it may be."""
     (note,), result = told(FRETTING, TURNS)

@@ -139,6 +139,7 @@ def test_fields_fill_the_bodies():
     assert fields.von_mises.min() >= 0
 
 
+@pytest.mark.slow
 def test_two_ranks_give_the_serial_numbers(tmp_path):
     """requirement: in space, every number of the summary to 1e-8 of the serial run."""
     case = tmp_path / "case.toml"

@@ -81,10 +81,14 @@ def test_what_needs_no_new_factor(changes, factors):
     same(result, tw.run(second))
 
 
+def slow(change):
+    return pytest.param(change, marks=pytest.mark.slow)
+
+
 @pytest.mark.parametrize(
     "change",
-    ['heat.cooling.block_top="500 W/(m^2 K)"', 'heat.ambient="50 degC"']
-    + ['heat.temperature={disk_rim="80 degC"}', 'bodies.disk={like="block"}'],
+    ['heat.cooling.block_top="500 W/(m^2 K)"', 'bodies.disk={like="block"}']
+    + [slow('heat.ambient="50 degC"'), slow('heat.temperature={disk_rim="80 degC"}')],
 )
 def test_cooling_needs_new_conduction_only(change, factors):
     """
@@ -101,8 +105,8 @@ def test_cooling_needs_new_conduction_only(change, factors):
 
 @pytest.mark.parametrize(
     "change",
-    ["mesh.elements=5", 'bodies.block.young_modulus="100 GPa"', 'geometry.block_height="10 mm"']
-    + ['bodies.block.expansion="2e-5 1/K"', "contact.pressure_degree=1"],
+    ['bodies.block.young_modulus="100 GPa"', "contact.pressure_degree=1", slow("mesh.elements=5")]
+    + [slow('geometry.block_height="10 mm"'), slow('bodies.block.expansion="2e-5 1/K"')],
 )
 def test_what_shares_nothing(change, factors):
     """

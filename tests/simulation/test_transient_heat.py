@@ -400,6 +400,7 @@ def test_it_ends_where_the_quasi_steady_running_in_ends():
 # ---- files ----
 
 
+@pytest.mark.usefixtures("bodies_not_drawn")
 def test_files(tmp_path):
     """requirement: heat.csv has a row a step in the agreed columns, heat.png shows it."""
     file, folder = tmp_path / "stop.toml", tmp_path / "results"

@@ -32,7 +32,9 @@ def test_a_table_of_ones_is_none(name):
         assert np.abs(found - known).max() <= 1e-7 * np.abs(known).max()
 
 
-@pytest.mark.parametrize("name", ANALYSES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow if n == "in time" else ()) for n in ANALYSES]
+)
 def test_balances(name):
     """requirement: heat and forces balance to 1e-9; closed points touch, the tables matter."""
     changes = SLOW | ANALYSES[name]

@@ -17,6 +17,7 @@ def test_special_case(name):
     assert not [check for check in checks if not check.passed]
 
 
+@pytest.mark.slow
 def test_minimality():
     """requirement: of 1 000 random admissible pressures per case none has less than the minimum."""
     checks = list(minimality.checks())

@@ -10,12 +10,13 @@ from thermowear.cli import main
 from thermowear.verification import CASES, SLOW, Check, compare
 
 LONG = SLOW | {
-    "beam-shakedown", "block-on-ring", "case-2", "case-8", "case-9", "fretting-cylinder",
-    "fretting-wear", "fuel-fretting", "growing-cylinder", "growing-sphere",
-    "half-plane-instability", "methods-agree", "moving-band", "optimal-shape", "reciprocating",
-    "temperature-dependent",
+    "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "case-2", "case-3",
+    "case-7", "case-8", "case-9", "fretting-cylinder", "fretting-wear", "fuel-fretting",
+    "growing-cylinder", "growing-sphere", "half-plane-instability", "hertz-line",
+    "methods-agree", "mindlin", "moving-band", "optimal-shape", "patch", "pressure-conductance",
+    "reciprocating", "running-in", "step-flux", "temperature-dependent", "two-slabs",
 }  # fmt: skip
-"""Of more than four seconds; CI runs them by `thermowear verify`."""
+"""Of more than three seconds; CI runs them by `thermowear verify`."""
 
 
 @pytest.mark.parametrize(

@@ -159,7 +159,8 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
     on_face = face_1.points(facet, t)
     pairs = opposite(face_1, facet, t, face_2)
     weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
-    weights *= model.area_factor(on_face + (pairs.share * pairs.gap)[:, None] * pairs.normals)
+    between = on_face + (pairs.share * pairs.gap)[:, None] * pairs.normals
+    weights *= np.maximum(model.area_factor(between), 0.0)  # beyond an axis by rounding
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
     if covered.max() > 1.0 + _TWICE:
         raise CaseError(folded(face_1, face_2))

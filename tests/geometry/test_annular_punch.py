@@ -211,7 +211,7 @@ def test_faces_of_a_torus_pair():
     exact = 2 * np.pi * 0.07 * 2 * half_angle * 0.075  # Pappus
     assert pairing.weights.sum() == pytest.approx(exact, rel=1e-6)
     seen = pairing.weights @ -pairing.normals[:, 1]
-    assert seen == pytest.approx(geometry.contact_area(), rel=1e-6)
+    assert seen == pytest.approx(geometry.contact_area(), rel=1e-7)
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,11 @@ within the facets makes the field of normals continuous (Yang, Laursen and Meng,
 Meth. Engng 62 (2005) 1183), so that points opposite each other are unique. Edges of the face itself
 are kept.
 
-The blending functions of a facet of order p are the Radau polynomials of degree p, the linear ones
-where p = 1: they see nothing of polynomials of degree p - 2. On curved facets, whose normals are
-nearly continuous, the resultant of a pressure stays that of the facets themselves: for one that is
-uniform over the face, exactly that of the area which it covers.
+The blending functions of a facet of order p are Radau polynomials of an odd degree q, p or p + 1,
+the linear ones where p = 1: they see nothing of polynomials of degree q - 2. On curved facets,
+whose own normals are nearly continuous, the resultant of a uniform pressure so stays that of the
+area which the facets cover. The degree is odd, as an arc's own normals are off at both ends of a
+facet by as much, the other way.
 """
 
 from __future__ import annotations
@@ -126,10 +127,12 @@ def _unit(vectors: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarr
 def _blending(order: int, t: np.ndarray):
     """Functions of the corners of a facet, 1 at one and 0 at the others: values and derivatives.
 
-    Products of ``(P_p(x) + P_{p-1}(x)) / 2``, the right Radau polynomial, and its mirror image for
-    the other end, with ``x = 2 t - 1`` and Legendre's polynomials P. Shapes as of `_products`.
+    Products of ``(P_q(x) + P_{q-1}(x)) / 2``, the right Radau polynomial, and its mirror image for
+    the other end, with ``x = 2 t - 1`` and Legendre's polynomials P; q is the first odd number from
+    the order of the facet on. Shapes as of `_products`.
     """
-    right = Legendre([0.0] * (order - 1) + [0.5, 0.5], domain=[0.0, 1.0])
+    degree = order + 1 - order % 2
+    right = Legendre([0.0] * (degree - 1) + [0.5, 0.5], domain=[0.0, 1.0])
     slope = right.deriv()
     one = [
         (

@@ -144,6 +144,7 @@ def test_multipliers_are_the_price_of_the_load():
         assert slope == pytest.approx(found.multipliers[i], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_inclinations_are_those_of_the_minimum_or_it_is_refused():
     """requirement: χ agrees with the multipliers; where no direction does, that is said."""
     rng = np.random.default_rng(41)

@@ -83,6 +83,7 @@ def test_little_wear_moves_nothing():
     assert found[0] == found[1]
 
 
+@pytest.mark.slow
 def test_it_ends_in_the_steady_state_of_the_height_that_is_left():
     """requirement: heat that takes a shorter way, without stepping through all of it."""
     hot = "annular-punch", "mesh.degree=6", "mesh.elements=4"

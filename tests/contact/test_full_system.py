@@ -151,7 +151,7 @@ def test_penetration_falls_as_the_penalty_grows(hertz):
 
 
 @pytest.mark.parametrize("kind", METHODS)
-@pytest.mark.parametrize("degree", [1, 2, 4, 7])
+@pytest.mark.parametrize("degree", [1, 2, 4, pytest.param(7, marks=pytest.mark.slow)])
 def test_few_iterations_whatever_the_gap(degree, kind):
     """requirement: a cold start from any distance; rough faces that do not match; small loads."""
     case = build(degree, (36 // degree, 30 // degree), name="axisymmetric")

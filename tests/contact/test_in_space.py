@@ -137,7 +137,9 @@ def test_a_slab_between_walls_is_in_plane_strain():
     np.testing.assert_allclose(moved, motion, rtol=1e-9)
 
 
-@pytest.mark.parametrize(("degree", "order", "round_"), [(2, 2, 3), (3, 3, 3)])
+@pytest.mark.parametrize(
+    ("degree", "order", "round_"), [(2, 2, 3), pytest.param(3, 3, 3, marks=pytest.mark.slow)]
+)
 def test_a_quarter_of_a_ring_is_axisymmetric(degree, order, round_):
     """requirement: curved cells, the pressure of the axisymmetric model within 2e-3 of its peak."""
 

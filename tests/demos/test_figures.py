@@ -45,7 +45,9 @@ PEAKS = {
 }
 
 
-@pytest.mark.parametrize("name", PEAKS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow if n == "disk-brake" else ()) for n in PEAKS]
+)
 def test_the_steady_peak(name):
     """requirement: the steady pressure of each special case is its closed form."""
     result = solved(name, None, *COARSE)

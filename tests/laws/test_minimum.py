@@ -53,7 +53,7 @@ def test_the_family_of_translation(a, b, q):
     assert uniform == (q == 1)
 
 
-@pytest.mark.parametrize("q", [0.7, 2.0, 5.0])
+@pytest.mark.parametrize("q", [0.7, 2.0, pytest.param(5.0, marks=pytest.mark.slow)])
 def test_pressure_of_two_bodies(q):
     """requirement: ``p = [TΛ c^-q / Σ Z_i^q C_i^((1-q)/q)]^(1/((b+1)q-1))``, with friction."""
     b, laws = 1.5, [WearLaw(1e-16, 1.5, 0.3), WearLaw(4e-16, 1.5, 2.0)]
@@ -105,7 +105,16 @@ def test_both_ways_to_the_steady_state():
     assert compared > 60
 
 
-@pytest.mark.parametrize("q", [0.6, 1.0, 1.5, 3.0, 10.0])
+@pytest.mark.parametrize(
+    "q",
+    [
+        0.6,
+        1.0,
+        3.0,
+        pytest.param(1.5, marks=pytest.mark.slow),
+        pytest.param(10.0, marks=pytest.mark.slow),
+    ],
+)
 def test_each_is_its_own_minimum(q):
     """requirement: random problems; no admissible pressure among 200 has less."""
     rng = np.random.default_rng(31)
@@ -144,6 +153,7 @@ def test_multipliers_are_the_price_of_the_load():
         assert slope == pytest.approx(found.multipliers[i], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_inclinations_are_those_of_the_minimum_or_it_is_refused():
     """requirement: χ agrees with the multipliers; where no direction does, that is said."""
     rng = np.random.default_rng(41)

@@ -334,9 +334,9 @@ def file_geometry(case, path: Path) -> dict:
     ("name", "ending", "allowed"),
     [
         (PUNCH, ".msh", 1e-9),
-        (PUNCH, ".inp", 1e-9),
+        pytest.param(PUNCH, ".inp", 1e-9, marks=pytest.mark.slow),
         (PUNCH, ".vtu", 1e-9),
-        (STEADY, ".msh", 1e-9),
+        pytest.param(STEADY, ".msh", 1e-9, marks=pytest.mark.slow),
         (STEADY, ".inp", 1e-9),
         (HERTZ, ".msh", 1e-9),
         (HERTZ, ".inp", 1e-5),  # arcs of the third order are written as of the second
@@ -406,6 +406,7 @@ def gmsh_punch(path: Path) -> None:
         gmsh.write(str(path))
 
 
+@pytest.mark.slow
 def test_triangles_of_gmsh_give_the_pressure_of_the_starter(tmp_path):
     """requirement: a mesh of one's own, of other cells and in another unit, away from the edges."""
     gmsh_punch(tmp_path / "own.msh")

@@ -89,6 +89,7 @@ def assert_the_same(one, other):
             COLD_RUNNING_IN,
             ("mesh.degree=2", "contact.method=nitsche", "analysis.end_time=5 s", SHORT),
             id="nitsche",
+            marks=pytest.mark.slow,
         ),
         pytest.param(
             DEMOS / "tube_in_support.toml",

@@ -28,7 +28,7 @@ def round_body():
     return cylinder(R, ZONE, 20)
 
 
-@pytest.mark.parametrize("edges", ["curved", "straight"])
+@pytest.mark.parametrize("edges", [pytest.param("curved", marks=pytest.mark.slow), "straight"])
 def test_whole_half_circles_touch_as_short_arcs_do(tmp_path, round_body, edges):
     """requirement: extent of the contact faces does not matter; Hertz's peak within 0.5 %."""
     found = []

@@ -89,6 +89,7 @@ def test_the_track_is_even_round_the_axis(in_time):
     assert np.ptp(i.wear_2[middle]) < 1e-4 * i.wear_2.max()
 
 
+@pytest.mark.slow
 def test_a_disk_that_wears_most_runs_in_to_the_steady_state():
     """
     requirement: steps of wear are solved at any size: transient and principle agree.

@@ -65,7 +65,9 @@ def growing(*settings, cycles=120, **more):
     return solved(FRETTING, moved(**STRONG | more), *SMALL, f"wear.cycles={cycles}", *settings)
 
 
-@pytest.mark.parametrize("name", ["sticking", "sliding", "adaptive"])
+@pytest.mark.parametrize(
+    "name", ["sticking", "sliding", pytest.param("adaptive", marks=pytest.mark.slow)]
+)
 def test_volumes_are_those_of_the_energy(name, request):
     """requirement: V = k/mu E for both bodies, at every increment; all tables agree."""
     result = request.getfixturevalue(name)

@@ -103,7 +103,8 @@ def hot_ring(method):
     return solved(STEADY, {"analysis": {"type": "initial"}, "wear": GONE}, *settings)
 
 
-@pytest.mark.parametrize("method", QUICK)
+@pytest.mark.slow
+@pytest.mark.parametrize("method", FULL)
 def test_hot_contact_is_that_of_condensed_contact(method, condensed_heat):
     """requirement: friction heat that lifts the edge off, by every method."""
     result, known = hot_ring(method), condensed_heat

@@ -62,6 +62,7 @@ def test_a_contact_that_outgrows_its_zone_is_meshed_for_a_wider_one():
         assert spread == pytest.approx(law.elastic_half_width(slid), rel=1e-2)
 
 
+@pytest.mark.slow
 def test_the_pressure_does_not_overshoot_at_a_travelling_edge():
     """requirement: largest pressure within 5 % of the uniform one wherever in an element it is."""
     law = growing_line(20e3, 10e-3, MODULUS, 1e-14)

@@ -83,6 +83,7 @@ def test_little_wear_moves_nothing():
     assert found[0] == found[1]
 
 
+@pytest.mark.slow
 def test_it_ends_in_the_steady_state_of_the_height_that_is_left():
     """requirement: heat that takes a shorter way, without stepping through all of it."""
     hot = "annular-punch", "mesh.degree=6", "mesh.elements=4"
@@ -100,6 +101,7 @@ def test_it_ends_in_the_steady_state_of_the_height_that_is_left():
     assert summary["max_pressure_Pa"] == pytest.approx(steady["max_pressure_Pa"], rel=5e-3)
 
 
+@pytest.mark.slow
 def test_heat_of_bodies_that_lose_material_is_accounted_for():
     """What goes with the worn material counts as lost; the balance holds at each step."""
     result = run_starter("annular-punch", *HEAT)

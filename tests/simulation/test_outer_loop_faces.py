@@ -43,6 +43,7 @@ def test_a_face_keeps_its_order_while_it_wears():
     assert i.pressure / lever == pytest.approx((i.pressure / lever).mean(), rel=0.2)
 
 
+@pytest.mark.slow
 def test_updates_are_as_frequent_as_they_must_be():
     """requirement: chosen by what they change: far more than fixed ones where that is much."""
     shoe = 'wear.shoe.coefficient="1e-5 1/MPa"'

@@ -73,6 +73,7 @@ def test_it_ends_in_the_steady_state_of_the_height_that_is_left(worn_punch):
     assert (high.interface.temperature_1 - theirs.temperature_1).max() > 5e-3 * rise
 
 
+@pytest.mark.slow
 def test_a_tilting_punch_on_a_block_that_does_not_match():
     """Points that wander over the face: special case 2 with its pressure, a plane."""
     law = {"coefficient": "5e-8 1/MPa", "per": "pressure"}

@@ -8,6 +8,7 @@ from thermowear.verification.starter import run_starter
 LOBATTO = "contact.pressure_degree=lobatto"
 
 
+@pytest.mark.slow
 def test_running_in_is_that_of_the_weak_gap(running_in):
     """requirement: 8T by a second pressure space, at every output time to 1e-3."""
     pointwise = run_starter("annular-punch-running-in", LOBATTO)

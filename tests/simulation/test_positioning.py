@@ -41,7 +41,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("degree", [4, 6])
+@pytest.mark.parametrize("degree", [4, pytest.param(6, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("name", "changes"), CASES.values(), ids=CASES)
 def test_element_ends_lie_at_the_edges(name, changes, degree):
     """requirement: within a tenth of the smallest element, on both sides where there are two."""
@@ -77,7 +77,7 @@ def best():
     return solved(HERTZ, THICK, "mesh.degree=8", "mesh.elements=20")
 
 
-@pytest.mark.parametrize("degree", [4, 6])
+@pytest.mark.parametrize("degree", [4, pytest.param(6, marks=pytest.mark.slow)])
 def test_positioning_is_worth_it(degree, best):
     """requirement: where the contact is not as expected, the error of the pressure falls."""
     x = best.interface.x

@@ -105,7 +105,7 @@ def test_second_order_in_time():
     assert slopes == pytest.approx([2.0, 2.0], abs=0.25)
 
 
-@pytest.mark.parametrize("b", [0.5, 2.0])
+@pytest.mark.parametrize("b", [pytest.param(0.5, marks=pytest.mark.slow), 2.0])
 def test_other_exponents_end_at_their_steady_pressure(b):
     """requirement: the loop over time and the principle end at the same pressure, any b."""
     tables = cold_tables(COLD_RUNNING_IN)

@@ -115,6 +115,7 @@ def test_steps_are_efficient(monkeypatch):
     assert len(sizes) == len(set(sizes)) <= 20
 
 
+@pytest.mark.slow
 def test_tolerance_rules_the_error():
     """requirement: a tighter tolerance moves temperatures and wear by no more than promised."""
 

@@ -44,7 +44,7 @@ def solved(case: str, method: str, *overrides: str) -> Result:
     return run_starter("annular-punch", key, *PUNCH, *overrides, without=("heat",))
 
 
-HERTZ = ("mesh.elements=12",)
+HERTZ = ("mesh.elements=16",)
 PUNCH = ("analysis.type=initial", "mesh.degree=6", "mesh.elements=16")
 
 

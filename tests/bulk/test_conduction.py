@@ -76,4 +76,4 @@ def test_outflow_equals_the_heat_put_in():
     net, turnover = sum(conducting.losses(rise, heat)), conducting.turnover(rise, heat)
     put_in = conducting.space.mesh.comm.allreduce(heat.sum())
     assert net == pytest.approx(put_in, rel=1e-10)
-    assert turnover >= abs(net)
+    assert turnover >= abs(net) * (1 - 1e-12)

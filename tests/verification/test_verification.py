@@ -16,7 +16,7 @@ LONG = SLOW | {
     "methods-agree", "mindlin", "moving-band", "optimal-shape", "patch", "pressure-conductance",
     "reciprocating", "running-in", "step-flux", "temperature-dependent", "two-slabs",
 }  # fmt: skip
-"""Of more than three seconds; CI runs them by `thermowear verify`."""
+"""Of more than three seconds; run by `make verify`."""
 
 
 @pytest.mark.parametrize(

@@ -11,17 +11,15 @@ from .wear_laws import wear_laws
 _NOMINAL = np.array(1e7), np.array(0.1)
 """At which wear rates are compared: bodies that rub have the same exponents as a rule [Pa, m/s]."""
 LEAST = 1e-9
-"""Softness of the body that wears less, where that of the other one is 1."""
-_ALIKE = 1e-6
-"""Wear rates that differ by less are the same."""
+"""Softness of a body whose face does not change, where that of the other one is 1."""
 
 
 def softness_of_parts(case: Case) -> dict[str, float]:
     """Softness of each part of the bodies for `contact.common_face`; only ratios count.
 
     The gap between opposite points closes by the elastic deflection of both bodies. Where bodies
-    slide and wear on and on, the deflection is soon small beside the wear, and the common face is
-    that of the body which wears less.
+    slide and wear on and on, the deflection is soon small beside the wear, and closes by what each
+    of them loses: the shares are those of the wear rates.
     """
     wearing = _wear_rates(case)
     if not wearing:
@@ -29,8 +27,8 @@ def softness_of_parts(case: Case) -> dict[str, float]:
     largest = max(wearing.values())
     softness: dict[str, float] = {}
     for index, body in enumerate(case.geometry.bodies):
-        most = wearing.get(index, 0.0) >= (1 - _ALIKE) * largest
-        softness |= dict.fromkeys(case.geometry.parts_of(body), 1.0 if most else LEAST)
+        share = max(wearing.get(index, 0.0) / largest, LEAST)
+        softness |= dict.fromkeys(case.geometry.parts_of(body), share)
     return softness
 
 

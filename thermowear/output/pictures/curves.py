@@ -6,6 +6,7 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import tables
@@ -21,6 +22,11 @@ STYLE = {
     "legend.frameon": False,
 }
 BODIES = ("tab:blue", "tab:orange")
+
+
+def from_zero(axis: Axes) -> None:
+    """Let the values of an axis begin at zero, and end above the largest, of even curves too."""
+    axis.set_ylim(0.0, 1.05 * axis.dataLim.y1 or None)
 
 
 def draw_interface(folder: Path) -> None:
@@ -43,7 +49,7 @@ def draw_interface(folder: Path) -> None:
                 axis.legend()
             else:
                 axis.set_ylabel(wrapped(INTERFACE[names[0]]))
-        axes[0].set_ylim(bottom=0)
+        from_zero(axes[0])
         axes[-1].set_xlabel(place[0])
         figure.savefig(folder / "interface.png")
 
@@ -86,27 +92,29 @@ def draw_wear(folder: Path) -> None:
 
 
 def draw_history(folder: Path) -> None:
-    """``history.png``: largest pressure and worn volume over time."""
+    """``history.png``: largest pressure over time, and worn volume where there is any."""
     if not (folder / "history.csv").is_file():
         return
     data = tables.read(folder / "history.csv", HISTORY)
     if len(data["time"]) < 2:
         return
     time = HISTORY["time"].drawn(data["time"])
+    worn = [body for body in (1, 2) if data[f"wear_volume_{body}"][-1] > 0]
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 5.4), layout="constrained", dpi=150)
-        upper, lower = figure.subplots(2)
+        figure = Figure(figsize=(6.4, 5.4 if worn else 2.7), layout="constrained", dpi=150)
+        upper, *lower = figure.subplots(2 if worn else 1, squeeze=False)[:, 0]
         pressure = HISTORY["max_pressure"].drawn(data["max_pressure"])
         upper.semilogx(time[1:], pressure[1:], color="tab:red")
+        from_zero(upper)
         upper.set_ylabel(HISTORY["max_pressure"].axis)
         upper.set_xlabel(f"{HISTORY['time'].axis}, logarithmic")
-        for name, color in zip(("wear_volume_1", "wear_volume_2"), BODIES, strict=True):
-            if data[name][-1] > 0:
-                drawn = HISTORY[name].drawn(data[name])
-                lower.plot(time, drawn, color=color, label=f"body {name[-1]}")
-        lower.legend()
-        lower.set_ylabel(f"worn volume [{HISTORY['wear_volume_1'].unit}]")
-        lower.set_xlabel(HISTORY["time"].axis)
+        for axis in lower:
+            for body in worn:
+                volume = HISTORY[f"wear_volume_{body}"].drawn(data[f"wear_volume_{body}"])
+                axis.plot(time, volume, color=BODIES[body - 1], label=f"body {body}")
+            axis.legend()
+            axis.set_ylabel(f"worn volume [{HISTORY['wear_volume_1'].unit}]")
+            axis.set_xlabel(HISTORY["time"].axis)
         figure.savefig(folder / "history.png")
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from .. import tables
 from ..quantities import CYCLES, FRICTION, LOADS
-from .curves import BODIES, STYLE, abscissa
+from .curves import BODIES, STYLE, abscissa, from_zero
 
 
 def draw_friction(folder: Path) -> None:
@@ -77,7 +77,7 @@ def draw_cycles(folder: Path) -> None:
             for body in worn:
                 drawn = CYCLES[f"{name}_{body}"].drawn(data[f"{name}_{body}"])
                 axis.plot(data["cycle"], drawn, color=BODIES[body - 1], label=f"body {body}")
-            axis.set_ylim(bottom=0)
+            from_zero(axis)
         axes[0].set_ylabel(f"largest wear depth [{CYCLES['max_wear_1'].unit}]")
         axes[1].set_ylabel(f"worn volume [{CYCLES['wear_volume_1'].unit}]")
         axes[0].legend()

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.figure import Figure
 
 from .. import tables
 from ..quantities import HEAT, HISTORY
-from .curves import BODIES, STYLE, wrapped
+from .curves import BODIES, STYLE, from_zero, wrapped
 
 
 def draw_heat(folder: Path) -> None:
@@ -21,9 +22,12 @@ def draw_heat(folder: Path) -> None:
     if len(heat["time"]) < 2:
         return
     time = HEAT["time"].drawn(heat["time"])
+    below = [(HEAT, heat, "friction_power", "tab:green")] if np.any(heat["friction_power"]) else []
+    below.append((HISTORY, history, "max_pressure", "tab:red"))
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 6.6), layout="constrained", dpi=150)
-        hot, power, pressed = figure.subplots(3, sharex=True, height_ratios=(1.6, 1, 1))
+        figure = Figure(figsize=(6.4, 2.9 + 1.85 * len(below)), layout="constrained", dpi=150)
+        heights = (1.6, *[1] * len(below))
+        hot, *others = figure.subplots(len(heights), sharex=True, height_ratios=heights)
         for body, color in enumerate(BODIES, 1):
             for which, word, line in (("max", "largest", "-"), ("mean", "mean", "--")):
                 name = f"{which}_temperature_{body}"
@@ -31,12 +35,9 @@ def draw_heat(folder: Path) -> None:
                 hot.plot(time, drawn, line, color=color, label=f"body {body}, {word}")
         hot.set_ylabel("temperature\nof the faces [°C]")
         hot.legend(ncols=2)
-        power.plot(time, HEAT["friction_power"].drawn(heat["friction_power"]), color="tab:green")
-        power.set_ylabel(wrapped(HEAT["friction_power"]))
-        largest = HISTORY["max_pressure"].drawn(history["max_pressure"])
-        pressed.plot(HISTORY["time"].drawn(history["time"]), largest, color="tab:red")
-        pressed.set_ylabel(wrapped(HISTORY["max_pressure"]))
-        for axis in (power, pressed):
-            axis.set_ylim(bottom=0)
-        pressed.set_xlabel(HEAT["time"].axis)
+        for axis, (table, data, name, color) in zip(others, below, strict=True):
+            axis.plot(table["time"].drawn(data["time"]), table[name].drawn(data[name]), color=color)
+            axis.set_ylabel(wrapped(table[name]))
+            from_zero(axis)
+        others[-1].set_xlabel(HEAT["time"].axis)
         figure.savefig(folder / "heat.png")

@@ -10,6 +10,7 @@ from thermowear import CaseError
 from thermowear.case.starters import starter_text
 from thermowear.cli import main
 from thermowear.output.pictures import make
+from thermowear.output.pictures.curves import draw_history
 from thermowear.output.pictures.heat import draw_heat
 from thermowear.output.pictures.make import make_pictures
 
@@ -92,6 +93,28 @@ def test_temperatures_in_time(tmp_path):
     (folder / "heat.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     draw_heat(folder)
     assert not (folder / "heat.png").exists()
+
+
+def test_a_joint_at_rest_has_no_empty_panels(tmp_path):
+    """requirement: neither friction power nor worn volume is drawn where there is none, and an
+    even pressure is drawn clear of the upper end of its axis."""
+    file, folder = tmp_path / "case.toml", tmp_path / "results"
+    file.write_text(starter_text("stacked-blocks-at-rest"), encoding="utf-8")
+    small = ["--no-pictures", "--set=mesh.degree=2", "--set=analysis.end_time=40 s"]
+    small += ['--set=analysis.output_times=["30 s"]']
+    assert main(["run", str(file), "-o", str(folder), *small]) == 0
+    draw_heat(folder)
+    draw_history(folder)
+    for name, panels in (("heat", 2), ("history", 1)):
+        image = mpimg.imread(folder / f"{name}.png")[..., :3]
+        assert image.shape[0] < 150 * (2.4 * panels + 0.4)  # no room for another panel
+        red = (image[..., 0] - image[..., 1:].max(axis=2)) > 0.3
+        orange = image[..., 1] > 0.4
+        pressure = np.flatnonzero((red & ~orange).any(axis=1))
+        assert len(pressure)
+        last = image.shape[0] * (panels - 1) // panels
+        assert pressure.min() > last + 4
+        assert pressure.max() - pressure.min() < 12  # a level line
 
 
 def test_bodies_are_drawn_in_colour(drawn):

@@ -39,8 +39,8 @@ def _main(arguments: list[str] | None) -> int:
         return _complain(error.exit_code, *error.faults)
     except ComputationError as error:
         return _complain(error.exit_code, str(error))
-    except KeyboardInterrupt:
-        return _complain(_INTERRUPTED, "interrupted")
+    except KeyboardInterrupt as error:
+        return _complain(_INTERRUPTED, str(error) or "interrupted")
     except BrokenPipeError:
         return 0
 
@@ -338,6 +338,7 @@ def _run(chosen) -> int:
     Errors of the case and of the computation are raised on all ranks alike.
     """
     began = time.perf_counter()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     from .workers import start_petsc
 
     start_petsc()
@@ -346,7 +347,6 @@ def _run(chosen) -> int:
 
     from .session import run_session
 
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     comm = MPI.COMM_WORLD
     try:
         return run_session(chosen, comm, time.perf_counter() - began)
@@ -362,7 +362,7 @@ def _run(chosen) -> int:
 def _sweep(chosen) -> int:
     if _launched_processes() > 1:
         raise CaseError("sweep: starts its own processes (--processes N); start it without mpirun")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     from .sweeping import run_sweep
 
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     return run_sweep(chosen)

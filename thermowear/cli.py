@@ -313,14 +313,14 @@ def _report(chosen) -> int:
 
 def _verify(chosen) -> int:
     from .output.console import Terminal, print_checks
-    from .verification import CASES, SLOW
+    from .verification import CASES, SLOW, all_checks
 
     unknown = [name for name in chosen.ids if name not in CASES]
     if unknown:
         raise CaseError(f"verify {unknown[0]}: no such case; one of: {', '.join(CASES)}")
     left_out = [] if chosen.ids or chosen.slow else [name for name in CASES if name in SLOW]
     names = chosen.ids or [name for name in CASES if name not in left_out]
-    checks = [check for name in names for check in CASES[name]()]
+    checks = [check for name in names for check in all_checks(name, CASES[name])]
     if chosen.json:
         print(json.dumps([check.as_row() for check in checks], indent=2, ensure_ascii=False))
     else:

@@ -234,8 +234,6 @@ def _init(chosen) -> int:
 
 def _validate(chosen) -> int:
     case = load(chosen.case, tuple(chosen.overrides))
-    for text in case.notes():
-        print(f"note: {text}", file=sys.stderr)
     about = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
     if case.geometry.from_file:
         from .geometry.mesh_checks import described, whole_bodies

@@ -95,8 +95,6 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
             "stays out of the contact"
         )
-    for text in system.case.notes():
-        observer.note(text)
     before = () if saved is None else (saved.of(system),)
     outcome = _ANALYSES[system.case.analysis.type](system, observer, *before)
     if outgrown(outcome.system or system, outcome.contact.pressure):

@@ -239,6 +239,16 @@ def _validate(chosen) -> int:
         from .geometry.mesh_checks import described, whole_bodies
 
         about += described(whole_bodies(case.tagged_mesh(), case.geometry))
+    if case.geometry.initial_shape is not None:
+        from .workers import start_petsc
+
+        start_petsc()
+        from mpi4py import MPI
+
+        from .simulation.building import check_contact_points
+
+        check_contact_points(case, MPI.COMM_SELF)
+        about.append(f"initial shape {case.geometry.initial_shape}")
     print(f"{chosen.case}: ok ({', '.join(about)})")
     return 0
 

@@ -23,6 +23,8 @@ class Bodies:
         Bodies; the tag of a body is its position here, plus one.
     surfaces : tuple of str
         Named surfaces; tags likewise.
+    checksum : str
+        Of the tagged mesh that they were made from; empty where there is none.
     """
 
     mesh: dolfinx.mesh.Mesh
@@ -30,6 +32,7 @@ class Bodies:
     facet_tags: dolfinx.mesh.MeshTags
     names: tuple[str, ...]
     surfaces: tuple[str, ...]
+    checksum: str = ""
 
     def body_tag(self, name: str) -> int:
         return self.names.index(name) + 1
@@ -76,9 +79,10 @@ def distribute(tagged, comm) -> Bodies:
             tagged.points.shape[1],
             tagged.bodies,
             tagged.surfaces,
+            tagged.checksum(),
         )
     )
-    kind, facet_kind, order, gdim, names, surfaces = head
+    kind, facet_kind, order, gdim, names, surfaces, checksum = head
     cell_nodes, facet_nodes = _nodes(kind, order), _nodes(facet_kind, order)
     if comm.rank == 0:
         cells = tagged.cells[:, _matched(cell_nodes, tagged.node_places(kind))]
@@ -99,6 +103,7 @@ def distribute(tagged, comm) -> Bodies:
         facet_tags=_tags(mesh, tdim - 1, facets, facet_tags),
         names=names,
         surfaces=surfaces,
+        checksum=checksum,
     )
 
 

@@ -8,7 +8,10 @@ import basix
 import basix.ufl
 import dolfinx
 import numpy as np
+import ufl
 from dolfinx import fem, io
+
+from ..compat import exterior_facet_domain
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,11 @@ class Bodies:
     def facets(self, surface: str) -> np.ndarray:
         """Local indices of the facets of a surface, ghosts included."""
         return self.facet_tags.find(self.surface_tag(surface))
+
+    def surface_measure(self, surface: str) -> ufl.Measure:
+        """Integration over a surface; all surfaces share the compiled kernels of a form."""
+        facets = exterior_facet_domain(self.mesh, self.facets(surface))
+        return ufl.Measure("ds", domain=self.mesh, subdomain_data=[(1, facets)])(1)
 
     def parts_of_cells(self, cells: np.ndarray) -> np.ndarray:
         """Position in `names` of the part that each local cell belongs to, which has a material."""

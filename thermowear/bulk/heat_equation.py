@@ -11,7 +11,6 @@ import ufl
 from dolfinx import default_scalar_type, fem
 from dolfinx.fem.petsc import assemble_matrix
 
-from ..compat import exterior_facet_domain
 from .advection import Passage, advection
 from .bodies import Bodies
 from .compiled import compiled
@@ -126,12 +125,10 @@ def conducting(bodies: Bodies, model: Model, conductivities: dict[str, float], d
 
 
 def transferring(bodies: Bodies, model: Model, surface: str, h: float):
-    """Bilinear form ``∫ h T δT dS`` of one surface, as a function of both; all share one kernel."""
-    mesh = bodies.mesh
-    facets = exterior_facet_domain(mesh, bodies.facets(surface))
-    ds = ufl.Measure("ds", domain=mesh, subdomain_data=[(1, facets)])
+    """Bilinear form ``∫ h T δT dS`` of one surface, as a function of both."""
+    mesh, ds = bodies.mesh, bodies.surface_measure(surface)
     coefficient = fem.Constant(mesh, default_scalar_type(h))
-    return lambda T, δT: model.integral(mesh, coefficient * T * δT, ds(1))
+    return lambda T, δT: model.integral(mesh, coefficient * T * δT, ds)
 
 
 def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):

@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from ..bulk.conduction import Conduction
-from ..contact.heat import InterfaceHeat, ThermalDistortion, condense_distortion, gap_per_rise
+from ..contact.heat import InterfaceHeat
+from ..contact.heat_condensation import ThermalDistortion, condense_distortion, gap_per_rise
 from .system import System
 from .thermal_system import ThermalSystem
 

@@ -10,12 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..balances import relative
-from ..contact.heat import (
-    Resting,
-    ThermalState,
-    at_rest,
-    condense_heat,
-)
+from ..contact.heat import Resting, ThermalState, at_rest
+from ..contact.heat_condensation import condense_heat
 from ..parallel import sum_over_ranks
 from .condensed_distortion import CondensedDistortion
 from .conditions import Conditions

@@ -47,9 +47,10 @@ class Bodies:
         """Local indices of the facets of a surface, ghosts included."""
         return self.facet_tags.find(self.surface_tag(surface))
 
-    def surface_measure(self, surface: str) -> ufl.Measure:
-        """Integration over a surface; all surfaces share the compiled kernels of a form."""
-        facets = exterior_facet_domain(self.mesh, self.facets(surface))
+    def surface_measure(self, *surfaces: str) -> ufl.Measure:
+        """Integration over surfaces; all of them share the compiled kernels of a form."""
+        facets = np.concatenate([self.facets(surface) for surface in surfaces])
+        facets = exterior_facet_domain(self.mesh, facets)
         return ufl.Measure("ds", domain=self.mesh, subdomain_data=[(1, facets)])(1)
 
     def parts_of_cells(self, cells: np.ndarray) -> np.ndarray:

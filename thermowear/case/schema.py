@@ -18,7 +18,8 @@ from .conductance import PressureConductance, TabulatedConductance, harmonic_mea
 from .driving import Holder, Load, Motion
 from .facing import Facing, material_of
 from .factors import Factors
-from .geometry import AnyGeometry, Pressing
+from .geometry import Pressing
+from .geometry_type import AnyGeometry
 from .heat import Heat
 from .history import Course, FactorHistory
 from .materials import Body, Properties

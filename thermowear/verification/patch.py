@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..case import load
-from ..case.geometry import PlaneGeometry
+from ..case.plane_geometry import PlaneGeometry
 from ..geometry.blocks import Interval, add_grid
 from ..geometry.gmsh_session import gmsh_model, tagged_mesh
 from ..simulation import Result

@@ -1,5 +1,6 @@
 """Ctrl-C in the middle of a run."""
 
+import itertools
 import json
 import signal
 import subprocess
@@ -8,10 +9,60 @@ import time
 
 import pytest
 
+import thermowear as tw
+from thermowear.cli import main
+from thermowear.errors import ComputationError, UnwritableError
 from thermowear.output import tables
+from thermowear.output.folder import ResultsFolder
 from thermowear.output.quantities import HISTORY, INTERFACE
+from thermowear.session import SavingRecorder
+from thermowear.simulation import Observer
+from thermowear.simulation.saving import Saving
 
 from .conftest import COLD_RUNNING_IN
+
+SMALL = ("mesh.degree=2", "mesh.elements=4", "analysis.end_time=20 s", "analysis.output_times=[]")
+SHORT = [f"--set={change}" for change in SMALL]
+TWO = ["sweep", str(COLD_RUNNING_IN), *SHORT, "--over", "contact.friction=0.25,0.3"]
+
+
+@pytest.fixture
+def after_the_last_step(heeds_ctrl_c, monkeypatch):
+    """Ctrl-C while the state at the end of a run is saved: no step comes after it."""
+    sent = []
+
+    def interrupted(original):
+        def checkpoint(self, saved):
+            original(self, saved)
+            if saved.progress.time == pytest.approx(20.0) and not sent:
+                sent.append(saved.progress.time)
+                signal.raise_signal(signal.SIGINT)
+
+        return checkpoint
+
+    handler = signal.getsignal(signal.SIGTERM)
+    for kind in (Observer, SavingRecorder):
+        monkeypatch.setattr(kind, "checkpoint", interrupted(kind.checkpoint))
+    yield
+    signal.signal(signal.SIGTERM, handler)
+    assert sent
+
+
+@pytest.fixture
+def beside_a_failure(heeds_ctrl_c, monkeypatch):
+    """Return a function: Ctrl-C, and then an error, when a state has been kept so many times."""
+    handler, count = signal.getsignal(signal.SIGTERM), itertools.count(1)
+
+    def make(number, error):
+        def passed(self, state):
+            if next(count) == number:
+                signal.raise_signal(signal.SIGINT)
+                raise error
+
+        monkeypatch.setattr(Saving, "passed", passed)
+
+    yield make
+    signal.signal(signal.SIGTERM, handler)
 
 
 def test_a_reader_that_goes_away_does_not_end_the_run(tmp_path):
@@ -60,3 +111,99 @@ def test_interrupted_run_leaves_readable_results(tmp_path, number):
     volume = interface["weight"] @ interface["wear_1"]
     assert volume == pytest.approx(rows["wear_volume_1"][-1], rel=1e-12, abs=0.0)
     assert (folder / "fields.vtu").stat().st_size > 1000
+
+
+def status(folder):
+    return json.loads((folder / "run.json").read_text())["status"]
+
+
+def test_ctrl_c_after_the_last_step_of_a_run(after_the_last_step, tmp_path, capsys):
+    """requirement: a noted request is never dropped: results whole, exit code 130."""
+    words = ["run", str(COLD_RUNNING_IN), *SHORT, "-o", str(tmp_path / "r"), "--no-pictures"]
+    assert main(words) == 130
+    assert capsys.readouterr().err == "error: interrupted\n"
+    assert status(tmp_path / "r") == "interrupted"
+    assert json.loads((tmp_path / "r" / "summary.json").read_text())["time_s"] == 20.0
+    assert main([*words, "--resume"]) == 0
+    assert status(tmp_path / "r") == "done"
+
+
+def test_ctrl_c_after_the_last_step_of_a_variant(after_the_last_step, tmp_path):
+    """requirement: no further variant begins, and the exit code is 130."""
+    folder = tmp_path / "s"
+    assert main([*TWO, "-o", str(folder), "--processes", "1", "--no-pictures"]) == 130
+    assert status(folder) == status(folder / "001") == "interrupted"
+    assert json.loads((folder / "001" / "summary.json").read_text())["time_s"] == 20.0
+    assert not (folder / "002").exists()
+
+
+def test_ctrl_c_after_the_last_step_of_a_variant_in_python(after_the_last_step):
+    """requirement: `tw.sweep` does not go on with the next variant."""
+    with pytest.raises(KeyboardInterrupt):
+        tw.sweep(tw.load(COLD_RUNNING_IN, SMALL), {"contact.friction": [0.25, 0.3]})
+
+
+def test_ctrl_c_after_the_last_step_of_a_coarser_run(after_the_last_step, tmp_path, monkeypatch):
+    """requirement: `--accuracy` does not go on with the finer one."""
+    folder = tmp_path / "r"
+    words = ["run", str(COLD_RUNNING_IN), *SHORT, "-o", str(folder), "--no-pictures", "--accuracy"]
+    monkeypatch.setattr(SavingRecorder, "checkpoint", lambda *_: None)  # the run itself passes
+    assert main(words) == 130
+    assert status(folder) == "interrupted"
+
+
+@pytest.mark.parametrize(
+    ("step", "error"),
+    [(1, UnwritableError("no room")), (3, ComputationError("no answer"))],
+    ids=["nothing to keep", "kept"],
+)
+def test_ctrl_c_beside_an_error(beside_a_failure, tmp_path, capsys, step, error):
+    """requirement: neither is lost: the sweep ends, and what had failed is said."""
+    folder = tmp_path / "s"
+    beside_a_failure(step, error)
+    assert main([*TWO, "-o", str(folder), "--processes", "1", "--no-pictures"]) == 130
+    run = json.loads((folder / "001" / "run.json").read_text())
+    assert run["status"] == "interrupted"
+    assert run["message"] == f"interrupted; the computation had failed: {error}"
+    assert not (folder / "002").exists()
+
+
+def test_ctrl_c_where_the_folder_cannot_be_closed(after_the_last_step, tmp_path, monkeypatch):
+    """requirement: a full disk does not make the sweep go on."""
+    folder, close = tmp_path / "s", ResultsFolder.close
+
+    def fail(self, *words):
+        close(self, *words)
+        raise OSError("no room")
+
+    monkeypatch.setattr(ResultsFolder, "close", fail)
+    assert main([*TWO, "-o", str(folder), "--processes", "1", "--no-pictures"]) == 130
+    assert not (folder / "002").exists()
+
+
+WHILE_IMPORTING = """
+import importlib.abc
+import signal
+import sys
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+class Interrupted(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name == "thermowear.cli":
+            signal.raise_signal(signal.SIGINT)
+
+
+sys.meta_path.insert(0, Interrupted())
+from thermowear.__main__ import run
+
+sys.exit(run())
+"""
+
+
+def test_ctrl_c_while_the_program_is_imported():
+    """requirement: exit code 130 and one line, no traceback."""
+    command = [sys.executable, "-c", WHILE_IMPORTING]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "error: interrupted\n")

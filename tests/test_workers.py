@@ -11,6 +11,7 @@ import time
 
 import pytest
 
+from thermowear import workers
 from thermowear.workers import work_off
 
 
@@ -65,6 +66,20 @@ def test_what_is_saved_after_ctrl_c_arrives(heeds_ctrl_c):
         work_off([1, 2, 3], 2, dawdle, hear, lambda *given: None)
     assert told == ["begun", "begun", "saved", "saved"]
     assert not multiprocessing.active_children()
+
+
+def test_ctrl_c_while_a_process_is_started(heeds_ctrl_c, monkeypatch):
+    """requirement: it comes in when the process runs; that one does not hear it."""
+    told, start = [], workers._SPAWN.Process.start
+
+    def interrupted(process):
+        signal.raise_signal(signal.SIGINT)
+        start(process)
+
+    monkeypatch.setattr(workers._SPAWN.Process, "start", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        work_off([[1], [2]], 1, square, told.append, lambda *given: None)
+    assert told == []
 
 
 INTERRUPTED_IN_A_DESTRUCTOR = """

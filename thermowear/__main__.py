@@ -11,11 +11,15 @@ def run() -> int:
     where anything else runs (3 s become 16 s, measured). Processes do the work: `mpirun`.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # before a BLAS is loaded
-    from .cli import main
-    from .interrupts import deliver_again
+    try:
+        from .cli import main
+        from .interrupts import deliver_again
 
-    deliver_again()
-    return main()
+        deliver_again()
+        return main()
+    except KeyboardInterrupt:  # while importing: the command line itself has not begun
+        print("error: interrupted", file=sys.stderr)
+        return 130
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ Exit codes: 0 done, 1 the case or the command line is wrong, 2 the computation f
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import signal
@@ -16,7 +15,8 @@ import traceback
 import warnings
 from pathlib import Path
 
-from . import __version__, load
+from . import load
+from .arguments import parser
 from .errors import CaseError, CaseNote, ComputationError
 
 _INTERRUPTED = 130
@@ -33,14 +33,14 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _main(arguments: list[str] | None) -> int:
     try:
-        chosen = _parser().parse_args(arguments)
-        return chosen.command(chosen)
+        chosen = parser().parse_args(arguments)
+        return _COMMANDS[chosen.command](chosen)
     except CaseError as error:
         return _complain(error.exit_code, *error.faults)
     except ComputationError as error:
         return _complain(error.exit_code, str(error))
-    except KeyboardInterrupt:
-        return _complain(_INTERRUPTED, "interrupted")
+    except KeyboardInterrupt as error:
+        return _complain(_INTERRUPTED, str(error) or "interrupted")
     except BrokenPipeError:
         return 0
 
@@ -86,127 +86,6 @@ def _launched_processes() -> int:
     return int(os.environ.get("OMPI_COMM_WORLD_SIZE", os.environ.get("PMI_SIZE", "1")))
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str):
-        raise CaseError(f"{message} (see {self.prog} --help)")
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="thermowear", description="Thermo-mechanical sliding wear of two bodies.")
-    parser.add_argument("--version", action="version", version=f"thermowear {__version__}")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
-
-    run = _command(commands, "run", _run, "compute a case")
-    _add_case(run)
-    run.add_argument("-o", "--output", metavar="DIR", type=Path, help="default: results/<case>")
-    existing = run.add_mutually_exclusive_group()
-    existing.add_argument("--overwrite", action="store_true", help="replace results that are there")
-    existing.add_argument(
-        "--resume", action="store_true", help="go on with the run that was stopped there"
-    )
-    run.add_argument("--no-pictures", dest="pictures", action="store_false")
-    run.add_argument(
-        "--accuracy",
-        action="store_true",
-        help="repeat the case one degree coarser and finer, and print all three side by side",
-    )
-
-    sweep = _command(commands, "sweep", _sweep, "compute all combinations of values of keys")
-    _add_case(sweep)
-    sweep.add_argument(
-        "--over",
-        metavar="KEY=V1,V2,...",
-        action="append",
-        required=True,
-        help="a key and its values, such as load.force='1 kN,2 kN'; may be given several times",
-    )
-    sweep.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="default: results/<case>-sweep"
-    )
-    sweep.add_argument("--overwrite", action="store_true", help="replace results that are there")
-    sweep.add_argument("--no-pictures", dest="pictures", action="store_false")
-    sweep.add_argument(
-        "--processes",
-        metavar="N",
-        type=_positive,
-        help="for variants that share no factors; default: as many as there are cores",
-    )
-
-    _command(commands, "cases", _cases, "list the starter cases")
-
-    init = _command(commands, "init", _init, "write a starter case to edit")
-    init.add_argument("name", metavar="NAME")
-    init.add_argument("-o", "--output", metavar="FILE", type=Path, help="default: NAME.toml")
-    init.add_argument("--overwrite", action="store_true")
-
-    validate = _command(commands, "validate", _validate, "check a case without computing it")
-    _add_case(validate)
-
-    mesh = _command(commands, "mesh", _mesh, "write the mesh of a case (.msh .vtu .xdmf .inp)")
-    _add_case(mesh)
-    mesh.add_argument("-o", "--output", metavar="FILE", type=Path, required=True)
-    mesh.add_argument("--overwrite", action="store_true")
-
-    shape = _command(commands, "shape", _shape, "write the steady worn shape of a contact face")
-    _add_case(shape)
-    shape.add_argument("-o", "--output", metavar="FILE", type=Path, required=True)
-    shape.add_argument("--body", metavar="NAME", help="whose face; default: the held body's")
-    shape.add_argument("--overwrite", action="store_true")
-
-    verify = _command(commands, "verify", _verify, "hold the program against known solutions")
-    verify.add_argument("ids", metavar="ID", nargs="*", help="default: all but the slow ones")
-    verify.add_argument(
-        "--slow", action="store_true", help="with those that take more than two minutes"
-    )
-    verify.add_argument("--json", action="store_true", help="print a list of the checks")
-
-    plot = _command(commands, "plot", _plot, "draw the pictures of a results folder again")
-    plot.add_argument("folder", metavar="DIR", type=Path)
-
-    animate = _command(commands, "animate", _animate, "draw a run that has kept analysis.frames")
-    animate.add_argument("folder", metavar="DIR", type=Path)
-    animate.add_argument(
-        "-o", "--output", metavar="FILE", type=Path, help=".gif or .mp4; default: DIR/animation.gif"
-    )
-    animate.add_argument("--fps", metavar="N", type=_rate, default=8.0, help="frames a second")
-
-    report = _command(commands, "report", _report, "write report.html of a results folder")
-    report.add_argument("folder", metavar="DIR", type=Path)
-    return parser
-
-
-def _positive(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise ValueError
-    return number
-
-
-def _rate(text: str) -> float:
-    number = float(text)
-    if not 0.1 <= number <= 50:
-        raise ValueError
-    return number
-
-
-def _command(commands, name: str, function, text: str) -> argparse.ArgumentParser:
-    command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
-    command.set_defaults(command=function)
-    return command
-
-
-def _add_case(command: argparse.ArgumentParser) -> None:
-    command.add_argument("case", metavar="CASE", type=Path)
-    command.add_argument(
-        "--set",
-        metavar="KEY=VALUE",
-        action="append",
-        default=[],
-        dest="overrides",
-        help="change a key, such as mesh.degree=6",
-    )
-
-
 def _cases(_) -> int:
     from .case.starters import starters
 
@@ -234,13 +113,21 @@ def _init(chosen) -> int:
 
 def _validate(chosen) -> int:
     case = load(chosen.case, tuple(chosen.overrides))
-    for text in case.notes():
-        print(f"note: {text}", file=sys.stderr)
     about = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
     if case.geometry.from_file:
         from .geometry.mesh_checks import described, whole_bodies
 
         about += described(whole_bodies(case.tagged_mesh(), case.geometry))
+    if case.geometry.initial_shape is not None:
+        from .workers import start_petsc
+
+        start_petsc()
+        from mpi4py import MPI
+
+        from .simulation.building import check_contact_points
+
+        check_contact_points(case, MPI.COMM_SELF)
+        about.append(f"initial shape {case.geometry.initial_shape}")
     print(f"{chosen.case}: ok ({', '.join(about)})")
     return 0
 
@@ -313,14 +200,14 @@ def _report(chosen) -> int:
 
 def _verify(chosen) -> int:
     from .output.console import Terminal, print_checks
-    from .verification import CASES, SLOW
+    from .verification import CASES, SLOW, all_checks
 
     unknown = [name for name in chosen.ids if name not in CASES]
     if unknown:
         raise CaseError(f"verify {unknown[0]}: no such case; one of: {', '.join(CASES)}")
     left_out = [] if chosen.ids or chosen.slow else [name for name in CASES if name in SLOW]
     names = chosen.ids or [name for name in CASES if name not in left_out]
-    checks = [check for name in names for check in CASES[name]()]
+    checks = [check for name in names for check in all_checks(name, CASES[name])]
     if chosen.json:
         print(json.dumps([check.as_row() for check in checks], indent=2, ensure_ascii=False))
     else:
@@ -338,6 +225,7 @@ def _run(chosen) -> int:
     Errors of the case and of the computation are raised on all ranks alike.
     """
     began = time.perf_counter()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     from .workers import start_petsc
 
     start_petsc()
@@ -346,7 +234,6 @@ def _run(chosen) -> int:
 
     from .session import run_session
 
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     comm = MPI.COMM_WORLD
     try:
         return run_session(chosen, comm, time.perf_counter() - began)
@@ -362,7 +249,22 @@ def _run(chosen) -> int:
 def _sweep(chosen) -> int:
     if _launched_processes() > 1:
         raise CaseError("sweep: starts its own processes (--processes N); start it without mpirun")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     from .sweeping import run_sweep
 
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     return run_sweep(chosen)
+
+
+_COMMANDS = {
+    "run": _run,
+    "sweep": _sweep,
+    "cases": _cases,
+    "init": _init,
+    "validate": _validate,
+    "mesh": _mesh,
+    "shape": _shape,
+    "verify": _verify,
+    "plot": _plot,
+    "animate": _animate,
+    "report": _report,
+}

@@ -60,6 +60,8 @@ def side_by_side(path: Path, overrides: tuple[str, ...], comm) -> dict[str, dict
         entry: dict[str, Any] = {"changes": ", ".join(changes)}
         try:
             result = run(load(path, (*overrides, *changes)), comm)
+            if result.stopped is not None:
+                raise result.stopped
             entry |= {key: result.summary.get(key) for key in COMPARED}
         except (CaseError, ComputationError) as error:
             entry["failed"] = str(error)

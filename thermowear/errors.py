@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 MOST_FAULTS = 50
@@ -43,6 +44,11 @@ class UnwritableError(ComputationError):
 
 class CaseNote(UserWarning):
     """What is legal in a case, and still odd enough to be said; the command line prints it."""
+
+
+def note(text: str) -> None:
+    """Warn of what is odd about a case, in the name of the caller."""
+    warnings.warn(CaseNote(text), stacklevel=3)
 
 
 def quoted(value: Any) -> str:

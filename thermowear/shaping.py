@@ -9,7 +9,7 @@ from typing import Any
 
 from . import load
 from .case import Case, as_plain
-from .case.geometry import PlaneGeometry
+from .case.plane_geometry import PlaneGeometry
 from .errors import CaseError
 from .geometry.design import CARRIERS, Design, add_table, write_table
 from .geometry.design_mesh import write_design_mesh

@@ -48,6 +48,8 @@ def sweep(
     ------
     CaseError
         If any variant is wrong; then none is computed.
+    KeyboardInterrupt
+        If a request to stop was noted during a variant; no further one is computed.
     """
     from .simulation.sweep import Series, groups
 
@@ -58,9 +60,13 @@ def sweep(
         series = Series()
         for k in group:
             try:
-                results[k] = series.run(found[k].case)
+                result = series.run(found[k].case)
             except ComputationError as error:
                 results[k] = error
+                continue
+            if isinstance(result.stopped, KeyboardInterrupt):
+                raise result.stopped
+            results[k] = result
     given = (dict(zip(over, values, strict=True)) for values in product(*over.values()))
     return [(values, results[k]) for k, values in enumerate(given)]
 
@@ -156,6 +162,7 @@ def _computed(series, job: Job) -> Ended:
     from .simulation.phases import Phases
 
     began, phases, summary = time.perf_counter(), Phases(), None
+    problem: BaseException | None = None
     try:
         folder = ResultsFolder(job.path, as_plain(job.case), 1, overwrite=True)
         try:
@@ -165,11 +172,10 @@ def _computed(series, job: Job) -> Ended:
             summary, problem = result.summary, result.stopped
         except BaseException as error:
             problem = error
-        status = _status(problem)
-        folder.close(status.partition(":")[0], _message(problem))
-    except (CaseError, OSError) as error:
-        status = _status(error)
-    return Ended(job.number, status, summary, time.perf_counter() - began)
+        folder.close(_status(problem).partition(":")[0], _message(problem))
+    except (CaseError, OSError) as error:  # the folder; an interrupt still ends the sweep
+        problem = problem if isinstance(problem, KeyboardInterrupt) else error
+    return Ended(job.number, _status(problem), summary, time.perf_counter() - began)
 
 
 def _status(problem: BaseException | None) -> str:

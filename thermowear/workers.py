@@ -70,11 +70,12 @@ class _Worker:
     def __init__(self, work):
         self.pipe, other = _SPAWN.Pipe()
         self.process = _SPAWN.Process(target=_serve, args=(other, work))
-        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # inherited: Ctrl-C is for us alone
+        # Ctrl-C is for us alone: the new process inherits the mask; here it comes in afterwards
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             self.process.start()
         finally:
-            signal.signal(signal.SIGINT, before)
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         other.close()
         self.task = None
 
@@ -130,6 +131,7 @@ def _let_finish(workers, told) -> None:
 def _serve(pipe, work) -> None:
     """Do tasks until there are no more; in a process of its own."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # one that was held back is ignored
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     deliver_again()
     try:

@@ -256,9 +256,12 @@ ALLOWED = {
 @pytest.mark.parametrize(("name", "changes"), ALLOWED.values(), ids=ALLOWED)
 def test_what_heat_allows(name, changes):
     """
-    requirement: what an analysis does not need may be left out, and what it can do is not refused.
+    requirement: what an analysis does not need may be left out, and what it can do is not refused;
+    with all defaults written out it is the same case.
     """
-    tw.load(tables(name, changes))
+    case = tw.load(tables(name, changes))
+    assert tw.load(tw.case.as_plain(case)) == case
+    assert case.heat is not None or "heat" not in tables(name, changes)
 
 
 def test_a_disk_that_turns_in_space_passes_under_its_pads():

@@ -91,8 +91,8 @@ def test_many_mutated_cases(first, tmp_path, capsys):
     """
     requirement: the same of five thousand.
     """
-    for seed in range(first, first + CHUNK):
-        try_one(seed, tmp_path, capsys)
+    accepted = [try_one(seed, tmp_path, capsys) for seed in range(first, first + CHUNK)]
+    assert CHUNK / 20 < sum(accepted) < CHUNK / 2
 
 
 @pytest.mark.parametrize("kind", CLASSES, ids=lambda kind: kind.__name__)

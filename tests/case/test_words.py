@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 import re
+import warnings
 
 import pytest
 
 import thermowear as tw
 from thermowear.case.starters import starter_text, starters
 from thermowear.cli import main
+from thermowear.errors import CaseNote
 
 from .bad import faults
 from .starter import GONE, STEADY, tables
 
 PER = "wear.punch.per"
+
+
+def notes(given: dict) -> list[str]:
+    """What is noted of a case."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", CaseNote)
+        tw.load(given)
+    return [str(one.message) for one in found]
 
 
 @pytest.mark.parametrize("name", starters())
@@ -23,7 +33,7 @@ def test_every_starter_says_what_its_coefficients_multiply(name):
     """
     laws = {k: v for k, v in tables(name).get("wear", {}).items() if isinstance(v, dict)}
     assert all("per" in law for law in laws.values())
-    assert tw.load(tables(name)).notes() == []
+    assert notes(tables(name)) == []
 
 
 @pytest.mark.parametrize("exponent", [1.0, 2.0])
@@ -35,22 +45,25 @@ def test_per_left_out_is_noted(exponent):
         "wear.punch.coefficient": f"2e-7 1/MPa^{exponent}",
         "wear.punch.pressure_exponent": exponent,
     }
-    (note,) = tw.load(tables(STEADY, law | {PER: GONE})).notes()
+    (note,) = notes(tables(STEADY, law | {PER: GONE}))
     assert note.startswith("wear.punch.per is left out")
     assert f"{0.25**-exponent:g} times as fast" in note
-    assert tw.load(tables(STEADY, law | {PER: "pressure"})).notes() == []
+    assert notes(tables(STEADY, law | {PER: "pressure"})) == []
 
 
-def test_validate_prints_notes(tmp_path, capsys):
+@pytest.mark.parametrize("command", ["validate", "mesh"])
+def test_commands_print_notes(command, tmp_path, capsys):
     """
-    requirement: a note is no fault: exit code 0, on the error stream.
+    requirement: a note is no fault: exit code 0, once on the error stream.
     """
     file = tmp_path / "case.toml"
     file.write_text(re.sub(r"(?m)^per = .*$", "", starter_text(STEADY)), encoding="utf-8")
-    assert main(["validate", str(file)]) == 0
+    words = ["-o", str(tmp_path / "mesh.vtu")] if command == "mesh" else []
+    assert main([command, str(file), *words]) == 0
     printed = capsys.readouterr()
     assert printed.err.startswith("note: wear.punch.per is left out")
-    assert "ok" in printed.out
+    assert printed.err.count("\n") == 1
+    assert ("ok" if command == "validate" else "wrote") in printed.out
 
 
 @pytest.mark.parametrize("name", [n for n in starters() if "arc_start" in starter_text(n)])

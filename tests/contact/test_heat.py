@@ -14,8 +14,8 @@ from thermowear.bulk.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.contact.condensation import condense
 from thermowear.contact.face import gather_face
-from thermowear.contact.heat import (
-    at_rest,
+from thermowear.contact.heat import at_rest
+from thermowear.contact.heat_condensation import (
     bath_matrix,
     condense_distortion,
     condense_heat,

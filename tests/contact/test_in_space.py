@@ -11,7 +11,8 @@ from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.contact.complementarity import solve_contact
 from thermowear.contact.condensation import condense
 from thermowear.contact.face import gather_face
-from thermowear.contact.heat import at_rest, bath_matrix, condense_heat
+from thermowear.contact.heat import at_rest
+from thermowear.contact.heat_condensation import bath_matrix, condense_heat
 from thermowear.contact.holder import Drive, hold
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis

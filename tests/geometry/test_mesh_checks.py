@@ -40,6 +40,15 @@ def fault(path, mesh: Plain, **more) -> str:
     return line
 
 
+def gap(mesh) -> float:
+    """How far apart the level faces of both blocks lie [m]."""
+    upper, lower = (
+        mesh.points[mesh.facets[mesh.facet_tags == mesh.surfaces.index(name) + 1]][..., 1]
+        for name in NAMES["contact"]
+    )
+    return upper.min() - lower.max()
+
+
 def quadratic(mesh: Plain) -> Plain:
     """The same with cells of nine nodes and lines of three, straight."""
     result, middle = Plain(copy.deepcopy(mesh.points)), {}
@@ -213,7 +222,8 @@ def test_pieces_that_are_all_held(tmp_path):
     ]
     mesh.lines = [x for x in mesh.lines if x != ("PUNCH_FACE", [3, 4])]
     with pytest.warns(CaseNote, match="'punch' has 2 pieces, all held by 'PUNCH_TOP'"):
-        case(tmp_path, mesh).tagged_mesh()
+        found = case(tmp_path, mesh).tagged_mesh()
+    assert areas(found, "punch") == pytest.approx(6 * [1e-4])  # two of eight cells are gone
 
 
 HALF = {"half": True, "symmetry": ["AXES"]}
@@ -224,9 +234,13 @@ def test_a_half_model(tmp_path):
     requirement: a plane of symmetry x = const, on either side of the bodies.
     """
     mesh = blocks(half=True)
-    case(tmp_path, mesh, **HALF).tagged_mesh()
+    right = case(tmp_path, mesh, **HALF).tagged_mesh()
     mesh.points = [[0.3 - x, y] for x, y in mesh.points]
-    case(tmp_path, mesh, **HALF).tagged_mesh()
+    left = case(tmp_path, mesh, **HALF).tagged_mesh()
+    for found, plane in ((right, 0.0), (left, 0.3)):
+        axis = found.facets[found.facet_tags == found.surfaces.index("AXES") + 1]
+        assert found.points[axis][..., 0] == pytest.approx(plane, abs=1e-15)
+        assert areas(found, "punch").sum() == pytest.approx(20e-3 * 20e-3)
 
 
 @pytest.mark.parametrize(
@@ -290,10 +304,12 @@ def test_bodies_that_overlap_a_little(tmp_path):
     with pytest.warns(
         CaseNote, match="the bodies overlap by 1 mm before they are pressed, 5.0% of"
     ):
-        case(tmp_path, blocks().moved("PUNCH", 0, -1e-3)).tagged_mesh()
+        much = case(tmp_path, blocks().moved("PUNCH", 0, -1e-3)).tagged_mesh()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        case(tmp_path, blocks().moved("PUNCH", 0, -2e-5)).tagged_mesh()
+        little = case(tmp_path, blocks().moved("PUNCH", 0, -2e-5)).tagged_mesh()
+    assert gap(much) == pytest.approx(-1e-3)
+    assert gap(little) == pytest.approx(-2e-5)
 
 
 LOADS = {
@@ -320,5 +336,5 @@ def test_a_gap_that_the_approach_closes(tmp_path):
     requirement: bodies may be drawn apart.
     """
     mesh = blocks().moved("PUNCH", 0, 1e-5)
-    case(tmp_path, mesh, load={"approach": "0.05 mm"}).tagged_mesh()
-    case(tmp_path, mesh).tagged_mesh()
+    for load in ({"approach": "0.05 mm"}, None):
+        assert gap(case(tmp_path, mesh, load).tagged_mesh()) == pytest.approx(1e-5)

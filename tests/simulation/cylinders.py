@@ -141,8 +141,8 @@ def _round(mesh: TaggedMesh, angle: float):
     return mesh.points[kept], number.reshape(cells.shape), (new[face], new[end])
 
 
-def case_tables(path, force: float, **changes) -> dict:
-    """A case with such a mesh: steel, pressed by a force per millimetre of thickness [N]."""
+def case_tables(path, force: float, thickness: str = "1 mm", **changes) -> dict:
+    """A case with such a mesh: steel, pressed by a force on all of its thickness [N]."""
     tables = {
         "title": "cylinders",
         "model": "plane-strain",
@@ -153,7 +153,7 @@ def case_tables(path, force: float, **changes) -> dict:
             "contact": ["upper_face", "lower_face"],
             "held": "upper_end",
             "fixed": "lower_end",
-            "thickness": "1 mm",
+            "thickness": thickness,
         },
         "mesh": {"degree": 2},
         "bodies": {

@@ -6,11 +6,13 @@ import os
 import numpy as np
 import pytest
 
+from thermowear.cli import main
 from thermowear.errors import CaseError
 from thermowear.output.quantities import PROFILE
 from thermowear.output.tables import write_points
 
 from ..case.starter import RUNNING_IN, solved
+from ..conftest import COLD_RUNNING_IN
 
 COARSE = ("mesh.degree=5", "mesh.elements=8")
 STEADY = "analysis={type='steady'}"
@@ -64,7 +66,7 @@ def test_a_shape_from_another_mesh(steady):
         ([["s_m", "shape_m"], [0, 0], [0.05, 1e-6]], "the contact face from 0 to 0.1 m"),
     ],
 )
-def test_faults(tmp_path, rows, text):
+def test_faults(tmp_path, capsys, rows, text):
     """requirement: one line with the key's path and what is wrong with the file."""
     file = tmp_path / "shape.csv"
     if rows is not None:
@@ -75,6 +77,22 @@ def test_faults(tmp_path, rows, text):
     (line,) = caught.value.args
     assert line.startswith("geometry.initial_shape: ")
     assert text in line
+    words = [str(COLD_RUNNING_IN), "--set", f"geometry.initial_shape={str(file)!r}"]
+    assert main(["validate", *words]) == 1
+    assert capsys.readouterr().err == f"error: {line}\n"
+
+
+def test_validate_reads_the_shape(tmp_path, capsys):
+    """requirement: a good one is said, and nothing else."""
+    file = tmp_path / "shape.csv"
+    file.write_text("s_m,shape_m\n0,0\n0.1,1e-6\n", "utf-8")
+    shaped = f"geometry.initial_shape={str(file)!r}"
+    assert main(["validate", str(COLD_RUNNING_IN), "--set", shaped]) == 0
+    heard = capsys.readouterr()
+    assert (
+        f"ok (transient analysis, annular-punch, axisymmetric, initial shape {file})" in heard.out
+    )
+    assert heard.err == ""
 
 
 def test_a_pipe_is_no_shape(tmp_path):

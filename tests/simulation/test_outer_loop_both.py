@@ -11,6 +11,7 @@ from thermowear.simulation.run import run
 from thermowear.verification.starter import run_starter
 
 from ..conftest import two_blocks
+from .cylinders import case_tables
 
 RING = "annular-punch-running-in", "analysis.tolerance=1e-3", "analysis.output_times=[]"
 SOFTER = 'wear.plate.coefficient="1e-7 1/MPa"'  # half that of the ring
@@ -64,30 +65,13 @@ def lenses(tmp_path_factory):
     apart = np.where(upper, 1.0, -1.0) * (1 - np.abs(y) / 0.02) * x**2 / (2 * RADIUS)
     path = tmp_path_factory.mktemp("lenses") / "lenses.msh"
     write_mesh(replace(mesh, points=np.column_stack([x, y + apart])), path)
-    body = {"young_modulus": "200 GPa", "poisson_ratio": 0.3}
     wear = {"coefficient": "1e-6 1/MPa", "per": "pressure"}
-    geometry = {
-        "type": "file",
-        "path": str(path),
-        "bodies": {"upper": "upper", "lower": "lower"},
-        "contact": ["upper_face", "lower_face"],
-        "held": "upper_end",
-        "fixed": "lower_end",
-        "thickness": "10 mm",
+    changes = {
+        "motion": {"velocity": "0.1 m/s"},
+        "wear": {"update": 0.002, "upper": wear, "lower": wear},
+        "analysis": {"type": "transient", "end_time": "100 s", "tolerance": 1e-3},
     }
-    return tw.load(
-        {
-            "title": "Two lenses",
-            "model": "plane-strain",
-            "geometry": geometry,
-            "mesh": {"degree": 2},
-            "bodies": {"upper": body, "lower": body},
-            "load": {"force": "2 kN"},
-            "motion": {"velocity": "0.1 m/s"},
-            "wear": {"update": 0.002, "upper": wear, "lower": wear},
-            "analysis": {"type": "transient", "end_time": "100 s", "tolerance": 1e-3},
-        }
-    )
+    return tw.load(case_tables(path, 2e3, thickness="10 mm", **changes))
 
 
 @pytest.mark.slow

@@ -7,7 +7,10 @@ import pytest
 
 from thermowear import verification
 from thermowear.cli import main
+from thermowear.errors import CaseError, ComputationError
 from thermowear.verification import CASES, SLOW, Check, compare
+from thermowear.verification.computed import computed
+from thermowear.verification.starter import starter
 
 LONG = SLOW | {
     "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "case-2", "case-3",
@@ -45,6 +48,42 @@ def test_rows_and_exit_code(monkeypatch, capsys):
     monkeypatch.setitem(verification.CASES, "fake", fake(1e-2))
     assert main(["verify", "fake"]) == 2
     assert "FAILED" in capsys.readouterr().out
+
+
+def failing(error):
+    """A case that ends with an error after its first check."""
+    yield from fake(1e-4)()
+    raise error
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (ComputationError("no step\nis small enough"), "not computed: no step is small enough"),
+        (CaseError("mesh.degree: too high"), "not computed: mesh.degree: too high"),
+        (ZeroDivisionError("by zero"), "not computed: ZeroDivisionError: by zero"),
+    ],
+)
+def test_a_case_that_raises_is_a_failed_row(error, said, monkeypatch, capsys):
+    """requirement: its id and the reason; the cases after it are computed, and the code is 2."""
+    cases = {"broken": lambda: failing(error), "fake": fake(2e-4)}
+    monkeypatch.setattr(verification, "CASES", cases)
+    assert main(["verify", "--json"]) == 2
+    before, broken, after = json.loads(capsys.readouterr().out)
+    assert (before["passed"], broken["passed"], after["passed"]) == (True, False, True)
+    assert (broken["id"], broken["quantity"]) == ("broken", said)
+    assert broken["computed"] is broken["error"] is None
+    assert main(["verify"]) == 2
+    heard = capsys.readouterr()
+    assert "2 passed, 1 failed" in heard.out
+    assert "Traceback" not in heard.out + heard.err
+
+
+def test_a_run_that_stops_on_its_way_is_not_compared():
+    """requirement: no number of a run that failed, or was interrupted, is held against any."""
+    case = starter("annular-punch-running-in", "mesh.degree=2", "analysis.max_steps=3")
+    with pytest.raises(ComputationError, match="max_steps"):
+        computed(case)
 
 
 def test_json(monkeypatch, capsys):

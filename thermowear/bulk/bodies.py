@@ -8,7 +8,10 @@ import basix
 import basix.ufl
 import dolfinx
 import numpy as np
+import ufl
 from dolfinx import fem, io
+
+from ..compat import exterior_facet_domain
 
 
 @dataclass(frozen=True)
@@ -23,6 +26,8 @@ class Bodies:
         Bodies; the tag of a body is its position here, plus one.
     surfaces : tuple of str
         Named surfaces; tags likewise.
+    checksum : str
+        Of the tagged mesh that they were made from; empty where there is none.
     """
 
     mesh: dolfinx.mesh.Mesh
@@ -30,6 +35,7 @@ class Bodies:
     facet_tags: dolfinx.mesh.MeshTags
     names: tuple[str, ...]
     surfaces: tuple[str, ...]
+    checksum: str = ""
 
     def body_tag(self, name: str) -> int:
         return self.names.index(name) + 1
@@ -40,6 +46,12 @@ class Bodies:
     def facets(self, surface: str) -> np.ndarray:
         """Local indices of the facets of a surface, ghosts included."""
         return self.facet_tags.find(self.surface_tag(surface))
+
+    def surface_measure(self, *surfaces: str) -> ufl.Measure:
+        """Integration over surfaces; all of them share the compiled kernels of a form."""
+        facets = np.concatenate([self.facets(surface) for surface in surfaces])
+        facets = exterior_facet_domain(self.mesh, facets)
+        return ufl.Measure("ds", domain=self.mesh, subdomain_data=[(1, facets)])(1)
 
     def parts_of_cells(self, cells: np.ndarray) -> np.ndarray:
         """Position in `names` of the part that each local cell belongs to, which has a material."""
@@ -76,9 +88,10 @@ def distribute(tagged, comm) -> Bodies:
             tagged.points.shape[1],
             tagged.bodies,
             tagged.surfaces,
+            tagged.checksum(),
         )
     )
-    kind, facet_kind, order, gdim, names, surfaces = head
+    kind, facet_kind, order, gdim, names, surfaces, checksum = head
     cell_nodes, facet_nodes = _nodes(kind, order), _nodes(facet_kind, order)
     if comm.rank == 0:
         cells = tagged.cells[:, _matched(cell_nodes, tagged.node_places(kind))]
@@ -99,6 +112,7 @@ def distribute(tagged, comm) -> Bodies:
         facet_tags=_tags(mesh, tdim - 1, facets, facet_tags),
         names=names,
         surfaces=surfaces,
+        checksum=checksum,
     )
 
 

@@ -67,7 +67,7 @@ class EnrichedProblem:
         )
         trial = ufl.TrialFunction(surplus)
         terms = [term(trial, tests[1]) for term in (*forms, *regular)]
-        self._surplus_solver = _solver(terms, fixed[1], space.mesh.topology.dim)
+        self._block = _SurplusBlock(terms, fixed[1], space.mesh.topology.dim)
 
     def field(self, values: np.ndarray) -> np.ndarray:
         """A field from values of the space (n_owned,), without surplus."""
@@ -89,60 +89,90 @@ class EnrichedProblem:
 
     def residual(self, field: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """What a field leaves of loads."""
-        return np.where(self._free, loads - self._apply(field, self._actions), 0.0)
+        self.function(field)
+        forces = np.concatenate([_sum(terms) for terms in self._actions])
+        return np.where(self._free, loads - forces, 0.0)
 
     def correction(self, residual: np.ndarray) -> np.ndarray:
         """Change of a field that takes away most of what it leaves of loads. Every rank calls."""
-        way = self.approximate(residual)
-        energy = self._product(way, self._stiff(way))
+        way, energy = self._improved(residual)
         return way if energy <= 0.0 else self._product(way, residual) / energy * way
 
     def approximate(self, loads: np.ndarray) -> np.ndarray:
         """A field near to the solution under loads, linear and symmetric in them."""
+        return self._improved(loads)[0]
+
+    def _improved(self, loads: np.ndarray) -> tuple[np.ndarray, float]:
+        """The field of `approximate`, and its energy: twice the work of the loads that hold it.
+
+        With the blocks K of the space, S of the surplus and C between them, and loads f and g: the
+        solutions ``S a = g``, ``K u = f - Cᵀ a`` and ``S d = g - C u - S a`` give the field
+        u, a + d and, without assembling its forces, the energy
+        ``u·f + d·C u + (a + d)·(C u + S (a + d))``.
+        """
+        count, block = owned(self.space), self._block
         loads = np.where(self._free, loads, 0.0)
-        count = owned(self.space)
-        field = np.zeros(len(loads))
-        field[count:] = self._surplus_solver(loads[count:])
-        field[:count] = self._solve((loads - self._stiff(field))[:count])
-        field[count:] += self._surplus_solver((loads - self._stiff(field))[count:])
-        return field
+        first = block.solve(loads[count:])
+        field = np.concatenate([np.zeros(count), first])
+        field[:count] = self._solve(loads[:count] - self._forces(field, 0))
+        forces, mine = self._forces(field, 1), block.forces(first)
+        change = block.solve(loads[count:] - forces)
+        field[count:] += change
+        energy = self._product(field[:count], loads[:count])
+        energy += self._product(change, forces - mine)
+        energy += self._product(field[count:], forces + block.forces(change))
+        return field, energy
 
-    def _stiff(self, field: np.ndarray) -> np.ndarray:
-        """Loads that hold a correction."""
-        result = self._apply(field, self._actions)
-        if self._regular[0]:
-            result = result + self._apply(field, self._regular)
-        return np.where(self._free, result, 0.0)
-
-    def _apply(self, field: np.ndarray, actions: Sequence[Sequence[fem.Form]]) -> np.ndarray:
+    def _forces(self, field: np.ndarray, part: int) -> np.ndarray:
+        """Loads on the space (0) or on the surplus (1) that hold a correction."""
         self.function(field)
-        return np.concatenate(
-            [np.sum([assembled(term) for term in terms], axis=0) for terms in actions]
-        )
+        forces = _sum([*self._actions[part], *self._regular[part]])
+        count = owned(self.space)
+        free = self._free[count:] if part else self._free[:count]
+        return np.where(free, forces, 0.0)
 
     def _product(self, first: np.ndarray, second: np.ndarray) -> float:
         return float(sum_over_ranks(self._comm, first @ second))
 
 
-def _solver(forms: Sequence, fixed: np.ndarray, dim: int) -> Callable[[np.ndarray], np.ndarray]:
-    """Solves the sum of bilinear forms: by a factor, in space by conjugate gradients."""
-    matrix = assemble_matrix(compiled(forms[0]))
-    for form in forms[1:]:
-        assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on it
-    matrix.assemble()
-    matrix = supported(matrix, fixed)
-    if dim == 2:
-        return Factor(matrix, dim=dim).solve
+def _sum(terms: Sequence[fem.Form]) -> np.ndarray:
+    return np.sum([assembled(term) for term in terms], axis=0)
+
+
+class _SurplusBlock:
+    """The sum of bilinear forms on the surplus; solved by a factor, in space by iteration."""
+
+    def __init__(self, forms: Sequence, fixed: np.ndarray, dim: int):
+        matrix = assemble_matrix(compiled(forms[0]))
+        for form in forms[1:]:
+            assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on it
+        matrix.assemble()
+        self._matrix = supported(matrix, fixed)
+        self._factor = Factor(self._matrix, dim=dim) if dim == 2 else None
+        self._iteration = None if dim == 2 else _conjugate_gradients(self._matrix)
+
+    def solve(self, loads: np.ndarray) -> np.ndarray:
+        """Surplus under loads (n_owned,). Every rank calls."""
+        if self._factor is not None:
+            return self._factor.solve(loads)
+        assert self._iteration is not None
+        x, b = self._matrix.createVecs()
+        b.setArray(loads)
+        self._iteration.solve(b, x)
+        return x.getArray().copy()
+
+    def forces(self, surplus: np.ndarray) -> np.ndarray:
+        """Loads that hold a surplus which vanishes where it is fixed. Every rank calls."""
+        x, b = self._matrix.createVecs()
+        x.setArray(surplus)
+        self._matrix.mult(x, b)
+        return b.getArray().copy()
+
+
+def _conjugate_gradients(matrix: PETSc.Mat) -> PETSc.KSP:
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(matrix)
     solver.setType(PETSc.KSP.Type.CG)
     solver.getPC().setType(PETSc.PC.Type.SOR)
     solver.setTolerances(rtol=_TOLERANCE, max_it=100)
-
-    def solve(loads: np.ndarray) -> np.ndarray:
-        x, b = matrix.createVecs()
-        b.setArray(loads)
-        solver.solve(b, x)
-        return x.getArray().copy()
-
-    return solve
+    return solver

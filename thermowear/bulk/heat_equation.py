@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from petsc4py import PETSc
@@ -11,7 +12,6 @@ import ufl
 from dolfinx import default_scalar_type, fem
 from dolfinx.fem.petsc import assemble_matrix
 
-from ..compat import exterior_facet_domain
 from .advection import Passage, advection
 from .bodies import Bodies
 from .compiled import compiled
@@ -78,8 +78,8 @@ def conduction(
     conductivity = _assembled(conducting(bodies, model, conductivities, degree)(T, δT))
     cooled = conductivity.duplicate()
     cooled.zeroEntries()
-    for surface, h in cooling.items():
-        _add_cooling(cooled, bodies, model, space, surface, h)
+    for form in transferring(bodies, model, cooling):
+        assemble_matrix(cooled, compiled(form(T, δT)), [])  # type: ignore[arg-type]  # dispatches on it
     cooled.assemble()
     structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
     conductivity.axpy(1.0, cooled, structure)
@@ -125,21 +125,24 @@ def conducting(bodies: Bodies, model: Model, conductivities: dict[str, float], d
     return lambda T, δT: model.integral(mesh, k * ufl.inner(ufl.grad(T), ufl.grad(δT)), measure)
 
 
-def transferring(bodies: Bodies, model: Model, surface: str, h: float):
-    """Bilinear form ``∫ h T δT dS`` of one surface, as a function of both; all share one kernel."""
+def transferring(bodies: Bodies, model: Model, coefficients: dict[str, float]) -> list[Callable]:
+    """Bilinear forms ``∫ h T δT dS``, as functions of both: one of all surfaces of equal h.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    coefficients : dict of str to float
+        h by surface [W/(m² K)].
+    """
     mesh = bodies.mesh
-    facets = exterior_facet_domain(mesh, bodies.facets(surface))
-    ds = ufl.Measure("ds", domain=mesh, subdomain_data=[(1, facets)])
-    coefficient = fem.Constant(mesh, default_scalar_type(h))
-    return lambda T, δT: model.integral(mesh, coefficient * T * δT, ds(1))
 
+    def form(h: float) -> Callable:
+        ds = bodies.surface_measure(*(s for s, other in coefficients.items() if other == h))
+        constant = fem.Constant(mesh, default_scalar_type(h))
+        return lambda T, δT: model.integral(mesh, constant * T * δT, ds)
 
-def _add_cooling(matrix: PETSc.Mat, bodies: Bodies, model: Model, space, surface: str, h: float):
-    """Add ``∫ h T δT dS`` of one surface."""
-    form = transferring(bodies, model, surface, h)(
-        ufl.TrialFunction(space), ufl.TestFunction(space)
-    )
-    assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on matrix
+    return [form(h) for h in dict.fromkeys(coefficients.values())]
 
 
 def given_rises(

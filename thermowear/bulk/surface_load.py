@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mpi4py import MPI
 from petsc4py import PETSc
 
 import numpy as np
@@ -13,6 +12,7 @@ from dolfinx import fem
 
 from .compiled import assembled, compiled
 from .elasticity import Elasticity
+from .surface_heat import surface_area
 
 
 def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callable:
@@ -25,17 +25,15 @@ def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callab
     force : ndarray, shape (gdim,)
         Of the whole ring, or of the thickness [N].
     """
-    mesh, measure = elastic.bodies.mesh, _measure(elastic, surface)
-    one = fem.Constant(mesh, PETSc.ScalarType(1.0))
-    local = fem.assemble_scalar(compiled(elastic.model.integral(mesh, one, measure)))
-    area = mesh.comm.allreduce(local, op=MPI.SUM)
+    mesh, measure = elastic.bodies.mesh, elastic.bodies.surface_measure(surface)
+    area = surface_area(elastic.bodies, elastic.model, surface)
     traction = fem.Constant(mesh, np.asarray(force, dtype=PETSc.ScalarType) / area)
     return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
 
 
 def pressure_work(elastic: Elasticity, surface: str, pressure: float) -> Callable:
     """The same of a pressure [Pa], along the inward normal."""
-    mesh, measure = elastic.bodies.mesh, _measure(elastic, surface)
+    mesh, measure = elastic.bodies.mesh, elastic.bodies.surface_measure(surface)
     traction = -fem.Constant(mesh, PETSc.ScalarType(pressure)) * ufl.FacetNormal(mesh)
     return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
 
@@ -50,10 +48,3 @@ def surface_pressure(elastic: Elasticity, surface: str, pressure: float) -> np.n
     """Nodal loads of a pressure [Pa], along the inward normal [N], owned rows. Every rank calls."""
     work = pressure_work(elastic, surface, pressure)
     return assembled(compiled(work(ufl.TestFunction(elastic.space))))
-
-
-def _measure(elastic: Elasticity, surface: str) -> ufl.Measure:
-    """Integration over a surface, exact on straight facets."""
-    bodies = elastic.bodies
-    measure = ufl.Measure("ds", domain=bodies.mesh, subdomain_data=bodies.facet_tags)
-    return measure(bodies.surface_tag(surface))

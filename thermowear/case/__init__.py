@@ -1,6 +1,7 @@
 """What the user writes: the case file, its units and its checks. No dolfinx here."""
 
-from .geometry import Geometry, known_geometries
+from .geometry import Geometry
+from .geometry_type import known_geometries
 from .loading import load
 from .schema import Case, as_plain
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from ..errors import CaseError
+from ..errors import CaseError, note
 from .analyses import Transient
 from .courses import courses
 from .equilibrium import holder, load, motion, surface_pressure
@@ -34,7 +34,8 @@ _SLIDING = ("steady", "transient", "reciprocating")
 def check(case: Case) -> None:
     """Raise a `CaseError` that lists every fault between the tables of `case`.
 
-    Where there is none, the contact that its loads lead to must fit the bodies.
+    Where there is none, the contact that its loads lead to must fit the bodies; what is odd about
+    the case is noted.
     """
     faults = [f"{path}: {text}" for look in _CHECKS for path, text in look(case)]
     if faults:
@@ -42,6 +43,19 @@ def check(case: Case) -> None:
     zone = case.geometry.expected_zone(case.pressing())
     if zone is not None:
         case.geometry.check_zone(zone)
+    _note_defaults(case)
+
+
+def _note_defaults(case: Case) -> None:
+    """Note what is left to a default that changes the answer and is easily taken wrongly."""
+    friction = case.contact.friction
+    for name, law in case.wear.items():
+        if "per" not in law.model_fields_set and friction > 0.0:
+            note(
+                f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
+                'Archard\'s k multiplies p: with per = "pressure" it wears '
+                f"{friction**-law.pressure_exponent:.3g} times as fast"
+            )
 
 
 def _names(case: Case) -> Iterator[Fault]:

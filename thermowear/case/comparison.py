@@ -12,6 +12,8 @@ from .schema import Case, as_plain
 
 _FREE = {"title", "analysis.max_steps", "analysis.frames", "analysis.checkpoint_every"}
 """Keys that no number that was computed depends on."""
+_FILES = {"geometry.path", "geometry.initial_shape"}
+"""Keys of files, wherever they lie: what is compared is the bodies and gaps that they lead to."""
 _END = {"analysis.end_time", "analysis.cycles", "wear.cycles"}
 _OUTPUTS = "analysis.output_times"
 _LONGEST = 60  # characters of a value that is shown
@@ -43,17 +45,26 @@ def changes(before: Case, now: Case) -> list[Change]:
 
 
 def irrelevant_changes_only(before: Case, now: Case) -> bool:
-    """Whether both lead to the same numbers."""
-    return all(change.key in _FREE for change in changes(before, now))
+    """Whether both lead to the same numbers, if a mesh file has the same content."""
+    return all(change.key in _FREE | {"geometry.path"} for change in changes(before, now))
+
+
+def other_mesh(case: Case) -> str:
+    """Message to one who goes on with a run of another mesh."""
+    path = as_plain(case)["geometry"]["path"]
+    return (
+        f"--resume: geometry.path: the mesh in {path} is not that of the run; name "
+        "the file with that mesh, or --overwrite starts it from the beginning"
+    )
 
 
 def forbidden_changes(before: Case, now: Case, time: float) -> list[Change]:
     """What keeps a case from going on with the run of another one from a time [s].
 
     The physics must be the same; the end may be another one, if it has not passed, and so may the
-    output times that have not.
+    output times that have not, and the places of files.
     """
-    free = set(_FREE)
+    free = _FREE | _FILES
     if _end(before) is not None and (_end(now) or 0.0) >= time:
         free |= _END
     if _outputs(before, time) == _outputs(now, time):

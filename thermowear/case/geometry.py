@@ -1,26 +1,24 @@
 """What the case file may say about a geometry, and what every geometry answers.
 
-Each geometry is a subclass in the room ``geometry`` (one file a geometry) and is known to the case
-file by its ``type`` as soon as that room is imported.
+Each geometry is a subclass in the room ``geometry`` (one file a geometry).
 """
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, get_args
+from typing import Any, ClassVar, get_args
 
-from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo, model_validator
+from pydantic import model_validator
 from pydantic.fields import FieldInfo
 
-from ..errors import quoted
 from .paths import UserFile
-from .section import KeyFault, Section, Switch
+from .section import KeyFault, Section
 from .units import Length
 
-_KNOWN: dict[str, type[Geometry]] = {}
+KNOWN: dict[str, type[Geometry]] = {}
+"""By the word behind ``geometry.type``; see `geometry_type.known_geometries`."""
 
 _APART = 1e7
 """Ratio of the sizes of a geometry at most: coordinates have 16 digits, and meshes some layers."""
@@ -98,7 +96,7 @@ class Geometry(Section):
     def __init_subclass__(cls, **kwargs: Any):
         super().__init_subclass__(**kwargs)
         if cls.__dict__.get("name"):  # bases of several geometries have none
-            _KNOWN[cls.name] = cls
+            KNOWN[cls.name] = cls
 
     @model_validator(mode="after")
     def _of_one_order(self):
@@ -274,71 +272,7 @@ class Geometry(Section):
         """
 
 
-class PlaneGeometry(Geometry):
-    """Base of geometries for plane models.
-
-    Attributes
-    ----------
-    thickness : float
-        Forces are of this thickness [m].
-    """
-
-    name: ClassVar[str] = ""
-
-    thickness: Length = 1e-3
-
-    @property
-    def thickness_factor(self) -> float | None:
-        return self.thickness
-
-
-class HalvableGeometry(PlaneGeometry):
-    """Base of plane geometries that are symmetric, or may be.
-
-    Attributes
-    ----------
-    half : bool
-        Mesh only x >= 0 of bodies and loads that are symmetric about x = 0.
-    """
-
-    name: ClassVar[str] = ""
-
-    half: Switch = False
-
-    @property
-    def thickness_factor(self) -> float | None:
-        return 2 * self.thickness if self.half else self.thickness
-
-
-def known_geometries() -> dict[str, type[Geometry]]:
-    """All geometries that can be named in a case file, by their names in order.
-
-    Their room, which knows this one, is imported by its name where nobody has done so yet.
-    """
-    importlib.import_module("...geometry", __name__)
-    return dict(sorted(_KNOWN.items()))
-
-
 def _is_length(field: FieldInfo) -> bool:
     """Whether a key holds a length greater than 0, or may do so."""
     optional = (getattr(part, "__metadata__", ()) for part in get_args(field.annotation))
     return any(Length.__metadata__[0] in marks for marks in (field.metadata, *optional))
-
-
-def _pick(data: Any, info: ValidationInfo) -> Any:
-    if isinstance(data, Geometry):
-        return data
-    if not isinstance(data, dict):
-        raise ValueError(f"found {quoted(data)}; needs a table")
-    if "type" not in data:
-        raise KeyFault("type", f"missing; one of: {', '.join(known_geometries())}")
-    try:
-        kind = known_geometries()[data["type"]]
-    except (KeyError, TypeError):
-        raise KeyFault(
-            "type", f"found {quoted(data['type'])}; must be one of: {', '.join(known_geometries())}"
-        ) from None
-    return kind.model_validate(data, context=info.context)
-
-
-AnyGeometry = Annotated[SerializeAsAny[Geometry], BeforeValidator(_pick)]

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import warnings
 from typing import Annotated
 
 from pydantic import AfterValidator, ValidationInfo
 
-from ..errors import CaseNote
+from ..errors import note
 
 FOLDER = "folder"
 """Key of the folder of the case file in the context of validation."""
@@ -27,14 +26,10 @@ def _found(path: str, info: ValidationInfo) -> str:
     if here == beside or not os.path.exists(here):
         return beside
     if os.path.exists(beside):
-        _note(f"found {beside}, beside the case file; {here} is another file, and is not read")
+        note(f"found {beside}, beside the case file; {here} is another file, and is not read")
         return beside
-    _note(f"found {here} in the current folder; paths are meant from the case file's: {folder}")
+    note(f"found {here} in the current folder; paths are meant from the case file's: {folder}")
     return here
-
-
-def _note(text: str) -> None:
-    warnings.warn(CaseNote(text), stacklevel=2)
 
 
 UserFile = Annotated[str, AfterValidator(_found)]

@@ -18,7 +18,8 @@ from .conductance import PressureConductance, TabulatedConductance, harmonic_mea
 from .driving import Holder, Load, Motion
 from .facing import Facing, material_of
 from .factors import Factors
-from .geometry import AnyGeometry, Pressing
+from .geometry import Pressing
+from .geometry_type import AnyGeometry
 from .heat import Heat
 from .history import Course, FactorHistory
 from .materials import Body, Properties
@@ -204,20 +205,6 @@ class Case(Section):
         tables = (self.contact.friction_factor, *(law.factor for law in self.wear.values()))
         conductance = None if self.heat is None else self.heat.conductance
         return isinstance(conductance, Section) or any(table.depends_on for table in tables)
-
-    def notes(self) -> list[str]:
-        """What the case leaves to a default that changes the answer and is easily taken wrongly."""
-        friction = self.contact.friction
-        unsaid = {
-            name: friction**-law.pressure_exponent
-            for name, law in self.wear.items()
-            if "per" not in law.model_fields_set and friction > 0.0
-        }
-        return [
-            f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
-            f'Archard\'s k multiplies p: with per = "pressure" it wears {ratio:.3g} times as fast'
-            for name, ratio in unsaid.items()
-        ]
 
     def partition(self, facing: Facing) -> float | np.ndarray:
         """Part of the friction heat that is set free on body 1, at points (n,) or everywhere."""

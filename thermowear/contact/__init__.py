@@ -4,7 +4,8 @@ from .complementarity import ContactSolution, solve_contact
 from .condensation import CondensedContact, condense
 from .face import Face, gather_face
 from .full_system import FullContact, FullSolution
-from .heat import InterfaceHeat, ThermalState, condense_distortion, condense_heat
+from .heat import InterfaceHeat, ThermalState
+from .heat_condensation import condense_distortion, condense_heat
 from .holder import Drive, Holder, hold
 from .loads import Loads
 from .pairing import Pairing, pair

@@ -9,6 +9,7 @@ have it at the same place, so the parts lie side by side without gaps, on curved
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -28,8 +29,11 @@ _RING = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a facet in order round it."""
 
 
+@lru_cache(maxsize=1)
 def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
     """Parts of the facets of body 1 that have a facet of body 2 opposite to them.
+
+    Those of the last two faces are kept: an estimate of the error asks for a finer rule on them.
 
     Returns
     -------

@@ -55,7 +55,7 @@ class Parallelograms:
         return 0.5 + np.einsum("fki,nfi->nfk", self.inverse, points[:, None] - self.middle)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """Facets with two parameters t that run 0…1 along their edges, as in their cells.
 

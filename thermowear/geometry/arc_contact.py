@@ -12,7 +12,8 @@ from typing import ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from ..case.geometry import PlaneGeometry, keyed
+from ..case.geometry import keyed
+from ..case.plane_geometry import PlaneGeometry
 from ..case.section import KeyFault
 from ..case.units import Angle
 from .on_block import ORDER

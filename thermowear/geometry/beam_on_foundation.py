@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from ..case.geometry import PlaneGeometry
+from ..case.plane_geometry import PlaneGeometry
 from ..case.section import KeyFault
 from ..case.units import Distance, Length
 from .on_block import near, within

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
 
-from ..errors import CaseError, CaseNote
+from ..errors import CaseError, note
 from .tagged import TaggedMesh
 
 if TYPE_CHECKING:
@@ -116,10 +115,7 @@ def _pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
             f"that {surface!r} holds; a body must be in one piece"
         )
     if len(pieces) > 1:
-        warnings.warn(
-            CaseNote(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {surface!r}"),
-            stacklevel=2,
-        )
+        note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {surface!r}")
 
 
 def _symmetry(mesh: TaggedMesh, geometry: MeshFile) -> None:

@@ -8,8 +8,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PrivateAttr, model_serializer, model_validator
 
-from ..case.geometry import HalvableGeometry, keyed
+from ..case.geometry import keyed
 from ..case.paths import UserFile
+from ..case.plane_geometry import HalvableGeometry
 from ..case.section import KeyFault
 from ..case.units import Area, Length
 from .assembly import Named, assemble

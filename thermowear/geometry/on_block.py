@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..case.geometry import Geometry, HalvableGeometry, keyed
+from ..case.geometry import Geometry, keyed
+from ..case.plane_geometry import HalvableGeometry
 from ..case.units import Length
 from ..errors import CaseError
 from .face_ends import face_ends, growth, row_ratio

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ..case.geometry import PlaneGeometry, keyed
+from ..case.geometry import keyed
+from ..case.plane_geometry import PlaneGeometry
 from ..case.section import KeyFault
 from ..case.units import Length
 from .blocks import SAME

@@ -6,13 +6,12 @@ of their own size, that lie on the wrong side of each other, or too far apart.
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..errors import CaseError, CaseNote
+from ..errors import CaseError, note
 from .mesh_checks import length, whole_bodies
 from .orders import shape_functions
 from .tagged import TaggedMesh
@@ -86,12 +85,9 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
         _check_approach(case, faces, approach, of_body)
     _check_pressure(case, faces)
     if overlap > _MUCH * height:
-        warnings.warn(
-            CaseNote(
-                f"geometry.path: the bodies overlap by {length(overlap)} before they are pressed, "
-                f"{overlap / height:.1%} {of_body}"
-            ),
-            stacklevel=2,
+        note(
+            f"geometry.path: the bodies overlap by {length(overlap)} before they are pressed, "
+            f"{overlap / height:.1%} {of_body}"
         )
 
 

@@ -11,7 +11,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from ..case.geometry import PlaneGeometry
+from ..case.plane_geometry import PlaneGeometry
 from ..case.units import Length
 from .blocks import growing, sizes
 from .on_block import Claim, near

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from dataclasses import dataclass
 
@@ -54,6 +55,15 @@ class TaggedMesh:
         """Geometric order of the cells."""
         nodes = self.facets.shape[1]
         return (math.isqrt(nodes) if self.facet_type == "quadrilateral" else nodes) - 1
+
+    def checksum(self) -> str:
+        """SHA-256 of all of it, in hexadecimal digits: equal for equal meshes alone."""
+        arrays = (self.points, self.cells, self.cell_tags, self.facets, self.facet_tags)
+        found = hashlib.sha256(repr((self.cell_type, self.bodies, self.surfaces)).encode())
+        for values in arrays:
+            found.update(repr((values.dtype.str, values.shape)).encode())
+            found.update(np.ascontiguousarray(values).tobytes())
+        return found.hexdigest()
 
     def node_places(self, kind: str) -> np.ndarray:
         """Places of the listed nodes on a cell or facet of unit sides, shape (n_nodes, dim)."""

@@ -12,7 +12,8 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from ..case.geometry import PlaneGeometry, Pressing
+from ..case.geometry import Pressing
+from ..case.plane_geometry import PlaneGeometry
 from ..case.section import KeyFault
 from ..case.units import Length
 from ..errors import CaseError

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..case import Case, as_plain, load
-from ..case.comparison import forbidden_changes, irrelevant_changes_only
+from ..case.comparison import forbidden_changes, irrelevant_changes_only, other_mesh
 from ..errors import CaseError
 from .checkpoint import read_checkpoint
 from .folder import ResultsFolder, now, versions
@@ -79,10 +79,24 @@ def is_finished(path: Path, case: Case) -> bool:
     Raises
     ------
     CaseError
-        If there is no run.
+        If there is no run, or it was one of another mesh.
     """
     ended = read_run(path)["status"] == "done" and (path / "summary.json").is_file()
-    return ended and irrelevant_changes_only(load(path / "case.resolved.toml"), case)
+    if not ended or not irrelevant_changes_only(load(path / "case.resolved.toml"), case):
+        return False
+    mesh = _mesh_of(path)
+    if mesh is not None and mesh != case.tagged_mesh().checksum():
+        raise CaseError(other_mesh(case))
+    return True
+
+
+def _mesh_of(path: Path) -> str | None:
+    """Checksum of the mesh of a finished run, where it was read from a file."""
+    try:
+        summary = json.loads((path / "summary.json").read_text("utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return summary.get("mesh_sha256") if isinstance(summary, dict) else None
 
 
 def last_checkpoint(

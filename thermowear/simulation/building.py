@@ -100,6 +100,18 @@ def build(
     )
 
 
+def check_contact_points(case: Case, comm) -> None:
+    """Mesh and pair a case as a run does, for the faults that only this shows. Every rank calls.
+
+    Raises
+    ------
+    CaseError
+    """
+    geometry = case.geometry
+    model = section_model(case.model, geometry.thickness_factor, geometry.sector)
+    _paired(case, comm, model, _meshed(case, comm, None, None), None)
+
+
 def _meshed(
     case: Case, comm, zone: tuple[float, float] | None, worn: WornGeometry | None
 ) -> Bodies:

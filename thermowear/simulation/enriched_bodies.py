@@ -180,10 +180,9 @@ def _conducting(system: System, model: Model) -> EnrichedProblem:
     conductivities = {part: material.conductivity for part, material in materials.items()}
     surplus = surplus_space(bodies.mesh, degree)
     terms = [conducting(bodies, model, conductivities, degree + 1)]
-    terms += [transferring(bodies, model, surface, h) for surface, h in cooling.items()]
+    terms += transferring(bodies, model, cooling)
     shift = system.thermal.face.shift
-    bath = [transferring(bodies, model, surface, shift) for surface in case.geometry.contact]
-    assert case.heat is not None
+    bath = transferring(bodies, model, dict.fromkeys(case.geometry.contact, shift))
     given = _on(bodies, surplus, list(case.heat.temperature))
     return EnrichedProblem(
         conduction.space, surplus, terms, conduction.respond, (conduction.fixed, given), bath

@@ -10,18 +10,10 @@ from typing import Any
 import numpy as np
 
 from ..balances import relative
-from ..bulk.conduction import Conduction
-from ..contact.heat import (
-    InterfaceHeat,
-    Resting,
-    ThermalDistortion,
-    ThermalState,
-    at_rest,
-    condense_distortion,
-    condense_heat,
-    gap_per_rise,
-)
+from ..contact.heat import Resting, ThermalState, at_rest
+from ..contact.heat_condensation import condense_heat
 from ..parallel import sum_over_ranks
+from .condensed_distortion import CondensedDistortion
 from .conditions import Conditions
 from .heat_stages import ConductedHeat, ConductingStage, FrozenHeat, HeatOperators
 from .heat_states import HeatBalance, StoredHeat, Warmth
@@ -40,44 +32,6 @@ _SHALLOW = 1e-3
 """Of the contact's length: heat that has gone so deep has changed nothing yet."""
 _HARDLY = 0.1
 """Rise of the faces that is not worth a smaller first step [K]."""
-
-
-class CondensedDistortion:
-    """Condenses thermal distortion to the pressure space.
-
-    Operators of heat keep this, not the friction heat that keeps them: in a circle of references
-    they would stay in memory when the meshes that they are of have been given up.
-
-    Parameters
-    ----------
-    system : System
-    thermal : ThermalSystem
-    """
-
-    def __init__(self, system: System, thermal: ThermalSystem):
-        self._system = system
-        self._thermal = thermal
-
-    def __call__(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
-        """Weak gap per heat at the faces, by a conduction; every rank calls."""
-        with self._system.phases("condense distortion"):
-            if conduction is not self._thermal.conduction:  # over a step of time
-                return condense_distortion(conduction, self.per_rise, face)
-            return self._system.parts.get(
-                "distortion",
-                self._system.inputs.conduction,
-                lambda: condense_distortion(conduction, self.per_rise, face),
-            )
-
-    @cached_property
-    def per_rise(self) -> np.ndarray:
-        """Weak gap per nodal rise of temperature."""
-        system = self._system
-        return system.parts.get(
-            "gap per rise",
-            system.inputs.elasticity,
-            lambda: gap_per_rise(self._thermal.load, system.contact),
-        )
 
 
 class FrictionHeat:

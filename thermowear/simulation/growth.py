@@ -15,7 +15,8 @@ from petsc4py import PETSc
 import numpy as np
 
 from ..bulk.conduction import Conduction
-from ..contact.heat import InterfaceHeat, condense_heat
+from ..contact.heat import InterfaceHeat
+from ..contact.heat_condensation import condense_heat
 from ..laws.stability import Disturbances, LoadFree, Rate
 from ..parallel import sum_over_ranks
 from .conditions import Conditions

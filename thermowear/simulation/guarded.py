@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TypeVar
 
 from ..errors import ComputationError, UnwritableError
-from .interrupt import StopRequest
+from .interrupt import StopRequest, interrupted
 from .observer import Observer
 from .saving import Record, Saving
 from .system import System
@@ -23,6 +23,9 @@ def go_through(
     last: State | None = None,
 ) -> tuple[State, BaseException | None]:
     """Keep and save one state after the other; those before an error or Ctrl-C are not lost.
+
+    A request to stop ends it after the present state. It counts also where that is the last one:
+    what follows writes the results of a whole analysis, and says that it was interrupted.
 
     Parameters
     ----------
@@ -58,7 +61,6 @@ def go_through(
                 record.keep(state)
                 last = state
                 if stop.agreed(system.comm):
-                    stopped = KeyboardInterrupt()
                     break
                 saving.passed(state)
         except UnwritableError:
@@ -69,4 +71,6 @@ def go_through(
             stopped = reason
         assert last is not None
         saving.save()
+    if stop.agreed(system.comm):
+        stopped = interrupted(stopped)
     return last, stopped

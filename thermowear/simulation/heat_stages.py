@@ -10,13 +10,8 @@ from typing import Protocol
 import numpy as np
 
 from ..bulk.conduction import Conduction
-from ..contact.heat import (
-    HeatExchange,
-    InterfaceHeat,
-    Resting,
-    ThermalDistortion,
-    ThermalState,
-)
+from ..contact.heat import HeatExchange, InterfaceHeat, Resting, ThermalState
+from ..contact.heat_condensation import ThermalDistortion
 from .conditions import Conditions
 from .heat_states import StoredHeat
 from .thermal_loads import ThermalLoad

@@ -25,7 +25,7 @@ from .reciprocating import reciprocating
 from .recording import profile
 from .result import BodyFields, Result
 from .running_in import running_in
-from .saved import Saved
+from .saved import Saved, mesh_checksum
 from .small_wear import not_small
 from .stability import stability
 from .summary import summarise
@@ -95,8 +95,6 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
             "stays out of the contact"
         )
-    for text in system.case.notes():
-        observer.note(text)
     before = () if saved is None else (saved.of(system),)
     outcome = _ANALYSES[system.case.analysis.type](system, observer, *before)
     if outgrown(outcome.system or system, outcome.contact.pressure):
@@ -115,7 +113,10 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
     large = not_small(system, outcome.interface)
     if large is not None:
         observer.note(large)
-    return outcome
+    mesh = mesh_checksum(system)
+    return (
+        outcome if mesh is None else replace(outcome, extra=outcome.extra | {"mesh_sha256": mesh})
+    )
 
 
 def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..case.comparison import other_mesh
 from ..errors import CaseError
 from .checkpoint import can_be_packed
 from .system import System
@@ -38,6 +39,9 @@ class Saved:
     moment : ndarray, shape (gdim,)
         Sum of their coordinates [m].
     progress : Progress
+    mesh : str or None
+        Checksum of a mesh that was read from a file; built geometries may differ by rounding, and
+        older checkpoints have none.
     """
 
     points: np.ndarray
@@ -45,12 +49,14 @@ class Saved:
     nodes: int
     moment: np.ndarray
     progress: Any
+    mesh: str | None = None
 
     @classmethod
     def now(cls, system: System, progress: Progress) -> Saved:
         """An analysis that began with a system."""
         pairing, nodes = system.pairing, system.elastic.nodes()
-        return cls(pairing.points, pairing.gap, len(nodes), nodes.sum(axis=0), progress)
+        mesh = mesh_checksum(system)
+        return cls(pairing.points, pairing.gap, len(nodes), nodes.sum(axis=0), progress, mesh)
 
     def of(self, system: System) -> Any:
         """The progress, of an analysis of a system.
@@ -60,10 +66,12 @@ class Saved:
         CaseError
             If its bodies are not those that the analysis began with.
         """
+        if self.mesh not in (None, mesh_checksum(system)):
+            raise CaseError(other_mesh(system.case))
         if not all(system.comm.allgather(self._began_with(system))):
             raise CaseError(
-                "--resume: the meshed bodies are not those of the checkpoint; a mesh file, an "
-                "initial shape or the version of a library is another one"
+                "--resume: the meshed bodies are not those of the checkpoint; the initial shape or "
+                "the version of a library is another one"
             )
         return self.progress
 
@@ -76,3 +84,8 @@ class Saved:
         errors = [np.abs(one - another).max() for one, another in pairs]
         errors.append(np.abs(self.moment - other.moment).max() / max(self.nodes, 1))
         return max(errors) <= near
+
+
+def mesh_checksum(system: System) -> str | None:
+    """Checksum of the mesh of a system that was read from a file; None of any other."""
+    return system.bodies.checksum if system.case.geometry.from_file else None

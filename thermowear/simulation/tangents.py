@@ -12,7 +12,8 @@ from typing import Protocol
 import numpy as np
 
 from ..bulk.conduction import Conduction
-from ..contact.heat import InterfaceHeat, ThermalDistortion, condense_distortion
+from ..contact.heat import InterfaceHeat
+from ..contact.heat_condensation import ThermalDistortion, condense_distortion
 from .checkpoint import can_be_packed
 from .heat_stages import HeatOperators
 

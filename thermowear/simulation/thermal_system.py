@@ -24,7 +24,8 @@ from ..bulk.varying import (
 )
 from ..case.facing import Facing
 from ..case.schema import Case
-from ..contact.heat import InterfaceHeat, bath_matrix, condense_heat
+from ..contact.heat import InterfaceHeat
+from ..contact.heat_condensation import bath_matrix, condense_heat
 from ..contact.pairing import Pairing
 from ..contact.traces import value_trace
 from .phases import Phases

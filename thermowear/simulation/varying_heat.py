@@ -12,7 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from ..bulk.varying import VaryingConduction, VaryingExpansion
-from ..contact.heat import Resting, ThermalState, at_rest, condense_heat, gap_per_rise
+from ..contact.heat import Resting, ThermalState, at_rest
+from ..contact.heat_condensation import condense_heat, gap_per_rise
 from ..errors import ComputationError
 from ..parallel import sum_over_ranks
 from .conditions import Conditions

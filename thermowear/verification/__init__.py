@@ -31,7 +31,7 @@ from . import (
     temperature_dependent,
     two_slabs,
 )
-from .check import Check, Checks, compare
+from .check import Check, Checks, all_checks, compare
 
 CASES: dict[str, Checks] = special_cases.CHECKS | {
     case.ID: case.checks
@@ -71,4 +71,4 @@ CASES: dict[str, Checks] = special_cases.CHECKS | {
 SLOW = frozenset({deep_wear.ID})
 """Of them, those that take more than two minutes."""
 
-__all__ = ["CASES", "SLOW", "Check", "compare"]
+__all__ = ["CASES", "SLOW", "Check", "all_checks", "compare"]

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..reference.braking import highest_rise, surface_rise
-from ..simulation import Result, run
+from ..simulation import Result
 from .check import Check, compare
+from .computed import computed
 from .starter import run_starter, starter
 from .step_flux import AMBIENT, DEEP, HEAT, LOWER, UPPER
 
@@ -42,7 +43,7 @@ def _wide_blocks() -> Iterator[Check]:
         f"analysis.output_times=[{times}]",
         without=("wear", "heat.temperature", "heat.conductance"),
     )
-    result = run(case)
+    result = computed(case)
     both = UPPER.effusivity + LOWER.effusivity
     for time in TIMES:
         known = float(surface_rise(both, HEAT, STOP, time))

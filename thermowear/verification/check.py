@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 
 import numpy as np
+
+from ..errors import CaseError, ComputationError
 
 
 @dataclass(frozen=True)
@@ -38,8 +41,10 @@ class Check:
         return bool(self.error <= self.allowed)  # a NaN fails
 
     def as_row(self) -> dict:
-        """For ``--json``."""
-        return asdict(self) | {"passed": self.passed}
+        """For ``--json``: null where a number is not finite."""
+        row = asdict(self) | {"passed": self.passed}
+        numbers = (key for key, value in row.items() if isinstance(value, float))
+        return row | {key: None for key in numbers if not math.isfinite(row[key])}
 
 
 Checks = Callable[[], Iterator[Check]]
@@ -57,6 +62,23 @@ def compare(
     """Compare two numbers, relative to the reference or to a scale."""
     error = abs(float(computed) - float(reference)) / abs(float(scale or reference))
     return Check(id, quantity, float(computed), float(reference), error, allowed, source)
+
+
+def all_checks(id: str, checks: Checks) -> list[Check]:
+    """All checks of a case; where it ends with an error, those before, and one that fails."""
+    found: list[Check] = []
+    try:
+        found.extend(checks())
+    except Exception as error:
+        expected = isinstance(error, CaseError | ComputationError)
+        reason = " ".join(f"{'' if expected else f'{type(error).__name__}: '}{error}".split())
+        nothing = math.nan
+        found.append(
+            Check(
+                id, f"not computed: {reason}", nothing, nothing, nothing, 0.0, "the program itself"
+            )
+        )
+    return found
 
 
 def along(interface, radii, values) -> np.ndarray:

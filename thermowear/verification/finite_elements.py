@@ -16,9 +16,10 @@ from ..case import load
 from ..case.schema import Case
 from ..case.starters import starter_text
 from ..laws.motions import RigidMotion, rotation, translation
-from ..simulation import Result, run
+from ..simulation import Result
 from ..simulation.drives import reference_point
 from .check import Check, compare
+from .computed import computed
 
 PRINCIPLE = "the steady state, directly from the principle of minimum wear dissipation power"
 EDGE = 2e-3
@@ -47,8 +48,8 @@ def running_in(
         Tables to leave out.
     """
     case = variant(starter, *overrides, without=without)
-    direct = run(case)
-    reached = run(variant(starter, *overrides, _TRANSIENT, _UNWORN, without=without))
+    direct = computed(case)
+    reached = computed(variant(starter, *overrides, _TRANSIENT, _UNWORN, without=without))
     name = f"{starter}, {label}" if label else starter
     inner = away_from_ends(case, direct)
     yield compare(

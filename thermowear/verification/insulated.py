@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from .. import geometry  # noqa: F401  (makes the geometries known)
 from ..case import load
-from ..simulation import Result, run
+from ..simulation import Result
+from .computed import computed
 
 YOUNG_MODULUS = 2.1e11  # Pa
 EXPANSION = 1.2e-5  # 1/K
@@ -87,4 +88,4 @@ def stability(
     }
     if wear > 0:
         tables["wear"] = {"upper": {"coefficient": f"{wear} 1/Pa", "per": "pressure"}}
-    return run(load(tables))
+    return computed(load(tables))

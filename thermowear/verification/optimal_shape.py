@@ -13,11 +13,12 @@ import numpy as np
 
 from ..case.schema import Case
 from ..geometry.design import Design, write_table
-from ..simulation import Result, run
+from ..simulation import Result
 from ..simulation.design import steady_design
 from ..simulation.phases import Phases
 from ..simulation.preparation import prepare
 from .check import Check, compare
+from .computed import computed
 from .finite_elements import away_from_ends, variant
 
 ID = "optimal-shape"
@@ -82,7 +83,7 @@ def from_its_shape(
     mesh : tuple of str
         What is different of the mesh on which both are computed, but not the design.
     """
-    steady = run(variant(starter, *overrides, *mesh))
+    steady = computed(variant(starter, *overrides, *mesh))
     design = design_of(variant(starter, *overrides), body)
     fastest = (steady.interface.wear_rate_1 + steady.interface.wear_rate_2).max()
     end = _WORN * design.depth.max() / fastest
@@ -92,7 +93,7 @@ def from_its_shape(
         file = Path(place) / "design.csv"
         write_table(design, file)
         shaped = f"geometry.initial_shape={str(file)!r}"
-        return steady, run(variant(starter, *overrides, *mesh, analysis, shaped))
+        return steady, computed(variant(starter, *overrides, *mesh, analysis, shaped))
 
 
 def design_of(case: Case, body: int) -> Design:

@@ -8,11 +8,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..case import load
-from ..case.geometry import PlaneGeometry
+from ..case.plane_geometry import PlaneGeometry
 from ..geometry.blocks import Interval, add_grid
 from ..geometry.gmsh_session import gmsh_model, tagged_mesh
-from ..simulation import Result, run
+from ..simulation import Result
 from .check import Check, compare
+from .computed import computed
 
 ID = "patch"
 SOURCE = "Taylor and Papadopoulos 1991, NAFEMS CGS-1: a uniform stress solves the problem exactly"
@@ -122,4 +123,4 @@ def patch(method: str, triangles: bool, degree: int, columns: tuple[int, int]) -
         "contact": contact,
         "analysis": {"type": "initial"},
     }
-    return run(load(tables))
+    return computed(load(tables))

@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from ..reference.annular_punch import steady_pressure
-from ..simulation import Result, run
+from ..simulation import Result
 from .check import Check, compare
+from .computed import computed
 from .finite_elements import away_from_ends, variant
 
 CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, special case 8"
@@ -33,7 +34,7 @@ _ON = "analysis={type='transient', until='steady', steady_tolerance=2e-4, tolera
 
 def story(id: str) -> Iterator[Check]:
     """Pressures, rates and shapes at the ends of its three parts."""
-    first = run(variant(_COLD, *_QUADRATIC))
+    first = computed(variant(_COLD, *_QUADRATIC))
     second = _continued(_COLD, first)
     third = _continued(_HOT, second)
     for name, result in (("cold", second), ("then hot", third)):
@@ -62,7 +63,7 @@ def _continued(starter: str, before: Result) -> Result:
         file = Path(place) / "shape.csv"
         table = np.column_stack([before.profile.s, before.profile.shape])
         np.savetxt(file, table, delimiter=",", header="s_m,shape_m", comments="", fmt="%.17g")
-        return run(variant(starter, _ON, f"geometry.initial_shape={str(file)!r}"))
+        return computed(variant(starter, _ON, f"geometry.initial_shape={str(file)!r}"))
 
 
 def _volume_rates(result: Result) -> tuple[float, float]:

@@ -8,7 +8,8 @@ from .. import geometry  # noqa: F401  (makes the geometries known)
 from ..case import load
 from ..case.schema import Case
 from ..case.starters import starter_text
-from ..simulation import Result, run
+from ..simulation import Result
+from .computed import computed
 
 
 def starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
@@ -34,4 +35,4 @@ def starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
 
 def run_starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Result:
     """Compute a starter case; parameters as in `starter`."""
-    return run(starter(name, *overrides, without=without))
+    return computed(starter(name, *overrides, without=without))

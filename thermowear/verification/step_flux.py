@@ -11,12 +11,13 @@ import numpy as np
 
 from ..case.schema import Case
 from ..reference.step_flux import HalfSpace, surface_rises
-from ..simulation import Result, run
+from ..simulation import Result
 from ..simulation.interface_problem import InterfaceProblem
 from ..simulation.phases import Phases
 from ..simulation.preparation import interface_problem, prepare
 from ..simulation.wear_step import WornContact, advance
 from .check import Check, compare
+from .computed import computed
 from .starter import starter
 
 ID = "step-flux"
@@ -55,7 +56,9 @@ FINEST = 64
 def checks() -> Iterator[Check]:
     """Both faces over two decades of time, the balance of heat, the order of the scheme."""
     for name, partition, conductance in HEATED:
-        yield from _temperatures(run(heated(partition, conductance)), name, partition, conductance)
+        yield from _temperatures(
+            computed(heated(partition, conductance)), name, partition, conductance
+        )
     yield from _orders()
 
 

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..case.schema import Case
-from ..simulation import Result, run
+from ..simulation import Result
 from .check import Check, compare
+from .computed import computed
 from .starter import starter
 
 ID = "temperature-dependent"
@@ -47,7 +48,7 @@ _BLOCKS = (
 def _conductivity() -> Iterator[Check]:
     """Flux through each block by the integral of its conductivity between its ends."""
     for analysis in ("steady", "initial"):
-        i = run(starter("stacked-blocks", *_BLOCKS, f'analysis.type="{analysis}"')).interface
+        i = computed(starter("stacked-blocks", *_BLOCKS, f'analysis.type="{analysis}"')).interface
         T1, T2 = (T - AMBIENT for T in (i.temperature_1, i.temperature_2))
         known = 50.0 * (T1 + _SLOPES[0] * T1**2 / 2) / 0.01
         yield _largest(f"heat flux into block 1, {analysis}", i.heat_flux_1, known, KIRCHHOFF)
@@ -62,7 +63,7 @@ def _expansion() -> Iterator[Check]:
     """How far the holder comes down on blocks that are squeezed and swell."""
     slope = 1e-3
     factors = [f"bodies.{body}.expansion_factor={_straight(slope)}" for body in ("upper", "lower")]
-    result = run(starter("stacked-blocks", *_BLOCKS[:1], *factors, 'analysis.type="initial"'))
+    result = computed(starter("stacked-blocks", *_BLOCKS[:1], *factors, 'analysis.type="initial"'))
     T1, T2 = (
         float(T.mean()) - AMBIENT
         for T in (result.interface.temperature_1, result.interface.temperature_2)
@@ -95,7 +96,7 @@ def _friction() -> Iterator[Check]:
         per_heat = _mean_rise(starter("stacked-blocks")) / 1e5
         heat = 1e5 / (1 - slope * per_heat * 1e5)
         for analysis in ("steady", "initial"):
-            result = run(starter("stacked-blocks", overrides, f'analysis.type="{analysis}"'))
+            result = computed(starter("stacked-blocks", overrides, f'analysis.type="{analysis}"'))
             i = result.interface
             found = i.heat_flux_1 + i.heat_flux_2
             title = f"friction heat, factor 1 {slope:+g} (T - T0), {analysis}"
@@ -103,7 +104,7 @@ def _friction() -> Iterator[Check]:
 
 
 def _mean_rise(case: Case) -> float:
-    i = run(case).interface
+    i = computed(case).interface
     return float((i.temperature_1 + i.temperature_2).mean() / 2) - AMBIENT
 
 
@@ -135,9 +136,9 @@ def _worn() -> Iterator[tuple[str, str, tuple[str, ...]]]:
 
 def _steady_against_time(title: str, name: str, *overrides: str) -> Iterator[Check]:
     case = starter(name, *overrides)
-    steady = run(case)
+    steady = computed(case)
     in_time = 'analysis={type="transient", until="steady", steady_tolerance=2e-4}'
-    ended = run(starter(name, *overrides, in_time))
+    ended = computed(starter(name, *overrides, in_time))
     i, j = steady.interface, ended.interface
     yield _largest(f"pressure, {title} [Pa]", i.pressure, j.pressure, IN_TIME, 1e-3)
     for body, found, known in (

@@ -76,6 +76,7 @@ GROUPS = {
         "dofs_displacement": "unknowns, displacement",
         "dofs_temperature": "unknowns, temperature",
         "contact_points": "contact points",
+        "mesh_sha256": "SHA-256 of the mesh read from a file",
         "pressure_error_estimate_relative": "estimated error of the pressure, in the mean",
         "max_pressure_error_estimate_relative": "estimated error of the largest pressure",
         "shape_error_estimate_relative": "estimated error of the shape",

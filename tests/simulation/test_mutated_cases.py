@@ -30,7 +30,9 @@ from ..case.mutations import mutated
 FEW = 4
 MANY = int(os.environ.get("THERMOWEAR_MUTANTS", FEW))
 FIRST = int(os.environ.get("THERMOWEAR_SEED", "20000"))
-_PATIENCE = 60.0  # s of processor time; then a run is asked to stop, as by Ctrl-C
+_PATIENCE = 60.0  # s of processor time; then a run is asked to stop
+_LARGEST = (100, 24)
+"""Degree times elements along the contact, in a section and in space."""
 
 
 class Hang(Exception):
@@ -39,13 +41,16 @@ class Hang(Exception):
 
 @contextlib.contextmanager
 def asked_to_stop():
-    """Send Ctrl-C to what computes for long, twice; raise where it computes on."""
+    """Stop what computes for long, by SIGTERM, twice; raise where it computes on.
+
+    That is as Ctrl-C, which a process in the background ignores.
+    """
     calls = itertools.count()
 
     def stop(*_):
         if next(calls) == 2:
             raise Hang
-        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGTERM)
 
     before = {number: signal.getsignal(number) for number in (signal.SIGPROF, signal.SIGTERM)}
     signal.signal(signal.SIGPROF, stop)
@@ -59,13 +64,14 @@ def asked_to_stop():
 
 
 def accepted(seed: int, path: Path) -> tuple[str, tuple[str, ...]] | None:
-    """The class and the overrides of a mutated case that `load` takes; None where it does not."""
+    """The class and the overrides of a mutated case that `load` takes and that is no large one."""
     kind, (content, overrides) = mutated(seed, coarse=True)
     path.write_bytes(content)
     with warnings.catch_warnings(), contextlib.suppress(tw.CaseError):
         warnings.simplefilter("ignore", CaseNote)
-        tw.load(path, overrides)
-        return kind, overrides
+        case = tw.load(path, overrides)
+        if case.mesh.degree * case.mesh.elements <= _LARGEST[case.model == "3d"]:
+            return kind, overrides
     return None
 
 

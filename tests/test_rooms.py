@@ -1,6 +1,7 @@
 """The layout of the house: which room may import which."""
 
 import ast
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -98,3 +99,20 @@ def test_public_names_are_there():
     assert callable(thermowear.laws.steady_pressure)
     with pytest.raises(AttributeError):
         _ = thermowear.nothing_of_the_kind
+
+
+def test_a_case_is_loaded_without_the_package_being_asked_first(tmp_path):
+    """requirement: `thermowear.case.load` knows every geometry, whatever was imported before."""
+    from thermowear.case.starters import starter_text
+
+    (tmp_path / "ring.toml").write_text(starter_text("annular-punch"), encoding="utf-8")
+    words = "import thermowear as tw; print(tw.case.load('ring.toml').geometry.type)"
+    done = subprocess.run(
+        [sys.executable, "-c", words],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT.parent)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout == "annular-punch\n", done.stderr

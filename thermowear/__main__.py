@@ -23,4 +23,6 @@ def run() -> int:
 
 
 if __name__ == "__main__":
+    if not sys.flags.safe_path:  # the current folder, which may be anybody's: after all libraries
+        sys.path.append(sys.path.pop(0))
     sys.exit(run())

@@ -58,10 +58,13 @@ def work_off(
 
 
 def start_petsc() -> None:
-    """Start PETSc so that signals are Python's: Ctrl-C, ``| head``."""
+    """Start PETSc so that signals are Python's: Ctrl-C, ``| head``.
+
+    Its options are not read from ``.petscrc`` in the current folder: one of them writes any file.
+    """
     import petsc4py
 
-    petsc4py.init(["thermowear", "-no_signal_handler"])
+    petsc4py.init(["thermowear", "-no_signal_handler", "-skip_petscrc"])
 
 
 class _Worker:

@@ -298,9 +298,22 @@ CLASSES = (
 )
 
 
-def mutated(seed: int) -> tuple[str, Mutated]:
-    """A case by its number: the class of mutation, the bytes of the file, and overrides."""
+def coarsened(case: dict) -> None:
+    """Make a case a matter of a second: few elements of a low degree, a loose tolerance in time."""
+    own_mesh = "path" in case["geometry"]
+    case["mesh"] = {"degree": 2} if own_mesh else {"degree": 3, "elements": 6}
+    if case["analysis"]["type"] in ("transient", "reciprocating"):
+        case["analysis"]["tolerance"] = 0.1
+
+
+def mutated(seed: int, coarse: bool = False) -> tuple[str, Mutated]:
+    """A case by its number: the class of mutation, the bytes of the file, and overrides.
+
+    Where `coarse`, the case is made quick to compute before it is mutated.
+    """
     random = Random(seed)
     case = copy.deepcopy(tables(random.choice(NAMES)))
+    if coarse:
+        coarsened(case)
     kind = CLASSES[seed % len(CLASSES)]
     return kind.__name__, kind(case, random)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 import tomli_w
@@ -206,3 +207,13 @@ def test_tables_written_and_read_again_are_bounded_alike():
     assert tomli_w.dumps(deep)
     (line,) = faults({"mesh": deep})
     assert f"at most {MOST_PARTS}" in line
+
+
+def test_the_bounds_are_documented():
+    """
+    requirement: the README names the bounds that hold.
+    """
+    said = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    values = f"{MOST_VALUES:,}".replace(",", " ")
+    assert f"up to {LARGEST_FILE // 10**6} MB with {values} values" in said
+    assert f"deeper than {MOST_PARTS} tables" in said

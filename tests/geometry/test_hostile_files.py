@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import os
 import pickle
 import sys
@@ -21,6 +22,7 @@ from thermowear.geometry.mesh_file import MeshFile
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint
 
 from .plain import NAMES, NUMBERED, blocks, inp, meshio_file, msh
+from .test_mesh_file import GMSH_NAMES, gmsh_blocks
 
 CALL = 'SystemCall "touch {mark}";\n'
 GOOD = msh(blocks())
@@ -82,6 +84,23 @@ TEXTS = {
         GRID.replace("{form}", "HDF").replace("{text}", "{secret}:/x"),
         "which is no file beside it",
     ),
+    "nodes_of_a_file.inp": (DECK + "*ELEMENT, TYPE=CPS4, FILE={secret}\n", "takes in another file"),
+    "on_the_next_line.inp": (DECK + "*NODE,\n INPUT={secret}\n", "where a number is due"),
+    "old_lines.msh": (GOOD.replace("\n", "\r") + CALL, SECTION),
+    "nothing_first.msh": (GOOD.replace("$Nodes", "\0$Nodes"), SECTION),
+    "unsaid.msh": (GOOD.replace("$EndNodes", "99 0 0 0\n$EndNodes"), "holds more than it says"),
+    "script.geo": (CALL, "unknown ending"),
+    "script.MSH": (CALL, NO_SECTION),
+    "hidden_include.vtu": (
+        HEAD + "<VTKFile type='UnstructuredGrid'><!-- <AppendedData -->" + INCLUDED + "</VTKFile>",
+        "Unknown main tag",
+    ),
+    "codec.vtu": ('<?xml version="1.0" encoding="zlib_codec"?><VTKFile/>', "not a text encoding"),
+    "pieces.vtu": (
+        '<VTKFile type="PUnstructuredGrid"><Piece Source="{secret}"/></VTKFile>',
+        "found PUnstructuredGrid",
+    ),
+    "group.xdmf": (GRID.replace("{form}", "HDF").replace("{text}", "..:/x"), "no file beside it"),
     "script.med": (CALL, NO_SECTION),
     "archive.msh": ("\x1f\x8b\x08\x00", "it is no mesh of gmsh"),
 }
@@ -121,11 +140,11 @@ def place(tmp_path):
 
 def refused(place: Path, name: str, keys=NAMES) -> str:
     """One line, and nothing else in the folder than before."""
-    before = {path: path.stat().st_mtime_ns for path in place.rglob("*")}
+    before = {path: path.lstat().st_mtime_ns for path in place.rglob("*")}
     geometry = {"type": "file", "path": str(place / "folder" / name)} | keys
     with pytest.raises(CaseError) as error:
         MeshFile.model_validate(geometry).build(None, None)
-    assert {path: path.stat().st_mtime_ns for path in place.rglob("*")} == before
+    assert {path: path.lstat().st_mtime_ns for path in place.rglob("*")} == before
     (line,) = error.value.faults
     assert "\n" not in line
     assert line.startswith("geometry.path: ")
@@ -151,6 +170,41 @@ def test_hostile_texts(name, place, spy):
     assert not any(str(args[0]).endswith(("secret", "mark")) for _, args in spy.seen)
     started = [args[0] for event, args in spy.seen if event != "open"]
     assert all(name.endswith((".vtu", ".xdmf")) and "python" in str(what) for what in started)
+
+
+@pytest.mark.parametrize("section", ["Nodes", "Elements", "EndElements"])
+@pytest.mark.parametrize("version", [2.2, 4.1])
+def test_commands_in_binary_meshes(version, section, place):
+    """
+    requirement: what stands behind the numbers of a binary section, or behind the last one, is not
+    passed over.
+    """
+    path = place / "folder" / "mesh.msh"
+    gmsh_blocks(path, version, Binary=1)
+    mark = b"$End" + section.removeprefix("End").encode()
+    at = path.read_bytes().index(mark) + (len(mark) if section == "EndElements" else 0)
+    content, call = path.read_bytes(), CALL.replace("{mark}", str(place / "mark")).encode()
+    path.write_bytes(content[:at] + b"\n" + call + content[at:])
+    line = refused(place, "mesh.msh", GMSH_NAMES)
+    assert SECTION in line or f"the section ${section} holds more than it says" in line
+
+
+@pytest.mark.parametrize("ending", ["msh", "vtu", "xdmf"])
+def test_archives(ending, place):
+    """
+    requirement: what is compressed is not unpacked.
+    """
+    (place / "folder" / f"mesh.{ending}").write_bytes(gzip.compress(GOOD.encode()))
+    assert NO_SECTION in refused(place, f"mesh.{ending}")
+
+
+@pytest.mark.parametrize("target", ["loop.msh", "/dev/stdin", "/proc/self/environ"])
+def test_symbolic_links(target, place):
+    """
+    requirement: a link is what it leads to: nothing, no file, or no mesh.
+    """
+    os.symlink(target, place / "folder" / "loop.msh")
+    assert "cannot be read: " in refused(place, "loop.msh")
 
 
 def test_options_beside_a_mesh(place):

@@ -1,7 +1,7 @@
 """Mutated mesh files: an answer that can be right, or one line.
 
 A small sample of each way runs always. ``THERMOWEAR_MUTATIONS=N`` in the environment asks for N of
-each; the slow test also solves the contact of those that are accepted.
+each, ``THERMOWEAR_SEED=M`` for others; the slow test also solves the contact of those accepted.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from .test_mesh_file import GMSH_NAMES, gmsh_blocks
 STEEL = {"young_modulus": "200 GPa", "poisson_ratio": 0.3}
 FORCE = 100.0
 SAMPLE = int(os.environ.get("THERMOWEAR_MUTATIONS", "3"))
+SEED = [int(seed) for seed in os.environ.get("THERMOWEAR_SEED", "").split()]
 FORMATS = ["2.2", "4.1", "binary", "inp", "vtu", "xdmf", "med"]
 BASE = blocks(round_face=0.02)
 """A punch with a slightly round face, so that the contact is in the middle."""
@@ -113,14 +114,14 @@ def check_solved(found, largest: float) -> float | None:
 
 def mutated_bytes(originals, kind: str, change, number: int, place):
     data, ending, keys = originals[kind]
-    rng = np.random.default_rng([number, FORMATS.index(kind), AS_BYTES.index(change)])
+    rng = np.random.default_rng([number, FORMATS.index(kind), AS_BYTES.index(change), *SEED])
     path = place / f"mesh{ending}"
     path.write_bytes(change(data, rng))
     return path, keys
 
 
 def mutated_mesh(change, number: int, place):
-    rng = np.random.default_rng([number, AS_MESH.index(change)])
+    rng = np.random.default_rng([number, AS_MESH.index(change), *SEED])
     mesh = spoilt(BASE, change, rng)
     text, ending = (msh(mesh), "msh") if number % 2 else (inp(mesh), "inp")
     path = place / f"mesh.{ending}"

@@ -85,6 +85,16 @@ def test_what_was_not_written_is_refused(changed, tmp_path):
     assert len(caught.value.faults) == 1
 
 
+def test_a_checkpoint_that_swells_is_refused(tmp_path):
+    """requirement: a small file cannot fill the memory; this program compresses none."""
+    write_checkpoint(tmp_path, ABOUT, ARRAYS)
+    with np.load(tmp_path / CHECKPOINT) as file:
+        content = dict(file)
+    np.savez_compressed(tmp_path / CHECKPOINT, **content)
+    with pytest.raises(tw.CaseError, match="cannot be read: its entries are compressed"):
+        read_checkpoint(tmp_path)
+
+
 @pytest.mark.parametrize("about", ["[]", "1", "null", "{", '"text"', "{}"])
 def test_a_head_of_something_else_is_refused(about, tmp_path):
     np.savez(tmp_path / CHECKPOINT, about=np.array(about))

@@ -2,6 +2,7 @@
 
 import shutil
 
+import matplotlib as mpl
 import matplotlib.image as mpimg
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from thermowear import CaseError
 from thermowear.case.starters import starter_text
 from thermowear.cli import main
 from thermowear.output.pictures import make
-from thermowear.output.pictures.curves import draw_history
+from thermowear.output.pictures.curves import draw_history, draw_interface
 from thermowear.output.pictures.heat import draw_heat
 from thermowear.output.pictures.make import make_pictures
 
@@ -50,6 +51,12 @@ def test_every_picture_shows_something(drawn):
             assert (np.abs(image - image[0, 0]).max(axis=2) > 0.05).mean() > 0.01, path
             shades = np.round(10 * image).astype(int) @ [10_000, 100, 1]
             assert len(np.unique(shades)) > 5, path
+
+
+def test_pictures_have_their_own_style(folders):
+    """requirement: a `matplotlibrc` of the current folder, which may ask for TeX, has no say."""
+    with mpl.rc_context({"text.usetex": True, "savefig.format": "none"}):
+        draw_interface(folders / "hot")
 
 
 STARTERS = {

@@ -62,6 +62,23 @@ def test_a_contact_that_outgrows_its_zone_is_meshed_for_a_wider_one():
         assert spread == pytest.approx(law.elastic_half_width(slid), rel=1e-2)
 
 
+@pytest.mark.parametrize("wearing", [("sphere",), ("sphere", "block")])
+def test_a_ball_that_wears_fast_runs_to_its_end(wearing):
+    """requirement: 1e4 times the coefficient, default zone: no step is too small, V = k F s."""
+    import thermowear as tw
+
+    from ..case.starter import GONE, tables
+
+    k, small = 1.33e-9, {"mesh.elements": 12, "analysis.tolerance": 0.1}
+    wear = {name: {"coefficient": f"{k} 1/Pa", "per": "pressure"} for name in wearing}
+    changes = {"geometry.zone": GONE, "wear": wear, "analysis.end_time": "0.4 s"}
+    times = {"analysis.output_times": []}
+    result = tw.run(tw.load(tables("sphere-on-block-growing", small | changes | times)))
+    assert result.stopped is None
+    volumes = [result.summary[f"wear_volume_{body}_m3"] for body in (1, 2)][: len(wearing)]
+    assert volumes == pytest.approx(len(wearing) * [k * 10.385 * 0.05 * 0.4], rel=1e-3)
+
+
 @pytest.mark.slow
 def test_the_pressure_does_not_overshoot_at_a_travelling_edge():
     """requirement: largest pressure within 5 % of the uniform one wherever in an element it is."""

@@ -181,3 +181,12 @@ def test_too_few_steps_keep_what_was_computed():
     assert "max_steps" in str(result.stopped)
     assert len(result.history) == 6
     assert 0 < result.summary["time_s"] < 200
+
+
+def test_a_first_time_may_be_tiny():
+    """requirement: a time to be hit that is smaller than any step ends no run."""
+    small = ("mesh.degree=2", "mesh.elements=2", "analysis.end_time=1 s")
+    times = 'analysis.output_times=["1e-30 s"]'
+    result = tw.run(tw.load(COLD_RUNNING_IN, (*small, times)))
+    assert result.stopped is None
+    assert [row.time for row in result.history][:2] == [0.0, 1e-30]

@@ -1,5 +1,6 @@
 """What happens inside the bodies: elasticity with thermal strain, heat conduction."""
 
+from ..local_settings import fix_compiler_options
 from .bodies import Bodies, distribute
 from .conduction import Conduction
 from .elasticity import Elasticity, ElasticMaterial, elasticity
@@ -18,3 +19,5 @@ __all__ = [
     "distribute",
     "elasticity",
 ]
+
+fix_compiler_options()  # before anything is compiled

@@ -52,7 +52,7 @@ def read_abaqus(text: str) -> Contents:
         if keyword == "INSTANCE" and lines:
             raise ValueError("*INSTANCE moves a part; write the nodes as they lie")
         if keyword in _READ:
-            if "INPUT" in options:
+            if options.keys() & {"INPUT", "FILE"}:
                 raise ValueError(f"*{keyword} takes in another file; a mesh has to be in one file")
             getattr(deck, f"read_{keyword.lower()}")(options, lines)
     return deck.result()

@@ -15,7 +15,8 @@ from .contents import Contents, numbering, shown
 from .gmsh_elements import elements_2, elements_4, entities, nodes_2, nodes_4
 from .gmsh_numbers import Binary, Numbers, Text
 
-_READ = ("MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements")
+_NUMBERS = ("Entities", "Nodes", "Elements")
+_READ = ("MeshFormat", "PhysicalNames", *_NUMBERS)
 _PASSED_OVER = (
     *("Comments", "Periodic", "PartitionedEntities", "GhostElements", "Parametrizations"),
     *("NodeData", "ElementData", "ElementNodeData", "InterpolationScheme"),
@@ -38,14 +39,17 @@ def read_gmsh(data: bytes) -> Contents:
             raise ValueError(f"it has no section ${name}")
     form = _format(sections["MeshFormat"])
     names = _physical_names(sections.get("PhysicalNames", b""))
+    sources = {name: form.numbers(sections, name) for name in _NUMBERS if name in sections}
     if form.version == 2:
-        tags, points = nodes_2(form.numbers(sections, "Nodes"))
-        blocks = elements_2(form.numbers(sections, "Elements"), form.binary)
+        sources.pop("Entities", None)
+        tags, points = nodes_2(sources["Nodes"])
+        blocks = elements_2(sources["Elements"], form.binary)
     else:
-        known = "Entities" in sections
-        groups = entities(form.numbers(sections, "Entities"), form.minor) if known else {}
-        tags, points = nodes_4(form.numbers(sections, "Nodes"), form.minor)
-        blocks = elements_4(form.numbers(sections, "Elements"), form.minor, groups)
+        groups = entities(sources["Entities"], form.minor) if "Entities" in sources else {}
+        tags, points = nodes_4(sources["Nodes"], form.minor)
+        blocks = elements_4(sources["Elements"], form.minor, groups)
+    for source in sources.values():
+        source.finished()
     positions = numbering(tags)
     return Contents(points, [block.named(names, positions) for block in blocks])
 

@@ -25,6 +25,14 @@ class Numbers:
     def one(self, kind: str = "int") -> int:
         return int(self.integers(1, kind)[0])
 
+    def finished(self) -> None:
+        """Raise where something is left over, as a command would be."""
+        if self._left_over():
+            raise ValueError(f"the section ${self.name} holds more than it says")
+
+    def _left_over(self) -> bool:
+        raise NotImplementedError
+
     def ends_early(self) -> ValueError:
         return ValueError(f"the section ${self.name} holds fewer numbers than it says")
 
@@ -47,6 +55,9 @@ class Text(Numbers):
             raise self.ends_early()
         self.at += count
         return self.values[self.at - count : self.at]
+
+    def _left_over(self) -> bool:
+        return self.at < len(self.values)
 
 
 class Binary(Numbers):
@@ -76,3 +87,6 @@ class Binary(Numbers):
             raise self.ends_early()
         self.at += size
         return np.frombuffer(self.body, kind, count, self.at - size)
+
+    def _left_over(self) -> bool:
+        return bool(self.body[self.at :].strip())

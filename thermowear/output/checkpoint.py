@@ -60,6 +60,8 @@ def read_checkpoint(folder: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]
     path = folder / CHECKPOINT
     try:
         with np.load(path, allow_pickle=False) as file:
+            if any(entry.compress_type != zipfile.ZIP_STORED for entry in file.zip.infolist()):
+                raise ValueError("its entries are compressed, and may fill the memory")
             arrays = dict(file)
         about = json.loads(str(arrays.pop(_ABOUT)))
         known, digest = about.pop("format"), about.pop(_DIGEST, None)

@@ -14,7 +14,7 @@ from .checkpoint import can_be_packed
 from .step_sizes import AnySize, StepSizes, ends
 from .wear_step import WearProblem, WornContact, advance_with_error, next_step
 
-_SMALLEST = 1e-12  # of the time that has passed
+_SMALLEST = 1e-12  # of the time that has passed, at first of 1e-12 s
 
 
 @can_be_packed
@@ -113,8 +113,9 @@ def _next(
 ) -> Moment:
     """The end of a step towards a time that must be hit [s]."""
     way = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
+    smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
     state, step, error, following = _accept(
-        problem, last.state, way, last.wanted, last.time, settings
+        problem, last.state, way, last.wanted, last.time, smallest, settings
     )
     hits = ends(step, target - last.time)
     time = target if hits else last.time + step
@@ -131,10 +132,10 @@ def _next(
     )
 
 
-def _accept(problem, state, way, wanted, time, settings):
+def _accept(problem, state, way, wanted, time, smallest, settings):
     """Repeat a step with smaller sizes until its error is within the tolerance."""
     trouble, step = "", way(wanted)
-    while step > _SMALLEST * max(time, _SMALLEST):
+    while step > smallest:
         try:
             following, error = advance_with_error(problem, state, time, step)
         except ComputationError as failure:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from .. import tables
 from ..quantities import HISTORY, INTERFACE, LOADS, Quantity
 
-STYLE = {
+STYLE = {key: value for key, value in mpl.rcParamsDefault.items() if key != "backend"} | {
     "font.size": 10,
     "axes.grid": True,
     "grid.alpha": 0.3,
@@ -21,6 +21,7 @@ STYLE = {
     "lines.linewidth": 1.6,
     "legend.frameon": False,
 }
+"""All settings, so that none comes from a ``matplotlibrc`` that lies in the current folder."""
 BODIES = ("tab:blue", "tab:orange")
 
 

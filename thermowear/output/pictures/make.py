@@ -59,7 +59,7 @@ def make_pictures(folder: Path) -> list[str]:
     notes = [f"{folder}: not balanced: {line}" for line in violated(_summary(folder))]
     if not (folder / "fields.vtu").is_file():
         return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]
-    reasons = {"the bodies": _render("bodies", str(folder))}
+    reasons = {"the bodies": _render("bodies", str(folder.resolve()))}
     if has_frames(folder):
         reasons["the animation"] = _animate(folder, folder / "animation.gif", FPS)
     return notes + [f"{what} could not be drawn: {why}" for what, why in reasons.items() if why]
@@ -98,7 +98,9 @@ def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
 
 def _animate(folder: Path, path: Path, fps: float) -> str:
     """Draw an animation; the reason why not, empty on success."""
-    return _render("animation.make", str(folder), str(path), str(fps), timeout=_LONG)
+    return _render(
+        "animation.make", str(folder.resolve()), str(path.resolve()), str(fps), timeout=_LONG
+    )
 
 
 def _render(module: str, *arguments: str, timeout: float = _TIMEOUT) -> str:
@@ -115,6 +117,7 @@ def _render(module: str, *arguments: str, timeout: float = _TIMEOUT) -> str:
             done = subprocess.run(
                 [*prefix, *command],
                 env=environment,
+                cwd=package_root,  # no modules or settings from the current folder
                 capture_output=True,
                 text=True,
                 timeout=timeout,

@@ -155,3 +155,14 @@ def test_every_step_is_on_disk_at_once(tmp_path):
         assert [len(column) for column in table.values()] == [count] * len(HISTORY)
         for name, column in table.items():
             assert column[-1] == pytest.approx(getattr(row, name), rel=1e-14, nan_ok=True)
+
+
+def test_a_case_that_turns_out_wrong_leaves_what_was_computed(tmp_path):
+    """requirement: nothing is left where nothing was computed; else all is kept, and said."""
+    opened(tmp_path / "none").abandon()
+    assert not (tmp_path / "none").exists()
+    folder = opened(tmp_path / "some")
+    (folder.path / "history.csv").write_text("time_s\n", encoding="utf-8")
+    folder.abandon()
+    assert run_file(folder.path)["status"] == "failed"
+    assert (folder.path / "history.csv").is_file()

@@ -27,7 +27,7 @@ from thermowear.errors import CaseNote
 
 from ..case.mutations import mutated
 
-FEW = 4
+FEW = 2
 MANY = int(os.environ.get("THERMOWEAR_MUTANTS", FEW))
 FIRST = int(os.environ.get("THERMOWEAR_SEED", "20000"))
 _PATIENCE = 60.0  # s of processor time; then a run is asked to stop

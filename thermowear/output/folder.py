@@ -18,7 +18,7 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from .checkpoint import write_checkpoint
+from .checkpoint import CHECKPOINT, write_checkpoint
 from .frames import FRAMES, remove_frames, write_frame
 from .lock import Lock
 from .quantities import CYCLES, FRICTION, HEAT, HISTORY, INTERFACE, LOADS, MODES, PROFILE, TRACK
@@ -34,6 +34,8 @@ _OURS = re.compile(
     r"|(interface|profile|wear|history|heat|friction|loads|cycles|track|mode|bodies|deformed)\.png"
 )
 
+_BEGUN = ("history.csv", "heat.csv", "loads.csv", "cycles.csv")
+"""Tables to which a run adds as it goes."""
 _ROWS = {
     "HistoryRow": ("history.csv", HISTORY),
     "HeatRow": ("heat.csv", HEAT),
@@ -169,7 +171,13 @@ class ResultsFolder:
         self._lock.release()
 
     def abandon(self) -> None:
-        """Take back what was written; for a case that turns out wrong before it is computed."""
+        """Take back what was written, for a case that turns out wrong before it is computed.
+
+        Where something was computed, it is kept.
+        """
+        if any((self.path / name).is_file() for name in (CHECKPOINT, *_BEGUN)):
+            self.close("failed", "the case turned out to be wrong on the way")
+            return
         for name in ("case.resolved.toml", "run.json"):
             (self.path / name).unlink(missing_ok=True)
         if self._made:

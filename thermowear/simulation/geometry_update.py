@@ -12,7 +12,7 @@ from ..bulk.transfer import transferred
 from ..contact.refinement import Rule
 from ..contact.surface import Surface
 from ..contact.worn_face import WornFace
-from ..errors import ComputationError
+from ..errors import CaseError, ComputationError
 from ..geometry.moved import MovableBody
 from ..geometry.new_face import NewFace
 from ..geometry.shapes import scaled_jacobians
@@ -64,12 +64,19 @@ def updated(
     Raises
     ------
     ComputationError
-        If cells would become too thin or too slanted.
+        If cells would become too thin or too slanted, or the faces cannot meet any more.
     """
     with system.phases("move meshes"):
         state = replace(state, worn=worn_in(system, problem, state, time))
         worn, renewed = _moved(system, kept, state)
-    following = build(system.case, system.comm, system.phases, system.inputs.zone, Parts(), worn)
+    try:
+        following = build(
+            system.case, system.comm, system.phases, system.inputs.zone, Parts(), worn
+        )
+    except CaseError as fault:  # said of bodies as they are given; here they have been computed
+        raise ComputationError(
+            f"wear: at {time:.6g} s the worn faces do not fit each other any more ({fault})"
+        ) from None
     rows, missed = _carried_wear(system, following, state.worn)
     error = max(missed, carrying_error(worn, following.pairing)) if renewed else 0.0
     worn = replace(worn, carrying_error=max(worn.carrying_error, error))

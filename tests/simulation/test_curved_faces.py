@@ -96,10 +96,10 @@ def test_the_shear_of_equal_cylinders_is_symmetric(tmp_path, round_body):
         assert np.abs(found.pressure - found.pressure[::-1]).max() < 1e-8 * limit
 
 
-@pytest.mark.parametrize("radius", [R, R / 2])
-def test_exchanged_bodies_answer_alike(tmp_path, round_body, radius):
-    """requirement: which body is held does not matter, of unlike stiffness and radius either; up to
-    what the mesh leaves at edges of contact and stick, as the pressure has body 1's facets."""
+@pytest.mark.parametrize(("radius", "near"), [(R, 1e-8), (R / 2, 1e-5)])
+def test_exchanged_bodies_answer_alike(tmp_path, round_body, radius, near):
+    """requirement: which body is held does not matter, of unlike stiffness either; of unlike radii
+    up to the error of the mesh, as the pressure has the facets of body 1."""
     soft, stiff = "70 GPa", "200 GPa"
     other = round_body if radius == R else cylinder(radius, ZONE, 20)
     first = fretted(tmp_path / "a.msh", on_cylinder(round_body, other, 60.0), (soft, stiff))
@@ -110,7 +110,7 @@ def test_exchanged_bodies_answer_alike(tmp_path, round_body, radius):
             np.interp(x, sign * f.x[::sign], getattr(f, name)[::sign])
             for sign, f in ((1, first), (-1, second))
         )
-        assert np.abs(one - two).sum() < 2e-5 * np.abs(one).sum()
+        assert np.abs(one - two).sum() < near * np.abs(one).sum()
 
 
 def test_faces_side_by_side_are_refused(tmp_path, round_body):

@@ -7,7 +7,6 @@ import thermowear as tw
 from thermowear import CaseError, ComputationError
 from thermowear.geometry.export import write_mesh
 from thermowear.reference.hertz import contact_modulus, line_contact
-from thermowear.reference.mindlin import MindlinLine
 
 from .cylinders import ball, case_tables, cylinder, on_cylinder, pin_in_bush
 
@@ -97,10 +96,10 @@ def test_the_shear_of_equal_cylinders_is_symmetric(tmp_path, round_body):
         assert np.abs(found.pressure - found.pressure[::-1]).max() < 1e-8 * limit
 
 
-@pytest.mark.parametrize(("radius", "near"), [(R, 1e-5), (R / 2, 2e-2)])
+@pytest.mark.parametrize(("radius", "near"), [(R, 1e-8), (R / 2, 1e-5)])
 def test_exchanged_bodies_answer_alike(tmp_path, round_body, radius, near):
-    """requirement: which body is held does not matter, of unlike stiffness either; up to the error
-    of the mesh where meshes differ, as the pressure has the facets of body 1."""
+    """requirement: which body is held does not matter, of unlike stiffness either; of unlike radii
+    up to the error of the mesh, as the pressure has the facets of body 1."""
     soft, stiff = "70 GPa", "200 GPa"
     other = round_body if radius == R else cylinder(radius, ZONE, 20)
     first = fretted(tmp_path / "a.msh", on_cylinder(round_body, other, 60.0), (soft, stiff))
@@ -133,29 +132,3 @@ def test_a_holder_that_goes_back_is_no_result(tmp_path, round_body):
     assert isinstance(result.stopped, ComputationError)
     assert "overlap by up to" in str(result.stopped)
     assert result.summary["approach_m"] < 0.0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("ratio", [0.005])
-def test_cattaneo_and_mindlin_between_equal_cylinders(tmp_path, ratio):
-    """requirement: within 1 % of the limit of friction, at any curvature, but for the edges of the
-    zone that sticks: the slope is infinite there, elements that hold one are off by up to 1.5 %."""
-    a, friction = ratio * R, 0.6
-    modulus = contact_modulus((200e9, 0.3), (200e9, 0.3))
-    law = MindlinLine(np.pi * modulus * a**2 / (2 * R), R / 2, modulus, friction)
-    path, body = tmp_path / "a.msh", cylinder(R, a, 72)
-    write_mesh(on_cylinder(body, body, 45.0), path)
-    force, push = law.force * 1e-3, friction * law.force * 1e-3 / 2
-    history = {"time": ["0 s", "1 s"], "tangential_force": ["0 N", f"{push!r} N"]}
-    tables = case_tables(
-        path,
-        force,
-        mesh={"degree": 4},
-        load={"force": f"{force!r} N", "history": history},
-        contact={"friction": friction},
-        analysis={"type": "fretting", "increments": 4},
-    )
-    found = tw.run(tw.load(tables)).friction.last
-    exact = law.shear(found.x, push / 1e-3)
-    away = np.abs(np.abs(found.x) - law.stick_half_width(push / 1e-3)) > 0.03 * a
-    assert np.abs(np.abs(found.shear) - exact)[away].max() < 1e-2 * friction * law.normal.peak

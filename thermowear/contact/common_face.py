@@ -7,9 +7,15 @@ Where bodies are pressed together their faces deform until they coincide. Body i
     x = s_2 x_1 + s_1 x_2,      n ∝ s_2 n_1 - s_1 n_2
 
 with the outward normals n_1 and n_2 of the unloaded faces: the mean of both faces for bodies of
-like stiffness, the face of the stiffer body where the other one is soft. Points are opposite each
-other where ``x_2 - x_1`` is along n, and ``g = (x_2 - x_1)·n`` is the gap. Exchanging the bodies
-turns n round and changes nothing else.
+like stiffness, the face of the stiffer body where the other one is soft. The gap of two points is
+``g = (x_2 - x_1)·n``.
+
+Points are opposite each other where ``x_2 - x_1`` is along the bisector ``m ∝ n_1 - n_2`` of both
+normals, whatever the stiffness. Where bodies touch, points meet that have about the same length of
+face from where they touched first, as pressure alone hardly stretches faces. For curvatures
+``κ_1 + κ_2 = κ`` and a length s, points along m are apart by ``s³ κ (κ_1 - κ_2) / 12``, those along
+n of unlike bodies by up to ``s³ κ (2 κ_1 + κ_2) / 6``. On faces of equal curvature points along m
+are at the same place of both. Exchanging the bodies turns n and m round and changes nothing else.
 """
 
 from __future__ import annotations
@@ -33,7 +39,7 @@ _PASSES = 40
 _SETTLED = 1e-13
 """Of a face's size."""
 _NONE = 0.1
-"""Length of ``s_2 n_1 - s_1 n_2`` below which it is no direction."""
+"""Length of a sum of unit normals below which it is no direction."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +53,8 @@ class Opposite:
         Parameters on the other face.
     normals : ndarray, shape (n, gdim)
         Of the common face, outward from the first body.
-    gap : ndarray, shape (n,)
-        From the points to those opposite, along the normals [m].
+    offset : ndarray, shape (n, gdim)
+        From the points to those opposite [m].
     share : ndarray, shape (n,)
         s of the first body.
     cosine : ndarray, shape (n,)
@@ -61,10 +67,15 @@ class Opposite:
     facet: np.ndarray
     t: np.ndarray
     normals: np.ndarray
-    gap: np.ndarray
+    offset: np.ndarray
     share: np.ndarray
     cosine: np.ndarray
     beside: np.ndarray
+
+    @property
+    def gap(self) -> np.ndarray:
+        """Part of the offsets along the normals, shape (n,) [m]."""
+        return np.einsum("ni,ni->n", self.offset, self.normals)
 
     def meets(self, size: float, allowed: float) -> np.ndarray:
         """Which points can meet those opposite.
@@ -82,21 +93,18 @@ class Opposite:
 
 @dataclass(frozen=True)
 class Line:
-    """Lines along the common normals from points to the planes that touch the other face.
+    """Lines along the bisectors of normals from points to the planes that touch the other face.
 
     Attributes
     ----------
     normals, share, cosine : ndarray
         See `Opposite`.
-    way : ndarray, shape (n,)
-        Lengths, negative where the planes are behind the points [m].
-    end : ndarray, shape (n, gdim)
-        Where they meet the planes [m].
+    offset : ndarray, shape (n, gdim)
+        From the points to the planes [m].
     """
 
     normals: np.ndarray
-    way: np.ndarray
-    end: np.ndarray
+    offset: np.ndarray
     share: np.ndarray
     cosine: np.ndarray
 
@@ -123,7 +131,7 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     closest, at, offset = project(other, points)
     off = beside(other, closest, at, offset)
     facet, t, line = met(points, out, face.soft(facet), other, closest, at, locate)
-    return Opposite(facet, t, line.normals, line.way, line.share, line.cosine, off)
+    return Opposite(facet, t, line.normals, line.offset, line.share, line.cosine, off)
 
 
 def met(
@@ -137,8 +145,8 @@ def met(
 ) -> tuple[np.ndarray, np.ndarray, Line]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
 
-    From the closest point on, the line along the normal of the common face is followed to the
-    plane that touches the face there.
+    From the closest point on, the line along the bisector of the normals is followed to the plane
+    that touches the face there.
 
     Parameters
     ----------
@@ -159,7 +167,7 @@ def met(
     for _ in range(_PASSES):
         now = slice(None) if len(moving) == len(points) else moving
         line = _line(points[now], out[now], soft[now], other, facet[now], t[now])
-        facet[now], t[now] = locate(line.end, moving)
+        facet[now], t[now] = locate(points[now] + line.offset, moving)
         before, found[now] = found[now].copy(), other.points(facet[now], t[now])
         missed = np.linalg.norm(found[now] - before, axis=1)
         moving = moving[missed > _SETTLED * other.extent]
@@ -171,23 +179,24 @@ def met(
 def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs: Opposite):
     """Area of the common face per area of the parameters of a face, shape (n,) [m or m²].
 
-    The points opposite move with the parameters so that ``x_2 - x_1 = g n`` stays true:
-    ``P (x_2' + g s_1 n_2' / m) t_2' = P (x_1' + g s_2 n_1' / m)``, where P projects on the common
-    face and m is the length of ``s_2 n_1 - s_1 n_2``.
+    The points opposite move with the parameters so that ``x_2 - x_1 = h m`` stays true:
+    ``P (x_2' + h n_2' / l) t_2' = P (x_1' + h n_1' / l)``, where P projects across m and l is the
+    length of ``n_1 - n_2``.
     """
-    n, g, s = pairs.normals, pairs.gap[:, None, None], pairs.share[:, None, None]
     (n_1, turn_1), (n_2, turn_2) = (
         side.smooth_normals(*at)
         for side, at in ((face, (facet, t)), (other, (pairs.facet, pairs.t)))
     )
-    count = len(facet)
-    x_1 = face.tangents(facet, t).reshape(count, -1, n.shape[1])
-    x_2 = other.tangents(pairs.facet, pairs.t).reshape(count, -1, n.shape[1])
-    m = np.linalg.norm((1 - s[:, 0]) * n_1 - s[:, 0] * n_2, axis=1)[:, None, None]
-    here = _in_plane(x_1 + g * (1 - s) / m * turn_1, n)
-    there = _in_plane(x_2 + g * s / m * turn_2, n)
+    count, dim = len(facet), n_1.shape[1]
+    x_1 = face.tangents(facet, t).reshape(count, -1, dim)
+    x_2 = other.tangents(pairs.facet, pairs.t).reshape(count, -1, dim)
+    m, length = _direction(n_1 - n_2, n_1)
+    h = np.einsum("ni,ni->n", pairs.offset, m)
+    turned = (h / length)[:, None, None]
+    here, there = _across(x_1 + turned * turn_1, m), _across(x_2 + turned * turn_2, m)
     square = np.einsum("nki,nli->nkl", there, there)
     along = np.linalg.solve(square, np.einsum("nki,nji->nkj", there, here))
+    s = pairs.share[:, None, None]
     tangents = (1 - s) * x_1 + s * np.einsum("nkj,nki->nji", along, x_2)
     if tangents.shape[1] == 1:
         return np.linalg.norm(tangents[:, 0], axis=1)
@@ -197,17 +206,22 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
 def _line(points, out, soft, other, facet, t) -> Line:
     against, softer = other.smooth_normals(facet, t)[0], other.soft(facet)
     share = soft / (soft + softer)
-    normals = (1 - share)[:, None] * out - share[:, None] * against
-    size = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = np.where(size > _NONE, normals / np.maximum(size, _NONE), out)
-    steep = np.minimum(np.einsum("ni,ni->n", normals, against), -_FLATTEST)
-    offset = other.points(facet, t) - points
-    way = np.einsum("ni,ni->n", offset, against) / steep
+    normals, _ = _direction((1 - share)[:, None] * out - share[:, None] * against, out)
+    along, _ = _direction(out - against, out)
+    steep = np.minimum(np.einsum("ni,ni->n", along, against), -_FLATTEST)
+    to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
     cosine = np.einsum("ni,ni->n", out, against)
-    return Line(normals, way, points + way[:, None] * normals, share, cosine)
+    return Line(normals, to_plane[:, None] * along, share, cosine)
 
 
-def _in_plane(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Vectors (n, k, gdim) without their part along normals (n, gdim)."""
-    along = np.einsum("nki,ni->nk", vectors, normals)
-    return vectors - along[:, :, None] * normals[:, None]
+def _direction(vectors: np.ndarray, otherwise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors (n, gdim), others where the vectors are about none, and lengths (n,)."""
+    length = np.linalg.norm(vectors, axis=1)
+    unit = vectors / np.maximum(length, _NONE)[:, None]
+    return np.where(length[:, None] > _NONE, unit, otherwise), np.maximum(length, _NONE)
+
+
+def _across(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """Vectors (n, k, gdim) without their part along unit vectors (n, gdim)."""
+    along = np.einsum("nki,ni->nk", vectors, directions)
+    return vectors - along[:, :, None] * directions[:, None]

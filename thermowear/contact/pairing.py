@@ -159,7 +159,7 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
     on_face = face_1.points(facet, t)
     pairs = opposite(face_1, facet, t, face_2)
     weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
-    on_common = on_face + (pairs.share * pairs.gap)[:, None] * pairs.normals
+    on_common = on_face + pairs.share[:, None] * pairs.offset
     weights *= np.maximum(model.area_factor(on_common), 0.0)  # on the axis but for rounding
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
     if covered.max() > 1.0 + _TWICE:
@@ -175,9 +175,8 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
         Side(face_1, facet[first], t[first]),
         Side(face_2, pairs.facet[first], pairs.t[first]),
     )
-    to_common = (pairs.share * pairs.gap)[first, None] * normals
     return Pairing(
-        points=on_face[first] + to_common,
+        points=on_common[first],
         position=position[first],
         weights=np.bincount(group, weights),
         normals=normals,

@@ -37,7 +37,8 @@ def flat(softness):
 
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.8, 1.0])
 def test_the_common_face_is_that_of_the_stiffer_body(share):
-    """requirement: n ∝ s_2 n_1 - s_1 n_2, its place and the gap, by hand for a cylinder on a flat.
+    """requirement: n ∝ s_2 n_1 - s_1 n_2, and the gap along it between points that lie along
+    n_1 - n_2, by hand for a cylinder on a flat.
 
     With the share 0 the cylinder is rigid, with the share 1 the flat.
     """
@@ -51,7 +52,9 @@ def test_the_common_face_is_that_of_the_stiffer_body(share):
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     np.testing.assert_allclose(found.share, share, atol=1e-14)
     np.testing.assert_allclose(found.normals, normal, atol=1e-6)
-    np.testing.assert_allclose(found.gap, -y / normal[:, 1], rtol=1e-5, atol=1e-15)
+    between = out - np.array([0.0, 1.0])
+    gap = -y / between[:, 1] * np.einsum("ni,ni->n", between, normal)
+    np.testing.assert_allclose(found.gap, gap, rtol=1e-5, atol=1e-15)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.7])

@@ -214,6 +214,22 @@ class InterfaceProblem:
         assert state.stored is not None
         return self._heat.balance(state.stored)
 
+    def difference(self, one: WornContact, other: WornContact) -> float:
+        """Difference of two pressures, the largest one where they are continuous in time [Pa].
+
+        A point at which contact holds by itself begins to press at once when the edge of the wear
+        reaches it. The largest difference of two histories is then one of the moment when that
+        happens, and no step makes it small. What converges, and is asked for, is the mean over the
+        area that presses, and the largest pressure, wherever that is.
+        """
+        change = np.abs(one.pressure - other.pressure)
+        if one.pointwise is None:
+            return float(change.max())
+        pressing = (one.pressure > 0.0) | (other.pressure > 0.0)
+        area = float(pressing @ self._system.weights)
+        mean = float(change @ self._system.weights) / area if area > 0.0 else 0.0
+        return max(mean, abs(float(one.pressure.max() - other.pressure.max())))
+
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""
         if self._heat is None or one.stored is None or other.stored is None:

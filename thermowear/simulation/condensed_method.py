@@ -103,8 +103,16 @@ class CondensedMethod:
         ).pressure
 
     def opening(self, contact: Contact) -> float:
+        return float(self._opened(contact).max())
+
+    def bending(self, contact: Contact) -> float:
+        opened = self._opened(contact)[contact.memory.active]
+        return float(np.ptp(opened)) if opened.size else 0.0
+
+    def _opened(self, contact: Contact) -> np.ndarray:
+        """Change of the gap by the bodies' deformation, means over the basis functions (m,) [m]."""
         opened = self._contact.compliance @ contact.memory.coefficients
-        return float((opened / self._contact.weighted.sum(axis=0)).max())
+        return opened / self._contact.weighted.sum(axis=0)
 
     def _rubbed(self, friction: np.ndarray) -> CondensedContact:
         """The condensed bodies under the present friction (n,); the last one is kept."""

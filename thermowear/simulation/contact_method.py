@@ -104,6 +104,9 @@ class ContactMethod(Protocol):
     def opening(self, contact: Contact) -> float:
         """Largest change of the gap by the bodies' deformation [m]."""
 
+    def bending(self, contact: Contact) -> float:
+        """By how much that differs over the area that presses [m]."""
+
 
 @dataclass(frozen=True)
 class Slope:

@@ -28,9 +28,9 @@ def face():
     return facet, x, contact, holder
 
 
-def test_the_edge_is_where_wear_ends_and_in_the_facet_beyond(face):
+def test_the_edge_is_where_wear_ends_and_in_two_facets_beyond(face):
     facet, x, contact, _ = face
-    for end, edge in ((2.5, (2, 3)), (2.0, (2,)), (0.0, ()), (5.0, ())):
+    for end, edge in ((2.5, (2, 3, 4)), (2.0, (2, 3)), (0.0, ()), (5.0, ())):
         points = edge_points(facet, contact.basis, x < end)
         assert set(facet[points]) == set(edge)
         assert points.sum() == POINTS * len(edge)

@@ -134,7 +134,7 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
         best=np.array([quality(mesh, geometry.parts_of(body)) for body in geometry.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
-        lacking=pairing.gap - _along_ways(pairing, directions, bodies)[1],
+        lacking=pairing.gap - np.einsum("ni,ni->n", pairing.normals, _apart(pairing)),
         holder=(nothing, nothing),
         lost=np.zeros(2),
         updates=0,
@@ -142,6 +142,12 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
         volume_error=0.0,
         pieces=pairing.pieces if isinstance(pairing.sides[0].face, Surface) else None,
     )
+
+
+def _apart(pairing: Pairing) -> np.ndarray:
+    """From the points on body 1 to those opposite, shape (n, gdim) [m]."""
+    first, second = pairing.sides
+    return second.points - first.points
 
 
 def _along_ways(

@@ -154,7 +154,7 @@ class InterfaceProblem:
         slopes are taken in the mean, by what depth and deflection differ over the contact.
         """
         pressed = state.worn.any() and state.contact.memory is not None
-        if self._heat is not None or not pressed:  # heated faces stay with weak contact
+        if not pressed:
             return state
         if state.pointwise is None:
             depth = state.worn.sum(axis=0)[state.pressure > 0.0]

@@ -30,7 +30,7 @@ _NONE = 1e-12
 _SMOOTH = 1e-3
 """Of the largest pressure: what may be left by the projection on the pressure space."""
 _AHEAD = 2
-"""Facets: no step that the error allows takes the edge of a contact that grows over more."""
+"""Facets that a step may take the edge to, see `has_passed`."""
 
 
 def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np.ndarray:
@@ -58,6 +58,28 @@ def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np
         shared = np.any(basis[near[facet]] > 0.0, axis=0)
         near[facet[np.any(basis[:, shared] > 0.0, axis=1)]] = True
     return (near & partly)[facet]
+
+
+def has_passed(
+    basis: np.ndarray, points: np.ndarray, before: np.ndarray, after: np.ndarray
+) -> bool:
+    """Whether the edge of the wear has gone beyond the points that are there for it.
+
+    It has where some of them and points that share a basis function with these have been reached
+    in the same step. A contact that begins elsewhere has not.
+
+    Parameters
+    ----------
+    basis : ndarray, shape (n, m)
+        Ψ.
+    points : ndarray of bool, shape (n,)
+        From `edge_points`.
+    before, after : ndarray of bool, shape (n,)
+        Points that wear has reached.
+    """
+    new = after & ~before
+    shared = np.any(basis[new & points] > 0.0, axis=0)
+    return bool(np.any(basis[np.ix_(new & ~points, shared)] > 0.0))
 
 
 def rough_points(facet: np.ndarray, contact: CondensedContact, pressure: np.ndarray) -> np.ndarray:

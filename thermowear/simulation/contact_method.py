@@ -90,6 +90,17 @@ class ContactMethod(Protocol):
             Those under that pressure: they stay until it is smooth there.
         """
 
+    def edge_has_passed(self, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
+        """Whether the edge of the wear has gone beyond its points in a step.
+
+        Parameters
+        ----------
+        points : ndarray of bool, shape (n,)
+            From `edge`.
+        before, after : ndarray, shape (n_wearing, n)
+            Depths [m].
+        """
+
     def steady(self, pressure: np.ndarray, rates: WearRates, conditions: Conditions) -> np.ndarray:
         """Steady pressure as the method discretises it, from that of the principle [Pa].
 

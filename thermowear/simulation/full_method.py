@@ -64,6 +64,10 @@ class FullMethod:
         """Contact holds point by point all over."""
         return None
 
+    def edge_has_passed(self, points, before, after) -> bool:
+        """There are no points for it."""
+        return False
+
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle point by point: the full system has no pressure space of its own."""
         return pressure

@@ -216,17 +216,20 @@ class InterfaceProblem:
         assert state.stored is not None
         return self._heat.balance(state.stored)
 
-    def difference(self, one: WornContact, other: WornContact) -> float:
+    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
         """Difference of two pressures, the largest one where they are continuous in time [Pa].
 
         A point at which contact holds by itself begins to press at once when the edge of the wear
         reaches it. The largest difference of two histories is then one of the moment when that
         happens, and no step makes it small. What converges, and is asked for, is the mean over the
-        area that presses, and the largest pressure, wherever that is.
+        area that presses, and the largest pressure, wherever that is. Infinite where the edge has
+        gone beyond its points.
         """
         change = np.abs(one.pressure - other.pressure)
         if one.pointwise is None:
             return float(change.max())
+        if self._method.edge_has_passed(one.pointwise, before.worn, one.worn):
+            return float("inf")
         pressing = (one.pressure > 0.0) | (other.pressure > 0.0)
         area = float(pressing @ self._system.weights)
         mean = float(change @ self._system.weights) / area if area > 0.0 else 0.0

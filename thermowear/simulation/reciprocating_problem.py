@@ -150,7 +150,7 @@ class ReciprocatingProblem:
         """Nothing changes its course."""
         return ()
 
-    def difference(self, one: WornContact, other: WornContact) -> float:
+    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
         """Largest difference of two pressures [Pa]."""
         return float(np.abs(one.pressure - other.pressure).max())
 

@@ -94,8 +94,16 @@ class WearProblem(Protocol):
         ComputationError
         """
 
-    def difference(self, one: WornContact, other: WornContact) -> float:
-        """Difference of two pressures, the largest one where they are continuous in time [Pa]."""
+    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
+        """Difference of two pressures, the largest one where they are continuous in time [Pa].
+
+        Parameters
+        ----------
+        before : WornContact
+            At the beginning of the step.
+        one, other : WornContact
+            At its end; infinite where what was chosen for the step does not do for them.
+        """
 
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Largest difference of temperatures inside the bodies, where that matters [K]."""
@@ -149,7 +157,7 @@ def advance_with_error(
     rounding = _ROUNDING * halves.largest
     scale = max(float(halves.pressure.max()), rounding)
     errors = [
-        _relative(problem.difference(halves, whole), scale, rounding),
+        _relative(problem.difference(state, halves, whole), scale, rounding),
         _relative(halves.worn - whole.worn, float(halves.worn.max(initial=0.0))),
     ]
     if halves.stored is not None and halves.faces is not None and whole.faces is not None:

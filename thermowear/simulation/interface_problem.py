@@ -22,6 +22,8 @@ _UNWORN = (
     "contact: neither the touching points nor what depends on temperature and pressure settle; "
     "give the contact a (smaller) heat.conductance, or reduce the speed"
 )
+_RISE = 0.1
+"""Of what the largest pressure has risen by in a step, where its points are reached one by one."""
 _STEP = "contact: what depends on temperature or pressure does not settle in a step"
 
 
@@ -222,7 +224,9 @@ class InterfaceProblem:
         A point at which contact holds by itself begins to press at once when the edge of the wear
         reaches it. The largest difference of two histories is then one of the moment when that
         happens, and no step makes it small. What converges, and is asked for, is the mean over the
-        area that presses, and the largest pressure, wherever that is. Infinite where the edge has
+        area that presses, and the largest pressure, wherever that is. A step that reaches a point
+        with its last stage wears that too late and presses it too much, by chance alike in both
+        histories: so a rise of the largest pressure counts as well. Infinite where the edge has
         gone beyond its points.
         """
         change = np.abs(one.pressure - other.pressure)
@@ -233,7 +237,8 @@ class InterfaceProblem:
         pressing = (one.pressure > 0.0) | (other.pressure > 0.0)
         area = float(pressing @ self._system.weights)
         mean = float(change @ self._system.weights) / area if area > 0.0 else 0.0
-        return max(mean, abs(float(one.pressure.max() - other.pressure.max())))
+        largest, expected, earlier = (v.pressure.max() for v in (one, other, before))
+        return float(max(mean, abs(largest - expected), _RISE * (largest - earlier)))
 
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""

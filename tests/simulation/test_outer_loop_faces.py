@@ -143,7 +143,8 @@ def test_a_contact_grows_on_over_a_mesh_for_a_wider_zone():
 @pytest.mark.slow
 def test_a_contact_that_fills_its_face_is_said_to():
     """requirement: beyond the end of the face there is nothing to wear; the run says so."""
-    result, notes = grown(200, "geometry.block_width=3 mm", "mesh.elements=20", "wear.update=\"never\"")
+    narrow = "geometry.block_width=3 mm", "mesh.elements=20", 'wear.update="never"'
+    result, notes = grown(200, *narrow)
     assert result.stopped is None
     assert any("end of the contact face" in note for note in notes)
 

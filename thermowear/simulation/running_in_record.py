@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -68,7 +68,7 @@ class RunningIn:
     worn: WornGeometry | None
     kept: tuple[float, float, float]
     zone: tuple[float, float] | None = None
-    earlier: UpdateCounts = UpdateCounts()
+    earlier: UpdateCounts = field(default_factory=UpdateCounts)
 
     @property
     def time(self) -> float:

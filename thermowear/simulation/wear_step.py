@@ -144,10 +144,10 @@ def advance_with_error(
         After the two half steps.
     float
         Largest of the errors of pressure (see `WearProblem.difference`), of wear, and of
-        temperatures that are followed in time: relative to the largest pressure, to the largest depth worn and to the largest rise so far,
-        10 K at least. Temperatures are those of the faces, and those inside the bodies where not
-        friction alone heats them. What rounding makes of a pressure that vanishes in the end is
-        no error of the step.
+        temperatures that are followed in time: relative to the largest pressure, to the largest
+        depth worn and to the largest rise so far, 10 K at least. Temperatures are those of the
+        faces, and those inside the bodies where not friction alone heats them. What rounding makes
+        of a pressure that vanishes in the end is no error of the step.
     """
     # the same points for the whole step and for its halves: what moves on is no error of time
     state = problem.begin(state)

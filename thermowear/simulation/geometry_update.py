@@ -21,7 +21,7 @@ from ..laws.motions import combined
 from ..parallel import on_root
 from .building import build
 from .interface_problem import InterfaceProblem
-from .kept_wear import KeptWear, movable_body
+from .kept_wear import KeptWear, lacking_in_shape, movable_body
 from .meshing_anew import FLOOR, carrying_error, improved, on_new_faces
 from .parts import Parts
 from .preparation import interface_problem
@@ -157,7 +157,7 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
         renewed={},
         at=along(system.pairing),
         depth=system.moved + taken,
-        lacking=before.carried(before.lacking, system.pairing),
+        lacking=_lacking(system, before, state),
         holder=(motion.translation, motion.rotation),
         lost=total,
         updates=before.updates + 1,
@@ -165,6 +165,20 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
         volume_error=error,
     )
     return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
+
+
+def _lacking(system: System, before: WornGeometry, state: WornContact) -> np.ndarray:
+    """Depth that the initial shape lacks of the unworn face at the points, shape (n,) [m].
+
+    The first update goes over from gaps along the normals of the unworn faces, which turn away from
+    the ways that curved faces take, to gaps between faces where they lie. What that changes stays
+    out of the gap where wear has closed it already; before the edge of the wear it counts.
+    """
+    lacking = before.carried(before.lacking, system.pairing)
+    if before.updates > 0:
+        return lacking
+    reached = np.any(state.worn > 0.0, axis=0)
+    return np.where(reached, lacking, lacking_in_shape(system.pairing))
 
 
 def _kept_points(system: System, state: WornContact, renewed: dict[int, NewFace]) -> Rule | None:

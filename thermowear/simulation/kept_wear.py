@@ -134,7 +134,7 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
         best=np.array([quality(mesh, geometry.parts_of(body)) for body in geometry.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
-        lacking=pairing.gap - np.einsum("ni,ni->n", pairing.normals, _apart(pairing)),
+        lacking=pairing.gap - _along_ways(pairing, directions, bodies)[1],
         holder=(nothing, nothing),
         lost=np.zeros(2),
         updates=0,
@@ -144,10 +144,10 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     )
 
 
-def _apart(pairing: Pairing) -> np.ndarray:
-    """From the points on body 1 to those opposite, shape (n, gdim) [m]."""
+def lacking_in_shape(pairing: Pairing) -> np.ndarray:
+    """Depth that the initial shape lacks of the faces as they were meshed, shape (n,) [m]."""
     first, second = pairing.sides
-    return second.points - first.points
+    return pairing.gap - np.einsum("ni,ni->n", pairing.normals, second.points - first.points)
 
 
 def _along_ways(

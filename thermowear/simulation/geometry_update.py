@@ -172,13 +172,15 @@ def _lacking(system: System, before: WornGeometry, state: WornContact) -> np.nda
 
     The first update goes over from gaps along the normals of the unworn faces, which turn away from
     the ways that curved faces take, to gaps between faces where they lie. What that changes stays
-    out of the gap where wear has closed it already; before the edge of the wear it counts.
+    out of the gap where wear has closed it already, and so does as much ahead of each edge of the
+    wear: it counts as far as it differs from that at the edge.
     """
-    lacking = before.carried(before.lacking, system.pairing)
-    if before.updates > 0:
-        return lacking
+    lacking, pairing = before.carried(before.lacking, system.pairing), system.pairing
     reached = np.any(state.worn > 0.0, axis=0)
-    return np.where(reached, lacking, lacking_in_shape(system.pairing))
+    if before.updates > 0 or isinstance(pairing.sides[0].face, Surface) or not reached.any():
+        return lacking
+    in_shape, x = lacking_in_shape(pairing), pairing.position
+    return in_shape + np.interp(x, x[reached], (lacking - in_shape)[reached])
 
 
 def _kept_points(system: System, state: WornContact, renewed: dict[int, NewFace]) -> Rule | None:

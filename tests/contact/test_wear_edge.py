@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.condensation import CondensedContact
-from thermowear.contact.wear_edge import edge_points, edge_space, rough_points
+from thermowear.contact.wear_edge import edge_points, edge_space, has_passed, rough_points
 
 FACETS, POINTS = 5, 4
 
@@ -28,9 +28,9 @@ def face():
     return facet, x, contact, holder
 
 
-def test_the_edge_is_where_wear_ends_and_in_the_facet_beyond(face):
+def test_the_edge_is_where_wear_ends_and_in_two_facets_beyond(face):
     facet, x, contact, _ = face
-    for end, edge in ((2.5, (2, 3)), (2.0, (2,)), (0.0, ()), (5.0, ())):
+    for end, edge in ((2.5, (2, 3, 4)), (2.0, (2, 3)), (0.0, ()), (5.0, ())):
         points = edge_points(facet, contact.basis, x < end)
         assert set(facet[points]) == set(edge)
         assert points.sum() == POINTS * len(edge)
@@ -59,3 +59,12 @@ def test_a_jump_is_rough_where_it_lies(face):
     facet, x, contact, _ = face
     assert not rough_points(facet, contact, 1.0 + x).any()
     assert 2 in facet[rough_points(facet, contact, np.where(x < 2.5, 1.0, 0.0))]
+
+
+def test_an_edge_that_leaves_its_points_in_a_step_is_noticed(face):
+    """requirement: beyond them a jump overshoots by a quarter; a contact elsewhere is no edge."""
+    facet, x, contact, _ = face
+    before = x < 0.5
+    points = edge_points(facet, contact.basis, before)
+    for after, passed in ((x < 2.9, False), (x < 3.5, True), (before | (x > 4.5), False)):
+        assert has_passed(contact.basis, points, before, after) is passed

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.reference.growing_contact import growing_line
+from thermowear.reference.growing_contact import growing_line, growing_point
 from thermowear.verification.hertz import MODULUS
 
 from ..case.starter import GONE, solved
@@ -88,6 +88,44 @@ def test_the_pressure_does_not_overshoot_at_a_travelling_edge():
     uniform = 20e3 / (2 * law.elastic_half_width(0.05 * found[:, 0]))
     assert len(found) > 50
     np.testing.assert_allclose(found[:, 1], uniform, rtol=5e-2)
+
+
+HEATED = {
+    "contact.friction": 0.2,
+    "bodies.sphere.conductivity": "50 W/(m K)",
+    "bodies.sphere.expansion": "1.2e-5 1/K",
+    "heat": {
+        "conductance": "1e6 W/(m^2 K)",
+        "partition": 0.5,
+        "ambient": "20 degC",
+        "cooling": {"sphere_top": "2000 W/(m^2 K)", "block_bottom": "2000 W/(m^2 K)"},
+    },
+}
+
+
+@pytest.mark.slow
+def test_nor_does_that_of_a_heated_one():
+    """requirement: within 5 % of the uniform one, from three times the first radius on."""
+    law = growing_point(10.385, 50e-3, MODULUS, 1.33e-13)
+    end = float(law.distance(4 * law.start)) / 0.05
+    history = solved(SPHERE, COARSE | HEATED, f"analysis.end_time={end!r} s").history
+    radius = law.elastic_half_width(0.05 * np.array([row.time for row in history]))
+    found, wide = np.array([row.max_pressure for row in history]), radius > 3 * law.start
+    assert np.count_nonzero(wide) > 50
+    np.testing.assert_allclose(found[wide], (10.385 / np.pi / radius**2)[wide], rtol=5e-2)
+
+
+@pytest.mark.slow
+def test_both_wear_ten_thousand_times_faster_without_a_zone():
+    """requirement: heat, both wear, zones meshed wider on the way: to the end; V = k ∫ F v dt."""
+    fast = {"coefficient": "1.33e-3 1/MPa", "per": "pressure"}
+    changes = {"wear": {"sphere": fast, "block": fast}, "geometry.zone": GONE}
+    end = {"analysis.end_time": "0.02 s", "mesh.elements": 24}
+    result = solved(SPHERE, COARSE | HEATED | changes | end)
+    assert result.stopped is None
+    i = result.interface
+    volume = 2 * 1.33e-9 * 10.385 * 0.05 * 0.02
+    assert i.weight @ (i.wear_1 + i.wear_2) == pytest.approx(volume, rel=1e-3)
 
 
 @pytest.mark.slow

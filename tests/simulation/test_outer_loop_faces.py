@@ -95,7 +95,7 @@ class Notes(Observer):
         self.found.append(text)
 
 
-def grown(time):
+def grown(time, *more):
     """A cylinder on a block, its contact grown past the zone that was meshed for it."""
     keys = (
         "mesh.elements=30",
@@ -105,6 +105,7 @@ def grown(time):
         "analysis.output_times=[]",
         "wear.update=0.005",
         f"analysis.end_time={time} s",
+        *more,
     )
     notes = Notes()
     return run(starter("cylinder-on-block-growing", *keys), observer=notes), notes.found
@@ -124,10 +125,27 @@ def test_a_contact_may_grow_past_its_zone():
 
 
 @pytest.mark.slow
-def test_a_contact_that_fills_its_face_is_said_to():
-    """requirement: beyond the end of the face there is nothing to wear; the run says so."""
+def test_a_contact_grows_on_over_a_mesh_for_a_wider_zone():
+    """requirement: by the same law, with as few updates lost from the count as volume."""
     result, notes = grown(400)
     assert_sound_growth(result)
+    assert sum("beyond the zone" in note for note in notes) == 1
+    assert result.summary["geometry_updates"] > 25  # 17 of them before the zone is wider
+    i = result.interface
+    known = (1.5 * 2e-13 * 2e5 * 0.01 * 20.0) ** (1 / 3)
+    assert np.sqrt(5 * np.average(i.x**2, weights=i.weight * i.wear_2)) == pytest.approx(
+        known, rel=0.02
+    )
+    volume = 2e-13 * 200 * 20.0 * (1 + (known / 0.01) ** 2 / 6)  # the pressure acts across the face
+    assert i.weight @ i.wear_2 == pytest.approx(volume, rel=5e-3)
+
+
+@pytest.mark.slow
+def test_a_contact_that_fills_its_face_is_said_to():
+    """requirement: beyond the end of the face there is nothing to wear; the run says so."""
+    narrow = "geometry.block_width=3 mm", "mesh.elements=20", 'wear.update="never"'
+    result, notes = grown(200, *narrow)
+    assert result.stopped is None
     assert any("end of the contact face" in note for note in notes)
 
 

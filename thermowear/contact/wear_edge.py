@@ -29,12 +29,15 @@ _NONE = 1e-12
 """Of the area of a basis function."""
 _SMOOTH = 1e-3
 """Of the largest pressure: what may be left by the projection on the pressure space."""
+_AHEAD = 2
+"""Facets that a step may take the edge to, see `has_passed`."""
 
 
 def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np.ndarray:
-    """Contact points of the facets where the edge of the wear lies, or is next.
+    """Contact points of the facets where the edge of the wear lies, or may come to in a step.
 
-    They have points that wear has not reached, and share a basis function with one that it has.
+    They have points that wear has not reached, and lie no more than `_AHEAD` facets before those
+    that have one that it has: where the edge came to others, it would be weak contact again.
 
     Parameters
     ----------
@@ -49,10 +52,34 @@ def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np
     ndarray of bool, shape (n,)
     """
     near, partly = (np.zeros(facet.max() + 1, dtype=bool) for _ in range(2))
-    shared = np.any(basis[reached] > 0.0, axis=0)
-    near[facet[np.any(basis[:, shared] > 0.0, axis=1)]] = True
+    near[facet[reached]] = True
     partly[facet[~reached]] = True
+    for _ in range(_AHEAD):
+        shared = np.any(basis[near[facet]] > 0.0, axis=0)
+        near[facet[np.any(basis[:, shared] > 0.0, axis=1)]] = True
     return (near & partly)[facet]
+
+
+def has_passed(
+    basis: np.ndarray, points: np.ndarray, before: np.ndarray, after: np.ndarray
+) -> bool:
+    """Whether the edge of the wear has gone beyond the points that are there for it.
+
+    It has where some of them and points that share a basis function with these have been reached
+    in the same step. A contact that begins elsewhere has not.
+
+    Parameters
+    ----------
+    basis : ndarray, shape (n, m)
+        Ψ.
+    points : ndarray of bool, shape (n,)
+        From `edge_points`.
+    before, after : ndarray of bool, shape (n,)
+        Points that wear has reached.
+    """
+    new = after & ~before
+    shared = np.any(basis[new & points] > 0.0, axis=0)
+    return bool(np.any(basis[np.ix_(new & ~points, shared)] > 0.0))
 
 
 def rough_points(facet: np.ndarray, contact: CondensedContact, pressure: np.ndarray) -> np.ndarray:

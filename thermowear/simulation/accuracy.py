@@ -10,6 +10,9 @@
 The next degree finds most of the error, and a part is left to those that follow: where each degree
 makes an error three times smaller, one and a half times the change in all.
 
+Where wear goes on up to an edge, as in contacts that grow, the pressure ends with a jump, which the
+contact points place no nearer than half their distance. That is the least error of the pressure.
+
 The meshes' approximation of curved faces and errors of steps in time are not in it.
 """
 
@@ -23,6 +26,7 @@ from ..bulk.kinematics import section_model
 from ..contact.enriched_pressure import enriched_pressure
 from ..contact.holder import hold
 from ..contact.pairing import pair
+from ..contact.surface import Surface
 from ..errors import CaseError, ComputationError
 from ..laws import steady_pressure
 from .building import sliding_of
@@ -104,6 +108,7 @@ def estimate_errors(system: System, outcome: Outcome) -> ErrorEstimates:
         try:
             richer = _richer_pressure(system, outcome, bodies, opened)
             pressure, largest = _of_pressure(system, outcome.contact.pressure, richer)
+            pressure = max(pressure, _of_edges(system, outcome))
         except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
             missing["pressure"] = str(error)
     return ErrorEstimates(pressure, largest, shape, temperature, missing)
@@ -144,6 +149,23 @@ def _of_shape(system: System, outcome: Outcome, opened: np.ndarray) -> float | N
     roots = np.sqrt(system.weights[pressing])
     amounts = np.linalg.lstsq(modes * roots[:, None], change * roots, rcond=None)[0]
     return _FOLLOWING * float(np.abs(change - modes @ amounts).max()) / scale
+
+
+def _of_edges(system: System, outcome: Outcome) -> float:
+    """Mean error of a worn pressure by where it ends: half a contact point beside each edge.
+
+    A higher degree does not see that error, as it would have the same worn gap.
+    """
+    interface, weights = outcome.interface, system.weights
+    side = system.pairing.sides[0]
+    if isinstance(side.face, Surface) or not np.any([interface.wear_1, interface.wear_2]):
+        return 0.0
+    pressure = outcome.contact.pressure
+    pressing = np.concatenate([[pressure[0] > 0.0], pressure > 0.0, [pressure[-1] > 0.0]])
+    last = (pressure > 0.0) & ~(pressing[:-2] & pressing[2:])
+    largest = np.zeros(side.facet.max() + 1)
+    np.maximum.at(largest, side.facet, weights)
+    return float(pressure[last] @ largest[side.facet[last]] / 2 / (weights @ pressure))
 
 
 def _of_pressure(system: System, pressure: np.ndarray, richer: np.ndarray) -> tuple[float, float]:

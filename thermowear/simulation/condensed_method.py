@@ -8,7 +8,7 @@ import numpy as np
 
 from ..contact.complementarity import ContactSolution, NoEquilibrium, solve_contact
 from ..contact.condensation import CondensedContact
-from ..contact.wear_edge import EdgeSpace, edge_points, edge_space, rough_points
+from ..contact.wear_edge import EdgeSpace, edge_points, edge_space, has_passed, rough_points
 from ..errors import ComputationError
 from .contact_method import Contact, Slope, WearRates, newton_with_wear
 from .system import System
@@ -81,6 +81,10 @@ class CondensedMethod:
             points |= before & rough_points(facet, self._contact, pressure)
         return points if points.any() else None
 
+    def edge_has_passed(self, points, before, after) -> bool:
+        reached = (np.any(worn > 0.0, axis=0) for worn in (before, after))
+        return has_passed(self._contact.basis, points, *reached)
+
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle in the pressure space.
 
@@ -103,8 +107,16 @@ class CondensedMethod:
         ).pressure
 
     def opening(self, contact: Contact) -> float:
+        return float(self._opened(contact).max())
+
+    def bending(self, contact: Contact) -> float:
+        opened = self._opened(contact)[contact.memory.active]
+        return float(np.ptp(opened)) if opened.size else 0.0
+
+    def _opened(self, contact: Contact) -> np.ndarray:
+        """Change of the gap by the bodies' deformation, means over the basis functions (m,) [m]."""
         opened = self._contact.compliance @ contact.memory.coefficients
-        return float((opened / self._contact.weighted.sum(axis=0)).max())
+        return opened / self._contact.weighted.sum(axis=0)
 
     def _rubbed(self, friction: np.ndarray) -> CondensedContact:
         """The condensed bodies under the present friction (n,); the last one is kept."""

@@ -90,6 +90,17 @@ class ContactMethod(Protocol):
             Those under that pressure: they stay until it is smooth there.
         """
 
+    def edge_has_passed(self, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
+        """Whether the edge of the wear has gone beyond its points in a step.
+
+        Parameters
+        ----------
+        points : ndarray of bool, shape (n,)
+            From `edge`.
+        before, after : ndarray, shape (n_wearing, n)
+            Depths [m].
+        """
+
     def steady(self, pressure: np.ndarray, rates: WearRates, conditions: Conditions) -> np.ndarray:
         """Steady pressure as the method discretises it, from that of the principle [Pa].
 
@@ -103,6 +114,9 @@ class ContactMethod(Protocol):
 
     def opening(self, contact: Contact) -> float:
         """Largest change of the gap by the bodies' deformation [m]."""
+
+    def bending(self, contact: Contact) -> float:
+        """By how much that differs over the area that presses [m]."""
 
 
 @dataclass(frozen=True)

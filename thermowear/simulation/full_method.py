@@ -64,14 +64,25 @@ class FullMethod:
         """Contact holds point by point all over."""
         return None
 
+    def edge_has_passed(self, points, before, after) -> bool:
+        """There are no points for it."""
+        return False
+
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle point by point: the full system has no pressure space of its own."""
         return pressure
 
     def opening(self, contact: Contact) -> float:
+        return float(np.abs(self._opened(contact)).max())
+
+    def bending(self, contact: Contact) -> float:
+        opened = self._opened(contact)[contact.pressure > 0.0]
+        return float(np.ptp(opened)) if opened.size else 0.0
+
+    def _opened(self, contact: Contact) -> np.ndarray:
+        """Change of the gap by the bodies' deformation at the points, shape (n,) [m]."""
         system = self._system
-        opened = system.trace.T @ contact.memory.displacement
-        return float(np.abs(sum_over_ranks(system.comm, opened)).max())
+        return sum_over_ranks(system.comm, system.trace.T @ contact.memory.displacement)
 
     def _warm(self, gap, slope, start, conditions, heat, pressure) -> FullSolution:
         """Contact of bodies that the friction heat of a pressure has distorted."""

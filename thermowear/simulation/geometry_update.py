@@ -21,7 +21,7 @@ from ..laws.motions import combined
 from ..parallel import on_root
 from .building import build
 from .interface_problem import InterfaceProblem
-from .kept_wear import KeptWear, movable_body
+from .kept_wear import KeptWear, lacking_in_shape, movable_body
 from .meshing_anew import FLOOR, carrying_error, improved, on_new_faces
 from .parts import Parts
 from .preparation import interface_problem
@@ -164,7 +164,7 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
         renewed={},
         at=along(system.pairing),
         depth=system.moved + taken,
-        lacking=before.carried(before.lacking, system.pairing),
+        lacking=_lacking(system, before, state),
         holder=(motion.translation, motion.rotation),
         lost=total,
         updates=before.updates + 1,
@@ -172,6 +172,22 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
         volume_error=error,
     )
     return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
+
+
+def _lacking(system: System, before: WornGeometry, state: WornContact) -> np.ndarray:
+    """Depth that the initial shape lacks of the unworn face at the points, shape (n,) [m].
+
+    The first update goes over from gaps along the normals of the unworn faces, which turn away from
+    the ways that curved faces take, to gaps between faces where they lie. What that changes stays
+    out of the gap where wear has closed it already, and so does as much ahead of each edge of the
+    wear: it counts as far as it differs from that at the edge.
+    """
+    lacking, pairing = before.carried(before.lacking, system.pairing), system.pairing
+    reached = np.any(state.worn > 0.0, axis=0)
+    if before.updates > 0 or isinstance(pairing.sides[0].face, Surface) or not reached.any():
+        return lacking
+    in_shape, x = lacking_in_shape(pairing), pairing.position
+    return in_shape + np.interp(x, x[reached], (lacking - in_shape)[reached])
 
 
 def _kept_points(system: System, state: WornContact, renewed: dict[int, NewFace]) -> Rule | None:

@@ -22,8 +22,8 @@ _UNWORN = (
     "contact: neither the touching points nor what depends on temperature and pressure settle; "
     "give the contact a (smaller) heat.conductance, or reduce the speed"
 )
-_WORN = 0.25
-"""Of what the bodies yield: where more is worn off, the edge of the contact is that of the wear."""
+_RISE = 0.1
+"""Of what the largest pressure has risen by in a step, where its points are reached one by one."""
 _STEP = "contact: what depends on temperature or pressure does not settle in a step"
 
 
@@ -147,16 +147,20 @@ class InterfaceProblem:
     def begin(self, state: WornContact) -> WornContact:
         """A state with the points at which contact holds one by one in the next step.
 
-        None before much is worn off against what the bodies yield: till then their pressure
-        falls to zero smoothly at the edge of the contact. None with heat: the couplings of
-        heated bodies with single points are too badly conditioned for high degrees.
+        None before the edge of the contact is that of the wear. With the distance ξ from an edge
+        that travels at a speed c the pressure rises as ``ξ^θ``, ``tan πθ = 2 c / (E* k v)``:
+        ``2 p / E*`` is the slope of the bodies' deflection, ``k v p / c`` that of the worn depth
+        (from ``k v p / c + 2 / (π E*) ∫ p(s) / (s - ξ) ds = const``, a singular integral equation;
+        Muskhelishvili, Singular Integral Equations, 1953, ch. 12). Without wear θ is 1/2, and p
+        falls to zero smoothly; where wear counts for more, θ < 1/4, it is nearly a jump. Both
+        slopes are taken in the mean, by what depth and deflection differ over the contact.
         """
         pressed = state.worn.any() and state.contact.memory is not None
-        if self._heat is not None or not pressed:  # heated faces stay with weak contact
+        if not pressed:
             return state
         if state.pointwise is None:
-            deepest = float(state.worn.sum(axis=0).max())
-            if deepest <= _WORN * self._method.opening(state.contact):
+            depth = state.worn.sum(axis=0)[state.pressure > 0.0]
+            if not depth.size or np.ptp(depth) <= self._method.bending(state.contact):
                 return state
         edge = self._method.edge(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)
@@ -213,6 +217,28 @@ class InterfaceProblem:
         assert self._heat is not None
         assert state.stored is not None
         return self._heat.balance(state.stored)
+
+    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
+        """Difference of two pressures, the largest one where they are continuous in time [Pa].
+
+        A point at which contact holds by itself begins to press at once when the edge of the wear
+        reaches it. The largest difference of two histories is then one of the moment when that
+        happens, and no step makes it small. What converges, and is asked for, is the mean over the
+        area that presses, and the largest pressure, wherever that is. A step that reaches a point
+        with its last stage wears that too late and presses it too much, by chance alike in both
+        histories: so a rise of the largest pressure counts as well. Infinite where the edge has
+        gone beyond its points.
+        """
+        change = np.abs(one.pressure - other.pressure)
+        if one.pointwise is None:
+            return float(change.max())
+        if self._method.edge_has_passed(one.pointwise, before.worn, one.worn):
+            return float("inf")
+        pressing = (one.pressure > 0.0) | (other.pressure > 0.0)
+        area = float(pressing @ self._system.weights)
+        mean = float(change @ self._system.weights) / area if area > 0.0 else 0.0
+        largest, expected, earlier = (v.pressure.max() for v in (one, other, before))
+        return float(max(mean, abs(largest - expected), _RISE * (largest - earlier)))
 
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""

@@ -144,6 +144,12 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     )
 
 
+def lacking_in_shape(pairing: Pairing) -> np.ndarray:
+    """Depth that the initial shape lacks of the faces as they were meshed, shape (n,) [m]."""
+    first, second = pairing.sides
+    return pairing.gap - np.einsum("ni,ni->n", pairing.normals, second.points - first.points)
+
+
 def _along_ways(
     pairing: Pairing, directions: tuple[np.ndarray, ...], bodies: list[int]
 ) -> tuple[Pairing, np.ndarray]:

@@ -29,6 +29,7 @@ from .steady import SteadyState
 from .step_sizes import Limited, StepSizes
 from .system import System
 from .transient import Moment, is_over, moments
+from .update_counts import UpdateCounts
 from .wear_step import advance_with_error
 from .wider_zone import meshed_wider, wider_zone
 from .worn_geometry import WornGeometry
@@ -74,6 +75,8 @@ class OuterLoop:
         Largest fraction of the sizes of the bodies that was kept in the gap so far.
     allowed : float
         How much of them may be kept now.
+    earlier : UpdateCounts
+        Updates of meshes for narrower zones.
     """
 
     def __init__(
@@ -91,6 +94,7 @@ class OuterLoop:
         self._sizes = Limited(sizes)
         self._observer = observer
         self._narrow = ""
+        self.earlier = UpdateCounts()
 
     @property
     def kept(self) -> tuple[float, float, float]:
@@ -102,9 +106,11 @@ class OuterLoop:
         worn: WornGeometry | None,
         kept: tuple[float, float, float],
         zone: tuple[float, float] | None,
+        earlier: UpdateCounts,
     ) -> None:
         """Take up an earlier loop, after its last update or wider zone if there has been one."""
         self.largest_kept, self.allowed, self._sizes.largest = kept
+        self.earlier = earlier
         unworn = self.system
         zone = unworn.inputs.zone if zone is None else zone
         if worn is None and zone == unworn.inputs.zone:
@@ -148,19 +154,21 @@ class OuterLoop:
     def summary(self) -> dict[str, float | int]:
         """What the updates add to the summary; nothing where there are none."""
         worn = self.system.worn
-        if worn is None:
+        counts = self.earlier.counting(worn)
+        if counts.updates == 0:
             return {}
+        lost = np.zeros(2) if worn is None else worn.lost
         return {
-            "geometry_updates": worn.updates,
+            "geometry_updates": counts.updates,
             "geometry_largest_kept": self.largest_kept,
-            "geometry_smallest_scaled_jacobian": worn.quality,
-            "geometry_volume_1_m3": float(worn.lost[0]),
-            "geometry_volume_2_m3": float(worn.lost[1]),
-            "geometry_volume_error": worn.volume_error,
-            "geometry_change": worn.change,
-            "geometry_temperature_error": worn.heat_error,
-            "geometry_meshed_anew": worn.meshed_anew,
-            "geometry_remeshing_error": worn.carrying_error,
+            "geometry_smallest_scaled_jacobian": counts.quality,
+            "geometry_volume_1_m3": float(lost[0]),
+            "geometry_volume_2_m3": float(lost[1]),
+            "geometry_volume_error": counts.volume_error,
+            "geometry_change": counts.change,
+            "geometry_temperature_error": counts.heat_error,
+            "geometry_meshed_anew": counts.meshed_anew,
+            "geometry_remeshing_error": counts.carrying_error,
         }
 
     def _told(self, passing: Iterator[Moment]) -> Iterator[Moment]:
@@ -203,6 +211,7 @@ class OuterLoop:
             f"from there on the mesh is made for x = {zone[0]:.4g} to {zone[1]:.4g} m "
             "(a larger geometry.zone avoids that)"
         )
+        self.earlier = self.earlier.counting(system.worn)
         return found[0], found[1], replace(last, state=found[2])
 
     @property

@@ -150,6 +150,10 @@ class ReciprocatingProblem:
         """Nothing changes its course."""
         return ()
 
+    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
+        """Largest difference of two pressures [Pa]."""
+        return float(np.abs(one.pressure - other.pressure).max())
+
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Nothing is warm."""
         return 0.0

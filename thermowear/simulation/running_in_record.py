@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from .state import BodyState, ContactState
 from .summary import normal_force
 from .system import System
 from .transient import Moment
+from .update_counts import UpdateCounts
 from .worn_geometry import WornGeometry
 
 _MELTED = 5000.0  # K; no solid is as hot
@@ -55,6 +56,8 @@ class RunningIn:
         See `OuterLoop`.
     zone : tuple of float or None
         Range of x that the mesh was made for [m].
+    earlier : UpdateCounts
+        Updates of meshes for narrower zones.
     """
 
     moment: Moment
@@ -65,6 +68,7 @@ class RunningIn:
     worn: WornGeometry | None
     kept: tuple[float, float, float]
     zone: tuple[float, float] | None = None
+    earlier: UpdateCounts = field(default_factory=UpdateCounts)
 
     @property
     def time(self) -> float:
@@ -95,7 +99,7 @@ class RunningInRecord:
         """Take up what was kept before."""
         self._last, self._speed = before.moment, before.speed
         self.rows, self.heat = before.rows, before.heat
-        self._loop.go_on(before.worn, before.kept, before.zone)
+        self._loop.go_on(before.worn, before.kept, before.zone, before.earlier)
         self._problem.recall(before.memory)
         for rows in (self.rows, self.heat):
             self._observer.resumed(rows)
@@ -113,6 +117,7 @@ class RunningInRecord:
             system.worn,
             kept,
             system.inputs.zone,
+            self._loop.earlier,
         )
 
     @property

@@ -94,6 +94,17 @@ class WearProblem(Protocol):
         ComputationError
         """
 
+    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
+        """Difference of two pressures, the largest one where they are continuous in time [Pa].
+
+        Parameters
+        ----------
+        before : WornContact
+            At the beginning of the step.
+        one, other : WornContact
+            At its end; infinite where what was chosen for the step does not do for them.
+        """
+
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Largest difference of temperatures inside the bodies, where that matters [K]."""
 
@@ -132,11 +143,11 @@ def advance_with_error(
     WornContact
         After the two half steps.
     float
-        Largest of the errors of pressure, of wear, and of temperatures that are followed in time:
-        relative to the largest pressure, to the largest depth worn and to the largest rise so far,
-        10 K at least. Temperatures are those of the faces, and those inside the bodies where not
-        friction alone heats them. What rounding makes of a pressure that vanishes in the end is
-        no error of the step.
+        Largest of the errors of pressure (see `WearProblem.difference`), of wear, and of
+        temperatures that are followed in time: relative to the largest pressure, to the largest
+        depth worn and to the largest rise so far, 10 K at least. Temperatures are those of the
+        faces, and those inside the bodies where not friction alone heats them. What rounding makes
+        of a pressure that vanishes in the end is no error of the step.
     """
     # the same points for the whole step and for its halves: what moves on is no error of time
     state = problem.begin(state)
@@ -146,7 +157,7 @@ def advance_with_error(
     rounding = _ROUNDING * halves.largest
     scale = max(float(halves.pressure.max()), rounding)
     errors = [
-        _relative(halves.pressure - whole.pressure, scale, rounding),
+        _relative(problem.difference(state, halves, whole), scale, rounding),
         _relative(halves.worn - whole.worn, float(halves.worn.max(initial=0.0))),
     ]
     if halves.stored is not None and halves.faces is not None and whole.faces is not None:
@@ -159,7 +170,7 @@ def advance_with_error(
     return halves, max(errors) / 3.0
 
 
-def _relative(errors: np.ndarray, scale: float, allowed: float = 0.0) -> float:
+def _relative(errors: np.ndarray | float, scale: float, allowed: float = 0.0) -> float:
     """By how much the largest exceeds what is allowed, against a scale; 0 where nothing does."""
     largest = float(np.abs(errors).max(initial=0.0)) - allowed
     return largest / scale if largest > 0.0 else 0.0

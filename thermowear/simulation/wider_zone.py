@@ -19,6 +19,8 @@ Zone = tuple[float, float]
 
 _WIDER = 1.6
 """Times the contact: the next zone. Elements grow with it, as many as before."""
+_ROUNDING = 1e-9
+"""Of the length of the face."""
 
 
 def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
@@ -72,7 +74,8 @@ def _carried(before: System, after: System, worn: np.ndarray) -> np.ndarray:
     """
     x, first = np.unique(before.pairing.points[:, 0], return_index=True)
     to = after.pairing.points[:, 0]
-    inside = (to >= x[0]) & (to <= x[-1])
+    rounding = _ROUNDING * (x[-1] - x[0])  # moved meshes end where new ones do but for that
+    inside = (to >= x[0] - rounding) & (to <= x[-1] + rounding)
     curves = Akima1DInterpolator(x, worn[:, first], axis=-1, method="makima")
     rows = np.maximum(curves(np.clip(to, x[0], x[-1])), 0.0)
     for row, depth, spread in zip(rows, worn, before.spreads.values(), strict=True):

@@ -226,14 +226,14 @@ class InterfaceProblem:
         happens, and no step makes it small. What converges, and is asked for, is the mean over the
         area that presses, and the largest pressure, wherever that is. A step that reaches a point
         with its last stage wears that too late and presses it too much, by chance alike in both
-        histories: so a rise of the largest pressure counts as well. Infinite where the edge has
-        gone beyond its points.
+        histories: so a rise of the largest pressure counts as well. All of the pressure counts where
+        the edge has gone beyond its points.
         """
         change = np.abs(one.pressure - other.pressure)
         if one.pointwise is None:
             return float(change.max())
         if self._method.edge_has_passed(one.pointwise, before.worn, one.worn):
-            return float("inf")
+            return float(one.pressure.max())
         pressing = (one.pressure > 0.0) | (other.pressure > 0.0)
         area = float(pressing @ self._system.weights)
         mean = float(change @ self._system.weights) / area if area > 0.0 else 0.0

@@ -14,6 +14,8 @@ from .checkpoint import can_be_packed
 from .step_sizes import AnySize, StepSizes, ends
 from .wear_step import WearProblem, WornContact, advance_with_error, next_step
 
+_FAR_SMALLER = 1e-3
+"""Of a step: errors of time fall at least by its square root."""
 _SMALLEST = 1e-12  # of the time that has passed, at first of 1e-12 s
 
 
@@ -133,8 +135,13 @@ def _next(
 
 
 def _accept(problem, state, way, wanted, time, smallest, settings):
-    """Repeat a step with smaller sizes until its error is within the tolerance."""
+    """Repeat a step with smaller sizes until its error is within the tolerance.
+
+    What is no smaller in a step that is far smaller is a jump, as where a point begins to press at
+    once; that step, which ends right behind it, is taken.
+    """
     trouble, step = "", way(wanted)
+    tried: list[tuple[float, float]] = []
     while step > smallest:
         try:
             following, error = advance_with_error(problem, state, time, step)
@@ -144,6 +151,9 @@ def _accept(problem, state, way, wanted, time, smallest, settings):
         proposed = next_step(step, error, settings.tolerance)
         if error <= settings.tolerance:
             return following, step, error, proposed
+        if any(step <= _FAR_SMALLER * size and error > e / 2 for size, e in tried):
+            return following, step, error, step / _FAR_SMALLER
+        tried.append((step, error))
         step = way(min(proposed, 0.9 * step))
     raise ComputationError(f"{settings.type}: no step is small enough at {time:g} s{trouble}")
 

@@ -102,7 +102,7 @@ class WearProblem(Protocol):
         before : WornContact
             At the beginning of the step.
         one, other : WornContact
-            At its end; infinite where what was chosen for the step does not do for them.
+            At its end; all of the pressure where what was chosen for the step does not do for them.
         """
 
     def difference_inside(self, one: WornContact, other: WornContact) -> float:

@@ -193,6 +193,8 @@ def test_the_profile_is_that_of_the_interface(finished):
     # a mesh moved to its worn face is tilted: depths add up along normals that turn on the way
     tilt = np.abs(normals[: len(press)].T - pairing.normals).max()
     allowed = 1e-12 * np.ptp(i["shape"]) + tilt**2 * unlike.max() * np.ptp(1 / along)
+    if summary_of(folder).get("geometry_updates"):  # from then on gaps lie between moved faces
+        allowed += 1e-5 * np.ptp(i["shape"])
     assert profile["shape_along_press"] == pytest.approx(heights, abs=allowed)
 
 

@@ -15,7 +15,9 @@ normals, whatever the stiffness. Where bodies touch, points meet that have about
 face from where they touched first, as pressure alone hardly stretches faces. For curvatures
 ``κ_1 + κ_2 = κ`` and a length s, points along m are apart by ``s³ κ (κ_1 - κ_2) / 12``, those along
 n of unlike bodies by up to ``s³ κ (2 κ_1 + κ_2) / 6``. On faces of equal curvature points along m
-are at the same place of both. Exchanging the bodies turns n and m round and changes nothing else.
+are at the same place of both. Where the faces slide and wear, no points stay together, and material
+goes off along n: there points are opposite each other along n. Exchanging the bodies turns n and m
+round and changes nothing else.
 """
 
 from __future__ import annotations
@@ -93,7 +95,7 @@ class Opposite:
 
 @dataclass(frozen=True)
 class Line:
-    """Lines along the bisectors of normals from points to the planes that touch the other face.
+    """Lines from points to the planes that touch the other face where they meet.
 
     Attributes
     ----------
@@ -145,7 +147,7 @@ def met(
 ) -> tuple[np.ndarray, np.ndarray, Line]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
 
-    From the closest point on, the line along the bisector of the normals is followed to the plane
+    From the closest point on, the line along m, or n where faces wear, is followed to the plane
     that touches the face there.
 
     Parameters
@@ -179,9 +181,9 @@ def met(
 def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs: Opposite):
     """Area of the common face per area of the parameters of a face, shape (n,) [m or m²].
 
-    The points opposite move with the parameters so that ``x_2 - x_1 = h m`` stays true:
-    ``P (x_2' + h n_2' / l) t_2' = P (x_1' + h n_1' / l)``, where P projects across m and l is the
-    length of ``n_1 - n_2``.
+    The points opposite move with the parameters so that ``x_2 - x_1 = h m`` stays true, with m
+    along ``a_1 n_1 - a_2 n_2``: ``P (x_2' + h a_2 n_2' / l) t_2' = P (x_1' + h a_1 n_1' / l)``,
+    where P projects across m and l is the length of that vector.
     """
     (n_1, turn_1), (n_2, turn_2) = (
         side.smooth_normals(*at)
@@ -190,10 +192,11 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     count, dim = len(facet), n_1.shape[1]
     x_1 = face.tangents(facet, t).reshape(count, -1, dim)
     x_2 = other.tangents(pairs.facet, pairs.t).reshape(count, -1, dim)
-    m, length = _direction(n_1 - n_2, n_1)
-    h = np.einsum("ni,ni->n", pairs.offset, m)
-    turned = (h / length)[:, None, None]
-    here, there = _across(x_1 + turned * turn_1, m), _across(x_2 + turned * turn_2, m)
+    a_1, a_2 = _parts(pairs.share, other)
+    m, length = _direction(a_1 * n_1 - a_2 * n_2, n_1)
+    turned = (np.einsum("ni,ni->n", pairs.offset, m) / length)[:, None, None]
+    here = _across(x_1 + turned * a_1[..., None] * turn_1, m)
+    there = _across(x_2 + turned * a_2[..., None] * turn_2, m)
     square = np.einsum("nki,nli->nkl", there, there)
     along = np.linalg.solve(square, np.einsum("nki,nji->nkj", there, here))
     s = pairs.share[:, None, None]
@@ -207,11 +210,18 @@ def _line(points, out, soft, other, facet, t) -> Line:
     against, softer = other.smooth_normals(facet, t)[0], other.soft(facet)
     share = soft / (soft + softer)
     normals, _ = _direction((1 - share)[:, None] * out - share[:, None] * against, out)
-    along, _ = _direction(out - against, out)
+    a_1, a_2 = _parts(share, other)
+    along, _ = _direction(a_1 * out - a_2 * against, out)
     steep = np.minimum(np.einsum("ni,ni->n", along, against), -_FLATTEST)
     to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
     cosine = np.einsum("ni,ni->n", out, against)
     return Line(normals, to_plane[:, None] * along, share, cosine)
+
+
+def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Parts a_1 and a_2 of both normals in the direction along which points meet, (n, 1) each."""
+    s = share[:, None]
+    return (1.0 - s, s) if face.wears else (np.ones_like(s), np.ones_like(s))
 
 
 def _direction(vectors: np.ndarray, otherwise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

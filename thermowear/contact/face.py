@@ -43,6 +43,8 @@ class Face:
         other face counts.
     name : str
         Of the surface.
+    wears : bool
+        Whether the softness is that of wear, see `common_face`.
     """
 
     nodes: np.ndarray
@@ -53,6 +55,7 @@ class Face:
     reversed: np.ndarray
     softness: float | np.ndarray = 1.0
     name: str = "the contact face"
+    wears: bool = False
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, 2) [m]."""

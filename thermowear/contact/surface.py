@@ -74,6 +74,8 @@ class Surface:
         other face counts.
     name : str
         Of the surface.
+    wears : bool
+        Whether the softness is that of wear, see `common_face`.
     """
 
     nodes: np.ndarray
@@ -84,6 +86,7 @@ class Surface:
     local_facet: np.ndarray
     softness: float | np.ndarray = 1.0
     name: str = "the contact face"
+    wears: bool = False
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of shape (n, 2) of facets, shape (n, 3) [m]."""

@@ -21,7 +21,7 @@ from .drives import drives
 from .elastic_system import dead_load, dead_resultant, elastic_system
 from .parts import Parts, inputs
 from .phases import Phases
-from .shares import softness_of_parts
+from .shares import closes_by_wear, softness_of_parts
 from .system import System
 from .thermal_system import ThermalSystem, thermal_system
 from .worn_geometry import WornGeometry
@@ -125,7 +125,8 @@ def _paired(
     case: Case, comm, model: Model, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Pairing, np.ndarray]:
     softness = bodies.per_body(softness_of_parts(case))
-    faces = gather_faces(bodies, case.geometry.contact, softness)
+    gathered = gather_faces(bodies, case.geometry.contact, softness)
+    faces = [replace(face, wears=closes_by_wear(case)) for face in gathered]
     if worn is None:
         return contact_points(case, comm, model, *faces)
     return worn_contact_points(case, model, worn, *faces)

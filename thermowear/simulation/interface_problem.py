@@ -226,8 +226,8 @@ class InterfaceProblem:
         happens, and no step makes it small. What converges, and is asked for, is the mean over the
         area that presses, and the largest pressure, wherever that is. A step that reaches a point
         with its last stage wears that too late and presses it too much, by chance alike in both
-        histories: so a rise of the largest pressure counts as well. All of the pressure counts where
-        the edge has gone beyond its points.
+        histories: so a rise of the largest pressure counts as well. All of the pressure counts
+        where the edge has gone beyond its points.
         """
         change = np.abs(one.pressure - other.pressure)
         if one.pointwise is None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from ..case.schema import Case
-from .shares import softness_of_parts
+from .shares import closes_by_wear, softness_of_parts
 
 Part = TypeVar("Part")
 
@@ -73,7 +73,7 @@ def inputs(case: Case, zone: tuple[float, float] | None = None) -> Inputs:
         "poisson_ratio",
         *(("expansion", "expansion_factor") if hot else ()),
     )
-    points = (mesh, softness_of_parts(case))
+    points = (mesh, softness_of_parts(case), closes_by_wear(case))
     elasticity = (points, hot, _chosen(materials, lambda key: key in elastic))
     if case.heat is None:
         return Inputs(mesh, points, elasticity, ())

@@ -32,6 +32,11 @@ def softness_of_parts(case: Case) -> dict[str, float]:
     return softness
 
 
+def closes_by_wear(case: Case) -> bool:
+    """Whether softness is that of wear."""
+    return bool(_wear_rates(case))
+
+
 def _elastic(case: Case, part: str) -> float:
     """``(1 - ν²) / E`` [1/Pa]."""
     material = case.material(part)

@@ -71,7 +71,7 @@ class Progress:
 
     def note(self, text: str) -> None:
         """Something the user should know."""
-        self._console.print(f"note: {text}", highlight=False)
+        self._console.print(f"note: {text}", highlight=False, markup=False, soft_wrap=True)
 
     def _say(self, text: str) -> None:
         """The newest state: on the live line, or as a line from time to time."""

@@ -57,6 +57,8 @@ def test_pictures_have_their_own_style(folders):
     """requirement: a `matplotlibrc` of the current folder, which may ask for TeX, has no say."""
     with mpl.rc_context({"text.usetex": True, "savefig.format": "none"}):
         draw_interface(folders / "hot")
+    image = mpimg.imread(folders / "hot" / "interface.png")
+    assert image.shape[:2] == (round(3 * 2.3 * 150), round(6.4 * 150))
 
 
 STARTERS = {

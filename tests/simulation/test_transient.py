@@ -1,12 +1,14 @@
 """Running-in of the annular punch."""
 
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import thermowear as tw
 from thermowear.reference import annular_punch as reference
+from thermowear.simulation import transient
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
 
@@ -190,3 +192,28 @@ def test_a_first_time_may_be_tiny():
     result = tw.run(tw.load(COLD_RUNNING_IN, (*small, times)))
     assert result.stopped is None
     assert [row.time for row in result.history][:2] == [0.0, 1e-30]
+
+
+@pytest.mark.parametrize("pointwise", [None, np.ones(3, dtype=bool)])
+def test_a_jump_of_the_pressure_is_located_and_passed(monkeypatch, pointwise):
+    """requirement: what no step makes small ends the run, but for points that press at once where
+    contact holds point by point; then the step that is taken is far smaller than the first."""
+    state = SimpleNamespace(pointwise=pointwise)
+    tried = []
+
+    def advanced(problem, before, time, step):
+        tried.append(step)
+        return state, 0.1
+
+    monkeypatch.setattr(transient, "advance_with_error", advanced)
+    settings = SimpleNamespace(tolerance=1e-3, type="transient")
+    words = None, state, lambda wanted: wanted, 1.0, 0.0, 1e-12, settings
+    if pointwise is None:
+        with pytest.raises(tw.ComputationError, match="no step is small enough at 0 s"):
+            transient._accept(*words)
+        return
+    found, step, error, following = transient._accept(*words)
+    assert found is state
+    assert error == 0.1
+    assert step == tried[-1] <= 1e-3 * tried[0] < tried[-2]
+    assert following > step

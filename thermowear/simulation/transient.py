@@ -137,8 +137,8 @@ def _next(
 def _accept(problem, state, way, wanted, time, smallest, settings):
     """Repeat a step with smaller sizes until its error is within the tolerance.
 
-    What is no smaller in a step that is far smaller is a jump, as where a point begins to press at
-    once; that step, which ends right behind it, is taken.
+    Where contact holds point by point, what is no smaller in a step that is far smaller is a jump:
+    a point begins to press at once. That step, which ends right behind it, is taken.
     """
     trouble, step = "", way(wanted)
     tried: list[tuple[float, float]] = []
@@ -151,7 +151,8 @@ def _accept(problem, state, way, wanted, time, smallest, settings):
         proposed = next_step(step, error, settings.tolerance)
         if error <= settings.tolerance:
             return following, step, error, proposed
-        if any(step <= _FAR_SMALLER * size and error > e / 2 for size, e in tried):
+        jumps = any(step <= _FAR_SMALLER * size and error > e / 2 for size, e in tried)
+        if jumps and following.pointwise is not None:
             return following, step, error, step / _FAR_SMALLER
         tried.append((step, error))
         step = way(min(proposed, 0.9 * step))

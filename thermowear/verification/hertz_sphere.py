@@ -6,14 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..reference.elastic_sphere import sphere_on_half_space
 from ..reference.hertz import point_contact
 from ..simulation import Result
 from .check import Check, compare
-from .hertz import MODULUS, half_width
+from .hertz import MODULUS, STEEL, half_width
 from .starter import run_starter
 
 ID = "hertz-sphere"
 JOHNSON = "Johnson, Contact Mechanics (1985), section 4.2"
+LURE = "Lur'e, Theory of Elasticity (1964), ch. 6"
 RADIUS = 10e-3
 
 MESHES = {
@@ -42,6 +44,9 @@ def _against_formula(result: Result, name: str) -> Iterator[Check]:
     exact = point_contact(result.summary["normal_force_N"], RADIUS, MODULUS)
     peak = result.summary["max_pressure_Pa"]
     yield compare(ID, f"peak pressure, {name} [Pa]", peak, exact.peak, 5e-3, JOHNSON)
+    finite = sphere_on_half_space(result.summary["normal_force_N"], RADIUS, STEEL, STEEL)
+    quantity = f"peak pressure of a sphere of finite size, {name} [Pa]"
+    yield compare(ID, quantity, peak, finite.peak, 5e-4, LURE)
     found = half_width(result)
     yield compare(ID, f"contact radius, {name} [m]", found, exact.half_width, 5e-3, JOHNSON)
     for part in (0.5, 0.8):

@@ -57,8 +57,15 @@ def test_forces_stay_and_a_smooth_pressure_is_weak_contact(face):
 
 def test_a_jump_is_rough_where_it_lies(face):
     facet, x, contact, _ = face
-    assert not rough_points(facet, contact, 1.0 + x).any()
-    assert 2 in facet[rough_points(facet, contact, np.where(x < 2.5, 1.0, 0.0))]
+    assert not rough_points(facet, contact.basis, contact.weighted.sum(axis=1), 1.0 + x).any()
+    assert (
+        2
+        in facet[
+            rough_points(
+                facet, contact.basis, contact.weighted.sum(axis=1), np.where(x < 2.5, 1.0, 0.0)
+            )
+        ]
+    )
 
 
 def test_an_edge_that_leaves_its_points_in_a_step_is_noticed(face):

@@ -6,6 +6,9 @@ With the gap ``g + B u - R d`` at the points, a stiffness γ and a local complia
 
     K u - θ Sᵀ (w/γ) (S u + s) - (θ S + γ B_t)ᵀ (w/γ) p = f,      Tᵀ w p = F.
 
+Faces may have motions on springs as well, see `edge_deflection`: they close the gap as d does, with
+``Tᵀ w p`` equal to the force of the springs.
+
 Without S and s this is the penalty method. With them it is Nitsche's method, which is consistent
 for any γ (Chouly, Hild and Renard, Math. Comput. 84 (2015) 1089); θ = 1 is symmetric and needs γ
 above a limit (see `stabilisation`), θ = -1 works with any γ. Where the equations are symmetric they
@@ -18,9 +21,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.linalg import block_diag
 
 from ..bulk.elasticity import Elasticity
 from ..parallel import sum_over_ranks
+from .edge_deflection import EdgeDeflection
 from .newton_matrix import NewtonMatrix
 from .pairing import Pairing
 
@@ -41,6 +46,8 @@ class Loading:
         f [N].
     thermal_traction : ndarray, shape (n,)
         s: normal traction of body 1 without any displacement [Pa].
+    deflection : EdgeDeflection, optional
+        What the points of the faces yield by themselves.
     """
 
     gap: np.ndarray
@@ -48,6 +55,7 @@ class Loading:
     compliance: np.ndarray
     nodal_loads: np.ndarray
     thermal_traction: np.ndarray
+    deflection: EdgeDeflection | None = None
 
     def part(self, share: float) -> Loading:
         """A part of it; where the approach is given, the faces only just touch at share 0."""
@@ -58,6 +66,7 @@ class Loading:
             self.compliance,
             share * self.nodal_loads,
             share * self.thermal_traction,
+            self.deflection,
         )
 
 
@@ -72,7 +81,7 @@ class Residual:
     forces : ndarray, shape (n_owned,)
         Unbalanced nodal forces [N].
     balance : ndarray, shape (k,)
-        Force that the pressure carries, less the load.
+        Force that the pressure carries on each motion, with its springs, less the load.
     relative : float
         The larger of both, relative to what they are sums of.
     """
@@ -85,6 +94,25 @@ class Residual:
     @property
     def active(self) -> np.ndarray:
         return self.pressure > 0.0
+
+
+@dataclass(frozen=True)
+class _Motions:
+    """All that closes the gap as a whole: the holder, then points of the faces on springs.
+
+    Attributes
+    ----------
+    modes, carried : ndarray, shape (n, k)
+        R and w T.
+    springs : ndarray, shape (k, k)
+        Force per motion; none on the holder.
+    load : ndarray, shape (k,)
+    """
+
+    modes: np.ndarray
+    carried: np.ndarray
+    springs: np.ndarray
+    load: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -155,9 +183,9 @@ class ContactEquations:
 
     def residual(self, loading: Loading, displacement: np.ndarray, motion: np.ndarray) -> Residual:
         """Residual of both equations, and the pressure."""
-        at = self._at_points(displacement)
+        at, moving = self._at_points(displacement), self._motions(loading)
         stress = at.stress + loading.thermal_traction
-        opening = at.closing + self.stiffness * (loading.gap - self.modes @ motion)
+        opening = at.closing + self.stiffness * (loading.gap - moving.modes @ motion)
         trial = -self._softening(loading) * (opening + loading.thermal_traction)
         pressure = np.maximum(trial, 0.0)
         contact = self._work @ (self._scale * pressure)
@@ -165,9 +193,11 @@ class ContactEquations:
         elastic = self.elastic_forces(displacement)
         loads = np.where(self.elastic.fixed, 0.0, loading.nodal_loads)
         forces = elastic - contact - loads
-        balance = self.carried.T @ pressure - loading.load
+        balance = moving.carried.T @ pressure + moving.springs @ motion - moving.load
         size = self._largest(elastic, contact, loads)
-        carried = np.abs(self.carried).T @ pressure + np.abs(loading.load)
+        carried = np.abs(moving.carried).T @ pressure + np.abs(moving.load)
+        own = slice(len(loading.load), None)
+        carried[own] = carried[own].max(initial=0.0)  # some of them carry nothing
         relative = self._largest(forces) / size if size != 0.0 else 0.0
         off = np.divide(np.abs(balance), carried, out=np.zeros(len(balance)), where=carried > 0)
         return Residual(trial, forces, balance, float(np.max([relative, *off])))
@@ -180,12 +210,13 @@ class ContactEquations:
         motion: np.ndarray,
     ) -> tuple[np.ndarray, np.ndarray]:
         """Change of both residuals along a displacement and a motion, with given active points."""
-        at = self._at_points(displacement)
-        change = self.stiffness * (self.modes @ motion) - at.closing
+        at, moving = self._at_points(displacement), self._motions(loading)
+        change = self.stiffness * (moving.modes @ motion) - at.closing
         pressure = active * self._softening(loading) * change
         contact = self._work @ (self._scale * pressure)
         contact += self.theta * (self._stress @ (self._scale * at.stress))
-        return self.elastic_forces(displacement) - contact, self.carried.T @ pressure
+        balance = moving.carried.T @ pressure + moving.springs @ motion
+        return self.elastic_forces(displacement) - contact, balance
 
     def newton_step(
         self, loading: Loading, residual: Residual, active: np.ndarray
@@ -199,21 +230,21 @@ class ContactEquations:
         ComputationError
             If the symmetric variant of Nitsche's method is found unstable.
         """
-        pressing = active * self._softening(loading)
-        column = -self._work @ (pressing[:, None] * self.pairing.weights[:, None] * self.modes)
+        pressing, moving = active * self._softening(loading), self._motions(loading)
+        column = -self._work @ (pressing[:, None] * self.pairing.weights[:, None] * moving.modes)
         factor = self._matrix.factor(self._scale * pressing)
         # the residual as it would be if exactly the active points pressed, also with tension
         switched = np.where(active, residual.pressure, 0.0) - np.maximum(residual.pressure, 0.0)
         forces = residual.forces - self._work @ (self._scale * switched)
-        balance = residual.balance + self.carried.T @ switched
+        balance = residual.balance + moving.carried.T @ switched
         solved = factor.solve(np.column_stack([-forces, column]))
         step, column = solved[:, 0], solved[:, 1:]
-        if self.modes.shape[1] == 0:
+        if moving.modes.shape[1] == 0:
             return step, np.zeros(0)
-        per_motion = pressing[:, None] * (self.stiffness[:, None] * self.modes)
-        row = -self.carried.T * pressing
+        per_motion = pressing[:, None] * (self.stiffness[:, None] * moving.modes)
+        row = -moving.carried.T * pressing
         seen = self._sum(self._closing.T @ solved)
-        schur = self.carried.T @ per_motion - row @ seen[:, 1:]
+        schur = moving.carried.T @ per_motion + moving.springs - row @ seen[:, 1:]
         size = np.sqrt(np.abs(np.diag(schur)))
         if size.min() == 0.0 or np.linalg.cond(schur / np.outer(size, size)) > 1e12:
             return None
@@ -230,13 +261,13 @@ class ContactEquations:
         factors, pressure, change : ndarray, shape (n,)
             ``factors · max(0, pressure + length * change)`` is the rest.
         """
-        at = self._at_points(step)
-        change = self.stiffness * (self.modes @ motion) - at.closing
+        at, moving = self._at_points(step), self._motions(loading)
+        change = self.stiffness * (moving.modes @ motion) - at.closing
         change *= self._softening(loading)
-        factors = self.carried @ motion - self._scale * at.work
+        factors = moving.carried @ motion - self._scale * at.work
         now = np.maximum(residual.pressure, 0.0)
         constant = self._sum(step @ residual.forces) + motion @ residual.balance - factors @ now
-        slope = self._sum(step @ self.elastic_forces(step))
+        slope = self._sum(step @ self.elastic_forces(step)) + motion @ moving.springs @ motion
         slope -= self.theta * (at.stress @ (self._scale * at.stress))
         return constant, slope, factors, residual.pressure, change
 
@@ -246,6 +277,17 @@ class ContactEquations:
         x.setArray(displacement)
         self.elastic.stiffness.mult(x, y)
         return np.where(self.elastic.fixed, 0.0, y.getArray())
+
+    def _motions(self, loading: Loading) -> _Motions:
+        own, k = loading.deflection, len(loading.load)
+        if own is None:
+            return _Motions(self.modes, self.carried, np.zeros((k, k)), loading.load)
+        return _Motions(
+            np.hstack([self.modes, own.modes]),
+            np.hstack([self.carried, self.pairing.weights[:, None] * own.modes]),
+            block_diag(np.zeros((k, k)), own.stiffness),
+            np.concatenate([loading.load, np.zeros(own.modes.shape[1])]),
+        )
 
     def _softening(self, loading: Loading) -> np.ndarray:
         """φ."""

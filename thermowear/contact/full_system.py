@@ -14,6 +14,7 @@ from scipy.optimize import nnls
 
 from ..errors import ComputationError
 from .complementarity import solve_contact
+from .edge_deflection import EdgeDeflection
 from .equations import ContactEquations, Loading
 
 _TOLERANCE = 1e-10
@@ -72,6 +73,7 @@ class FullContact(ContactEquations):
         nodal_loads: np.ndarray | None = None,
         thermal_traction: np.ndarray | None = None,
         start: FullSolution | None = None,
+        deflection: EdgeDeflection | None = None,
     ) -> FullSolution:
         """Find the contact; parameters as in `Loading`, and a neighbouring solution to start from.
 
@@ -89,6 +91,7 @@ class FullContact(ContactEquations):
             nothing if compliance is None else compliance,
             np.zeros(len(self.elastic.fixed)) if nodal_loads is None else nodal_loads,
             nothing if thermal_traction is None or not self.nitsche else thermal_traction,
+            deflection,
         )
         self._check(loading)
         # measured from where it starts: a far approach would leave no digits to the deformation
@@ -175,21 +178,23 @@ class FullContact(ContactEquations):
 
     def _newton(self, loading: Loading, start: FullSolution) -> tuple[FullSolution | None, int]:
         """Newton's method; no solution where it does not converge, and the iterations spent."""
-        u, d = start.displacement, start.motion
+        own = 0 if loading.deflection is None else loading.deflection.modes.shape[1]
+        u, d = start.displacement, np.append(start.motion, np.zeros(own))
         before = np.inf
         for iteration in range(_ITERATIONS):
             residual = self.residual(loading, u, d)
             stuck = iteration > 0 and residual.relative > 0.1 * before
             if residual.relative <= (_LOOSE if stuck else _TOLERANCE):
                 pressure = np.maximum(residual.pressure, 0.0)
-                return FullSolution(u, d, pressure, iteration), iteration
+                held = d[: len(loading.load)]
+                return FullSolution(u, held, pressure, iteration), iteration
             if not np.isfinite(residual.relative):
                 return None, iteration
             before = residual.relative
             guessed = iteration == 0 and bool(start.active.any())
             step = self.newton_step(loading, residual, (start if guessed else residual).active)
             if step is None:  # too few points press to hold the holder: bring it back
-                d = self._held(loading, u)
+                d = np.append(self._held(loading, u), np.zeros(own))
                 continue
             length = step_length(*self.along(loading, residual, *step))
             u, d = u + length * step[0], d + length * step[1]

@@ -82,24 +82,76 @@ def has_passed(
     return bool(np.any(basis[np.ix_(new & ~points, shared)] > 0.0))
 
 
-def rough_points(facet: np.ndarray, contact: CondensedContact, pressure: np.ndarray) -> np.ndarray:
+def rough_points(
+    facet: np.ndarray, basis: np.ndarray, weights: np.ndarray, pressure: np.ndarray
+) -> np.ndarray:
     """Contact points of the facets where a pressure is not one of the pressure space.
 
     Parameters
     ----------
     facet : ndarray of int, shape (n,)
-    contact : CondensedContact
+    basis : ndarray, shape (n, m)
+        Ψ.
+    weights : ndarray, shape (n,) [m²]
     pressure : ndarray, shape (n,) [Pa]
 
     Returns
     -------
     ndarray of bool, shape (n,)
     """
-    mass = contact.weighted.T @ contact.basis
-    left = pressure - contact.basis @ np.linalg.solve(mass, contact.weak(pressure))
+    weighted = weights[:, None] * basis
+    left = pressure - basis @ np.linalg.solve(weighted.T @ basis, weighted.T @ pressure)
     rough = np.zeros(facet.max() + 1, dtype=bool)
     rough[facet[np.abs(left) > _SMOOTH * pressure.max()]] = True
     return rough[facet]
+
+
+@dataclass(frozen=True)
+class WearEdge:
+    """The contact points of a face, and which of them lie at the edge of its wear.
+
+    Attributes
+    ----------
+    facet : ndarray of int, shape (n,)
+        Of the points.
+    basis : ndarray, shape (n, m)
+        Ψ.
+    weights : ndarray, shape (n,) [m²]
+    """
+
+    facet: np.ndarray
+    basis: np.ndarray
+    weights: np.ndarray
+
+    def points(
+        self,
+        worn: np.ndarray,
+        pressure: np.ndarray | None = None,
+        before: np.ndarray | None = None,
+    ) -> np.ndarray | None:
+        """Points where contact is to hold one by one, shape (n,), None without any.
+
+        Parameters
+        ----------
+        worn : ndarray, shape (n_wearing, n) [m]
+        pressure : ndarray, shape (n,), optional
+            [Pa]
+        before : ndarray of bool, shape (n,), optional
+            Those under that pressure: they stay until it is smooth there.
+        """
+        reached = np.any(worn > 0.0, axis=0)
+        if before is None and (reached.all() or not reached.any()):
+            return None
+        points = edge_points(self.facet, self.basis, reached)
+        if before is not None:
+            assert pressure is not None
+            points |= before & rough_points(self.facet, self.basis, self.weights, pressure)
+        return points if points.any() else None
+
+    def has_passed(self, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
+        """Whether the edge has gone beyond its points in a step, from depths to others (2, n)."""
+        reached = (np.any(worn > 0.0, axis=0) for worn in (before, after))
+        return has_passed(self.basis, points, *reached)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..contact.complementarity import ContactSolution, NoEquilibrium, solve_contact
 from ..contact.condensation import CondensedContact
-from ..contact.wear_edge import EdgeSpace, edge_points, edge_space, has_passed, rough_points
+from ..contact.wear_edge import EdgeSpace, edge_space
 from ..errors import ComputationError
 from .contact_method import Contact, Slope, WearRates, newton_with_wear
 from .system import System
@@ -71,19 +71,6 @@ class CondensedMethod:
             "contact: pressure and temperatures do not settle where conductivity or expansion "
             "change; reduce the speed"
         )
-
-    def edge(self, worn, pressure=None, before=None) -> np.ndarray | None:
-        facet, reached = self._system.pairing.sides[0].facet, np.any(worn > 0.0, axis=0)
-        if before is None and (reached.all() or not reached.any()):
-            return None
-        points = edge_points(facet, self._contact.basis, reached)
-        if before is not None:
-            points |= before & rough_points(facet, self._contact, pressure)
-        return points if points.any() else None
-
-    def edge_has_passed(self, points, before, after) -> bool:
-        reached = (np.any(worn > 0.0, axis=0) for worn in (before, after))
-        return has_passed(self._contact.basis, points, *reached)
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle in the pressure space.

@@ -66,39 +66,11 @@ class ContactMethod(Protocol):
         conditions : Conditions
         heat : HeatStage or None
         pointwise : ndarray of bool, shape (n,), optional
-            From `edge`.
+            At the edge of the wear, where contact is to hold one by one: `contact.wear_edge`.
 
         Raises
         ------
         ComputationError
-        """
-
-    def edge(
-        self,
-        worn: np.ndarray,
-        pressure: np.ndarray | None = None,
-        before: np.ndarray | None = None,
-    ) -> np.ndarray | None:
-        """Points at the edge of the wear where contact is to hold one by one, shape (n,).
-
-        Parameters
-        ----------
-        worn : ndarray, shape (n_wearing, n) [m]
-        pressure : ndarray, shape (n,), optional
-            [Pa]
-        before : ndarray of bool, shape (n,), optional
-            Those under that pressure: they stay until it is smooth there.
-        """
-
-    def edge_has_passed(self, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
-        """Whether the edge of the wear has gone beyond its points in a step.
-
-        Parameters
-        ----------
-        points : ndarray of bool, shape (n,)
-            From `edge`.
-        before, after : ndarray, shape (n_wearing, n)
-            Depths [m].
         """
 
     def steady(self, pressure: np.ndarray, rates: WearRates, conditions: Conditions) -> np.ndarray:

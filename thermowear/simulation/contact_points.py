@@ -105,10 +105,16 @@ def _points(
 
 
 def _basis(case: Case, pairing: Pairing) -> np.ndarray:
-    """Pressure space Ψ, by default a degree below the displacement."""
+    """Pressure space Ψ."""
+    return pressure_basis(pairing, pressure_degree(case))
+
+
+def pressure_degree(case: Case) -> int:
+    """Degree of the pressure space, by default one below that of the displacement."""
     degree = case.contact.pressure_degree
-    assert degree != "lobatto"
-    return pressure_basis(pairing, degree or max(case.mesh.degree - 1, 1))
+    if degree == "lobatto":  # as many functions as the displacement has on a facet
+        return case.mesh.degree
+    return degree or max(case.mesh.degree - 1, 1)
 
 
 def facing_parts(bodies: Bodies, pairing: Pairing) -> Facing:

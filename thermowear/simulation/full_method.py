@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
+from ..contact.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
 from ..contact.full_system import FullContact, FullSolution
 from ..contact.stabilisation import (
     default_penalty,
@@ -15,6 +18,7 @@ from ..contact.traction import normal_traction, thermal_traction
 from ..errors import ComputationError
 from ..parallel import sum_over_ranks
 from .contact_method import Contact, WearRates
+from .contact_points import pressure_degree
 from .mixing import Mixing
 from .system import System
 
@@ -24,6 +28,8 @@ _SETTLED = 1e-9  # of the largest pressure
 
 class FullMethod:
     """The contact conditions point by point, on all nodal displacements.
+
+    Where the edge of the wear lies the points yield by themselves, see `contact.edge_deflection`.
 
     Heat and contact are solved in turn: the bodies conduct the friction heat of a pressure, their
     distortion changes the pressure. The turns are accelerated, as one after the other they converge
@@ -41,16 +47,18 @@ class FullMethod:
         self._dead = still if system.dead_load is None else system.dead_load
         heated = system.thermal is not None
         self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
+        self._last_deflection: tuple[np.ndarray, EdgeDeflection] | None = None
 
     def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
         start, load = None if guess is None else guess.memory, conditions.load
         slope = slope.point  # means are of turning disks in space, which is for condensed contact
+        edge = self._deflection(pointwise)
         if heat is None:
-            return self._result(self._solved(gap, slope, start, load, self._dead, None))
+            return self._result(self._solved(gap, slope, start, load, self._dead, None, edge))
         pressure = np.zeros(len(gap)) if guess is None else guess.pressure
         mixing = Mixing()
         for _ in range(_PASSES):
-            start = self._warm(gap, slope, start, conditions, heat, pressure)
+            start = self._warm(gap, slope, start, conditions, heat, pressure, edge)
             missed = start.pressure - pressure
             if np.abs(missed).max() <= _SETTLED * np.abs(start.pressure).max():
                 return self._result(start)
@@ -59,14 +67,6 @@ class FullMethod:
             f"contact: heat and pressure do not settle in {_PASSES} turns; reduce the speed, "
             'or use contact.method = "condensed", which solves both at once'
         )
-
-    def edge(self, worn, pressure=None, before=None) -> None:
-        """Contact holds point by point all over."""
-        return None
-
-    def edge_has_passed(self, points, before, after) -> bool:
-        """There are no points for it."""
-        return False
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle point by point: the full system has no pressure space of its own."""
@@ -84,16 +84,34 @@ class FullMethod:
         system = self._system
         return sum_over_ranks(system.comm, system.trace.T @ contact.memory.displacement)
 
-    def _warm(self, gap, slope, start, conditions, heat, pressure) -> FullSolution:
+    @cached_property
+    def _edge_compliance(self) -> np.ndarray:
+        """ε of the points at the edge of the wear, shape (n,) [m/Pa]."""
+        system = self._system
+        degree = pressure_degree(system.case)
+        return wave_compliance(system.elastic, system.pairing, degree)
+
+    def _deflection(self, points: np.ndarray | None) -> EdgeDeflection | None:
+        """What the bodies do not see of some points; None without any. The last one is kept."""
+        if points is None:
+            return None
+        last, system = self._last_deflection, self._system
+        if last is None or not np.array_equal(last[0], points):
+            own = edge_deflection(system.basis, system.weights, points, self._edge_compliance)
+            last = self._last_deflection = points, own
+        return last[1]
+
+    def _warm(self, gap, slope, start, conditions, heat, pressure, edge) -> FullSolution:
         """Contact of bodies that the friction heat of a pressure has distorted."""
         assert self._system.thermal is not None
         faces = heat.faces(conditions, pressure)
         forces = self._system.thermal.forces(heat.rise(faces))
         traction = -np.asarray(self._softening) * faces.rise[0]
-        return self._solved(gap, slope, start, conditions.load, self._dead + forces, traction)
+        nodal_loads = self._dead + forces
+        return self._solved(gap, slope, start, conditions.load, nodal_loads, traction, edge)
 
-    def _solved(self, gap, slope, start, load, nodal_loads, traction) -> FullSolution:
-        return self._contact.solve(gap, load, slope, nodal_loads, traction, start)
+    def _solved(self, gap, slope, start, load, nodal_loads, traction, edge) -> FullSolution:
+        return self._contact.solve(gap, load, slope, nodal_loads, traction, start, edge)
 
     def _result(self, solution: FullSolution) -> Contact:
         motion = self._system.holder.amounts(solution.motion)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..contact.wear_edge import WearEdge
 from .conditions import Conditions, Surroundings
 from .contact_method import Contact, ContactMethod, Slope, WearRates, newton_with_wear
 from .friction_heat import FrictionHeat
@@ -42,6 +43,7 @@ class InterfaceProblem:
         self._method = method
         self._heat = heat
         self._surroundings = Surroundings(system)
+        self._edge = WearEdge(system.pairing.sides[0].facet, system.basis, system.weights)
         self._gap = system.pairing.gap - system.holder.imposed
         self._softness = np.full(len(self._gap), system.softness)
         self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
@@ -120,7 +122,7 @@ class InterfaceProblem:
         """
         edge, geometry = state.pointwise, self._system.worn
         if edge is not None and (geometry is None or geometry.pieces is None):
-            edge = self._method.edge(worn)  # the contact points are other ones
+            edge = self._edge.points(worn)  # the contact points are other ones
         if state.stored is None:
             found = self._lasting(worn, time, edge)
         else:
@@ -162,7 +164,7 @@ class InterfaceProblem:
             depth = state.worn.sum(axis=0)[state.pressure > 0.0]
             if not depth.size or np.ptp(depth) <= self._method.bending(state.contact):
                 return state
-        edge = self._method.edge(state.worn, state.pressure, state.pointwise)
+        edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)
 
     def stage(
@@ -232,7 +234,7 @@ class InterfaceProblem:
         change = np.abs(one.pressure - other.pressure)
         if one.pointwise is None:
             return float(change.max())
-        if self._method.edge_has_passed(one.pointwise, before.worn, one.worn):
+        if self._edge.has_passed(one.pointwise, before.worn, one.worn):
             return float(one.pressure.max())
         pressing = (one.pressure > 0.0) | (other.pressure > 0.0)
         area = float(pressing @ self._system.weights)

@@ -19,6 +19,8 @@ ELASTIC = (
 )
 ARCHARD = "Archard's law"
 SPEED = 0.05
+FULL = ("penalty", "nitsche")
+"""Methods on the full system: slower, so on the coarsest mesh and not as far."""
 _SEEN = 0.9e-2
 """Closed forms of rigid bodies are asked for where elasticity counts for less than that."""
 

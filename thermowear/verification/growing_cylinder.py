@@ -8,7 +8,7 @@ import numpy as np
 
 from ..reference.growing_contact import growing_line
 from .check import Check
-from .growing import Growth, grown
+from .growing import FULL, Growth, grown
 from .hertz import MODULUS
 
 ID = "growing-cylinder"
@@ -37,6 +37,10 @@ def checks() -> Iterator[Check]:
     for elements in ELEMENTS:
         mesh = f", {elements} elements", f"mesh.elements={elements}"
         peaks = run(mesh[0], 1.0, COEFFICIENT, PLACES, mesh[1])
+        yield from peaks.peaks(FORCE / THICKNESS / 2, 1)
+    for method in FULL:
+        keys = f"mesh.elements={ELEMENTS[0]}", f"contact.method={method}"
+        peaks = run(f", {ELEMENTS[0]} elements, {method}", 1.0, COEFFICIENT, PLACES[:3], *keys)
         yield from peaks.peaks(FORCE / THICKNESS / 2, 1)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..reference.growing_contact import growing_point
 from .check import Check, compare
-from .growing import RIGID, Growth, grown, worn_half_width
+from .growing import FULL, RIGID, Growth, grown, worn_half_width
 from .hertz import MODULUS
 
 ID = "growing-sphere"
@@ -35,6 +35,10 @@ def checks() -> Iterator[Check]:
     for elements in ELEMENTS:
         mesh = f", {elements} elements", f"mesh.elements={elements}"
         peaks = run(mesh[0], 1.0, COEFFICIENT, PLACES, mesh[1])
+        yield from peaks.peaks(FORCE / np.pi, 2)
+    for method in FULL:
+        keys = f"mesh.elements={ELEMENTS[0]}", f"contact.method={method}"
+        peaks = run(f", {ELEMENTS[0]} elements, {method}", 1.0, COEFFICIENT, PLACES[:3], *keys)
         yield from peaks.peaks(FORCE / np.pi, 2)
     published = grown(STARTER, tuple(PUBLISHED), *MESH)
     for (distance, ratio), state in zip(PUBLISHED.items(), published.values(), strict=True):

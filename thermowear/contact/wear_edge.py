@@ -108,6 +108,8 @@ class EdgeSpace:
 
     Attributes
     ----------
+    points : ndarray of bool, shape (n,)
+        These points.
     basis : ndarray, shape (n, k)
         Basis functions Ψ off these points, then those of single points.
     weighted : ndarray, shape (n, k)
@@ -120,6 +122,7 @@ class EdgeSpace:
         See `CondensedContact`.
     """
 
+    points: np.ndarray
     basis: np.ndarray
     weighted: np.ndarray
     seen: np.ndarray
@@ -134,6 +137,13 @@ class EdgeSpace:
     def pressing(self, pressure: np.ndarray) -> np.ndarray:
         """Which coefficients press in a pressure at the points, shape (k,)."""
         return self.weighted.T @ pressure > _NONE * pressure.max() * self.weighted.sum(axis=0)
+
+    def at_points(self, weak: np.ndarray) -> np.ndarray:
+        """Weak values (k,) per area at single points; NaN at others or without area, shape (n,)."""
+        result, area = np.full(len(self.points), np.nan), self.weighted.sum(axis=0)
+        means = np.divide(weak, area, out=np.full(len(weak), np.nan), where=area > 0.0)
+        result[self.points] = means[-np.count_nonzero(self.points) :]
+        return result
 
 
 def edge_space(contact: CondensedContact, points: np.ndarray, holder: Holder) -> EdgeSpace:
@@ -159,6 +169,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: Holder) ->
     yielding = (weights * _shortest_compliance(contact))[:, None] * left
     own[len(whole) :, len(whole) :] = left.T @ yielding
     return EdgeSpace(
+        points=points,
         basis=basis,
         weighted=weighted,
         seen=np.hstack([np.eye(len(share))[:, whole], seen]),

@@ -85,6 +85,11 @@ class CondensedMethod:
         reached = (np.any(worn > 0.0, axis=0) for worn in (before, after))
         return has_passed(self._contact.basis, points, *reached)
 
+    def yielding(self, points) -> np.ndarray:
+        space = self._space(self._contact, points)
+        assert space is not None
+        return space.at_points(np.diag(space.compliance(self._contact.compliance)))
+
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle in the pressure space.
 
@@ -160,7 +165,10 @@ class CondensedMethod:
         weak = space.weighted.T @ gap + resting
         solution = solve_contact(compliance, weak, space.modes, load, start, space.force_modes)
         pressure = space.basis @ solution.coefficients
+        apart = None
         if edge is not None:
+            left = weak + compliance @ solution.coefficients - space.modes @ solution.motion
+            apart = (pressure == 0.0) * edge.at_points(left)
             seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
             solution = replace(solution, coefficients=seen, active=active)
-        return Contact(pressure, self._system.holder.amounts(solution.motion), solution)
+        return Contact(pressure, self._system.holder.amounts(solution.motion), solution, apart)

@@ -68,6 +68,10 @@ class FullMethod:
         """There are no points for it."""
         return False
 
+    def yielding(self, points) -> np.ndarray:
+        """There are no points for it."""
+        return np.full(len(points), np.nan)
+
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle point by point: the full system has no pressure space of its own."""
         return pressure

@@ -19,6 +19,7 @@ pressure is smooth, as it is behind the edge, nothing is left, and this is weak 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -130,19 +131,26 @@ class EdgeSpace:
     modes: np.ndarray
     force_modes: np.ndarray
 
+    @cached_property
+    def area(self) -> np.ndarray:
+        """Of the coefficients, shape (k,) [m²]."""
+        return self.weighted.sum(axis=0)
+
     def compliance(self, compliance: np.ndarray) -> np.ndarray:
         """Weak gaps per coefficient, shape (k, k), from those of Ψ, shape (m, m)."""
         return self.seen.T @ compliance @ self.seen + self.own
 
     def pressing(self, pressure: np.ndarray) -> np.ndarray:
         """Which coefficients press in a pressure at the points, shape (k,)."""
-        return self.weighted.T @ pressure > _NONE * pressure.max() * self.weighted.sum(axis=0)
+        return self.weighted.T @ pressure > _NONE * pressure.max() * self.area
 
     def at_points(self, weak: np.ndarray) -> np.ndarray:
         """Weak values (k,) per area at single points; NaN at others or without area, shape (n,)."""
-        result, area = np.full(len(self.points), np.nan), self.weighted.sum(axis=0)
-        means = np.divide(weak, area, out=np.full(len(weak), np.nan), where=area > 0.0)
-        result[self.points] = means[-np.count_nonzero(self.points) :]
+        result, count = np.full(len(self.points), np.nan), np.count_nonzero(self.points)
+        area = self.area[-count:]
+        means = np.full(count, np.nan)
+        np.divide(weak[-count:], area, out=means, where=area > 0.0)
+        result[self.points] = means
         return result
 
 

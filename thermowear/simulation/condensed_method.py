@@ -45,6 +45,9 @@ class CondensedMethod:
         self._rubbing = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
         self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
+        self._last_opening: tuple[CondensedContact | EdgeSpace, np.ndarray, np.ndarray] | None = (
+            None
+        )
         self.note: str | None = None
 
     def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
@@ -140,6 +143,16 @@ class CondensedMethod:
             last = self._last_space = bodies, points, space
         return last[2]
 
+    def _opening_on_the_spot(
+        self, space: CondensedContact | EdgeSpace, slope: np.ndarray
+    ) -> np.ndarray:
+        """Weak gaps (k, k) that pressures open on the spot [m/Pa]; the last ones are kept."""
+        last = self._last_opening
+        if last is None or last[0] is not space or not np.array_equal(last[1], slope):
+            opening = space.weighted.T @ (slope[:, None] * space.basis)
+            last = self._last_opening = space, slope, opening
+        return last[2]
+
     def _solved(
         self,
         bodies: CondensedContact,
@@ -158,7 +171,7 @@ class CondensedMethod:
             compliance, resting = edge.compliance(compliance), edge.seen.T @ resting
             start = None if guess is None else edge.pressing(guess.pressure)
         if slope.point.any():
-            compliance = compliance + space.weighted.T @ (slope.point[:, None] * space.basis)
+            compliance = compliance + self._opening_on_the_spot(space, slope.point)
         if len(slope.rows):
             reach = space.weighted.T @ slope.reach
             compliance = compliance + reach @ (slope.rows @ space.basis)

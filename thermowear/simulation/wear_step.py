@@ -172,9 +172,7 @@ class Trial:
     following: float = np.inf
 
 
-def advance_with_error(
-    problem: WearProblem, state: WornContact, time: float, step: float
-) -> Trial:
+def advance_with_error(problem: WearProblem, state: WornContact, time: float, step: float) -> Trial:
     """Two half steps, and their error from the difference to a whole one (Richardson).
 
     Returns

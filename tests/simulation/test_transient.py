@@ -9,6 +9,7 @@ import pytest
 import thermowear as tw
 from thermowear.reference import annular_punch as reference
 from thermowear.simulation import transient
+from thermowear.simulation.wear_step import Trial
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
 
@@ -203,17 +204,18 @@ def test_a_jump_of_the_pressure_is_located_and_passed(monkeypatch, pointwise):
 
     def advanced(problem, before, time, step):
         tried.append(step)
-        return state, 0.1
+        return Trial(state, 0.1)
 
     monkeypatch.setattr(transient, "advance_with_error", advanced)
     settings = SimpleNamespace(tolerance=1e-3, type="transient")
-    words = None, state, lambda wanted: wanted, 1.0, 0.0, 1e-12, settings
+    last = SimpleNamespace(state=state, time=0.0, step=0.0, error=0.0, wanted=1.0)
+    words = None, last, lambda wanted: wanted, 1e-12, settings
     if pointwise is None:
         with pytest.raises(tw.ComputationError, match="no step is small enough at 0 s"):
             transient._accept(*words)
         return
-    found, step, error, following = transient._accept(*words)
-    assert found is state
-    assert error == 0.1
+    trial, step, following = transient._accept(*words)
+    assert trial.state is state
+    assert trial.error == 0.1
     assert step == tried[-1] <= 1e-3 * tried[0] < tried[-2]
     assert following > step

@@ -64,7 +64,7 @@ def lagrange(order: int, t: np.ndarray) -> np.ndarray:
 
 def lagrange_slopes(order: int, t: np.ndarray) -> np.ndarray:
     """Their derivatives, shape (n, order + 1)."""
-    return np.vander(t, order, increasing=True) @ polyder(_coefficients(order))
+    return np.vander(t, order, increasing=True) @ _slope_coefficients(order)
 
 
 def lagrange_bends(order: int, t: np.ndarray) -> np.ndarray:
@@ -77,3 +77,9 @@ def lagrange_bends(order: int, t: np.ndarray) -> np.ndarray:
 def _coefficients(order: int) -> np.ndarray:
     """Of the Lagrange polynomials: rows by power, columns by node; orders of geometry are low."""
     return np.linalg.inv(np.vander(np.linspace(0.0, 1.0, order + 1), increasing=True))
+
+
+@cache
+def _slope_coefficients(order: int) -> np.ndarray:
+    """Of their derivatives, likewise."""
+    return polyder(_coefficients(order))

@@ -9,6 +9,8 @@ from .surface import Surface
 
 _STEPS = 30
 _SETTLED = 1e-13
+_ROUNDING = 1e-15
+"""Of a parameter."""
 _TRIALS = 4
 """Facets in space that are tried for each point: the nearest ones, as if they were flat."""
 _AT_ONCE = 1_000_000
@@ -111,7 +113,9 @@ def _along(face: Face, points: np.ndarray, facet: np.ndarray) -> np.ndarray:
     for _ in range(0 if face.nodes.shape[1] == 2 else 20):
         offset, tangent = face.points(facet, t) - points, face.tangents(facet, t)
         step = (offset * tangent).sum(axis=1) / (tangent**2).sum(axis=1)
-        t = np.clip(t - step, 0.0, 1.0)
+        before, t = t, np.clip(t - step, 0.0, 1.0)
+        if np.abs(t - before).max(initial=0.0) <= _ROUNDING:
+            break
     return t
 
 

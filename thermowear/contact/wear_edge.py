@@ -19,6 +19,7 @@ pressure is smooth, as it is behind the edge, nothing is left, and this is weak 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -160,6 +161,8 @@ class EdgeSpace:
 
     Attributes
     ----------
+    points : ndarray of bool, shape (n,)
+        These points.
     basis : ndarray, shape (n, k)
         Basis functions Ψ off these points, then those of single points.
     weighted : ndarray, shape (n, k)
@@ -172,6 +175,7 @@ class EdgeSpace:
         See `CondensedContact`.
     """
 
+    points: np.ndarray
     basis: np.ndarray
     weighted: np.ndarray
     seen: np.ndarray
@@ -179,13 +183,27 @@ class EdgeSpace:
     modes: np.ndarray
     force_modes: np.ndarray
 
+    @cached_property
+    def area(self) -> np.ndarray:
+        """Of the coefficients, shape (k,) [m²]."""
+        return self.weighted.sum(axis=0)
+
     def compliance(self, compliance: np.ndarray) -> np.ndarray:
         """Weak gaps per coefficient, shape (k, k), from those of Ψ, shape (m, m)."""
         return self.seen.T @ compliance @ self.seen + self.own
 
     def pressing(self, pressure: np.ndarray) -> np.ndarray:
         """Which coefficients press in a pressure at the points, shape (k,)."""
-        return self.weighted.T @ pressure > _NONE * pressure.max() * self.weighted.sum(axis=0)
+        return self.weighted.T @ pressure > _NONE * pressure.max() * self.area
+
+    def at_points(self, weak: np.ndarray) -> np.ndarray:
+        """Weak values (k,) per area at single points; NaN at others or without area, shape (n,)."""
+        result, count = np.full(len(self.points), np.nan), np.count_nonzero(self.points)
+        area = self.area[-count:]
+        means = np.full(count, np.nan)
+        np.divide(weak[-count:], area, out=means, where=area > 0.0)
+        result[self.points] = means
+        return result
 
 
 def edge_space(contact: CondensedContact, points: np.ndarray, holder: Holder) -> EdgeSpace:
@@ -211,6 +229,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: Holder) ->
     yielding = (weights * _shortest_compliance(contact))[:, None] * left
     own[len(whole) :, len(whole) :] = left.T @ yielding
     return EdgeSpace(
+        points=points,
         basis=basis,
         weighted=weighted,
         seen=np.hstack([np.eye(len(share))[:, whole], seen]),

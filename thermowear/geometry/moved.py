@@ -20,6 +20,12 @@ from .tagged import TaggedMesh
 
 _CORNER = np.cos(np.radians(20.0))
 """Edges that meet at a sharper turn make a corner."""
+_SYMMETRIC = {
+    "permc_spec": "MMD_AT_PLUS_A",
+    "diag_pivot_thresh": 0.0,
+    "options": {"SymmetricMode": True},
+}
+"""SuperLU's settings for symmetric positive matrices."""
 
 
 @dataclass(frozen=True)
@@ -198,10 +204,9 @@ def extended(
     ).tocsr()
     inner = np.setdiff1d(np.unique(nodes), known)
     if len(inner):
-        solved = scipy.sparse.linalg.spsolve(
-            whole[inner][:, inner].tocsc(), -(whole[inner] @ given)
-        )
-        result[inner] = solved.reshape(len(inner), -1)
+        rows = whole[inner]
+        factor = scipy.sparse.linalg.splu(rows[:, inner].tocsc(), **_SYMMETRIC)
+        result[inner] = factor.solve(-(rows @ given))
     return result
 
 

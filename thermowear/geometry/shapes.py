@@ -28,11 +28,10 @@ def scaled_jacobians(mesh: TaggedMesh) -> np.ndarray:
     places = np.array(list(itertools.product(np.linspace(0, 1, _PLACES[dim]), repeat=dim)))
     if mesh.cell_type == "triangle":
         places = places[places.sum(axis=1) < 1.01]
-    tangents = np.einsum(
-        "qdk,cki->cqdi", slopes(mesh.cell_type, mesh.order, places), mesh.points[mesh.cells]
-    )
-    lengths = np.linalg.norm(tangents, axis=3).prod(axis=2)
-    return (np.linalg.det(tangents) / lengths).min(axis=1)
+    nodes = mesh.points[mesh.cells]
+    tangents = _combined(slopes(mesh.cell_type, mesh.order, places), nodes)
+    lengths = np.sqrt(np.einsum("cqdi,cqdi->cqd", tangents, tangents))
+    return (_determinants(tangents) / lengths.prod(axis=2)).min(axis=1)
 
 
 def quality(mesh: TaggedMesh, parts: tuple[str, ...]) -> float:
@@ -51,10 +50,10 @@ def volume(
     """
     places, weights = gauss_rule(mesh.cell_type, mesh.order + 2)
     nodes = mesh.points[mesh.cells[cells]]
-    tangents = np.einsum("qdk,cki->cqdi", slopes(mesh.cell_type, mesh.order, places), nodes)
+    tangents = _combined(slopes(mesh.cell_type, mesh.order, places), nodes)
     values = shape_functions(mesh.cell_type, mesh.order, places)
     points = np.einsum("qk,cki->cqi", values, nodes)
-    areas = np.abs(np.linalg.det(tangents)) * weights
+    areas = np.abs(_determinants(tangents)) * weights
     return float(areas.ravel() @ factor(points.reshape(-1, 2)))
 
 
@@ -94,13 +93,27 @@ def laplacians(kind: str, order: int, nodes: np.ndarray) -> np.ndarray:
     result = np.empty((len(nodes), derivatives.shape[2], derivatives.shape[2]))
     for first in range(0, len(nodes), _AT_ONCE):
         some = slice(first, first + _AT_ONCE)
-        tangents = np.einsum("qdk,cki->cqdi", derivatives, nodes[some])
+        tangents = _combined(derivatives, nodes[some])
         metric = tangents @ tangents.mT
-        sizes = np.sqrt(np.linalg.det(metric)) * weights
-        along = np.linalg.solve(metric, derivatives) * sizes[..., None, None]
+        sizes = np.sqrt(_determinants(metric)) * weights
+        along = (np.linalg.inv(metric) * sizes[..., None, None]) @ derivatives
         shape = len(along), -1, derivatives.shape[2]
         result[some] = derivatives.reshape(shape[1:]).T @ along.reshape(shape)
     return result
+
+
+def _combined(derivatives: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """Tangents (n, q, d, gdim) of cells from slopes (q, d, k) and nodes (n, k, gdim)."""
+    flat = derivatives.reshape(-1, derivatives.shape[2])
+    return (flat @ nodes).reshape(len(nodes), *derivatives.shape[:2], nodes.shape[2])
+
+
+def _determinants(matrices: np.ndarray) -> np.ndarray:
+    """Of small matrices (..., d, d): in the plane by hand, as LAPACK takes them one by one."""
+    if matrices.shape[-1] != 2:
+        return np.linalg.det(matrices)
+    (a, b), (c, d) = np.moveaxis(matrices, (-2, -1), (0, 1))
+    return a * d - b * c
 
 
 def gauss_rule(kind: str, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -45,6 +45,9 @@ class CondensedMethod:
         self._rubbing = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
         self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
+        self._last_opening: tuple[CondensedContact | EdgeSpace, np.ndarray, np.ndarray] | None = (
+            None
+        )
         self.note: str | None = None
 
     def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
@@ -71,6 +74,11 @@ class CondensedMethod:
             "contact: pressure and temperatures do not settle where conductivity or expansion "
             "change; reduce the speed"
         )
+
+    def yielding(self, points) -> np.ndarray:
+        space = self._space(self._contact, points)
+        assert space is not None
+        return space.at_points(np.diag(space.compliance(self._contact.compliance)))
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle in the pressure space.
@@ -122,6 +130,16 @@ class CondensedMethod:
             last = self._last_space = bodies, points, space
         return last[2]
 
+    def _opening_on_the_spot(
+        self, space: CondensedContact | EdgeSpace, slope: np.ndarray
+    ) -> np.ndarray:
+        """Weak gaps (k, k) that pressures open on the spot [m/Pa]; the last ones are kept."""
+        last = self._last_opening
+        if last is None or last[0] is not space or not np.array_equal(last[1], slope):
+            opening = space.weighted.T @ (slope[:, None] * space.basis)
+            last = self._last_opening = space, slope, opening
+        return last[2]
+
     def _solved(
         self,
         bodies: CondensedContact,
@@ -140,14 +158,17 @@ class CondensedMethod:
             compliance, resting = edge.compliance(compliance), edge.seen.T @ resting
             start = None if guess is None else edge.pressing(guess.pressure)
         if slope.point.any():
-            compliance = compliance + space.weighted.T @ (slope.point[:, None] * space.basis)
+            compliance = compliance + self._opening_on_the_spot(space, slope.point)
         if len(slope.rows):
             reach = space.weighted.T @ slope.reach
             compliance = compliance + reach @ (slope.rows @ space.basis)
         weak = space.weighted.T @ gap + resting
         solution = solve_contact(compliance, weak, space.modes, load, start, space.force_modes)
         pressure = space.basis @ solution.coefficients
+        apart = None
         if edge is not None:
+            left = weak + compliance @ solution.coefficients - space.modes @ solution.motion
+            apart = (pressure == 0.0) * edge.at_points(left)
             seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
             solution = replace(solution, coefficients=seen, active=active)
-        return Contact(pressure, self._system.holder.amounts(solution.motion), solution)
+        return Contact(pressure, self._system.holder.amounts(solution.motion), solution, apart)

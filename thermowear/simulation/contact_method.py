@@ -27,11 +27,15 @@ class Contact:
         How far the holder has made each of its motions [m or rad].
     memory : object
         What the method that solved it starts from next time.
+    apart : ndarray or None, shape (n,)
+        Gap of the points at which contact holds one by one: 0 where they press, NaN elsewhere;
+        None without such points [m].
     """
 
     pressure: np.ndarray
     motion: np.ndarray
     memory: Any
+    apart: np.ndarray | None = None
 
 
 class ContactMethod(Protocol):
@@ -71,6 +75,15 @@ class ContactMethod(Protocol):
         Raises
         ------
         ComputationError
+        """
+
+    def yielding(self, points: np.ndarray) -> np.ndarray:
+        """Deflection under the pressure of single points, NaN at others, shape (n,) [m/Pa].
+
+        Parameters
+        ----------
+        points : ndarray of bool, shape (n,)
+            From `WearEdge.points`.
         """
 
     def steady(self, pressure: np.ndarray, rates: WearRates, conditions: Conditions) -> np.ndarray:

@@ -68,6 +68,9 @@ class FullMethod:
             'or use contact.method = "condensed", which solves both at once'
         )
 
+    def yielding(self, points) -> np.ndarray:
+        return np.where(points, self._edge_compliance, np.nan)
+
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """The principle point by point: the full system has no pressure space of its own."""
         return pressure

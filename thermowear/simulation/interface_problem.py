@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..contact.edge_times import closing_times
 from ..contact.wear_edge import WearEdge
 from .conditions import Conditions, Surroundings
 from .contact_method import Contact, ContactMethod, Slope, WearRates, newton_with_wear
@@ -25,6 +26,10 @@ _UNWORN = (
 )
 _RISE = 0.1
 """Of what the largest pressure has risen by in a step, where its points are reached one by one."""
+_BEHIND = 0.03
+"""Of a step: so far behind the time at which a point is expected to be reached it ends."""
+_SETTLING = 0.4
+"""Of the time in which wear takes up the deflection under a point: step after it is reached."""
 _STEP = "contact: what depends on temperature or pressure does not settle in a step"
 
 
@@ -241,6 +246,32 @@ class InterfaceProblem:
         mean = float(change @ self._system.weights) / area if area > 0.0 else 0.0
         largest, expected, earlier = (v.pressure.max() for v in (one, other, before))
         return float(max(mean, abs(largest - expected), _RISE * (largest - earlier)))
+
+    def edge_steps(
+        self, states: tuple[WornContact, WornContact, WornContact], step: float, time: float
+    ) -> tuple[float, float]:
+        """Steps that end right behind a time at which the edge of the wear reaches a point.
+
+        See `WearProblem`. After a step within which a pressure has begun the next one is short.
+        """
+        start, middle, end = (state.contact.apart for state in states)
+        if start is None or middle is None or end is None:
+            return 0.0, np.inf
+        times = closing_times(start, middle, end, step)
+        reached = times[end == 0.0].min(initial=np.inf)
+        left = times[end > 0.0].min(initial=np.inf) - step
+        following = left + _BEHIND * max(left, step)
+        begun = (end == 0.0) & (states[0].pressure == 0.0)
+        if begun.any():
+            following = min(following, _SETTLING * self._settling(states[2], time, begun))
+        return (1 + _BEHIND) * reached if np.isfinite(reached) else 0.0, following
+
+    def _settling(self, state: WornContact, time: float, points: np.ndarray) -> float:
+        """Shortest time in which wear takes up the deflection under the pressure of points [s]."""
+        assert state.pointwise is not None
+        slope = self._rates(self.conditions(state, time)).slope(state.pressure).point[points]
+        yielding = self._method.yielding(state.pointwise)[points]
+        return float((yielding[slope > 0.0] / slope[slope > 0.0]).min(initial=np.inf))
 
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""

@@ -253,8 +253,8 @@ class OuterLoop:
         if last.state.stored is not None or disturbed <= allowed:
             return system, problem, last
         start = replace(last.state, worn=last.state.worn - grown)
-        state, _ = advance_with_error(problem, start, before.time, last.step)
-        return system, problem, replace(last, state=state)
+        again = advance_with_error(problem, start, before.time, last.step)
+        return system, problem, replace(last, state=again.state)
 
     def _update(self, system, problem, kept, last: Moment):
         """System and problem on meshes that are moved, and the same moment of them."""

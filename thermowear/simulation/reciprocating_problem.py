@@ -154,6 +154,10 @@ class ReciprocatingProblem:
         """Largest difference of two pressures [Pa]."""
         return float(np.abs(one.pressure - other.pressure).max())
 
+    def edge_steps(self, states, step: float, time: float) -> tuple[float, float]:
+        """Contact does not hold point by point."""
+        return 0.0, np.inf
+
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Nothing is warm."""
         return 0.0

@@ -12,7 +12,7 @@ from ..case.analyses import Timed
 from ..errors import ComputationError
 from .checkpoint import can_be_packed
 from .step_sizes import AnySize, StepSizes, ends
-from .wear_step import WearProblem, WornContact, advance_with_error, next_step
+from .wear_step import Trial, WearProblem, WornContact, advance_with_error, next_step
 
 _FAR_SMALLER = 1e-3
 """Of a step: errors of time fall at least by its square root."""
@@ -116,47 +116,53 @@ def _next(
     """The end of a step towards a time that must be hit [s]."""
     way = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
     smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
-    state, step, error, following = _accept(
-        problem, last.state, way, last.wanted, last.time, smallest, settings
-    )
+    trial, step, following = _accept(problem, last, way, smallest, settings)
     hits = ends(step, target - last.time)
     time = target if hits else last.time + step
     return Moment(
         time=time,
         step=step,
-        state=state,
-        error=error,
+        state=trial.state,
+        error=trial.error,
         is_output=hits and target in settings.output_times,
-        distance=problem.distance(state, steady),
+        distance=problem.distance(trial.state, steady),
         number=last.number + 1,
         begin=target if hits else last.begin,
         wanted=max(following, last.wanted) if hits else following,
     )
 
 
-def _accept(problem, state, way, wanted, time, smallest, settings):
+def _accept(problem, last: Moment, way, smallest, settings) -> tuple[Trial, float, float]:
     """Repeat a step with smaller sizes until its error is within the tolerance.
 
     Where contact holds point by point, what is no smaller in a step that is far smaller is a jump:
     a point begins to press at once. That step, which ends right behind it, is taken.
+
+    Returns
+    -------
+    trial : Trial
+    step, following : float
+        Its size, and that of the next one, as far as errors allow [s].
     """
-    trouble, step = "", way(wanted)
+    trouble, step = "", way(last.wanted)
     tried: list[tuple[float, float]] = []
     while step > smallest:
         try:
-            following, error = advance_with_error(problem, state, time, step)
+            trial = advance_with_error(problem, last.state, last.time, step)
         except ComputationError as failure:
             step, trouble = way(step / 4), f" ({failure})"
             continue
-        proposed = next_step(step, error, settings.tolerance)
+        error = trial.error
+        proposed = next_step(step, error, settings.tolerance, (last.step, last.error))
         if error <= settings.tolerance:
-            return following, step, error, proposed
+            return trial, step, min(proposed, trial.following)
         jumps = any(step <= _FAR_SMALLER * size and error > e / 2 for size, e in tried)
-        if jumps and following.pointwise is not None:
-            return following, step, error, step / _FAR_SMALLER
+        if jumps and trial.state.pointwise is not None:
+            return trial, step, step / _FAR_SMALLER
         tried.append((step, error))
-        step = way(min(proposed, 0.9 * step))
-    raise ComputationError(f"{settings.type}: no step is small enough at {time:g} s{trouble}")
+        located = trial.reached if trial.reached < 0.9 * step else 0.0
+        step = way(min(max(proposed, located), 0.9 * step))
+    raise ComputationError(f"{settings.type}: no step is small enough at {last.time:g} s{trouble}")
 
 
 def times_to_hit(settings: Timed, problem: WearProblem) -> list[float]:

@@ -105,6 +105,26 @@ class WearProblem(Protocol):
             At its end; all of the pressure where what was chosen for the step does not do for them.
         """
 
+    def edge_steps(
+        self, states: tuple[WornContact, WornContact, WornContact], step: float, time: float
+    ) -> tuple[float, float]:
+        """Steps that end right behind a time at which the edge of the wear reaches a point.
+
+        Parameters
+        ----------
+        states : tuple of WornContact
+            At the beginning of a step, in its middle and at its end.
+        step, time : float
+            Its size and its end [s].
+
+        Returns
+        -------
+        reached : float
+            In place of this step, to the first point that it has reached; 0 without any [s].
+        following : float
+            The largest that may follow this step; may be infinite [s].
+        """
+
     def difference_inside(self, one: WornContact, other: WornContact) -> float:
         """Largest difference of temperatures inside the bodies, where that matters [K]."""
 
@@ -133,17 +153,33 @@ def advance(problem: WearProblem, state: WornContact, time: float, step: float) 
     return replace(problem.stage(before, _γ * step, time + step, first), peak=state.largest)
 
 
-def advance_with_error(
-    problem: WearProblem, state: WornContact, time: float, step: float
-) -> tuple[WornContact, float]:
+@dataclass(frozen=True)
+class Trial:
+    """A step that has been tried.
+
+    Attributes
+    ----------
+    state : WornContact
+        At its end.
+    error : float
+    reached, following : float
+        See `WearProblem.edge_steps` [s].
+    """
+
+    state: WornContact
+    error: float
+    reached: float = 0.0
+    following: float = np.inf
+
+
+def advance_with_error(problem: WearProblem, state: WornContact, time: float, step: float) -> Trial:
     """Two half steps, and their error from the difference to a whole one (Richardson).
 
     Returns
     -------
-    WornContact
-        After the two half steps.
-    float
-        Largest of the errors of pressure (see `WearProblem.difference`), of wear, and of
+    Trial
+        The state after the two half steps. Its error is the largest of those of pressure (see
+        `WearProblem.difference`), of wear, and of
         temperatures that are followed in time: relative to the largest pressure, to the largest
         depth worn and to the largest rise so far, 10 K at least. Temperatures are those of the
         faces, and those inside the bodies where not friction alone heats them. What rounding makes
@@ -167,7 +203,8 @@ def advance_with_error(
             for ours, theirs in zip(halves.faces.rise, whole.faces.rise, strict=True)
         ]
         errors.append(problem.difference_inside(halves, whole) / largest)
-    return halves, max(errors) / 3.0
+    edge = problem.edge_steps((state, middle, halves), step, time + step)
+    return Trial(halves, max(errors) / 3.0, *edge)
 
 
 def _relative(errors: np.ndarray | float, scale: float, allowed: float = 0.0) -> float:
@@ -176,8 +213,21 @@ def _relative(errors: np.ndarray | float, scale: float, allowed: float = 0.0) ->
     return largest / scale if largest > 0.0 else 0.0
 
 
-def next_step(step: float, error: float, tolerance: float) -> float:
-    """Step size that should meet the tolerance; the error goes with its third power."""
+def next_step(step: float, error: float, tolerance: float, former: tuple[float, float]) -> float:
+    """Step size that should meet the tolerance; the error goes with its third power.
+
+    Where it has grown less than that from the former step to this one, it is expected to do so
+    again (predictive control, Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496).
+
+    Parameters
+    ----------
+    step, error, tolerance : float
+    former : tuple of float
+        Size and error of the step that led to this one.
+    """
     if error == 0.0:
         return 5.0 * step
-    return step * float(np.clip(0.9 * (tolerance / error) ** (1 / 3), 0.2, 5.0))
+    factor = 0.9 * (tolerance / error) ** (1 / 3)
+    if factor > 1.0 and former[0] > 0.0:
+        factor *= max(1.0, step / former[0] * (former[1] / error) ** (1 / 3))
+    return step * float(np.clip(factor, 0.2, 5.0))

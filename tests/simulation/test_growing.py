@@ -79,6 +79,23 @@ def test_a_ball_that_wears_fast_runs_to_its_end(wearing):
     assert volumes == pytest.approx(len(wearing) * [k * 10.385 * 0.05 * 0.4], rel=1e-3)
 
 
+def test_steps_end_where_the_edge_reaches_points(monkeypatch):
+    """requirement: few tries are rejected, where error control alone rejects 4 of 10."""
+    from thermowear.simulation import transient
+
+    advance, tried = transient.advance_with_error, []
+
+    def counted(problem, state, time, step):
+        tried.append(step)
+        return advance(problem, state, time, step)
+
+    monkeypatch.setattr(transient, "advance_with_error", counted)
+    history = solved(CYLINDER, COARSE | {"analysis.end_time": "30 s"}).history
+    accepted = len(history) - 1
+    assert accepted > 50
+    assert len(tried) < 1.15 * accepted
+
+
 @pytest.mark.slow
 def test_the_pressure_does_not_overshoot_at_a_travelling_edge():
     """requirement: largest pressure within 5 % of the uniform one wherever in an element it is."""

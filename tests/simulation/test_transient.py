@@ -230,4 +230,4 @@ def test_steps_grow_by_what_errors_have_done():
     )
     assert next_step(2.0, 2e-6, 1e-3, (1.0, 6e-5)) == pytest.approx(10.0)
     assert next_step(2.0, 8e-3, 1e-3, (1.0, 6e-2)) == pytest.approx(0.9)
-    assert next_step(2.0, 8e-4, 1e-3, (0.0, 0.0)) == pytest.approx(1.8 * 1.25 ** (1 / 3))
+    assert next_step(2.0, 8e-4, 1e-3) == pytest.approx(1.8 * 1.25 ** (1 / 3))

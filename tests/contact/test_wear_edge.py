@@ -75,3 +75,13 @@ def test_an_edge_that_leaves_its_points_in_a_step_is_noticed(face):
     points = edge_points(facet, contact.basis, before)
     for after, passed in ((x < 2.9, False), (x < 3.5, True), (before | (x > 4.5), False)):
         assert has_passed(contact.basis, points, before, after) is passed
+
+
+def test_weak_gaps_of_single_points_are_gaps(face):
+    """requirement: by their areas, at their points, and nowhere else."""
+    facet, x, contact, holder = face
+    points = edge_points(facet, contact.basis, x < 2.5)
+    space = edge_space(contact, points, holder)
+    found = space.at_points(space.weighted.T @ x)
+    np.testing.assert_allclose(found[points], x[points], rtol=1e-12)
+    assert np.all(np.isnan(found[~points]))

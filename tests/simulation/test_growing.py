@@ -101,6 +101,23 @@ def test_no_method_overshoots_at_a_travelling_edge(method):
     np.testing.assert_allclose(found[:, 1], uniform, rtol=8e-2)
 
 
+def test_steps_end_where_the_edge_reaches_points(monkeypatch):
+    """requirement: few tries are rejected, where error control alone rejects 4 of 10."""
+    from thermowear.simulation import transient
+
+    advance, tried = transient.advance_with_error, []
+
+    def counted(problem, state, time, step):
+        tried.append(step)
+        return advance(problem, state, time, step)
+
+    monkeypatch.setattr(transient, "advance_with_error", counted)
+    history = solved(CYLINDER, COARSE | {"analysis.end_time": "30 s"}).history
+    accepted = len(history) - 1
+    assert accepted > 50
+    assert len(tried) < 1.15 * accepted
+
+
 @pytest.mark.slow
 def test_the_pressure_does_not_overshoot_at_a_travelling_edge():
     """requirement: largest pressure within 5 % of the uniform one wherever in an element it is."""

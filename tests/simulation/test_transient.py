@@ -9,7 +9,7 @@ import pytest
 import thermowear as tw
 from thermowear.reference import annular_punch as reference
 from thermowear.simulation import transient
-from thermowear.simulation.wear_step import Trial
+from thermowear.simulation.wear_step import Trial, next_step
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
 
@@ -219,3 +219,15 @@ def test_a_jump_of_the_pressure_is_located_and_passed(monkeypatch, pointwise):
     assert trial.error == 0.1
     assert step == tried[-1] <= 1e-3 * tried[0] < tried[-2]
     assert following > step
+
+
+def test_steps_grow_by_what_errors_have_done():
+    """requirement: third power of smooth errors; where they grow less, steps grow more."""
+    smooth = next_step(2.0, 8e-5, 1e-3, (1.0, 1e-5))
+    assert smooth == pytest.approx(2.0 * 0.9 * (1e-3 / 8e-5) ** (1 / 3), rel=1e-12)
+    assert next_step(2.0, 6e-5, 1e-3, (1.0, 6e-5)) == pytest.approx(
+        4.0 * 0.9 * (1e-3 / 6e-5) ** (1 / 3), rel=1e-12
+    )
+    assert next_step(2.0, 2e-6, 1e-3, (1.0, 6e-5)) == pytest.approx(10.0)
+    assert next_step(2.0, 8e-3, 1e-3, (1.0, 6e-2)) == pytest.approx(0.9)
+    assert next_step(2.0, 8e-4, 1e-3) == pytest.approx(1.8 * 1.25 ** (1 / 3))

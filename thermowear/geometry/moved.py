@@ -204,9 +204,9 @@ def extended(
     ).tocsr()
     inner = np.setdiff1d(np.unique(nodes), known)
     if len(inner):
-        rows = whole[inner]
-        factor = scipy.sparse.linalg.splu(rows[:, inner].tocsc(), **_SYMMETRIC)
-        result[inner] = factor.solve(-(rows @ given))
+        of_inner = whole[inner]
+        factor = scipy.sparse.linalg.splu(of_inner[:, inner].tocsc(), **_SYMMETRIC)
+        result[inner] = factor.solve(-(of_inner @ given))
     return result
 
 

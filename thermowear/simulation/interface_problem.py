@@ -258,8 +258,8 @@ class InterfaceProblem:
         if start is None or middle is None or end is None:
             return 0.0, np.inf
         times = closing_times(start, middle, end, step)
-        reached = times[end == 0.0].min(initial=np.inf)
-        left = times[end > 0.0].min(initial=np.inf) - step
+        reached = float(times[end == 0.0].min(initial=np.inf))
+        left = float(times[end > 0.0].min(initial=np.inf)) - step
         following = left + _BEHIND * max(left, step)
         begun = (end == 0.0) & (states[0].pressure == 0.0)
         if begun.any():

@@ -145,6 +145,8 @@ def _accept(problem, last: Moment, way, smallest, settings) -> tuple[Trial, floa
         Its size, and that of the next one, as far as errors allow [s].
     """
     trouble, step = "", way(last.wanted)
+    # what fades after a point has begun to press makes ever smaller errors
+    former = None if last.state.pointwise is None else (last.step, last.error)
     tried: list[tuple[float, float]] = []
     while step > smallest:
         try:
@@ -153,7 +155,7 @@ def _accept(problem, last: Moment, way, smallest, settings) -> tuple[Trial, floa
             step, trouble = way(step / 4), f" ({failure})"
             continue
         error = trial.error
-        proposed = next_step(step, error, settings.tolerance, (last.step, last.error))
+        proposed = next_step(step, error, settings.tolerance, former)
         if error <= settings.tolerance:
             return trial, step, min(proposed, trial.following)
         jumps = any(step <= _FAR_SMALLER * size and error > e / 2 for size, e in tried)

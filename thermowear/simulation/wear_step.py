@@ -213,7 +213,9 @@ def _relative(errors: np.ndarray | float, scale: float, allowed: float = 0.0) ->
     return largest / scale if largest > 0.0 else 0.0
 
 
-def next_step(step: float, error: float, tolerance: float, former: tuple[float, float]) -> float:
+def next_step(
+    step: float, error: float, tolerance: float, former: tuple[float, float] | None = None
+) -> float:
     """Step size that should meet the tolerance; the error goes with its third power.
 
     Where it has grown less than that from the former step to this one, it is expected to do so
@@ -222,12 +224,12 @@ def next_step(step: float, error: float, tolerance: float, former: tuple[float, 
     Parameters
     ----------
     step, error, tolerance : float
-    former : tuple of float
-        Size and error of the step that led to this one.
+    former : tuple of float, optional
+        Size and error of the step that led to this one; without them no more is expected.
     """
     if error == 0.0:
         return 5.0 * step
     factor = 0.9 * (tolerance / error) ** (1 / 3)
-    if factor > 1.0 and former[0] > 0.0:
+    if former is not None and factor > 1.0:
         factor *= max(1.0, step / former[0] * (former[1] / error) ** (1 / 3))
     return step * float(np.clip(factor, 0.2, 5.0))

@@ -14,7 +14,16 @@ _FEW = 5
 
 
 class StepSizes(Protocol):
-    """Chooses sizes of steps on the way from one time that is hit exactly to the next."""
+    """Chooses sizes of steps on the way from one time that is hit exactly to the next.
+
+    Attributes
+    ----------
+    rounding : float
+        Ratio of a wanted size to the one chosen, at most.
+    """
+
+    @property
+    def rounding(self) -> float: ...
 
     def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
         """A step from a time, between a begin and an end, that is not larger than this one [s]."""
@@ -28,6 +37,8 @@ class AnySize:
     longest : float, optional
         Step that there may be [s].
     """
+
+    rounding = 1.0
 
     def __init__(self, longest: float = math.inf):
         self._longest = longest
@@ -48,6 +59,8 @@ class FewSizes:
     times : iterable of float
         All that will be hit exactly [s].
     """
+
+    rounding = 2.0
 
     def __init__(self, times: Iterable[float]):
         self._measure = reduce(_common_measure, (t for t in times if t < math.inf), 0.0)
@@ -83,6 +96,10 @@ class Limited:
     def __init__(self, sizes: StepSizes):
         self.largest = math.inf
         self._sizes = sizes
+
+    @property
+    def rounding(self) -> float:
+        return self._sizes.rounding
 
     def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
         return self._sizes.at_most(min(wanted, self.largest), time, begin, end)

@@ -116,7 +116,7 @@ def _next(
     """The end of a step towards a time that must be hit [s]."""
     way = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
     smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
-    trial, step, following = _accept(problem, last, way, smallest, settings)
+    trial, step, following = _accept(problem, last, way, sizes.rounding, smallest, settings)
     hits = ends(step, target - last.time)
     time = target if hits else last.time + step
     return Moment(
@@ -132,8 +132,12 @@ def _next(
     )
 
 
-def _accept(problem, last: Moment, way, smallest, settings) -> tuple[Trial, float, float]:
+def _accept(
+    problem, last: Moment, way, rounding: float, smallest: float, settings
+) -> tuple[Trial, float, float]:
     """Repeat a step with smaller sizes until its error is within the tolerance.
+
+    Steps that are to end behind the time of an event must do so once they are rounded, too.
 
     Where contact holds point by point, what is no smaller in a step that is far smaller is a jump:
     a point begins to press at once. That step, which ends right behind it, is taken.
@@ -157,12 +161,12 @@ def _accept(problem, last: Moment, way, smallest, settings) -> tuple[Trial, floa
         error = trial.error
         proposed = next_step(step, error, settings.tolerance, former)
         if error <= settings.tolerance:
-            return trial, step, min(proposed, trial.following)
+            return trial, step, min(proposed, rounding * trial.following)
         jumps = any(step <= _FAR_SMALLER * size and error > e / 2 for size, e in tried)
         if jumps and trial.state.pointwise is not None:
             return trial, step, step / _FAR_SMALLER
         tried.append((step, error))
-        located = trial.reached if trial.reached < 0.9 * step else 0.0
+        located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
         step = way(min(max(proposed, located), 0.9 * step))
     raise ComputationError(f"{settings.type}: no step is small enough at {last.time:g} s{trouble}")
 

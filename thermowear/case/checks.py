@@ -6,20 +6,16 @@ Every check yields the path of the key at fault and what is wrong there.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from ..errors import CaseError, note
 from .analyses import Transient
 from .courses import courses
 from .equilibrium import holder, load, motion, surface_pressure
-from .facing import material_of
 from .heating import SURFACES, Need, heat, thermal_needs
 from .materials import Properties
 from .oscillation import counted, fretting, reciprocating
+from .schema import Case
 from .varying import condensed_only, varying
-
-if TYPE_CHECKING:
-    from .schema import Case
 
 Fault = tuple[str, str]
 
@@ -118,7 +114,7 @@ def _materials(case: Case) -> Iterator[Fault]:
             for key in sorted(table.model_fields_set - {"like", "materials"}):
                 yield f"{path}.{key}", "a body that is like another has no keys of its own"
         try:
-            sources[part] = material_of(case, part)
+            sources[part] = case.located_material(part)
         except ValueError as error:
             if own:
                 yield f"{path}.like", str(error)

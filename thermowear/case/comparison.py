@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from .analyses import Fretting, Reciprocating, Timed
-from .oscillation import cycles
 from .schema import Case, as_plain
 
 _FREE = {"title", "analysis.max_steps", "analysis.frames", "analysis.checkpoint_every"}
@@ -93,7 +92,7 @@ def _end(case: Case) -> float | None:
         return _end_of_cycles(case)
     if not isinstance(settings, Timed):
         return None
-    count = cycles(case)
+    count = case.cycles
     if isinstance(settings, Reciprocating) and count is not None:
         assert case.motion is not None  # the case has been checked
         assert case.motion.frequency is not None
@@ -106,7 +105,7 @@ def _end_of_cycles(case: Case) -> float:
     history = case.load.history
     assert history is not None  # the case has been checked
     begin, end = history.cycle or (0.0, history.time[-1])
-    return end + (int(cycles(case) or 1) - 1) * (end - begin)
+    return end + (int(case.cycles or 1) - 1) * (end - begin)
 
 
 def _outputs(case: Case, time: float) -> set[float]:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from .analyses import Fretting, Transient
-
-if TYPE_CHECKING:
-    from .history import History
-    from .schema import Case
+from .history import History
+from .schema import Case
 
 Fault = tuple[str, str]
 

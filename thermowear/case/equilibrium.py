@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from .geometry import Geometry
-
-if TYPE_CHECKING:
-    from .schema import Case
+from .schema import Case
 
 Fault = tuple[str, str]
 

@@ -1,45 +1,20 @@
-"""The materials of parts of bodies, and of those that touch at points of the contact."""
+"""Materials of the parts of the bodies that touch at the points of a contact."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import CaseError
-from .materials import Properties, check_named, resolve_like
-
-if TYPE_CHECKING:
-    from .schema import Case
+from .materials import Properties
 
 _KEYS = {"effusivity": ("conductivity", "density", "specific_heat")}
 """What properties of a material follow from; others are keys themselves."""
 
-
-def material_of(case: Case, part: str) -> tuple[str, Properties]:
-    """The key's path of the table that has the material of a part, and the material.
-
-    Raises
-    ------
-    ValueError
-        If ``like`` names no body, or comes back to itself.
-    """
-    geometry, bodies = case.geometry, case.bodies
-    owner = geometry.zones.get(part, part)
-    name = part if part in bodies else owner
-    chosen = geometry.set_of.get(part)
-    if chosen is None and not bodies[name].has_own and bodies[name].materials:
-        chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
-    if chosen is None:
-        found = resolve_like(bodies, name)
-        return f"bodies.{found}", bodies[found]
-    own = bodies[owner].materials[chosen]
-    if own.like is None:
-        return f"bodies.{owner}.materials.{chosen}", own
-    check_named(bodies, own.like)
-    found = resolve_like(bodies, own.like)
-    return f"bodies.{found}", bodies[found]
+Materials = Callable[[str], tuple[str, Properties]]
+"""Key's path and material of a part, by its name."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +32,7 @@ class Facing:
     parts: tuple[str, ...]
     at: tuple[np.ndarray, np.ndarray]
 
-    def of(self, case: Case, key: str) -> tuple[np.ndarray, np.ndarray]:
+    def of(self, materials: Materials, key: str) -> tuple[np.ndarray, np.ndarray]:
         """A property of the materials at the points of both faces, shape (n,) each.
 
         Raises
@@ -65,13 +40,13 @@ class Facing:
         CaseError
             If a material that touches lacks it.
         """
-        first, second = (self._on_face(case, key, at) for at in self.at)
+        first, second = (self._on_face(materials, key, at) for at in self.at)
         return first, second
 
-    def _on_face(self, case: Case, key: str, at: np.ndarray) -> np.ndarray:
+    def _on_face(self, materials: Materials, key: str, at: np.ndarray) -> np.ndarray:
         values = np.zeros(len(self.parts))
         for index in np.unique(at):
-            path, material = material_of(case, self.parts[index])
+            path, material = materials(self.parts[index])
             for needed in _KEYS.get(key, (key,)):
                 if getattr(material, needed) is None:
                     raise CaseError(f"{path}.{needed}: missing; it lies on a contact face")

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from .heat import Heat
-    from .schema import Case
+from .heat import Heat
+from .schema import Case
 
 Fault = tuple[str, str]
 Need = tuple[str, str, str]

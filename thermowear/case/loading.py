@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from ..errors import MOST_FAULTS, CaseError, quoted, shortened
 from ..user_files import read_text
 from .bounds import LARGEST_FILE, MOST_PARTS, check_keys, check_tables
+from .checks import check
 from .paths import FOLDER
 from .schema import Case
 from .section import KeyFault, Section
@@ -66,11 +67,13 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
         tables = _override(tables, text)
     check_tables(tables)
     try:
-        return Case.model_validate(tables, context=context)
+        case = Case.model_validate(tables, context=context)
     except ValidationError as error:
         found = error.errors(include_url=False)
         lines = [_line(fault) for fault in found[:MOST_FAULTS]]
         raise CaseError(*lines, more=len(found) - len(lines)) from None
+    check(case)
+    return case
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from pydantic import Field
 from ..errors import quoted
 from . import units
 from .factors import ExpansionFactor, TemperatureFactor
+from .geometry import Geometry
 from .section import Number, Section
 
 
@@ -91,3 +92,27 @@ def check_named(bodies: dict[str, Body], name: str) -> None:
     """Raise a `ValueError` where `like` names no body."""
     if name not in bodies:
         raise ValueError(f"like = {quoted(name)} names no body; one of: {', '.join(bodies)}")
+
+
+def material_of(geometry: Geometry, bodies: dict[str, Body], part: str) -> tuple[str, Properties]:
+    """Key's path of the table that has the material of a part, and that material.
+
+    Raises
+    ------
+    ValueError
+        If ``like`` names no body, or comes back to itself.
+    """
+    owner = geometry.zones.get(part, part)
+    name = part if part in bodies else owner
+    chosen = geometry.set_of.get(part)
+    if chosen is None and not bodies[name].has_own and bodies[name].materials:
+        chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
+    if chosen is None:
+        found = resolve_like(bodies, name)
+        return f"bodies.{found}", bodies[found]
+    own = bodies[owner].materials[chosen]
+    if own.like is None:
+        return f"bodies.{owner}.materials.{chosen}", own
+    check_named(bodies, own.like)
+    found = resolve_like(bodies, own.like)
+    return f"bodies.{found}", bodies[found]

@@ -3,22 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from .analyses import Fretting, Reciprocating
+from .driving import Motion
 from .history import History
-
-if TYPE_CHECKING:
-    from .driving import Motion
-    from .schema import Case
+from .schema import Case
 
 Fault = tuple[str, str]
-
-
-def cycles(case: Case) -> float | None:
-    """How many cycles of its loads or its motion a case asks for; None where it does not say."""
-    in_analysis = getattr(case.analysis, "cycles", None)
-    return case.wear.cycles if in_analysis is None else in_analysis
 
 
 def counted(case: Case) -> Iterator[Fault]:
@@ -45,7 +36,7 @@ def fretting(case: Case) -> Iterator[Fault]:
     elif history.tangential and case.geometry.symmetry:
         yield "geometry.half", "tangential loads are not symmetric; mesh the whole section"
     else:
-        yield from _cycles(case, analysis, history)
+        yield from _repeated(case, analysis, history)
     if case.contact.method != "condensed":
         yield "contact.method", f"{case.contact.method!r} does not know sticking; use condensed"
     for table in ("heat", "motion"):
@@ -76,9 +67,9 @@ def reciprocating(case: Case) -> Iterator[Fault]:
     yield from _ends(case, analysis)
 
 
-def _cycles(case: Case, analysis: Fretting, history: History) -> Iterator[Fault]:
+def _repeated(case: Case, analysis: Fretting, history: History) -> Iterator[Fault]:
     """Cycles need loads that come back; output times lie in the history, or in its repetitions."""
-    end, count = history.time[-1], cycles(case) or 1
+    end, count = history.time[-1], case.cycles or 1
     if history.cycle is not None:
         end += (count - 1) * (end - history.cycle[0])
     elif count > 1:
@@ -97,7 +88,7 @@ def _key(case: Case) -> str:
 
 def _ends(case: Case, analysis: Reciprocating) -> Iterator[Fault]:
     """A time, a number of cycles or the steady state ends it."""
-    if cycles(case) is None and analysis.end_time is None and analysis.until is None:
+    if case.cycles is None and analysis.end_time is None and analysis.until is None:
         yield "analysis.end_time", 'missing; needs end_time, cycles or until = "steady"'
     if case.wear.cycles is not None and analysis.end_time is not None:
         yield "wear.cycles", "only one of analysis.end_time and wear.cycles can be given"
@@ -111,7 +102,7 @@ def _to_and_fro(case: Case, analysis: Reciprocating, motion: Motion) -> Iterator
     for key in ("velocity", "angular_velocity"):
         if getattr(motion, key) is not None:
             yield f"motion.{key}", "does not fit; a reciprocating body has amplitude and frequency"
-    count = cycles(case)
+    count = case.cycles
     if count is not None and motion.frequency is not None:
         late = [t for t in analysis.output_times if t > count / motion.frequency]
         if late:

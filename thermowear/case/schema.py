@@ -13,16 +13,15 @@ from pydantic import BeforeValidator, Field, model_validator
 from ..errors import CaseError, quoted
 from . import units
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
-from .checks import check
 from .conductance import PressureConductance, TabulatedConductance, harmonic_mean
 from .driving import Holder, Load, Motion
-from .facing import Facing, material_of
+from .facing import Facing
 from .factors import Factors
 from .geometry import Pressing
 from .geometry_type import AnyGeometry
 from .heat import Heat
 from .history import Course, FactorHistory
-from .materials import Body, Properties
+from .materials import Body, Properties, material_of
 from .section import Number, Section, Switch
 from .wear import WearTable
 
@@ -147,11 +146,10 @@ class Case(Section):
     ]
 
     @model_validator(mode="after")
-    def _consistent(self):
+    def _cell_sets_as_parts(self):
         sets = {name: tuple(body.materials) for name, body in self.bodies.items() if body.materials}
         if sets:
             object.__setattr__(self, "geometry", self.geometry.with_cell_sets(sets))
-        check(self)
         return self
 
     def force(self) -> float | None:
@@ -180,6 +178,12 @@ class Case(Section):
             assert body.poisson_ratio is not None
             softness += (1 - body.poisson_ratio**2) / body.young_modulus
         return Pressing(self.force(), self.approach(), 1 / softness)
+
+    @property
+    def cycles(self) -> float | None:
+        """Number of cycles of the loads or of the motion; None where none is given."""
+        in_analysis = getattr(self.analysis, "cycles", None)
+        return self.wear.cycles if in_analysis is None else in_analysis
 
     @property
     def histories(self) -> dict[str, Course]:
@@ -212,7 +216,7 @@ class Case(Section):
         share = self.heat.partition
         if isinstance(share, float):
             return share
-        e1, e2 = facing.of(self, "effusivity")
+        e1, e2 = facing.of(self.located_material, "effusivity")
         return e1 / (e1 + e2)
 
     def conductance(self, pressure: np.ndarray, facing: Facing) -> np.ndarray | None:
@@ -231,7 +235,8 @@ class Case(Section):
             return given.value(pressure)
         if isinstance(given, PressureConductance):
             k, hardness = (
-                harmonic_mean(*facing.of(self, key)) for key in ("conductivity", "hardness")
+                harmonic_mean(*facing.of(self.located_material, key))
+                for key in ("conductivity", "hardness")
             )
             return given.value(pressure, k, hardness)
         return None if given is None else np.full(np.shape(pressure), given)
@@ -268,7 +273,17 @@ class Case(Section):
 
     def material(self, part: str) -> Properties:
         """The material of a part, ``like`` followed to its end; a zone may have its body's."""
-        return material_of(self, part)[1]
+        return self.located_material(part)[1]
+
+    def located_material(self, part: str) -> tuple[str, Properties]:
+        """Key's path of the table that has the material of a part, and that material.
+
+        Raises
+        ------
+        ValueError
+            If ``like`` names no body, or comes back to itself.
+        """
+        return material_of(self.geometry, self.bodies, part)
 
 
 def as_plain(case: Case) -> dict[str, Any]:

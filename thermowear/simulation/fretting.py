@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from ..case.analyses import Fretting
-from ..case.oscillation import cycles
 from ..case.schema import Case
 from ..contact.loads import Loads
 from ..contact.slip_wear import Profile, SlipWear, profile
@@ -96,7 +95,7 @@ class _Path:
 
     def going_on(self, behind: Behind) -> Iterator[Instant]:
         """Each increment's end in the cycles after one of them."""
-        count = int(cycles(self._case) or 1)
+        count = int(self._case.cycles or 1)
         history, settings = self._history, self._settings
         if settings.jump == "auto":
             stops = to_stop_at(history, settings, count)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..case.oscillation import cycles
 from ..contact.slip_wear import Profile
 from ..contact.stick_slip import StickSlipState
 from ..laws.motions import translation
@@ -127,7 +126,7 @@ class FrettingRecord:
 
     def _keep_frame(self, instant: Instant) -> None:
         """Show ends of cycles, or of increments where there is but one cycle."""
-        one = (cycles(self._system.case) or 1) == 1
+        one = (self._system.case.cycles or 1) == 1
         if one or instant.jump is not None:
             number = len(self._rows if one else self._cycles) - 1
             self._film.take(self._system, number, instant.time, self._shown)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..case.analyses import Reciprocating
-from ..case.oscillation import cycles
 from ..case.schema import Case
 from ..laws.motions import RigidMotion, combined
 from .checkpoint import can_be_packed
@@ -76,7 +75,7 @@ def reciprocating(
 
 def _in_time(case: Case) -> Reciprocating:
     """Settings with an end time where there is a number of cycles."""
-    settings, count = case.analysis, cycles(case)
+    settings, count = case.analysis, case.cycles
     assert isinstance(settings, Reciprocating)
     if count is None:
         return settings

@@ -15,8 +15,8 @@ from .output.console import Progress, Terminal, print_discretisations, print_sum
 from .output.folder import ResultsFolder
 from .output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from .parallel import on_root
+from .serialise import Checkpoint, pack
 from .simulation import CycleRow, Frame, HeatRow, HistoryRow, Interface, LoadRow, Observer, run
-from .simulation.checkpoint import Checkpoint, pack
 from .simulation.phases import Phases
 from .simulation.saved import Saved
 

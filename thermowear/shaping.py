@@ -96,7 +96,7 @@ def shape(
 
     from .simulation.design import steady_design
     from .simulation.phases import Phases
-    from .simulation.preparation import prepare
+    from .simulation.positioning import prepare
 
     system = prepare(case, MPI.COMM_SELF, Phases(lambda _: None))
     return Shaped(case, body, steady_design(system, bodies.index(body) + 1))

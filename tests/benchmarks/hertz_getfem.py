@@ -49,7 +49,8 @@ from thermowear.geometry.nodes import reference_nodes
 from thermowear.reference.hertz import contact_modulus
 from thermowear.simulation.building import build
 from thermowear.simulation.phases import Phases
-from thermowear.simulation.preparation import interface_problem, prepare
+from thermowear.simulation.positioning import prepare
+from thermowear.simulation.problem_factory import interface_problem
 
 gf = importlib.import_module("getfem")  # not in scripts/packages: it serves here only
 

@@ -17,7 +17,7 @@ import thermowear as tw
 from thermowear.bulk.factor import Factor
 from thermowear.simulation.building import build
 from thermowear.simulation.phases import Phases
-from thermowear.simulation.preparation import interface_problem
+from thermowear.simulation.problem_factory import interface_problem
 from thermowear.simulation.steady import steady_state
 from thermowear.simulation.transient import moments
 

@@ -8,7 +8,8 @@ import pytest
 
 from thermowear.contact.loads import Loads
 from thermowear.contact.slip_wear import Profile, SlipWear
-from thermowear.contact.stick_slip import Status, follow, unloaded
+from thermowear.contact.stick_slip import follow
+from thermowear.contact.stick_slip_state import Status, unloaded
 from thermowear.laws import WearLaw
 from thermowear.reference.growing_contact import growing_line
 from thermowear.reference.mindlin import MindlinLine

@@ -23,14 +23,8 @@ from thermowear.contact.face import gather_face
 from thermowear.contact.loads import Loads
 from thermowear.contact.pairing import pair
 from thermowear.contact.pressure import pressure_basis
-from thermowear.contact.stick_slip import (
-    FullSliding,
-    Status,
-    advance,
-    follow,
-    stored_energy,
-    unloaded,
-)
+from thermowear.contact.stick_slip import FullSliding, advance, follow
+from thermowear.contact.stick_slip_state import Status, stored_energy, unloaded
 from thermowear.contact.tangential import condense_tangential
 from thermowear.parallel import sum_over_ranks
 from thermowear.reference.hertz import contact_modulus

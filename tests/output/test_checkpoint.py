@@ -15,8 +15,8 @@ from thermowear.output.quantities import HISTORY
 from thermowear.output.replacing import final_name, replacing
 from thermowear.output.resuming import read_run
 from thermowear.output.tables import RowWriter, read
+from thermowear.serialise import Checkpoint
 from thermowear.simulation import HistoryRow
-from thermowear.simulation.checkpoint import Checkpoint
 
 ABOUT, ARRAYS = {"time": 0.1, "case": {"title": "µ"}}, {"a0": np.arange(3.0), "b@1": np.eye(2)}
 

@@ -21,7 +21,7 @@ from thermowear.geometry.gmsh_session import gmsh_model
 from thermowear.output import tables
 from thermowear.output.quantities import FRICTION, HISTORY, INTERFACE, LOADS, PROFILE
 from thermowear.simulation.phases import Phases
-from thermowear.simulation.preparation import prepare
+from thermowear.simulation.positioning import prepare
 
 from ..case import starter
 from ..case.starter import FRETTING, HERTZ, PUNCH, RECIPROCATING, RUNNING_IN, SPHERE, STEADY

@@ -9,8 +9,8 @@ import pytest
 
 import thermowear as tw
 from thermowear.contact.heat import ThermalState
+from thermowear.serialise import pack
 from thermowear.simulation import HistoryRow, Observer
-from thermowear.simulation.checkpoint import pack
 from thermowear.simulation.run import run
 
 from ..conftest import COLD_RUNNING_IN, DEMOS, HOT

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.full_sliding import FullSliding
-from thermowear.contact.stick_slip import StickSlipState
+from thermowear.contact.stick_slip_state import StickSlipState
 from thermowear.errors import ComputationError
 from thermowear.simulation.cycle_jump import adaptive_jumps, fixed_jumps
 from thermowear.simulation.instants import Behind, Instant

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from thermowear.geometry.shapes import quality
+from thermowear.serialise import pack
 from thermowear.simulation import Observer, geometry_update, meshing_anew
-from thermowear.simulation.checkpoint import pack
 from thermowear.simulation.run import run
 from thermowear.verification.starter import run_starter, starter
 

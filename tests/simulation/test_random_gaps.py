@@ -12,7 +12,7 @@ from thermowear.simulation.building import build
 from thermowear.simulation.conditions import Surroundings
 from thermowear.simulation.contact_method import Slope
 from thermowear.simulation.phases import Phases
-from thermowear.simulation.preparation import interface_problem
+from thermowear.simulation.problem_factory import interface_problem
 
 from ..conftest import EXPLORES
 

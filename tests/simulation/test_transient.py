@@ -87,7 +87,7 @@ def test_second_order_in_time():
 
     from thermowear.simulation.building import build
     from thermowear.simulation.phases import Phases
-    from thermowear.simulation.preparation import interface_problem
+    from thermowear.simulation.problem_factory import interface_problem
     from thermowear.simulation.wear_step import advance
 
     case = tw.load(COLD_RUNNING_IN, ("mesh.degree=3", "mesh.elements=8"))

@@ -16,7 +16,8 @@ from thermowear.output.quantities import HEAT, HISTORY
 from thermowear.reference.sliding_rod import SlidingRod
 from thermowear.simulation.friction_heat import FrictionHeat
 from thermowear.simulation.phases import Phases
-from thermowear.simulation.preparation import interface_problem, prepare
+from thermowear.simulation.positioning import prepare
+from thermowear.simulation.problem_factory import interface_problem
 from thermowear.simulation.wear_step import advance
 
 from ..case.starter import GONE, solved, tables

@@ -43,7 +43,7 @@ def apart():
     from mpi4py import MPI
 
     from thermowear.simulation.phases import Phases
-    from thermowear.simulation.preparation import prepare
+    from thermowear.simulation.positioning import prepare
     from thermowear.simulation.without_time import initial
 
     def made(case):

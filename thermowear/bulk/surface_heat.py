@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from mpi4py import MPI
-
 import numpy as np
 import ufl
 from dolfinx import default_scalar_type, fem
@@ -33,10 +31,3 @@ def surface_heat(
     δT, q = ufl.TestFunction(space), fem.Constant(bodies.mesh, default_scalar_type(flux))
     form = model.integral(bodies.mesh, q * δT, bodies.surface_measure(surface))
     return assembled(compiled(form))
-
-
-def surface_area(bodies: Bodies, model: Model, surface: str) -> float:
-    """Area of a surface, as its model counts it [m²]. Every rank calls."""
-    one = fem.Constant(bodies.mesh, default_scalar_type(1.0))
-    form = model.integral(bodies.mesh, one, bodies.surface_measure(surface))
-    return bodies.mesh.comm.allreduce(fem.assemble_scalar(compiled(form)), op=MPI.SUM)

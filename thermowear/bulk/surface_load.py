@@ -12,7 +12,7 @@ from dolfinx import fem
 
 from .compiled import assembled, compiled
 from .elasticity import Elasticity
-from .surface_heat import surface_area
+from .surface_area import surface_area
 
 
 def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callable:

@@ -11,7 +11,8 @@ from .loads import Loads
 from .pairing import Pairing, pair
 from .pressure import pressure_basis
 from .sliding import Sliding, sliding
-from .stick_slip import StickSlipState, advance, follow
+from .stick_slip import advance, follow
+from .stick_slip_state import StickSlipState
 from .surface import Surface
 from .tangential import FrictionalContact, condense_tangential
 from .traces import gap_trace, value_trace, vector_trace

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import ComputationError
+from ..serialise import serialisable
 from .lemke import lemke
 
 _TOLERANCE = 1e-9
@@ -23,6 +24,7 @@ class NoEquilibrium(ComputationError):
     """No pressure satisfies Signorini's conditions and carries the load."""
 
 
+@serialisable
 @dataclass(frozen=True)
 class ContactSolution:
     """Coefficients of the pressure, rigid motion of the holder, and which coefficients press.

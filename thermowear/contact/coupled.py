@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
+from ..serialise import serialisable
 from .complementarity import solve_contact
 
 _TOLERANCE = 1e-9
@@ -48,6 +49,7 @@ class CoupledContacts:
     load: np.ndarray
 
 
+@serialisable
 @dataclass(frozen=True)
 class CoupledSolution:
     """Coefficients, motions, which coefficients press, and the depths.

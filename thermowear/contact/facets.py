@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from dolfinx import fem
 from numpy.polynomial.polynomial import polyder
 
 from ..bulk.bodies import Bodies
-
-if TYPE_CHECKING:
-    from .face import Face
-    from .surface import Surface
 
 
 def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
@@ -36,18 +31,6 @@ def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
         dtype=np.int32,
     )
     return cells, local
-
-
-def parts_of_facets(bodies: Bodies, face: Face | Surface) -> np.ndarray:
-    """Position in ``bodies.names`` of the part that bears each facet of a face, shape (n_facets,).
-
-    Every rank calls. Values of materials at contact points follow by ``side.facet``.
-    """
-    comm = bodies.mesh.comm
-    mine = face.rank == comm.rank
-    parts = np.zeros(len(face.rank), dtype=np.int64)
-    parts[mine] = bodies.parts_of_cells(face.cell[mine])
-    return comm.allreduce(parts)
 
 
 def softness_behind(cells: np.ndarray, softness: fem.Function | None) -> np.ndarray:

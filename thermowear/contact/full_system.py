@@ -13,6 +13,7 @@ import scipy.sparse as sp
 from scipy.optimize import nnls
 
 from ..errors import ComputationError
+from ..serialise import serialisable
 from .complementarity import solve_contact
 from .edge_deflection import EdgeDeflection
 from .equations import ContactEquations, Loading
@@ -34,6 +35,7 @@ _SLACK = 0.9
 """A whole step is taken if the work left on it is at most this part of the work at its start."""
 
 
+@serialisable
 @dataclass(frozen=True)
 class FullSolution:
     """Contact of the full system.

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 
 from ..errors import ComputationError
 from ..parallel import sum_over_ranks
+from ..serialise import serialisable
 
 _REGULARITY = 1e-12
 """Part of the bodies' own resistance that stands for an infinite one: functions of the heat flux
@@ -28,6 +29,7 @@ _NO_WAY_OUT = (
 )
 
 
+@serialisable
 @dataclass(frozen=True)
 class ThermalState:
     """Heat at the contact points, shape (n,) each; index 0 is body 1.

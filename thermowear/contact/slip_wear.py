@@ -19,16 +19,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import ComputationError
 from ..laws.wear import WearLaw
 from .pairing import Pairing
-
-if TYPE_CHECKING:
-    from .stick_slip import StickSlipState
+from .stick_slip_state import StickSlipState
 
 _PASSES = 40
 _SETTLED = 1e-6  # of the depth worn off in the increment

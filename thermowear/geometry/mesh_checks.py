@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
 
+from ..case.geometry import Geometry
 from ..errors import CaseError, note
 from .tagged import TaggedMesh
-
-if TYPE_CHECKING:
-    from ..case.geometry import Geometry
-    from .mesh_file import MeshFile
 
 _LEVEL = 1e-6
 """Of the size of the bodies: so far nodes on a plane of symmetry may lie off it."""
 
 
-def check_mesh(mesh: TaggedMesh, geometry: MeshFile, model: str) -> None:
+def check_mesh(mesh: TaggedMesh, geometry: Geometry, model: str) -> None:
     """Check what the names of a case mean in a mesh.
 
     Raises
@@ -118,7 +114,7 @@ def _pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
         note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {surface!r}")
 
 
-def _symmetry(mesh: TaggedMesh, geometry: MeshFile) -> None:
+def _symmetry(mesh: TaggedMesh, geometry: Geometry) -> None:
     """All surfaces of symmetry lie in one plane x = const, with both bodies on one side of it."""
     size = np.ptp(mesh.points, axis=0).max()
     planes = {name: mesh.points[np.unique(_ends(mesh, name)), 0] for name in geometry.symmetry}

@@ -23,7 +23,7 @@ from .frames import FRAMES, remove_frames, write_frame
 from .lock import Lock
 from .quantities import CYCLES, FRICTION, HEAT, HISTORY, INTERFACE, LOADS, MODES, PROFILE, TRACK
 from .replacing import final_name, replacing
-from .report import is_report
+from .report_file import is_report
 from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields
 

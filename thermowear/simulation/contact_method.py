@@ -10,12 +10,14 @@ import numpy as np
 from ..errors import ComputationError
 from ..laws import WearLaw
 from ..laws.spreading import Spreading
+from ..serialise import serialisable
 from .conditions import Conditions
 from .heat_stages import HeatStage
 
 _NEWTON_STEPS = 40
 
 
+@serialisable
 @dataclass(frozen=True)
 class Contact:
     """A solved contact.

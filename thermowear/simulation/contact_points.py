@@ -11,7 +11,6 @@ from ..bulk.kinematics import Model
 from ..case.facing import Facing
 from ..case.schema import Case
 from ..contact.face import Face
-from ..contact.facets import parts_of_facets
 from ..contact.pairing import Pairing, pair, paired
 from ..contact.pressure import pressure_basis
 from ..contact.projection import ahead
@@ -119,5 +118,13 @@ def pressure_degree(case: Case) -> int:
 
 def facing_parts(bodies: Bodies, pairing: Pairing) -> Facing:
     """The parts of both bodies that touch at the contact points. Every rank calls."""
-    first, second = (parts_of_facets(bodies, side.face)[side.facet] for side in pairing.sides)
+    first, second = (_parts_of_facets(bodies, side.face)[side.facet] for side in pairing.sides)
     return Facing(bodies.names, (first, second))
+
+
+def _parts_of_facets(bodies: Bodies, face: Face | Surface) -> np.ndarray:
+    """Position in ``bodies.names`` of the part that bears each facet of a face, (n_facets,)."""
+    mine = face.rank == bodies.mesh.comm.rank
+    parts = np.zeros(len(face.rank), dtype=np.int64)
+    parts[mine] = bodies.parts_of_cells(face.cell[mine])
+    return bodies.mesh.comm.allreduce(parts)

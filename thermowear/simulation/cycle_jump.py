@@ -22,7 +22,7 @@ from typing import Protocol
 import numpy as np
 
 from ..contact.full_sliding import FullSliding
-from ..contact.stick_slip import StickSlipState
+from ..contact.stick_slip_state import StickSlipState
 from ..errors import ComputationError
 from .instants import Behind, Instant, Jump
 

@@ -12,7 +12,8 @@ from ..case.analyses import Fretting
 from ..case.schema import Case
 from ..contact.loads import Loads
 from ..contact.slip_wear import Profile, SlipWear, profile
-from ..contact.stick_slip import StickSlipState, advance, follow, unloaded
+from ..contact.stick_slip import advance, follow
+from ..contact.stick_slip_state import StickSlipState, unloaded
 from ..contact.tangential import FrictionalContact, condense_tangential
 from ..laws.motions import translation
 from .cycle_jump import adaptive_jumps, fixed_jumps

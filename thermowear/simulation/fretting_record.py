@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..contact.slip_wear import Profile
-from ..contact.stick_slip import StickSlipState
+from ..contact.stick_slip_state import StickSlipState
 from ..laws.motions import translation
-from .checkpoint import can_be_packed
+from ..serialise import serialisable
 from .film import Film, Shown
 from .fretting_tables import FrettingTables
 from .instants import Instant, Jump
@@ -21,7 +21,7 @@ from .state import BodyState, ContactState, contact_state
 from .system import System
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class Fretted:
     """How far a fretting analysis has come: all that it needs to go on.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..contact.stick_slip import StickSlipState
+from ..contact.stick_slip_state import StickSlipState
 from .instants import Instant, Jump
 from .result import FrictionInterface
 from .rows import CycleRow, LoadRow

@@ -208,7 +208,7 @@ class FrictionHeat:
         if friction_heat == 0.0:
             return np.inf
         share = case.partition(self._system.facing)
-        first, second = self._system.facing.of(case, "effusivity")
+        first, second = self._system.facing.of(case.located_material, "effusivity")
         steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
         through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
         return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))

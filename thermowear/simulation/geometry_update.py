@@ -24,7 +24,7 @@ from .interface_problem import InterfaceProblem
 from .kept_wear import KeptWear, lacking_in_shape, movable_body
 from .meshing_anew import FLOOR, carrying_error, improved, on_new_faces
 from .parts import Parts
-from .preparation import interface_problem
+from .problem_factory import interface_problem
 from .system import System
 from .wear_step import WornContact
 from .worn_geometry import WornGeometry, along

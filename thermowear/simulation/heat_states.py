@@ -8,8 +8,10 @@ import numpy as np
 
 from ..balances import relative
 from ..contact.heat import ThermalState
+from ..serialise import serialisable
 
 
+@serialisable
 @dataclass(frozen=True)
 class StoredHeat:
     """Heat in the bodies, where temperatures are followed in time.

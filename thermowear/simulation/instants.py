@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..contact.stick_slip import StickSlipState
-from .checkpoint import can_be_packed
+from ..contact.stick_slip_state import StickSlipState
+from ..serialise import serialisable
 from .load_path import Leg
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class Jump:
     """A way over cycles that has been gone.
@@ -30,7 +30,7 @@ class Jump:
     following: float
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class Instant:
     """The end of an increment.

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 from ..case.analyses import Fretting
 from ..case.history import History
-from .checkpoint import can_be_packed
+from ..serialise import serialisable
 
 _SAME = 1e-9  # of the history: instants so near to each other are one
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class Leg:
     """A straight line of the loads.

@@ -17,14 +17,14 @@ from ..contact.refinement import Rule
 from ..errors import ComputationError
 from ..geometry.new_face import NewFace
 from ..geometry.tagged import TaggedMesh
+from ..serialise import serialisable
 from .building import build
-from .checkpoint import can_be_packed
 from .geometry_update import updated
 from .interface_problem import InterfaceProblem
 from .kept_wear import KeptWear
 from .observer import Observer
 from .parts import Parts
-from .preparation import interface_problem
+from .problem_factory import interface_problem
 from .steady import SteadyState
 from .step_sizes import Limited, StepSizes
 from .system import System
@@ -44,10 +44,10 @@ _ROOM = 5.0
 Principle = Callable[[System], SteadyState | None]
 """The steady state that a system tends to; None where there is none."""
 
-can_be_packed(WornGeometry)
-can_be_packed(TaggedMesh)
-can_be_packed(NewFace)
-can_be_packed(Rule)
+serialisable(WornGeometry)
+serialisable(TaggedMesh)
+serialisable(NewFace)
+serialisable(Rule)
 
 
 class OuterLoop:

@@ -9,13 +9,13 @@ import numpy as np
 from ..case.analyses import Reciprocating
 from ..case.schema import Case
 from ..laws.motions import RigidMotion, combined
-from .checkpoint import can_be_packed
+from ..serialise import serialisable
 from .drives import reference_point
 from .film import Film
 from .guarded import go_through
 from .observer import Observer
 from .outcome import Outcome
-from .preparation import interface_problem
+from .problem_factory import interface_problem
 from .reciprocating_problem import ReciprocatingProblem
 from .recording import interface_at
 from .result import Interface, TrackHistory, WornTrack
@@ -27,7 +27,7 @@ from .system import System
 from .transient import Moment, moments
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class Reciprocated:
     """How far a reciprocating analysis has come: all that it needs to go on.

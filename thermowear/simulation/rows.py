@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..serialise import serialisable_row
 
+
+@serialisable_row
 @dataclass(frozen=True)
 class HistoryRow:
     """A step of a running-in; names and units are those of ``history.csv``."""
@@ -21,6 +24,7 @@ class HistoryRow:
     error: float
 
 
+@serialisable_row
 @dataclass(frozen=True)
 class HeatRow:
     """A step of an analysis in which temperatures are followed in time.
@@ -43,6 +47,7 @@ class HeatRow:
     mean_temperature_2: float
 
 
+@serialisable_row
 @dataclass(frozen=True)
 class LoadRow:
     """An increment of a history of loads; names and units are those of ``loads.csv``."""
@@ -62,6 +67,7 @@ class LoadRow:
     wear_volume_2: float
 
 
+@serialisable_row
 @dataclass(frozen=True)
 class CycleRow:
     """A cycle of a history of loads at its end; names and units are those of ``cycles.csv``.

@@ -20,7 +20,7 @@ from .outcome import Outcome
 from .outgrown import outgrown
 from .phases import Phases
 from .plausible import too_steep, went_back
-from .preparation import prepare
+from .positioning import prepare
 from .reciprocating import reciprocating
 from .recording import profile
 from .result import BodyFields, Result

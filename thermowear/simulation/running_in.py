@@ -9,7 +9,7 @@ from .observer import Observer
 from .outcome import Outcome
 from .outer_loop import OuterLoop
 from .outgrown import beyond
-from .preparation import noted_problem
+from .problem_factory import interface_problem
 from .running_in_record import RunningIn, RunningInRecord
 from .steady import SteadyState, steady_state
 from .step_sizes import AnySize, FewSizes
@@ -26,7 +26,7 @@ def running_in(system: System, observer: Observer, before: RunningIn | None = No
     """
     settings = system.case.analysis
     assert isinstance(settings, Transient)
-    problem = noted_problem(system, observer)
+    problem = interface_problem(system, observer.note)
     sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
     loop = OuterLoop(system, problem, _principle, sizes, observer)
     record = RunningInRecord(loop, observer)

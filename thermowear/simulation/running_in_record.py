@@ -11,7 +11,7 @@ import numpy as np
 from ..balances import require
 from ..errors import ComputationError
 from ..laws.motions import RigidMotion, combined
-from .checkpoint import can_be_packed
+from ..serialise import serialisable
 from .conditions import Conditions
 from .drives import reference_point
 from .film import Film
@@ -36,7 +36,7 @@ _UNSTABLE = (
 )
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class RunningIn:
     """How far a running-in has come: all that it needs to go on.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..case.comparison import other_mesh
 from ..errors import CaseError
-from .checkpoint import can_be_packed
+from ..serialise import serialisable
 from .system import System
 
 _ROUNDING = 1e-9  # of the contact's length
@@ -23,7 +23,7 @@ class Progress(Protocol):
         """[s]"""
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class Saved:
     """An analysis on its way, on one rank.

@@ -10,7 +10,7 @@ from .building import build
 from .observer import Observer
 from .parts import Parts, inputs
 from .phases import Phases
-from .preparation import prepare
+from .positioning import prepare
 from .result import Result
 from .run import analyse, conclude
 from .system import System

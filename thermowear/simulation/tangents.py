@@ -14,7 +14,7 @@ import numpy as np
 from ..bulk.conduction import Conduction
 from ..contact.heat import InterfaceHeat
 from ..contact.heat_condensation import ThermalDistortion, condense_distortion
-from .checkpoint import can_be_packed
+from ..serialise import serialisable
 from .heat_stages import HeatOperators
 
 
@@ -31,7 +31,7 @@ class ChangingHeat(Protocol):
         """Operators for small changes of a rise (n_owned,); every rank calls."""
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class LastTangents:
     """Where the operators that are at hand were made: Newton's method goes its way by them.

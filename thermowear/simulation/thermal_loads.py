@@ -11,7 +11,8 @@ from ..bulk.bodies import Bodies
 from ..bulk.conduction import Conduction
 from ..bulk.heat_equation import given_rises
 from ..bulk.kinematics import Model
-from ..bulk.surface_heat import surface_area, surface_heat
+from ..bulk.surface_area import surface_area
+from ..bulk.surface_heat import surface_heat
 from ..case.heat import Heat
 from ..case.history import TemperatureHistory
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..case.analyses import Timed
 from ..errors import ComputationError
-from .checkpoint import can_be_packed
+from ..serialise import serialisable
 from .step_sizes import AnySize, StepSizes, ends
 from .wear_step import Trial, WearProblem, WornContact, advance_with_error, next_step
 
@@ -19,7 +19,7 @@ _FAR_SMALLER = 1e-3
 _SMALLEST = 1e-12  # of the time that has passed, at first of 1e-12 s
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class Moment:
     """A state of the running-in, and all that its time loop needs to go on from it.

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .checkpoint import can_be_packed
+from ..serialise import serialisable
 from .worn_geometry import WornGeometry
 
 
-@can_be_packed
+@serialisable
 @dataclass(frozen=True)
 class UpdateCounts:
     """Number of updates, and the worst that any of them did; see `WornGeometry`.

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from ..contact.heat import ThermalState
+from ..serialise import serialisable
 from .contact_method import Contact
 from .heat_states import StoredHeat
 
@@ -18,6 +19,7 @@ _ROUNDING = 1e-13  # of the largest pressure so far: no step makes smaller error
 _LEAST_RISE = 10.0  # K; errors of smaller rises are held against this one
 
 
+@serialisable
 @dataclass(frozen=True)
 class WornContact:
     """State of a running-in.

@@ -11,7 +11,7 @@ from ..laws.spreading import InPlace
 from .building import build
 from .interface_problem import InterfaceProblem
 from .outgrown import beyond
-from .preparation import interface_problem
+from .problem_factory import interface_problem
 from .system import System
 from .wear_step import WornContact
 

@@ -8,7 +8,7 @@ from ..laws.motions import combined
 from .interface_problem import InterfaceProblem
 from .observer import Observer
 from .outcome import Outcome
-from .preparation import noted_problem
+from .problem_factory import interface_problem
 from .recording import interface_at, record
 from .state import body_state
 from .steady import least_worn, steady_state
@@ -26,7 +26,7 @@ _VELOCITIES = {
 
 def initial(system: System, observer: Observer) -> Outcome:
     """Contact of the unworn faces."""
-    return unworn(system, noted_problem(system, observer))
+    return unworn(system, interface_problem(system, observer.note))
 
 
 def unworn(system: System, problem: InterfaceProblem) -> Outcome:

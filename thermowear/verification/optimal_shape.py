@@ -16,7 +16,7 @@ from ..geometry.design import Design, write_table
 from ..simulation import Result
 from ..simulation.design import steady_design
 from ..simulation.phases import Phases
-from ..simulation.preparation import prepare
+from ..simulation.positioning import prepare
 from .check import Check, compare
 from .computed import computed
 from .finite_elements import away_from_ends, variant

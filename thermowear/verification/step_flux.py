@@ -14,7 +14,8 @@ from ..reference.step_flux import HalfSpace, surface_rises
 from ..simulation import Result
 from ..simulation.interface_problem import InterfaceProblem
 from ..simulation.phases import Phases
-from ..simulation.preparation import interface_problem, prepare
+from ..simulation.positioning import prepare
+from ..simulation.problem_factory import interface_problem
 from ..simulation.wear_step import WornContact, advance
 from .check import Check, compare
 from .computed import computed

@@ -1,4 +1,4 @@
-"""From a case to a system and its interface problem: the choices that the case makes."""
+"""System of a case, its mesh fitted to the edges of the contact where the case asks for it."""
 
 from __future__ import annotations
 
@@ -8,36 +8,14 @@ from ..case.schema import Case
 from ..contact.zones import contact_zones
 from ..errors import ComputationError
 from .building import build
-from .condensed_method import CondensedMethod
-from .full_method import FullMethod
-from .interface_problem import InterfaceProblem
-from .observer import Observer
 from .phases import Phases
+from .problem_factory import interface_problem
 from .system import System
-from .varying_heat import friction_heat
 
 _PASSES = 12
 _SETTLED = 0.1  # of the element at the edge
 _STEEPEST = 4.0
 _LONGEST = 0.4  # of the zone: its edges never change places
-
-
-def interface_problem(system: System) -> InterfaceProblem:
-    """The interface of a system, solved by the method of the case. Every rank calls."""
-    heat = friction_heat(system)
-    if system.case.contact.method == "condensed":
-        return InterfaceProblem(system, CondensedMethod(system), heat)
-    with system.phases("contact operators"):
-        method = FullMethod(system)
-    return InterfaceProblem(system, method, heat)
-
-
-def noted_problem(system: System, observer: Observer) -> InterfaceProblem:
-    """The interface problem; what is odd about its settings is said. Every rank calls."""
-    problem = interface_problem(system)
-    if problem.note is not None:
-        observer.note(problem.note)
-    return problem
 
 
 def prepare(case: Case, comm, phases: Phases) -> System:

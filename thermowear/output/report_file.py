@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from ...errors import CaseError
+from ..errors import CaseError
 
 _GENERATOR = re.compile(rb'<meta name="generator" content="thermowear"')
 _HEAD = 1000  # bytes within which a report names its generator

@@ -12,38 +12,23 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from ..contact.complementarity import ContactSolution
-from ..contact.coupled import CoupledSolution
-from ..contact.full_system import FullSolution
-from ..contact.heat import ThermalState
-from ..contact.stick_slip import StickSlipState
-from ..errors import CaseError, quoted
-from .contact_method import Contact
-from .heat_states import StoredHeat
-from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
-from .wear_step import WornContact
+from .errors import CaseError, quoted
 
 Kind = TypeVar("Kind")
 
-_ROWS: dict[str, type] = {kind.__name__: kind for kind in (HistoryRow, HeatRow, LoadRow, CycleRow)}
-_STATES: dict[str, type] = {
-    kind.__name__: kind
-    for kind in (
-        WornContact,
-        Contact,
-        ContactSolution,
-        CoupledSolution,
-        FullSolution,
-        ThermalState,
-        StoredHeat,
-        StickSlipState,
-    )
-}
+_STATES: dict[str, type] = {}
+_ROWS: dict[str, type] = {}
 
 
-def can_be_packed(kind: type[Kind]) -> type[Kind]:
+def serialisable(kind: type[Kind]) -> type[Kind]:
     """Decorator of a dataclass that states of an analysis consist of."""
     _STATES[kind.__name__] = kind
+    return kind
+
+
+def serialisable_row(kind: type[Kind]) -> type[Kind]:
+    """Decorator of a dataclass of numbers, lists of which are kept by columns."""
+    _ROWS[kind.__name__] = kind
     return kind
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import thermowear as tw
-from thermowear.geometry.export import write_mesh
+from thermowear.geometry.reading.export import write_mesh
 
 HERE = Path(__file__).parent
 DEMOS = HERE.parent / "demos"

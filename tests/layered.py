@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from thermowear.geometry.gmsh_session import gmsh_model
+from thermowear.geometry.mesh.gmsh_session import gmsh_model
 
 WIDTH, LINING, BACKING, BLOCK = 40.0, 10.0, 5.0, 20.0
 """Sizes in the unit of the file; side by side both materials are as wide as each other."""

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 import thermowear as tw
+from thermowear.app.cli import main
 from thermowear.balances import ALLOWED, holds, judged, relative, require
-from thermowear.cli import main
 from thermowear.output.report import write_report
 
 from .conftest import HOT
@@ -66,7 +66,7 @@ def test_a_sweep_marks_the_variant_and_goes_on(tmp_path, capsys):
 
 def test_a_step_that_is_not_balanced_is_not_taken(monkeypatch):
     """requirement: a running-in ends at the last step whose heat balances."""
-    from thermowear.simulation import interface_problem
+    from thermowear.simulation.interface import interface_problem
 
     balance = interface_problem.InterfaceProblem.heat_balance
 

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_text, starters
-from thermowear.cli import main
 
 SMALL = ("--set", "mesh.degree=2", "--set", "mesh.elements=2")
 NAMES = ("punch", "plate")
@@ -232,7 +232,7 @@ def test_validate_loads_nothing_heavy(case):
     requirement: a case is checked without dolfinx, gmsh and MPI.
     """
     script = (
-        "import sys; from thermowear.cli import main; code = main(['validate', 'ring.toml']);"
+        "import sys; from thermowear.app.cli import main; code = main(['validate', 'ring.toml']);"
         "heavy = {'dolfinx', 'gmsh', 'mpi4py', 'petsc4py', 'pyvista', 'matplotlib'};"
         "print(code, sorted(heavy & set(sys.modules)))"
     )

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from thermowear.cli import main
-from thermowear.discretisations import neighbours
+from thermowear.app.cli import main
+from thermowear.app.discretisations import neighbours
 from thermowear.verification.starter import starter
 
 from .simulation.test_accuracy import LINE

@@ -10,14 +10,14 @@ import time
 import pytest
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
+from thermowear.app.session import SavingRecorder
 from thermowear.errors import ComputationError, UnwritableError
 from thermowear.output import tables
 from thermowear.output.folder import ResultsFolder
 from thermowear.output.quantities import HISTORY, INTERFACE
-from thermowear.session import SavingRecorder
 from thermowear.simulation import Observer
-from thermowear.simulation.saving import Saving
+from thermowear.simulation.runtime.checkpoint_policy import Saving
 
 from .conftest import COLD_RUNNING_IN
 
@@ -191,7 +191,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 class Interrupted(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):
-        if name == "thermowear.cli":
+        if name == "thermowear.app.cli":
             signal.raise_signal(signal.SIGINT)
 
 

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from thermowear.cli import main
+from thermowear.app.cli import main
 
 from .conftest import COLD_RUNNING_IN, DEMOS, HOT
 

@@ -17,7 +17,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.output.quantities import HISTORY
 from thermowear.output.tables import read
 

@@ -6,8 +6,8 @@ import tomllib
 import pytest
 import tomli_w
 
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_files, starter_text
-from thermowear.cli import main
 
 STOPPED = "--set=analysis.max_steps=3"
 

@@ -4,6 +4,7 @@ import ast
 import os
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import thermowear
 
 ROOT = Path(thermowear.__file__).parent
+PACKAGE = "thermowear"
 ORDER = [
     "case",
     "laws",
@@ -21,6 +23,7 @@ ORDER = [
     "simulation",
     "verification",
     "output",
+    "app",
 ]
 """Data flows one way: a room imports only from rooms above it in this list."""
 NOT_ALLOWED = {
@@ -29,6 +32,7 @@ NOT_ALLOWED = {
     "reference": {"dolfinx", "gmsh", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
     "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl", "basix"},
     "output": {"dolfinx", "petsc4py", "ufl", "basix", "gmsh"},
+    "app": {"dolfinx", "ufl", "basix", "gmsh"},
 }
 BARE = {
     "output": {"simulation", "verification", "contact", "bulk", "laws"},
@@ -37,11 +41,23 @@ BARE = {
     "contact": {"case", "geometry"},
 }
 """Rooms that a room could import by the order, but has no business with."""
+MOST_MODULES = 14
+"""In a folder, unless they are all of a kind."""
+OF_A_KIND = {"geometry/geometries", "reference", "verification/cases"}
+
+
+def module_of(path):
+    """Dotted name of a source file."""
+    parts = [PACKAGE, *path.relative_to(ROOT).with_suffix("").parts]
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+SOURCES = {module_of(path): path for path in sorted(ROOT.rglob("*.py"))}
 
 
 def imports(path):
-    """Absolute dotted names that a module imports."""
-    package = ["thermowear", *path.relative_to(ROOT).parts[:-1]]
+    """Absolute dotted names that a module imports, for type hints and in functions, too."""
+    package = [PACKAGE, *path.relative_to(ROOT).parts[:-1]]
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -52,6 +68,15 @@ def imports(path):
                 yield ".".join([*module, alias.name])
 
 
+def own_imports(path):
+    """Modules of the package that a module imports."""
+    for name in imports(path):
+        while name and name not in SOURCES:
+            name = name.rpartition(".")[0]
+        if name and name != PACKAGE:
+            yield name
+
+
 @pytest.mark.parametrize("room", ORDER)
 def test_rooms_import_only_from_above(room):
     """requirement: one-way flow; only bulk, contact and simulation know dolfinx."""
@@ -59,21 +84,48 @@ def test_rooms_import_only_from_above(room):
     for path in (ROOT / room).rglob("*.py"):
         for name in imports(path):
             parts = name.split(".")
-            if parts[0] == "thermowear" and len(parts) > 1:
+            if parts[0] == PACKAGE and len(parts) > 1:
                 assert parts[1] not in below, f"{path} imports {name}"
             assert parts[0] not in NOT_ALLOWED.get(room, set()), f"{path} imports {name}"
 
 
+def test_no_circle_of_imports():
+    """requirement: modules import one way, also for type hints and inside functions."""
+    graph = {name: set(own_imports(path)) - {name} for name, path in SOURCES.items()}
+    assert tuple(TopologicalSorter(graph).static_order())
+
+
+def test_folders_inside_a_room_import_one_way():
+    """requirement: of two folders, and of a folder and modules beside it, one knows the other."""
+    graph = {}
+    for name, path in SOURCES.items():
+        if path.name == "__init__.py":
+            continue  # says what a folder offers
+        for other in own_imports(path):
+            one, two = name.split("."), other.split(".")
+            at = next((i for i, (a, b) in enumerate(zip(one, two, strict=False)) if a != b), None)
+            if at is not None:
+                node, needed = ".".join(one[: at + 1]), ".".join(two[: at + 1])
+                graph.setdefault(node, set()).add(needed)
+    assert tuple(TopologicalSorter(graph).static_order())
+
+
+def test_folders_are_small():
+    """requirement: about a dozen modules in a folder, more only where all are of a kind."""
+    for folder in {path.parent for path in SOURCES.values()}:
+        modules = [path for path in folder.glob("*.py") if path.name != "__init__.py"]
+        kind = folder.relative_to(ROOT).as_posix()
+        assert len(modules) <= MOST_MODULES or kind in OF_A_KIND, folder
+
+
 def test_only_compat_knows_versions():
     """requirement: one module spans the dolfinx releases."""
-    for path in ROOT.rglob("*.py"):
+    own = {"__init__.py", "app/arguments.py", "output/folder.py"}  # the program's own version
+    for path in SOURCES.values():
         if path.name != "compat.py":
             assert "dolfinx.cpp" not in set(imports(path)), path
-            assert "__version__" not in path.read_text() or path.name in {
-                "__init__.py",
-                "arguments.py",
-                "folder.py",
-            }, path
+            known = path.relative_to(ROOT).as_posix() in own
+            assert known or "__version__" not in path.read_text(encoding="utf-8"), path
 
 
 def run_python(code):

@@ -6,9 +6,9 @@ import meshio
 import numpy as np
 import pytest
 
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
-from thermowear.cli import main
-from thermowear.geometry.gmsh_session import gmsh_model
+from thermowear.geometry.mesh.gmsh_session import gmsh_model
 
 SMALL = ("--set", "mesh.degree=2", "--set", "mesh.elements=4")
 SLOW = pytest.mark.slow

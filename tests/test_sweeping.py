@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.output import tables
 from thermowear.output.quantities import INTERFACE
 
@@ -162,7 +162,7 @@ def test_a_sweep_is_not_for_many_ranks(monkeypatch, capsys):
     requirement: under a launcher that starts several processes it says what to do instead.
     """
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
-    monkeypatch.setattr("thermowear.cli._speaks", lambda: True)
+    monkeypatch.setattr("thermowear.app.cli._speaks", lambda: True)
     assert main(["sweep", BLOCK, *LOADS]) == 1
     assert "--processes" in capsys.readouterr().err
 

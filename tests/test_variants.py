@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from thermowear.app.variants import parse_over, variants, written
 from thermowear.case.starters import starter_text
 from thermowear.errors import CaseError
-from thermowear.variants import parse_over, variants, written
 
 
 @pytest.fixture

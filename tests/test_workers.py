@@ -11,8 +11,8 @@ import time
 
 import pytest
 
-from thermowear import workers
-from thermowear.workers import work_off
+from thermowear.app import workers
+from thermowear.app.workers import work_off
 
 
 def square(task, tell):

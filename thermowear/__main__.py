@@ -12,7 +12,7 @@ def run() -> int:
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # before a BLAS is loaded
     try:
-        from .cli import main
+        from .app.cli import main
         from .interrupts import deliver_again
 
         deliver_again()

@@ -3,8 +3,8 @@
     scripts/env python3 tests/benchmarks/error_estimates.py [WORD…]
 
 True errors are those against closed forms, or against the program's own converged values where
-there is none, in the norms of `thermowear.simulation.accuracy`. Asked for: within a factor 3 of the
-estimate in 90 % of the cases, nowhere above 10 times it.
+there is none, in the norms of `thermowear.simulation.accuracy.error_estimate`. Asked for: within a
+factor 3 of the estimate in 90 % of the cases, nowhere above 10 times it.
 """
 
 from __future__ import annotations

@@ -45,12 +45,12 @@ from scipy.interpolate import BPoly
 from thermowear import geometry  # noqa: F401  (makes the geometries known)
 from thermowear.case import load
 from thermowear.case.starters import starter_text
-from thermowear.geometry.nodes import reference_nodes
+from thermowear.geometry.mesh.nodes import reference_nodes
 from thermowear.reference.hertz import contact_modulus
-from thermowear.simulation.building import build
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.positioning import prepare
-from thermowear.simulation.problem_factory import interface_problem
+from thermowear.simulation.analyses.positioning import prepare
+from thermowear.simulation.interface.factory import interface_problem
+from thermowear.simulation.model.building import build
+from thermowear.timer import Phases
 
 gf = importlib.import_module("getfem")  # not in scripts/packages: it serves here only
 

@@ -14,12 +14,12 @@ from mpi4py import MPI
 import numpy as np
 
 import thermowear as tw
-from thermowear.bulk.factor import Factor
-from thermowear.simulation.building import build
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.problem_factory import interface_problem
-from thermowear.simulation.steady import steady_state
-from thermowear.simulation.transient import moments
+from thermowear.bulk.direct_solver import Factor
+from thermowear.simulation.interface.factory import interface_problem
+from thermowear.simulation.interface.steady import steady_state
+from thermowear.simulation.model.building import build
+from thermowear.simulation.time.time_loop import moments
+from thermowear.timer import Phases
 
 
 def seconds(action, repeat=3):

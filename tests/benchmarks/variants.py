@@ -17,8 +17,8 @@ import numpy as np
 import thermowear as tw
 from thermowear.case import as_plain
 from thermowear.output.folder import ResultsFolder
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.sweep import Series
+from thermowear.simulation.analyses.sweep import Series
+from thermowear.timer import Phases
 
 CASE = "demos/block_on_disk_turning.toml"
 FORCES = ("1 kN", "2 kN", "3 kN", "4 kN", "5 kN")

@@ -6,13 +6,13 @@ from petsc4py import PETSc
 import numpy as np
 from dolfinx import fem
 
-from thermowear.bulk.advection import Passage
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import lagrange_space, owned
-from thermowear.bulk.heat_equation import ThermalMaterial, conduction
+from thermowear.bulk.heat.advection import Passage
+from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import PlaneStrain
-from thermowear.geometry.polar import Polar
-from thermowear.geometry.quads import Sheet, grid, mesh_body, tagged_bodies
+from thermowear.geometry.meshing.polar import Polar
+from thermowear.geometry.meshing.quads import Sheet, grid, mesh_body, tagged_bodies
 
 COMM = MPI.COMM_WORLD
 STEEL = ThermalMaterial(50.0, 2e6)

@@ -7,9 +7,9 @@ from dolfinx import fem
 from dolfinx.fem.petsc import assemble_vector
 
 from thermowear import load
-from thermowear.bulk.advection import Passage
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import as_function, owned
+from thermowear.bulk.heat.advection import Passage
 
 from ..conftest import DEMOS
 from .passing import (

@@ -9,7 +9,7 @@ from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import lagrange_space, owned
-from thermowear.bulk.heat_equation import ThermalMaterial, conduction
+from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
 
 from ..conftest import two_blocks

@@ -10,10 +10,10 @@ from dolfinx import fem
 from dolfinx.fem.petsc import assemble_vector
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.bulk.surface_load import surface_pressure
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.mechanics.surface_load import surface_pressure
 from thermowear.reference import cylinder
 
 from ..conftest import two_blocks

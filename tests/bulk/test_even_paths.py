@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.bulk.advection import Passage
 from thermowear.bulk.field import owned
+from thermowear.bulk.heat.advection import Passage
 
 from .passing import COMM, INNER, OUTER, STEEL, conducting, largest, ring, strip, total, turning
 

@@ -9,11 +9,11 @@ from dolfinx import fem
 from dolfinx.fem.petsc import assemble_vector
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, section_model
-from thermowear.case.driving import Motion
-from thermowear.contact.sliding import sliding
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.case.tables.driving import Motion
+from thermowear.contact.operators.sliding import sliding
 
 from ..conftest import two_blocks
 

@@ -7,11 +7,11 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Spatial
-from thermowear.bulk.surface_load import surface_pressure
-from thermowear.geometry.hexes import Lattice, level, mesh_lattice
-from thermowear.geometry.quads import tagged_bodies
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.mechanics.surface_load import surface_pressure
+from thermowear.geometry.meshing.hexes import Lattice, level, mesh_lattice
+from thermowear.geometry.meshing.quads import tagged_bodies
 
 COMM = MPI.COMM_WORLD
 ENDS = (np.linspace(0.0, 0.02, 3), np.linspace(0.0, 0.01, 3), np.array([0.0, 0.01, 0.03, 0.04]))

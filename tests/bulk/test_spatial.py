@@ -9,8 +9,8 @@ from dolfinx import fem
 
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial, section_model
-from thermowear.case.driving import Motion
-from thermowear.contact.sliding import sliding
+from thermowear.case.tables.driving import Motion
+from thermowear.contact.operators.sliding import sliding
 from thermowear.parallel import sum_over_ranks
 
 from ..contact.solids import HEIGHTS, MODULI, SIZE, bent, elastic_bodies, gathered, straight, turned

@@ -11,7 +11,7 @@ from dolfinx import fem
 from dolfinx import mesh as dmesh
 
 from thermowear.bulk.field import lagrange_space, total
-from thermowear.bulk.surplus import surplus_space
+from thermowear.bulk.mechanics.surplus import surplus_space
 
 MESHES = {
     "quadrilateral": lambda: dmesh.create_unit_square(

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import lagrange_space, owned
-from thermowear.bulk.heat_equation import ThermalMaterial, conduction
+from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
+from thermowear.bulk.heat.varying import thermal_forces, varying_conduction, varying_expansion
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.bulk.varying import thermal_forces, varying_conduction, varying_expansion
-from thermowear.case.factors import ExpansionFactor, TemperatureFactor
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.case.tables.multipliers import ExpansionFactor, TemperatureFactor
 
 from ..conftest import two_blocks
 

@@ -3,7 +3,11 @@
 import pytest
 
 import thermowear as tw
-from thermowear.case.comparison import changes, forbidden_changes, irrelevant_changes_only
+from thermowear.case.validation.comparison import (
+    changes,
+    forbidden_changes,
+    irrelevant_changes_only,
+)
 
 from ..conftest import COLD_RUNNING_IN, DEMOS
 

@@ -8,8 +8,8 @@ import pytest
 import tomli_w
 
 import thermowear as tw
+from thermowear.app.cli import main
 from thermowear.case import as_plain
-from thermowear.cli import main
 from thermowear.errors import CaseNote
 
 from .bad import Bad, assert_refused

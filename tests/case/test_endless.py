@@ -9,9 +9,9 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.case.bounds import LARGEST_FILE, LONGEST_KEY, MOST_PARTS, MOST_VALUES
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
-from thermowear.cli import main
+from thermowear.case.values.bounds import LARGEST_FILE, LONGEST_KEY, MOST_PARTS, MOST_VALUES
 from thermowear.errors import MOST_FAULTS
 
 from .bad import faults

@@ -10,7 +10,7 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
 
 from .bad import Bad, assert_refused, faults
 from .starter import (

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.case.facing import Facing
+from thermowear.case.tables.facing import Facing
 
 from .bad import Bad, assert_refused, faults
 from .starter import GONE, PUNCH, RECIPROCATING, STEADY, tables

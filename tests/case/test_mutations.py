@@ -15,7 +15,7 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
 
 from .mutations import CLASSES, mutated
 

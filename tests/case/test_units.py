@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import thermowear as tw
-from thermowear.case.units import registry
+from thermowear.case.values.units import registry
 
 from ..conftest import examples
 from .starter import RUNNING_IN, STEADY, tables

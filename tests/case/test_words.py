@@ -8,8 +8,8 @@ import warnings
 import pytest
 
 import thermowear as tw
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_text, starters
-from thermowear.cli import main
 from thermowear.errors import CaseNote
 
 from .bad import faults

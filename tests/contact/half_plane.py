@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from thermowear.contact.tangential import frictional_contact
+from thermowear.contact.operators.tangential import frictional_contact
 
 
 def half_plane(line, cells, extent=1.25):

@@ -9,16 +9,16 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Spatial
-from thermowear.contact.condensation import condense
-from thermowear.contact.face import gather_face
-from thermowear.contact.holder import Drive, hold
-from thermowear.contact.pairing import pair
-from thermowear.contact.pressure import pressure_basis
-from thermowear.contact.traces import gap_trace
-from thermowear.geometry.hexes import Lattice, mesh_lattice
-from thermowear.geometry.quads import tagged_bodies
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.operators.condensation import condense
+from thermowear.contact.operators.holder import Drive, hold
+from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.traces import gap_trace
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.geometry.meshing.hexes import Lattice, mesh_lattice
+from thermowear.geometry.meshing.quads import tagged_bodies
 from thermowear.laws.motions import translation
 
 COMM = MPI.COMM_WORLD

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.closed_face import _opened
-from thermowear.contact.common_face import opposite
-from thermowear.contact.face import Face
+from thermowear.contact.search.closed_face import _opened
+from thermowear.contact.search.common_face import opposite
+from thermowear.contact.search.face import Face
 
 RADIUS = 0.1
 FACETS = 24

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thermowear import ComputationError
-from thermowear.contact.complementarity import (
+from thermowear.contact.solvers.lemke import lemke
+from thermowear.contact.solvers.signorini import (
     ContactSolution,
     NoEquilibrium,
     _checked,
@@ -14,7 +15,6 @@ from thermowear.contact.complementarity import (
     _Problem,
     solve_contact,
 )
-from thermowear.contact.lemke import lemke
 
 from ..conftest import examples
 

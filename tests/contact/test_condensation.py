@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.contact.complementarity import solve_contact
-from thermowear.contact.condensation import condense, influence
-from thermowear.contact.face import gather_face
-from thermowear.contact.holder import Drive, hold
-from thermowear.contact.pairing import pair
-from thermowear.contact.pressure import pressure_basis
-from thermowear.contact.traces import gap_trace, vector_trace
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.operators.condensation import condense, influence
+from thermowear.contact.operators.holder import Drive, hold
+from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.traces import gap_trace, vector_trace
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks
 

@@ -8,9 +8,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thermowear import ComputationError
-from thermowear.contact.complementarity import solve_contact
-from thermowear.contact.coulomb import CoulombProblem, CoulombSolution, jacobian, residual, violated
-from thermowear.contact.coulomb_solver import _complementary, solve_directly, solve_patiently
+from thermowear.contact.friction.coulomb import (
+    CoulombProblem,
+    CoulombSolution,
+    jacobian,
+    residual,
+    violated,
+)
+from thermowear.contact.friction.coulomb_solver import (
+    _complementary,
+    solve_directly,
+    solve_patiently,
+)
+from thermowear.contact.solvers.signorini import solve_contact
 
 from ..conftest import examples
 

@@ -8,23 +8,23 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import lagrange_space
-from thermowear.bulk.heat_equation import ThermalMaterial, conduction
+from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.contact.condensation import condense
-from thermowear.contact.face import gather_face
-from thermowear.contact.heat import at_rest
-from thermowear.contact.heat_condensation import (
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.operators.condensation import condense
+from thermowear.contact.operators.heat import at_rest
+from thermowear.contact.operators.heat_condensation import (
     bath_matrix,
     condense_distortion,
     condense_heat,
     gap_per_rise,
 )
-from thermowear.contact.holder import Drive, hold
-from thermowear.contact.pairing import pair
-from thermowear.contact.pressure import pressure_basis
-from thermowear.contact.traces import gap_trace, value_trace
+from thermowear.contact.operators.holder import Drive, hold
+from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.traces import gap_trace, value_trace
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
 from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks
 from thermowear.reference import slabs

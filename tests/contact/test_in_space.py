@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import lagrange_space
-from thermowear.bulk.heat_equation import ThermalMaterial, conduction
+from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
-from thermowear.contact.complementarity import solve_contact
-from thermowear.contact.condensation import condense
-from thermowear.contact.face import gather_face
-from thermowear.contact.heat import at_rest
-from thermowear.contact.heat_condensation import bath_matrix, condense_heat
-from thermowear.contact.holder import Drive, hold
-from thermowear.contact.pairing import pair
-from thermowear.contact.pressure import pressure_basis
-from thermowear.contact.traces import gap_trace, value_trace
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.operators.condensation import condense
+from thermowear.contact.operators.heat import at_rest
+from thermowear.contact.operators.heat_condensation import bath_matrix, condense_heat
+from thermowear.contact.operators.holder import Drive, hold
+from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.traces import gap_trace, value_trace
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.laws.motions import rotation, translation
 from thermowear.reference import slabs
 

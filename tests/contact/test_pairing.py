@@ -13,11 +13,11 @@ from thermowear import CaseError
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.contact.face import Face, gather_face
-from thermowear.contact.pairing import pair
-from thermowear.contact.pressure import pressure_basis
-from thermowear.contact.projection import project
-from thermowear.contact.traces import gap_trace, value_trace
+from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.traces import gap_trace, value_trace
+from thermowear.contact.search.face import Face, gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.projection import project
 from thermowear.parallel import sum_over_ranks
 
 from ..conftest import two_blocks

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermowear.contact.face import Face
-from thermowear.contact.projection import ahead, beside, project
-from thermowear.contact.refinement import rule
+from thermowear.contact.search.face import Face
+from thermowear.contact.search.projection import ahead, beside, project
+from thermowear.contact.search.refinement import rule
 
 
 def chain(x, y):

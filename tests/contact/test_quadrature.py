@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.quadrature import lobatto
+from thermowear.contact.search.quadrature import lobatto
 
 
 @pytest.mark.parametrize("n", range(2, 14))

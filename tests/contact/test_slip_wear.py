@@ -6,10 +6,10 @@ import itertools
 import numpy as np
 import pytest
 
-from thermowear.contact.loads import Loads
-from thermowear.contact.slip_wear import Profile, SlipWear
-from thermowear.contact.stick_slip import follow
-from thermowear.contact.stick_slip_state import Status, unloaded
+from thermowear.contact.friction.loads import Loads
+from thermowear.contact.friction.slip_wear import Profile, SlipWear
+from thermowear.contact.friction.stick_slip import follow
+from thermowear.contact.friction.stick_slip_state import Status, unloaded
 from thermowear.laws import WearLaw
 from thermowear.reference.growing_contact import growing_line
 from thermowear.reference.mindlin import MindlinLine

@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 from thermowear import ComputationError
-from thermowear.bulk.elasticity import ElasticMaterial
 from thermowear.bulk.kinematics import section_model
-from thermowear.contact.full_system import FullContact
-from thermowear.contact.stabilisation import (
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial
+from thermowear.contact.full.full_system import FullContact
+from thermowear.contact.full.stabilisation import (
     default_penalty,
     nitsche_stiffness,
     nitsche_warning,
     stability_limit,
 )
-from thermowear.contact.traces import gap_trace
-from thermowear.contact.traction import normal_traction
+from thermowear.contact.operators.traces import gap_trace
+from thermowear.contact.operators.traction import normal_traction
 
 from .test_traction import MODELS, build, deformed_blocks
 

@@ -15,17 +15,17 @@ from dolfinx.fem.petsc import assemble_vector
 
 from thermowear import ComputationError
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain
-from thermowear.contact import stick_slip
-from thermowear.contact.complementarity import solve_contact
-from thermowear.contact.face import gather_face
-from thermowear.contact.loads import Loads
-from thermowear.contact.pairing import pair
-from thermowear.contact.pressure import pressure_basis
-from thermowear.contact.stick_slip import FullSliding, advance, follow
-from thermowear.contact.stick_slip_state import Status, stored_energy, unloaded
-from thermowear.contact.tangential import condense_tangential
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.friction import stick_slip
+from thermowear.contact.friction.loads import Loads
+from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
+from thermowear.contact.friction.stick_slip_state import Status, stored_energy, unloaded
+from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.tangential import condense_tangential
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.parallel import sum_over_ranks
 from thermowear.reference.hertz import contact_modulus
 from thermowear.reference.mindlin import MindlinLine

@@ -9,13 +9,17 @@ import pytest
 from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.field import owned
 from thermowear.bulk.kinematics import section_model
-from thermowear.contact.face import gather_face
-from thermowear.contact.pairing import pair
-from thermowear.contact.traction import normal_traction, on_every_facet, thermal_traction
-from thermowear.geometry.gmsh_session import gmsh_model, tagged_mesh
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.operators.traction import (
+    normal_traction,
+    on_every_facet,
+    thermal_traction,
+)
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.geometry.mesh.gmsh_session import gmsh_model, tagged_mesh
 from thermowear.parallel import sum_over_ranks
 
 COMM = MPI.COMM_WORLD

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from thermowear.contact.unseen import unseen
+from thermowear.contact.wear.unresolved_gap import unseen
 
 FACETS, DEGREE = 4, 3
 

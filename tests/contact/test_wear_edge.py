@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from thermowear.contact.condensation import CondensedContact
-from thermowear.contact.wear_edge import edge_points, edge_space, has_passed, rough_points
+from thermowear.contact.operators.condensation import CondensedContact
+from thermowear.contact.wear.wear_edge import edge_points, edge_space, has_passed, rough_points
 
 FACETS, POINTS = 5, 4
 

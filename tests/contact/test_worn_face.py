@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
-from thermowear.contact.face import Face
-from thermowear.contact.pairing import pair, paired
-from thermowear.contact.worn_face import Paths, WornFace, curvatures, node_normals, nodes_of
+from thermowear.contact.search.face import Face
+from thermowear.contact.search.pairing import pair, paired
+from thermowear.contact.wear.worn_face import Paths, WornFace, curvatures, node_normals, nodes_of
 
 from .solids import bent, gathered, straight, turned, two_solids
 

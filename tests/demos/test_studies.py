@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.app.variants import parse_over
 from thermowear.output.quantities import PROFILE
 from thermowear.output.tables import write_points
-from thermowear.variants import parse_over
 
 from ..conftest import DEMOS
 

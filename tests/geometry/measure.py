@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermowear.geometry.nodes import reference_nodes
+from thermowear.geometry.mesh.nodes import reference_nodes
 
 
 def _powers(order: int, triangle: bool) -> list[tuple[int, int]]:

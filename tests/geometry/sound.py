@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.case.section import KeyFault
+from thermowear.case.values.section import KeyFault
 
 from .measure import areas, edges, scaled_jacobians
 
@@ -15,7 +15,7 @@ def check_mesh(mesh, sections: dict[str, float], rel: float = 1e-12, shape: floa
 
     Parameters
     ----------
-    mesh : thermowear.geometry.tagged.TaggedMesh
+    mesh : thermowear.geometry.mesh.tagged.TaggedMesh
     sections : dict of str to float
         Area of each body [m²].
     rel : float

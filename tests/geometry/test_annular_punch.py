@@ -8,10 +8,10 @@ import pytest
 import thermowear as tw
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
-from thermowear.case.schema import Mesh
-from thermowear.contact.face import gather_face
-from thermowear.contact.pairing import pair
-from thermowear.geometry.annular_punch import AnnularPunch
+from thermowear.case.tables.schema import Mesh
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.geometry.geometries.annular_punch import AnnularPunch
 
 from ..conftest import HOT
 from .measure import edges

@@ -8,12 +8,12 @@ from scipy.integrate import quad
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
-from thermowear.case.schema import Mesh
-from thermowear.contact.face import gather_face
-from thermowear.contact.pairing import pair
-from thermowear.geometry.block_on_disk import BlockOnDisk
-from thermowear.geometry.drum_brake import DrumBrake
-from thermowear.geometry.ring_segment_on_disk import RingSegmentOnDisk
+from thermowear.case.tables.schema import Mesh
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.geometry.geometries.block_on_disk import BlockOnDisk
+from thermowear.geometry.geometries.drum_brake import DrumBrake
+from thermowear.geometry.geometries.ring_segment_on_disk import RingSegmentOnDisk
 
 from .measure import edges, unnamed
 from .sound import check_mesh, fault

@@ -10,10 +10,10 @@ from dolfinx.fem.petsc import assemble_vector
 from dolfinx.mesh import meshtags
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import section_model
-from thermowear.case.schema import Mesh
-from thermowear.geometry.beam_on_foundation import BeamOnFoundation
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.case.tables.schema import Mesh
+from thermowear.geometry.geometries.beam_on_foundation import BeamOnFoundation
 
 from .measure import ends, unnamed
 from .sound import check_mesh, check_surfaces, fault, spans

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thermowear.geometry.blocks import graded_face, growing, growing_from_both, smallest
+from thermowear.geometry.meshing.blocks import graded_face, growing, growing_from_both, smallest
 
 
 def sizes(intervals):

@@ -8,12 +8,12 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import CaseError
-from thermowear.geometry.design import HEADERS, Design, add_table, from_table, read_table
-from thermowear.geometry.design import write_table as write
-from thermowear.geometry.design_mesh import write_design_mesh
-from thermowear.geometry.export import write_mesh
-from thermowear.geometry.outline import loops, only_body
-from thermowear.geometry.worn_body import moved_body
+from thermowear.geometry.cad.design import HEADERS, Design, add_table, from_table, read_table
+from thermowear.geometry.cad.design import write_table as write
+from thermowear.geometry.cad.design_mesh import write_design_mesh
+from thermowear.geometry.cad.outline import loops, only_body
+from thermowear.geometry.cad.worn_body import moved_body
+from thermowear.geometry.reading.export import write_mesh
 
 from ..case.starter import STEADY, tables
 from ..simulation.space import PUNCH

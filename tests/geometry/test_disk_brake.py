@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.case.schema import Mesh
-from thermowear.geometry.disk_brake import DiskBrake
+from thermowear.case.tables.schema import Mesh
+from thermowear.geometry.geometries.disk_brake import DiskBrake
 
 from .measure import ends, unnamed
 from .sound import check_mesh, check_surfaces, fault, spans

@@ -11,10 +11,10 @@ from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
-from thermowear.case.schema import Mesh
-from thermowear.contact.face import gather_face
-from thermowear.contact.pairing import pair
-from thermowear.geometry.disk_sector import DiskSector
+from thermowear.case.tables.schema import Mesh
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
+from thermowear.geometry.geometries.disk_sector import DiskSector
 from thermowear.parallel import sum_over_ranks
 
 from .measure import edges

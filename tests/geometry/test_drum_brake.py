@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.schema import Mesh
+from thermowear.case.tables.schema import Mesh
 
 from .measure import edges
 from .sound import fault

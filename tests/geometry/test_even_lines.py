@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.geometry.even_lines import even
-from thermowear.geometry.skeleton import Line
+from thermowear.geometry.moving.even_lines import even
+from thermowear.geometry.moving.skeleton import Line
 
 
 def straight(sizes, ends=(0, 1), start=(0.0, 0.0), way=(1.0, 0.0)):

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from thermowear.geometry.blocks import graded_face
-from thermowear.geometry.export import write_mesh
-from thermowear.geometry.hexes import Lattice, ends_of, mesh_lattice
-from thermowear.geometry.nodes import facet_nodes, reference_nodes
-from thermowear.geometry.orders import shape_functions
-from thermowear.geometry.quads import tagged_bodies
+from thermowear.geometry.mesh.nodes import facet_nodes, reference_nodes
+from thermowear.geometry.mesh.orders import shape_functions
+from thermowear.geometry.meshing.blocks import graded_face
+from thermowear.geometry.meshing.hexes import Lattice, ends_of, mesh_lattice
+from thermowear.geometry.meshing.quads import tagged_bodies
+from thermowear.geometry.reading.export import write_mesh
 
 GMSH = {1: 5, 2: 12, 3: 92}
 ENDS = (np.array([1.0, 1.4, 2.0]), np.linspace(0.0, 2 * np.pi, 9), np.array([0.0, 0.3, 1.0]))

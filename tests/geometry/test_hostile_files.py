@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.errors import CaseError
-from thermowear.geometry import isolated
-from thermowear.geometry.mesh_file import MeshFile
+from thermowear.geometry.geometries.mesh_file import MeshFile
+from thermowear.geometry.reading import isolated
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint
 
 from .plain import NAMES, NUMBERED, blocks, inp, meshio_file, msh

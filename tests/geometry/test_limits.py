@@ -6,9 +6,9 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import CaseError
-from thermowear.geometry import quads
-from thermowear.geometry.blocks import Interval, growing
-from thermowear.geometry.limits import MOST_CELLS, check_count
+from thermowear.geometry.mesh.limits import MOST_CELLS, check_count
+from thermowear.geometry.meshing import quads
+from thermowear.geometry.meshing.blocks import Interval, growing
 
 from ..case.bad import faults
 from ..case.starter import HERTZ, PUNCH, SPHERE, STEADY, TUBE, tables

@@ -8,13 +8,13 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.case.schema import Mesh
-from thermowear.cli import main
+from thermowear.app.cli import main
+from thermowear.case.tables.schema import Mesh
 from thermowear.errors import CaseError, CaseNote
-from thermowear.geometry.cylinder_on_block import CylinderOnBlock
-from thermowear.geometry.export import write_mesh
-from thermowear.geometry.gmsh_session import gmsh_model
-from thermowear.geometry.mesh_file import MeshFile
+from thermowear.geometry.geometries.cylinder_on_block import CylinderOnBlock
+from thermowear.geometry.geometries.mesh_file import MeshFile
+from thermowear.geometry.mesh.gmsh_session import gmsh_model
+from thermowear.geometry.reading.export import write_mesh
 
 from ..case.starter import STEADY, tables
 from ..conftest import two_blocks

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.conftest import two_blocks
-from thermowear.geometry.moved import MovableBody
-from thermowear.geometry.shapes import scaled_jacobians
+from thermowear.geometry.mesh.shapes import scaled_jacobians
+from thermowear.geometry.moving.moved import MovableBody
 
 from .measure import areas
 from .measure import scaled_jacobians as measured

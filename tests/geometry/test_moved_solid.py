@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.contact.solids import HEIGHTS, SIZE, bent, skewed, straight, turned, two_solids
-from thermowear.geometry.moved_solid import MovableSolid
-from thermowear.geometry.shapes import scaled_jacobians
+from thermowear.geometry.mesh.shapes import scaled_jacobians
+from thermowear.geometry.moving.moved_solid import MovableSolid
 
 from .measure import volumes
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.case.schema import Mesh
-from thermowear.geometry.pivoted_block import PivotedBlock
+from thermowear.case.tables.schema import Mesh
+from thermowear.geometry.geometries.pivoted_block import PivotedBlock
 
 from .measure import ends, unnamed
 from .sound import check_mesh, check_surfaces, fault

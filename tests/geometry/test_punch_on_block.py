@@ -8,12 +8,12 @@ from scipy.integrate import quad
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
-from thermowear.case.geometry import Pressing
-from thermowear.case.schema import Mesh
-from thermowear.contact.face import gather_face
-from thermowear.contact.pairing import pair
+from thermowear.case.tables.geometry import Pressing
+from thermowear.case.tables.schema import Mesh
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
-from thermowear.geometry.punch_on_block import PunchOnBlock
+from thermowear.geometry.geometries.punch_on_block import PunchOnBlock
 
 from .measure import areas, edges, ends, scaled_jacobians, unnamed
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.case.schema import Mesh
-from thermowear.geometry.punch_on_strip import PunchOnStrip
+from thermowear.case.tables.schema import Mesh
+from thermowear.geometry.geometries.punch_on_strip import PunchOnStrip
 
 from .measure import edges, ends, unnamed
 from .sound import check_mesh, check_surfaces, fault, spans

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.case.schema import Mesh
-from thermowear.geometry.rectangular_punch import RectangularPunch
+from thermowear.case.tables.schema import Mesh
+from thermowear.geometry.geometries.rectangular_punch import RectangularPunch
 
 from .measure import edges
 from .sound import fault

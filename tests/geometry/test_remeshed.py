@@ -7,11 +7,11 @@ import pytest
 
 from tests.conftest import two_blocks
 from thermowear.errors import ComputationError
-from thermowear.geometry.moved import MovableBody
-from thermowear.geometry.orders import boundary
-from thermowear.geometry.remeshed import meshed_anew
-from thermowear.geometry.shapes import quality, volume
-from thermowear.geometry.skeleton import skeleton
+from thermowear.geometry.mesh.orders import boundary
+from thermowear.geometry.mesh.shapes import quality, volume
+from thermowear.geometry.moving.moved import MovableBody
+from thermowear.geometry.moving.remeshed import meshed_anew
+from thermowear.geometry.moving.skeleton import skeleton
 from thermowear.verification.starter import starter
 
 from .measure import areas, edges

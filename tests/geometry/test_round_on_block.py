@@ -7,13 +7,13 @@ import pytest
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
-from thermowear.case.geometry import Pressing
-from thermowear.case.schema import Mesh
-from thermowear.contact.face import gather_face
-from thermowear.contact.pairing import pair
+from thermowear.case.tables.geometry import Pressing
+from thermowear.case.tables.schema import Mesh
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
-from thermowear.geometry.cylinder_on_block import CylinderOnBlock
-from thermowear.geometry.sphere_on_block import SphereOnBlock
+from thermowear.geometry.geometries.cylinder_on_block import CylinderOnBlock
+from thermowear.geometry.geometries.sphere_on_block import SphereOnBlock
 
 from .measure import areas, dofs, edges, ends, scaled_jacobians, unnamed
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import two_blocks
-from thermowear.geometry.skeleton import skeleton
+from thermowear.geometry.moving.skeleton import skeleton
 from thermowear.verification.starter import starter
 
 

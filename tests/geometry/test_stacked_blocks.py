@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.case.schema import Mesh
-from thermowear.geometry.stacked_blocks import StackedBlocks
+from thermowear.case.tables.schema import Mesh
+from thermowear.geometry.geometries.stacked_blocks import StackedBlocks
 
 from .measure import edges, ends, unnamed
 from .sound import check_mesh, fault, spans

@@ -7,11 +7,11 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import CaseError
-from thermowear.geometry.design import Design
-from thermowear.geometry.gmsh_session import gmsh_model
-from thermowear.geometry.outline import only_body
-from thermowear.geometry.step_prism import face_grid, write_prism
-from thermowear.geometry.step_section import write_section
+from thermowear.geometry.cad.design import Design
+from thermowear.geometry.cad.outline import only_body
+from thermowear.geometry.cad.step_prism import face_grid, write_prism
+from thermowear.geometry.cad.step_section import write_section
+from thermowear.geometry.mesh.gmsh_session import gmsh_model
 
 from ..case.starter import STEADY
 from ..simulation.space import BRAKE, PUNCH

@@ -7,12 +7,12 @@ import pytest
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
-from thermowear.case.geometry import Pressing
-from thermowear.case.schema import Mesh
-from thermowear.contact.face import gather_face
-from thermowear.contact.pairing import pair
+from thermowear.case.tables.geometry import Pressing
+from thermowear.case.tables.schema import Mesh
+from thermowear.contact.search.face import gather_face
+from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
-from thermowear.geometry.tube_in_support import TubeInSupport
+from thermowear.geometry.geometries.tube_in_support import TubeInSupport
 
 from .measure import edges, ends, unnamed
 from .sound import check_mesh, fault

@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.laws import (
-    WearLaw,
-    friction_dissipation,
-    wear_dissipation,
-    wear_volume_rate,
-)
+from thermowear.laws import WearLaw, friction_dissipation, wear_dissipation, wear_volume_rate
 
 from .random_problems import curved_face
 

@@ -4,14 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear import ComputationError
-from thermowear.laws import (
-    NotCarried,
-    SelfLocking,
-    WearLaw,
-    contact_patch,
-    rotation,
-    translation,
-)
+from thermowear.laws import NotCarried, SelfLocking, WearLaw, contact_patch, rotation, translation
 
 from .random_problems import curved_face
 

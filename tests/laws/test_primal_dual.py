@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.laws import WearLaw
-from thermowear.laws.primal_dual import PowerSum, solve
+from thermowear.laws.principle.interior_point import PowerSum, solve
 
 from .random_problems import curved_face
 

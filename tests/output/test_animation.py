@@ -8,8 +8,8 @@ import pytest
 from PIL import Image
 
 from thermowear import CaseError
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
-from thermowear.cli import main
 from thermowear.output.pictures.animation import make
 from thermowear.output.pictures.animation.curves import top
 from thermowear.output.pictures.animation.scene import duration

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.output.atomic_write import final_name, replacing
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint, write_checkpoint
 from thermowear.output.folder import finite
 from thermowear.output.lock import Lock
 from thermowear.output.quantities import HISTORY
-from thermowear.output.replacing import final_name, replacing
 from thermowear.output.resuming import read_run
 from thermowear.output.tables import RowWriter, read
 from thermowear.serialise import Checkpoint

@@ -15,13 +15,13 @@ import pytest
 import tomli_w
 
 import thermowear as tw
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_text, starters
-from thermowear.cli import main
-from thermowear.geometry.gmsh_session import gmsh_model
+from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.output import tables
 from thermowear.output.quantities import FRICTION, HISTORY, INTERFACE, LOADS, PROFILE
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.positioning import prepare
+from thermowear.simulation.analyses.positioning import prepare
+from thermowear.timer import Phases
 
 from ..case import starter
 from ..case.starter import FRETTING, HERTZ, PUNCH, RECIPROCATING, RUNNING_IN, SPHERE, STEADY

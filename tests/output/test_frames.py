@@ -4,7 +4,7 @@ import meshio
 import numpy as np
 import pytest
 
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.output.frames import FRAMES, frame_files, keep_indexed, remove_frames
 from thermowear.output.quantities import HISTORY, INTERFACE
 from thermowear.output.tables import read

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import tomli_w
 
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.output.pictures.maps import triangulated
 
 from ..simulation.space import BRAKE, PUNCH, changed

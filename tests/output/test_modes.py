@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import tomli_w
 
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.output import tables
 from thermowear.output.quantities import MODES
 

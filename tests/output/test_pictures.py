@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from thermowear import CaseError
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
-from thermowear.cli import main
 from thermowear.output.pictures import make
 from thermowear.output.pictures.curves import draw_history, draw_interface
 from thermowear.output.pictures.heat import draw_heat

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from thermowear import output
+from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
-from thermowear.cli import main
 from thermowear.output import tables
 from thermowear.output.pictures.curves import draw_interface
 from thermowear.output.quantities import FRICTION, HISTORY, LOADS

@@ -7,7 +7,7 @@ import meshio
 import numpy as np
 import pytest
 
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.output import tables
 from thermowear.output.quantities import HISTORY, INTERFACE
 from thermowear.simulation import HistoryRow

@@ -5,13 +5,7 @@ import pytest
 from scipy.integrate import dblquad, quad
 from scipy.optimize import brentq
 
-from thermowear.reference import (
-    annular_punch,
-    block_on_disk,
-    brake_block,
-    disk_brake,
-    flat_face,
-)
+from thermowear.reference import annular_punch, block_on_disk, brake_block, disk_brake, flat_face
 from thermowear.reference.drum_brake import DrumBrake
 
 EXPONENTS = (0.3, 0.5, 1.0, 2.0, 4.0)

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermowear.case.schema import Mesh
-from thermowear.geometry.cylinder_on_block import CylinderOnBlock
-from thermowear.geometry.tagged import TaggedMesh
+from thermowear.case.tables.schema import Mesh
+from thermowear.geometry.geometries.cylinder_on_block import CylinderOnBlock
+from thermowear.geometry.mesh.tagged import TaggedMesh
 
 
 def cylinder(radius: float, zone: float, elements: int, half: bool = False) -> TaggedMesh:

@@ -93,7 +93,7 @@ def test_no_estimate_never_ends_a_run(monkeypatch):
     def fails(*_):
         raise ComputationError("no pressure satisfies the contact conditions")
 
-    monkeypatch.setattr("thermowear.simulation.accuracy.enriched_pressure", fails)
+    monkeypatch.setattr("thermowear.simulation.accuracy.error_estimate.enriched_pressure", fails)
     result = run_starter("cylinder-on-block", *LINE, "mesh.degree=2", "mesh.elements=4")
     assert estimates(result)["pressure"] is None
     assert "satisfies" in result.summary["error_estimate_missing"]["pressure"]

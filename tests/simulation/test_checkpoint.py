@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.contact.heat import ThermalState
+from thermowear.contact.operators.heat import ThermalState
 from thermowear.serialise import pack
 from thermowear.simulation import HistoryRow, Observer
-from thermowear.simulation.run import run
+from thermowear.simulation.analyses.run import run
 
 from ..conftest import COLD_RUNNING_IN, DEMOS, HOT
 

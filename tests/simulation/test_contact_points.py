@@ -7,11 +7,11 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
-from thermowear.simulation.building import build
-from thermowear.simulation.kept_wear import KeptWear, movable_body
-from thermowear.simulation.parts import Parts
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.worn_geometry import along
+from thermowear.simulation.geometry_update.gap_wear import KeptWear, movable_body
+from thermowear.simulation.model.building import build
+from thermowear.simulation.model.setup_cache import Parts
+from thermowear.simulation.model.worn_geometry import along
+from thermowear.timer import Phases
 from thermowear.verification.starter import run_starter, starter
 
 RADIUS = 2e-3

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermowear.contact.full_sliding import FullSliding
-from thermowear.contact.stick_slip_state import StickSlipState
+from thermowear.contact.friction.gross_slip import FullSliding
+from thermowear.contact.friction.stick_slip_state import StickSlipState
 from thermowear.errors import ComputationError
-from thermowear.simulation.cycle_jump import adaptive_jumps, fixed_jumps
-from thermowear.simulation.instants import Behind, Instant
-from thermowear.simulation.load_path import Leg
+from thermowear.simulation.cycles.cycle_jump import adaptive_jumps, fixed_jumps
+from thermowear.simulation.cycles.increments import Behind, Instant
+from thermowear.simulation.cycles.load_path import Leg
 
 RATES = np.array([[1.0, 3.0, 0.0]])
 AREAS = np.array([1.0, 2.0, 1.0])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.app.shaping import shape, steady_case
 from thermowear.errors import CaseError
-from thermowear.geometry.design import write_table
-from thermowear.shaping import shape, steady_case
+from thermowear.geometry.cad.design import write_table
 
 from ..case.starter import STEADY, solved, tables
 from .space import BRAKE, PUNCH, changed

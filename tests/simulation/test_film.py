@@ -7,7 +7,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.simulation import Observer
-from thermowear.simulation.film import spacing
+from thermowear.simulation.runtime.frames import spacing
 
 from ..conftest import COLD_RUNNING_IN
 

@@ -11,9 +11,9 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.cli import main
-from thermowear.simulation.building import build
-from thermowear.simulation.phases import Phases
+from thermowear.app.cli import main
+from thermowear.simulation.model.building import build
+from thermowear.timer import Phases
 
 from ..case.starter import FRETTING, SPHERE, solved, tables
 

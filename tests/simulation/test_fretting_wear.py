@@ -8,7 +8,7 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.simulation import Observer
 
 from ..case.starter import FRETTING, TUBE, solved, tables

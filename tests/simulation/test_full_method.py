@@ -7,7 +7,7 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.simulation import Observer
 
 from ..case.starter import GONE, HERTZ, PUNCH, RUNNING_IN, STEADY, solved, tables

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.reference.growing_contact import growing_line, growing_point
-from thermowear.verification.hertz import MODULUS
+from thermowear.verification.cases.hertz import MODULUS
 
 from ..case.starter import GONE, solved
 
@@ -38,7 +38,7 @@ def test_a_ball_that_spins_wears_about_its_axis():
 def test_a_contact_that_outgrows_its_zone_is_meshed_for_a_wider_one():
     """requirement: it grows on by the closed form, no volume is lost, and the run says so."""
     import thermowear as tw
-    from thermowear.simulation.observer import Observer
+    from thermowear.simulation.runtime.observer import Observer
 
     from ..case.starter import tables
 
@@ -103,7 +103,7 @@ def test_no_method_overshoots_at_a_travelling_edge(method):
 
 def test_steps_end_where_the_edge_reaches_points(monkeypatch):
     """requirement: few tries are rejected, where error control alone rejects 4 of 10."""
-    from thermowear.simulation import transient
+    from thermowear.simulation.time import time_loop as transient
 
     advance, tried = transient.advance_with_error, []
 

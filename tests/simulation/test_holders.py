@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.errors import ComputationError
-from thermowear.simulation.steady import least_worn
+from thermowear.simulation.interface.steady import least_worn
 
 from ..case.starter import GONE, solved
 

@@ -6,7 +6,7 @@ import os
 import numpy as np
 import pytest
 
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.errors import CaseError
 from thermowear.output.quantities import PROFILE
 from thermowear.output.tables import write_points

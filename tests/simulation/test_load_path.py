@@ -1,8 +1,13 @@
 """The way through a history of loads and the repetitions of its cycle."""
 
-from thermowear.case.analyses import Fretting
-from thermowear.case.history import History
-from thermowear.simulation.load_path import by_fixed_jumps, cycle_legs, first_pass, to_stop_at
+from thermowear.case.tables.analyses import Fretting
+from thermowear.case.tables.history import History
+from thermowear.simulation.cycles.load_path import (
+    by_fixed_jumps,
+    cycle_legs,
+    first_pass,
+    to_stop_at,
+)
 
 
 def history(*pushes, **keys):

@@ -7,10 +7,10 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.case.facing import Facing
-from thermowear.case.schema import as_plain
+from thermowear.case.tables.facing import Facing
+from thermowear.case.tables.schema import as_plain
 from thermowear.errors import CaseError
-from thermowear.geometry.remeshed import meshed_anew
+from thermowear.geometry.moving.remeshed import meshed_anew
 
 from ..layered import layered_case, write_layered
 from .space import changed

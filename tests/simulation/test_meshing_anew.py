@@ -15,10 +15,12 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
-from thermowear.geometry.shapes import quality
+from thermowear.geometry.mesh.shapes import quality
 from thermowear.serialise import pack
-from thermowear.simulation import Observer, geometry_update, meshing_anew
-from thermowear.simulation.run import run
+from thermowear.simulation import Observer
+from thermowear.simulation.analyses.run import run
+from thermowear.simulation.geometry_update import geometry_update
+from thermowear.simulation.geometry_update import remesh as meshing_anew
 from thermowear.verification.starter import run_starter, starter
 
 from .hot_ring import HEAT

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.output.console import Terminal, print_summary
-from thermowear.verification.moving_band import passed, surface
+from thermowear.verification.cases.moving_band import passed, surface
 from thermowear.verification.starter import run_starter
 
 from ..conftest import DEMOS

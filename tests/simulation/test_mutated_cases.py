@@ -21,8 +21,8 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.app.cli import main
 from thermowear.balances import ALLOWED, BALANCES
-from thermowear.cli import main
 from thermowear.errors import CaseNote
 
 from ..case.mutations import mutated

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from thermowear.reference.growing_contact import growing_point
-from thermowear.simulation import geometry_update
-from thermowear.simulation.building import build
-from thermowear.verification.growing import worn_half_width
+from thermowear.simulation.geometry_update import geometry_update
+from thermowear.simulation.model.building import build
+from thermowear.verification.cases.growing import worn_half_width
 from thermowear.verification.starter import run_starter
 
 from .hot_ring import HEAT

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.geometry.export import write_mesh
-from thermowear.simulation.run import run
+from thermowear.geometry.reading.export import write_mesh
+from thermowear.simulation.analyses.run import run
 from thermowear.verification.starter import run_starter
 
 from ..conftest import two_blocks

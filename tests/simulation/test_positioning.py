@@ -9,8 +9,8 @@ import pytest
 
 import thermowear as tw
 from thermowear.reference.hertz import contact_modulus, line_contact
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.positioning import prepare, touching
+from thermowear.simulation.analyses.positioning import prepare, touching
+from thermowear.timer import Phases
 
 from ..case.starter import GONE, HERTZ, PUNCH, SPHERE, STEADY, solved, tables
 
@@ -201,7 +201,7 @@ def test_a_contact_that_outgrows_its_face(monkeypatch, half):
 
 def test_several_zones_are_refused(monkeypatch):
     """requirement: positioning is for one contact zone, and says so."""
-    zones = "thermowear.simulation.positioning.contact_zones"
+    zones = "thermowear.simulation.analyses.positioning.contact_zones"
     monkeypatch.setattr(zones, lambda *_: [(0.0, 1e-4), (2e-4, 3e-4)])
     with pytest.raises(tw.ComputationError, match="2 places"):
         positioned(HERTZ, {}, "mesh.degree=2", "mesh.elements=8")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.geometry.export import write_mesh
+from thermowear.geometry.reading.export import write_mesh
 from thermowear.reference.hertz import line_contact
 
 from .cylinders import case_tables, cylinder, on_cylinder

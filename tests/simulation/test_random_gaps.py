@@ -8,11 +8,11 @@ import pytest
 import thermowear as tw
 from thermowear.case.starters import starter_text
 from thermowear.parallel import sum_over_ranks
-from thermowear.simulation.building import build
-from thermowear.simulation.conditions import Surroundings
-from thermowear.simulation.contact_method import Slope
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.problem_factory import interface_problem
+from thermowear.simulation.interface.contact_solver import Slope
+from thermowear.simulation.interface.factory import interface_problem
+from thermowear.simulation.model.building import build
+from thermowear.simulation.model.conditions import Surroundings
+from thermowear.timer import Phases
 
 from ..conftest import EXPLORES
 
@@ -66,7 +66,7 @@ def violated(system, method, p, left, scale):
         touching = coefficients > 1e-6 * coefficients.max()
         return weak.min() < -1e-8 * scale or np.abs(weak[touching]).max() > 1e-8 * scale
     if method == "penalty":
-        from thermowear.contact.stabilisation import default_penalty
+        from thermowear.contact.full.stabilisation import default_penalty
 
         stiffness = default_penalty(system.elastic, system.pairing)
         return np.abs(p - stiffness * np.maximum(-left, 0)).max() > 1e-5 * p.max()

@@ -11,13 +11,13 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.simulation import Observer
-from thermowear.simulation.building import build
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.reciprocating_problem import ReciprocatingProblem
-from thermowear.simulation.stroke import moved, positions
-from thermowear.simulation.transient import moments
+from thermowear.simulation.cycles.reciprocating_problem import ReciprocatingProblem
+from thermowear.simulation.cycles.stroke import moved, positions
+from thermowear.simulation.model.building import build
+from thermowear.simulation.time.time_loop import moments
+from thermowear.timer import Phases
 
 from ..case.starter import RECIPROCATING, solved, tables
 

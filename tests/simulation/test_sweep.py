@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.bulk.factor import Factor
-from thermowear.simulation import sweep as module
-from thermowear.simulation.sweep import Series, groups
+from thermowear.bulk.direct_solver import Factor
+from thermowear.simulation.analyses import sweep as module
+from thermowear.simulation.analyses.sweep import Series, groups
 
 from ..conftest import DEMOS
 

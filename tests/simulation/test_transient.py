@@ -8,8 +8,8 @@ import pytest
 
 import thermowear as tw
 from thermowear.reference import annular_punch as reference
-from thermowear.simulation import transient
-from thermowear.simulation.wear_step import Trial, next_step
+from thermowear.simulation.interface.sdirk import Trial, next_step
+from thermowear.simulation.time import time_loop as transient
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
 
@@ -85,10 +85,10 @@ def test_second_order_in_time():
     """requirement: the error of the wear step falls with the square of its size."""
     from mpi4py import MPI
 
-    from thermowear.simulation.building import build
-    from thermowear.simulation.phases import Phases
-    from thermowear.simulation.problem_factory import interface_problem
-    from thermowear.simulation.wear_step import advance
+    from thermowear.simulation.interface.factory import interface_problem
+    from thermowear.simulation.interface.sdirk import advance
+    from thermowear.simulation.model.building import build
+    from thermowear.timer import Phases
 
     case = tw.load(COLD_RUNNING_IN, ("mesh.degree=3", "mesh.elements=8"))
     problem = interface_problem(build(case, MPI.COMM_WORLD, Phases()))

@@ -10,15 +10,15 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.output import tables as csv_tables
 from thermowear.output.quantities import HEAT, HISTORY
 from thermowear.reference.sliding_rod import SlidingRod
-from thermowear.simulation.friction_heat import FrictionHeat
-from thermowear.simulation.phases import Phases
-from thermowear.simulation.positioning import prepare
-from thermowear.simulation.problem_factory import interface_problem
-from thermowear.simulation.wear_step import advance
+from thermowear.simulation.analyses.positioning import prepare
+from thermowear.simulation.heat.friction_heat import FrictionHeat
+from thermowear.simulation.interface.factory import interface_problem
+from thermowear.simulation.interface.sdirk import advance
+from thermowear.timer import Phases
 
 from ..case.starter import GONE, solved, tables
 

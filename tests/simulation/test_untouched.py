@@ -7,8 +7,8 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import ComputationError
-from thermowear.simulation.observer import Observer
-from thermowear.simulation.untouched import touching
+from thermowear.simulation.analyses.untouched_contact import touching
+from thermowear.simulation.runtime.observer import Observer
 
 from ..case.starter import HERTZ, tables
 
@@ -42,9 +42,9 @@ def apart():
     """A system, and an outcome of it that has no pressure."""
     from mpi4py import MPI
 
-    from thermowear.simulation.phases import Phases
-    from thermowear.simulation.positioning import prepare
-    from thermowear.simulation.without_time import initial
+    from thermowear.simulation.analyses.positioning import prepare
+    from thermowear.simulation.analyses.static import initial
+    from thermowear.timer import Phases
 
     def made(case):
         system = prepare(case, MPI.COMM_SELF, Phases())

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from thermowear.laws.spreading import InPlace
-from thermowear.simulation.wider_zone import _carried
+from thermowear.laws.distribution import InPlace
+from thermowear.simulation.geometry_update.wider_zone import _carried
 
 
 def face(begin, end, count):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from thermowear.verification import minimality
+from thermowear.verification.cases import minimality
 from thermowear.verification.closed_forms import CLOSED_FORMS
 from thermowear.verification.closed_forms.rows import printed
 

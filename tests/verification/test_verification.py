@@ -6,7 +6,7 @@ import math
 import pytest
 
 from thermowear import verification
-from thermowear.cli import main
+from thermowear.app.cli import main
 from thermowear.errors import CaseError, ComputationError
 from thermowear.verification import CASES, SLOW, Check, compare
 from thermowear.verification.computed import computed

@@ -2,10 +2,10 @@
 
 from ..local_settings import fix_compiler_options
 from .bodies import Bodies, distribute
-from .conduction import Conduction
-from .elasticity import Elasticity, ElasticMaterial, elasticity
-from .heat_equation import conduction
+from .heat.conduction import Conduction
+from .heat.heat_equation import conduction
 from .kinematics import Axisymmetric, PlaneStrain, PlaneStress
+from .mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
 
 __all__ = [
     "Axisymmetric",

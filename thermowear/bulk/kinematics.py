@@ -39,7 +39,7 @@ class Model(ABC):
         Parameters
         ----------
         points : ndarray, shape (n, gdim) [m]
-        motion : thermowear.case.schema.Motion
+        motion : thermowear.case.tables.schema.Motion
         center : tuple of float, optional
             x and y of the point, or of the vertical axis, about which body 2 turns [m].
         across : bool

@@ -12,11 +12,11 @@ from pydantic import ValidationError
 
 from ..errors import MOST_FAULTS, CaseError, quoted, shortened
 from ..user_files import read_text
-from .bounds import LARGEST_FILE, MOST_PARTS, check_keys, check_tables
-from .checks import check
-from .paths import FOLDER
-from .schema import Case
-from .section import KeyFault, Section
+from .tables.schema import Case
+from .validation.checks import check
+from .values.bounds import LARGEST_FILE, MOST_PARTS, check_keys, check_tables
+from .values.paths import FOLDER
+from .values.section import KeyFault, Section
 
 _MESSAGES = {
     "missing": "missing",

@@ -1,23 +1,23 @@
 """The interface: contact points, traces, condensation, contact and heat exchange."""
 
-from .complementarity import ContactSolution, solve_contact
-from .condensation import CondensedContact, condense
-from .face import Face, gather_face
-from .full_system import FullContact, FullSolution
-from .heat import InterfaceHeat, ThermalState
-from .heat_condensation import condense_distortion, condense_heat
-from .holder import Drive, Holder, hold
-from .loads import Loads
-from .pairing import Pairing, pair
-from .pressure import pressure_basis
-from .sliding import Sliding, sliding
-from .stick_slip import advance, follow
-from .stick_slip_state import StickSlipState
-from .surface import Surface
-from .tangential import FrictionalContact, condense_tangential
-from .traces import gap_trace, value_trace, vector_trace
-from .traction import normal_traction
-from .zones import contact_zones
+from .friction.loads import Loads
+from .friction.stick_slip import advance, follow
+from .friction.stick_slip_state import StickSlipState
+from .full.full_system import FullContact, FullSolution
+from .operators.condensation import CondensedContact, condense
+from .operators.heat import InterfaceHeat, ThermalState
+from .operators.heat_condensation import condense_distortion, condense_heat
+from .operators.holder import Drive, Holder, hold
+from .operators.pressure import pressure_basis
+from .operators.sliding import Sliding, sliding
+from .operators.tangential import FrictionalContact, condense_tangential
+from .operators.traces import gap_trace, value_trace, vector_trace
+from .operators.traction import normal_traction
+from .search.face import Face, gather_face
+from .search.pairing import Pairing, pair
+from .search.surface import Surface
+from .search.zones import contact_zones
+from .solvers.signorini import ContactSolution, solve_contact
 
 __all__ = [
     "CondensedContact",

@@ -1,11 +1,5 @@
-"""Geometries that can be named in a case file; importing this room makes them known."""
+"""Geometries and meshes: built-in geometries, mesh files, mesh motion, shapes for CAD."""
 
-import importlib
-import pkgutil
-
-from .tagged import TaggedMesh
-
-for _module in pkgutil.iter_modules(__path__):
-    importlib.import_module(f"{__name__}.{_module.name}")
+from .mesh.tagged import TaggedMesh
 
 __all__ = ["TaggedMesh"]

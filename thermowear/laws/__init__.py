@@ -1,19 +1,19 @@
 """Pure functions of arrays: wear laws and the principle of steady wear."""
 
-from .functionals import (
+from .distribution import InPlace, Rings, Share, Spreading, Track, rings
+from .motions import RigidMotion, rotation, translation
+from .principle.functionals import (
     PowerFunctional,
     friction_dissipation,
     wear_dissipation,
     wear_volume_rate,
 )
-from .interface import ContactPatch, contact_patch
-from .locking import NotCarried, SelfLocking
-from .minimum import Minimum, least_wear_dissipation, minimise
-from .motions import RigidMotion, rotation, translation
-from .perturbation import admissible_changes
-from .rates import WearVectors, wear_vectors
-from .spreading import InPlace, Rings, Share, Spreading, Track, rings
-from .steady import SteadyWear, steady_pressure
+from .principle.minimum import Minimum, least_wear_dissipation, minimise
+from .principle.patch import ContactPatch, contact_patch
+from .principle.perturbation import admissible_changes
+from .principle.solvability import NotCarried, SelfLocking
+from .principle.steady import SteadyWear, steady_pressure
+from .principle.wear_vectors import WearVectors, wear_vectors
 from .wear import WearLaw
 
 __all__ = [

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import CaseError, quoted
-from .replacing import replacing
+from .atomic_write import replacing
 
 CHECKPOINT = "checkpoint.npz"
 FORMAT = 2

@@ -18,11 +18,11 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
+from .atomic_write import final_name, replacing
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .frames import FRAMES, remove_frames, write_frame
 from .lock import Lock
 from .quantities import CYCLES, FRICTION, HEAT, HISTORY, INTERFACE, LOADS, MODES, PROFILE, TRACK
-from .replacing import final_name, replacing
 from .report_file import is_report
 from .tables import RowWriter, name_at, write_points
 from .vtu import write_fields

@@ -9,8 +9,8 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from .atomic_write import final_name, replacing
 from .quantities import INTERFACE, TRACK
-from .replacing import final_name, replacing
 from .tables import write_points
 from .vtu import write_fields
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..case import Case, as_plain, load
-from ..case.comparison import forbidden_changes, irrelevant_changes_only, other_mesh
+from ..case.validation.comparison import forbidden_changes, irrelevant_changes_only, other_mesh
 from ..errors import CaseError
 from .checkpoint import read_checkpoint
 from .folder import ResultsFolder, now, versions

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .atomic_write import replacing
 from .quantities import Quantity
-from .replacing import replacing
 
 _NUMBER = "{:.15g}"
 

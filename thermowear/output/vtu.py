@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .replacing import replacing
+from .atomic_write import replacing
 
 _CELLS = {3: "triangle", 4: "quad", 8: "hexahedron"}
 

@@ -1,9 +1,9 @@
 """The analyses: initial contact, steady state, running-in, fretting."""
 
-from .observer import Observer
-from .result import BodyFields, Frame, FrictionInterface, Interface, Result, WornTrack
-from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
-from .run import run
+from .analyses.run import run
+from .results.result import BodyFields, Frame, FrictionInterface, Interface, Result, WornTrack
+from .results.rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from .runtime.observer import Observer
 
 __all__ = [
     "BodyFields",

@@ -1,6 +1,6 @@
 """Verification: the program against references, by ``thermowear verify`` and by the tests."""
 
-from . import (
+from .cases import (
     annular_punch,
     beam_shakedown,
     block_on_ring,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..case.schema import Case
+from ..case.tables.schema import Case
 from ..simulation import Result, run
 
 

@@ -6,8 +6,8 @@ import tomllib
 
 from .. import geometry  # noqa: F401  (makes the geometries known)
 from ..case import load
-from ..case.schema import Case
 from ..case.starters import starter_text
+from ..case.tables.schema import Case
 from ..simulation import Result
 from .computed import computed
 

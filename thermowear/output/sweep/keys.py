@@ -122,7 +122,7 @@ def _in_si(text: Any) -> tuple[float, str] | None:
 
 def _converted(text: str) -> tuple[float, str] | None:
     """Of wear coefficients, which a resolved case has in the unit they were given in."""
-    from ...case.units import parse
+    from ...case.values.units import parse
 
     try:
         value = parse(text, "")

@@ -72,7 +72,7 @@ def _in_a_plane(film: Film) -> Scene:
 
 
 def _in_space(film: Film) -> Scene:
-    from .solid import Solid, face_maps  # pyvista is slow to start
+    from .solid import Solid, face_maps
 
     return Scene(film, Solid(film), face_maps(film), Course(film))
 

@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 from ....errors import CaseError
-from ...replacing import replacing
+from ...atomic_write import replacing
 
 GIF, MP4 = ".gif", ".mp4"
 _REST = 1.5  # s: how long the end is shown

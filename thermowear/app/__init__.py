@@ -1,0 +1,1 @@
+"""Commands and entry points: run, sweep, shape, verify."""

@@ -1,0 +1,270 @@
+"""The command line: words to calls, errors to exit codes, nothing else.
+
+Exit codes: 0 done, 1 the case or the command line is wrong, 2 the computation failed,
+130 interrupted (what was computed is kept).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import time
+import traceback
+import warnings
+from pathlib import Path
+
+from .. import load
+from ..errors import CaseError, CaseNote, ComputationError
+from .arguments import parser
+
+_INTERRUPTED = 130
+_HEARD = 1.0  # s; a launcher may drop what a process said just before it ended with an error
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command and return its exit code."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", CaseNote)
+        warnings.showwarning = _shown(warnings.showwarning)
+        return _main(arguments)
+
+
+def _main(arguments: list[str] | None) -> int:
+    try:
+        chosen = parser().parse_args(arguments)
+        return _COMMANDS[chosen.command](chosen)
+    except CaseError as error:
+        return _complain(error.exit_code, *error.faults)
+    except ComputationError as error:
+        return _complain(error.exit_code, str(error))
+    except KeyboardInterrupt as error:
+        return _complain(_INTERRUPTED, str(error) or "interrupted")
+    except BrokenPipeError:
+        return 0
+
+
+def _shown(otherwise):
+    """A way to show warnings: what is odd about a case as a note, all else as before."""
+
+    def show(message, category, *where) -> None:
+        if issubclass(category, CaseNote):
+            print(f"note: {_printable(str(message))}", file=sys.stderr, flush=True)
+        else:
+            otherwise(message, category, *where)
+
+    return show
+
+
+def _printable(line: str) -> str:
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
+
+
+def _complain(code: int, *lines: str) -> int:
+    for line in lines if _speaks() else ():
+        print(f"error: {_printable(line)}", file=sys.stderr, flush=True)
+    if _launched_processes() > 1:
+        time.sleep(_HEARD)
+    return code
+
+
+def _speaks() -> bool:
+    """Whether this process is the one of a parallel run that reports errors.
+
+    MPI is started if a launcher began several processes: its end then waits for all of them.
+    Without it, a silent rank that ends first makes the launcher stop the one about to speak.
+    """
+    if "mpi4py.MPI" not in sys.modules and _launched_processes() == 1:
+        return True
+    from mpi4py import MPI
+
+    return MPI.COMM_WORLD.rank == 0
+
+
+def _launched_processes() -> int:
+    return int(os.environ.get("OMPI_COMM_WORLD_SIZE", os.environ.get("PMI_SIZE", "1")))
+
+
+def _cases(_) -> int:
+    from ..case.starters import starters
+
+    for name, title in starters().items():
+        print(f"{name:32} {title}")
+    return 0
+
+
+def _init(chosen) -> int:
+    from ..case.starters import starter_files, starter_text
+
+    path = chosen.output or Path(f"{chosen.name}.toml")
+    files = {path: starter_text(chosen.name).encode()}
+    files |= {path.parent / name: data for name, data in starter_files(chosen.name).items()}
+    for file in files:
+        _guard(file, chosen.overwrite)
+    for file, data in files.items():
+        try:
+            file.write_bytes(data)
+        except OSError as error:
+            raise CaseError(f"{file}: cannot be written: {error.strerror}") from None
+    print(f"wrote {' and '.join(map(str, files))}; next: python3 -m thermowear run {path}")
+    return 0
+
+
+def _validate(chosen) -> int:
+    case = load(chosen.case, tuple(chosen.overrides))
+    about = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
+    if case.geometry.from_file:
+        from ..geometry.reading.mesh_checks import described, whole_bodies
+
+        about += described(whole_bodies(case.tagged_mesh(), case.geometry))
+    if case.geometry.initial_shape is not None:
+        from .workers import start_petsc
+
+        start_petsc()
+        from mpi4py import MPI
+
+        from ..simulation.model.building import check_contact_points
+
+        check_contact_points(case, MPI.COMM_SELF)
+        about.append(f"initial shape {case.geometry.initial_shape}")
+    print(f"{chosen.case}: ok ({', '.join(about)})")
+    return 0
+
+
+def _mesh(chosen) -> int:
+    from ..geometry.reading.export import check_ending, write_mesh
+
+    check_ending(chosen.output)
+    case = load(chosen.case, tuple(chosen.overrides))
+    _guard(chosen.output, chosen.overwrite)
+    mesh = case.tagged_mesh()
+    write_mesh(mesh, chosen.output)
+    print(f"wrote {chosen.output}: {len(mesh.cells)} cells, {len(mesh.points)} points")
+    return 0
+
+
+def _shape(chosen) -> int:
+    if _launched_processes() > 1:
+        raise CaseError("shape: runs in one process; start it without mpirun")
+    from .shaping import check_format, shape, write_shape
+    from .workers import start_petsc
+
+    check_format(chosen.output)
+    start_petsc()
+    _guard(chosen.output, chosen.overwrite)
+    shaped = shape(chosen.case, chosen.body, tuple(chosen.overrides))
+    write_shape(shaped, chosen.output)
+    deepest = 1e6 * shaped.design.depth.max()
+    print(f"wrote {chosen.output}: face of {shaped.body}, up to {deepest:.4g} µm to be taken off")
+    return 0
+
+
+def _guard(path: Path, overwrite: bool) -> None:
+    if os.path.exists(path) and not overwrite:  # unlike Path.exists, no error at odd names
+        raise CaseError(f"{path}: exists; use --overwrite or another name")
+
+
+def _plot(chosen) -> int:
+    from ..output.pictures import make_pictures
+    from ..output.sweep import draw_sweep, is_sweep
+
+    try:
+        draw = draw_sweep if is_sweep(chosen.folder) else make_pictures
+        problems = draw(chosen.folder)
+    except (OSError, ValueError) as error:
+        raise CaseError(str(error)) from None
+    for problem in problems:
+        print(f"note: {problem}", file=sys.stderr)
+    return 0
+
+
+def _animate(chosen) -> int:
+    from ..output.pictures import make_animation
+
+    path = chosen.output or chosen.folder / "animation.gif"
+    try:
+        make_animation(chosen.folder, path, chosen.fps)
+    except (OSError, ValueError) as error:
+        raise CaseError(str(error)) from None
+    print(f"wrote {path}")
+    return 0
+
+
+def _report(chosen) -> int:
+    from ..output.report import write_report
+
+    print(f"wrote {write_report(chosen.folder)}")
+    return 0
+
+
+def _verify(chosen) -> int:
+    from ..output.console import Terminal, print_checks
+    from ..verification import CASES, SLOW, all_checks
+
+    unknown = [name for name in chosen.ids if name not in CASES]
+    if unknown:
+        raise CaseError(f"verify {unknown[0]}: no such case; one of: {', '.join(CASES)}")
+    left_out = [] if chosen.ids or chosen.slow else [name for name in CASES if name in SLOW]
+    names = chosen.ids or [name for name in CASES if name not in left_out]
+    checks = [check for name in names for check in all_checks(name, CASES[name])]
+    if chosen.json:
+        print(json.dumps([check.as_row() for check in checks], indent=2, ensure_ascii=False))
+    else:
+        print_checks(Terminal(highlight=False), checks)
+    if left_out:
+        print(
+            f"note: left out as slow: {', '.join(left_out)} (--slow, or by name)", file=sys.stderr
+        )
+    return 0 if all(check.passed for check in checks) else ComputationError.exit_code
+
+
+def _run(chosen) -> int:
+    """The one command that runs on many ranks: an error anywhere ends all of them.
+
+    Errors of the case and of the computation are raised on all ranks alike.
+    """
+    began = time.perf_counter()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    from .workers import start_petsc
+
+    start_petsc()
+
+    from mpi4py import MPI
+
+    from .session import run_session
+
+    comm = MPI.COMM_WORLD
+    try:
+        return run_session(chosen, comm, time.perf_counter() - began)
+    except (CaseError, ComputationError):
+        raise
+    except Exception:
+        traceback.print_exc()
+        if comm.size > 1:
+            comm.Abort(ComputationError.exit_code)
+        return ComputationError.exit_code
+
+
+def _sweep(chosen) -> int:
+    if _launched_processes() > 1:
+        raise CaseError("sweep: starts its own processes (--processes N); start it without mpirun")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    from .sweeping import run_sweep
+
+    return run_sweep(chosen)
+
+
+_COMMANDS = {
+    "run": _run,
+    "sweep": _sweep,
+    "cases": _cases,
+    "init": _init,
+    "validate": _validate,
+    "mesh": _mesh,
+    "shape": _shape,
+    "verify": _verify,
+    "plot": _plot,
+    "animate": _animate,
+    "report": _report,
+}

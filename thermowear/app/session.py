@@ -1,0 +1,191 @@
+"""A run from the command line: case in, results folder and pictures out, on any number of ranks."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+from .. import load
+from ..case import Case, as_plain
+from ..errors import CaseError, UnwritableError
+from ..output.checkpoint import CHECKPOINT
+from ..output.console import Progress, Terminal, print_discretisations, print_summary
+from ..output.folder import ResultsFolder
+from ..output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
+from ..parallel import on_root
+from ..serialise import Checkpoint, pack
+from ..simulation import CycleRow, Frame, HeatRow, HistoryRow, Interface, LoadRow, Observer, run
+from ..simulation.runtime.checkpoint_data import Saved
+from ..timer import Phases
+from .discretisations import COMPARED, side_by_side
+
+
+class Recorder(Observer):
+    """Passes what happens to the results folder and to a terminal, on rank 0."""
+
+    def __init__(self, comm, folder, progress: Progress | None = None):
+        self._comm = comm
+        self._folder = folder
+        self._progress = progress
+        self._steps = -1
+
+    def phase(self, name: str) -> None:
+        if self._progress is not None:
+            self._progress.phase(name)
+
+    def step(self, row: HistoryRow, distance: float) -> None:
+        self._steps += 1
+        self._save(lambda: self._folder.step(row))
+        if self._progress is not None:
+            self._progress.step(self._steps, row, distance)
+
+    def heat(self, row: HeatRow) -> None:
+        self._save(lambda: self._folder.heat(row))
+
+    def load_step(self, row: LoadRow) -> None:
+        self._steps += 1
+        self._save(lambda: self._folder.load_step(row))
+        if self._progress is not None:
+            self._progress.load_step(self._steps, row)
+
+    def cycle(self, row: CycleRow) -> None:
+        self._save(lambda: self._folder.cycle(row))
+
+    def note(self, text: str) -> None:
+        if self._progress is not None:
+            self._progress.note(text)
+
+    def output(self, time: float, interface: Interface, friction=None, track=None) -> None:
+        self._save(lambda: self._folder.output(time, interface, friction, track))
+
+    def frame(self, frame: Frame) -> None:
+        self._save(lambda: self._folder.frame(frame))
+
+    def resumed(self, rows) -> None:
+        if isinstance(rows[0] if rows else None, HistoryRow | LoadRow):
+            self._steps = len(rows) - 1
+        self._save(lambda: self._folder.restore(rows))
+
+    def _save(self, action) -> None:
+        on_root(self._comm, lambda: _writing(action))
+
+
+class SavingRecorder(Recorder):
+    """Also keeps the states from which a run of a case can go on."""
+
+    def __init__(self, comm, folder, progress: Progress | None, case: Case):
+        super().__init__(comm, folder, progress)
+        self._case = case
+
+    def checkpoint(self, saved: Saved) -> None:
+        packed, time = pack(self._comm, saved), saved.progress.time
+
+        def write() -> None:
+            assert packed is not None  # on rank 0
+            about = about_checkpoint(self._case, time, packed.outlines)
+            self._folder.checkpoint(about, packed.arrays)
+
+        self._save(write)
+
+
+def run_session(chosen, comm, import_seconds: float) -> int:
+    """Compute the case of a parsed ``run`` command; every rank calls.
+
+    Raises
+    ------
+    CaseError, ComputationError
+        On every rank alike.
+    """
+    case = on_root(comm, lambda: load(chosen.case, tuple(chosen.overrides)))
+    path = chosen.output or Path("results") / chosen.case.stem
+    plain = False if comm.size > 1 else None  # a launcher's pseudo-terminal ends in a file
+    console = Terminal(highlight=False, quiet=comm.rank != 0, force_terminal=plain)
+    if chosen.resume and on_root(comm, lambda: is_finished(path, case)):
+        text = f"{path}: the run has come to its end, nothing is left to compute"
+        console.print(text, markup=False, soft_wrap=True)
+        return 0
+    saved = _saved(comm, path, case) if chosen.resume else None
+    folder = _on_root_kept(comm, lambda: _folder(path, case, comm.size, chosen, saved))
+    if chosen.resume:
+        since = "the beginning" if saved is None else f"{saved.progress.time:g} s"
+        console.print(f"goes on from {since}")
+    try:
+        with Progress(console) as progress:
+            shown = progress if comm.rank == 0 else None
+            recorder = SavingRecorder(comm, folder, shown, case)
+            phases = Phases(recorder.phase)
+            phases.add("import", import_seconds)
+            result = run(case, comm, recorder, phases, saved)
+            if chosen.accuracy and result.stopped is None:
+                with phases("coarser and finer"):
+                    others = side_by_side(chosen.case, tuple(chosen.overrides), comm)
+                result = replace(result, summary=result.summary | others)
+            with phases("write"):
+                on_root(comm, lambda: _writing(lambda: folder.finish(result, phases.seconds)))
+            if chosen.pictures:
+                with phases("pictures"):
+                    on_root(comm, lambda: _writing(lambda: _draw(path, console)))
+        print_summary(console, result.summary, phases.seconds)
+        if chosen.accuracy and result.stopped is None:
+            print_discretisations(console, result.summary, COMPARED)
+        console.print(f"results in {path}")
+        if result.stopped is not None:
+            raise result.stopped
+    except CaseError:  # found while meshing: nothing was computed, and the next try needs the place
+        if folder is not None:
+            _writing(folder.abandon)
+        raise
+    except BaseException as error:
+        interrupted = isinstance(error, KeyboardInterrupt)
+        with suppress(UnwritableError):  # the disk may be what went wrong
+            _close(folder, "interrupted" if interrupted else "failed", str(error))
+        if isinstance(error, UnwritableError) and (path / CHECKPOINT).is_file():
+            room = "with more room, --resume goes on from the last checkpoint"
+            raise UnwritableError(f"{error}; {room}") from None
+        raise
+    _close(folder, "done")
+    return 0
+
+
+def _saved(comm, path: Path, case: Case) -> Saved | None:
+    """What the run of a folder can go on with; None where it begins anew. Every rank calls."""
+    found = on_root(comm, lambda: last_checkpoint(path, case, comm.size))
+    if found is None:
+        return None
+    about, arrays = found
+    return Checkpoint(about["outlines"], arrays).state(comm.rank)
+
+
+def _folder(path: Path, case: Case, ranks: int, chosen, saved: Saved | None) -> ResultsFolder:
+    """The folder of a run that begins, or goes on with what was saved."""
+    if saved is None:
+        return ResultsFolder(path, as_plain(case), ranks, chosen.overwrite or chosen.resume)
+    return ResumedFolder(path, as_plain(case), ranks, saved.progress.time)
+
+
+def _on_root_kept(comm, action):
+    """Like `on_root`, but the result stays on rank 0; None elsewhere."""
+    kept = []
+    on_root(comm, lambda: kept.append(action()))
+    return kept[0] if kept else None
+
+
+def _close(folder: ResultsFolder | None, status: str, message: str = "") -> None:
+    if folder is not None:
+        _writing(lambda: folder.close(status, message))
+
+
+def _writing(action) -> None:
+    """Turn a disk that does not take the results into a failed computation."""
+    try:
+        action()
+    except OSError as error:
+        raise UnwritableError(f"results cannot be written: {error}") from None
+
+
+def _draw(path: Path, console: Terminal) -> None:
+    from ..output.pictures import make_pictures
+
+    for problem in make_pictures(path):
+        console.print(f"note: {problem}")

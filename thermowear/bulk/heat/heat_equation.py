@@ -1,0 +1,160 @@
+"""Assembling the heat equation: conduction, cooling, storage, and heat carried along."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from petsc4py import PETSc
+
+import numpy as np
+import ufl
+from dolfinx import default_scalar_type, fem
+from dolfinx.fem.petsc import assemble_matrix
+
+from ..bodies import Bodies
+from ..compiled import compiled
+from ..field import owned
+from ..kinematics import Model, section_measure
+from .advection import Passage, advection
+from .conduction import Conduction, factorised, multiply
+from .even_paths import EvenPaths
+
+
+@dataclass(frozen=True)
+class ThermalMaterial:
+    """Conductivity [W/(m K)] and, where it is known, the heat capacity of a volume [J/(m³ K)]."""
+
+    conductivity: float
+    capacity: float | None = None
+
+    def times(self, factor: float) -> ThermalMaterial:
+        """So many times the material in the same place."""
+        capacity = None if self.capacity is None else factor * self.capacity
+        return ThermalMaterial(factor * self.conductivity, capacity)
+
+
+def conduction(
+    bodies: Bodies,
+    model: Model,
+    space: fem.FunctionSpace,
+    materials: dict[str, ThermalMaterial],
+    cooling: dict[str, float],
+    given: dict[str, float],
+    bath: PETSc.Mat,
+    passage: Passage | None = None,
+) -> Conduction:
+    """Assemble and factorise.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    space : dolfinx.fem.FunctionSpace
+        Scalar.
+    materials : dict of str to ThermalMaterial
+        By part.
+    cooling : dict of str to float
+        Heat transfer coefficients by surface [W/(m² K)].
+    given : dict of str to float
+        Rise over the ambient by surface [K].
+    bath : petsc4py.PETSc.Mat
+        Added to the factorised matrix only: what the contact faces give to a heat bath at ambient
+        temperature. It keeps the matrix of an otherwise insulated body regular; the interface takes
+        it out again.
+    passage : Passage, optional
+        Of a body that moves through the frame.
+    """
+    mesh, degree = bodies.mesh, space.ufl_element().degree
+    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
+    conductivities = {part: material.conductivity for part, material in materials.items()}
+    capacities = {p: m.capacity for p, m in materials.items() if m.capacity is not None}
+    moving, even = None, None
+    if passage is not None and passage.spread:
+        even = EvenPaths(bodies, space, passage)
+    elif passage is not None:
+        moving = advection(bodies, model, space, passage, conductivities, capacities)
+    measure = section_measure(mesh, degree)
+    conductivity = _assembled(conducting(bodies, model, conductivities, degree)(T, δT))
+    cooled = conductivity.duplicate()
+    cooled.zeroEntries()
+    for form in transferring(bodies, model, cooling):
+        assemble_matrix(cooled, compiled(form(T, δT)), [])  # type: ignore[arg-type]  # dispatches on it
+    cooled.assemble()
+    structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+    conductivity.axpy(1.0, cooled, structure)
+    carried, test = None, δT
+    if moving is not None:
+        carried, test = _assembled(moving.carried), δT + moving.upwind
+        conductivity.axpy(1.0, carried, structure)
+    capacity = None
+    if len(capacities) == len(materials):
+        density = bodies.per_body(capacities) * T * test
+        capacity = _assembled(model.integral(mesh, density, measure))
+
+    fixed, values = given_rises(bodies, space, given, even)
+    factor = factorised(space, conductivity, bath, fixed, carried is None, even)
+    lifted = -multiply(conductivity, values)
+    return Conduction(
+        space,
+        conductivity,
+        cooled,
+        carried,
+        capacity,
+        bath,
+        fixed,
+        values,
+        factor,
+        lifted,
+        moving,
+        even,
+        symmetric=carried is None,
+    )
+
+
+def _assembled(form) -> PETSc.Mat:
+    matrix = assemble_matrix(compiled(form))
+    matrix.assemble()
+    return matrix
+
+
+def conducting(bodies: Bodies, model: Model, conductivities: dict[str, float], degree: int):
+    """Bilinear form of conduction, as a function of a trial and a test function [W K]."""
+    mesh, k = bodies.mesh, bodies.per_body(conductivities)
+    measure = section_measure(mesh, degree)
+    return lambda T, δT: model.integral(mesh, k * ufl.inner(ufl.grad(T), ufl.grad(δT)), measure)
+
+
+def transferring(bodies: Bodies, model: Model, coefficients: dict[str, float]) -> list[Callable]:
+    """Bilinear forms ``∫ h T δT dS``, as functions of both: one of all surfaces of equal h.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    coefficients : dict of str to float
+        h by surface [W/(m² K)].
+    """
+    mesh = bodies.mesh
+
+    def form(h: float) -> Callable:
+        ds = bodies.surface_measure(*(s for s, other in coefficients.items() if other == h))
+        constant = fem.Constant(mesh, default_scalar_type(h))
+        return lambda T, δT: model.integral(mesh, constant * T * δT, ds)
+
+    return [form(h) for h in dict.fromkeys(coefficients.values())]
+
+
+def given_rises(
+    bodies: Bodies, space: fem.FunctionSpace, given: dict[str, float], even: EvenPaths | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which owned values are fixed, and to what: linear in the rises that are given by surface."""
+    count = owned(space)
+    fixed, values = np.zeros(count, dtype=bool), np.zeros(count)
+    for surface, rise in given.items():
+        dofs = fem.locate_dofs_topological(
+            space, bodies.mesh.topology.dim - 1, bodies.facets(surface)
+        )
+        mine = dofs[dofs < count]
+        fixed[mine], values[mine] = True, rise
+    return (fixed, values) if even is None else even.whole(fixed, values)

@@ -1,0 +1,33 @@
+"""Heat through named surfaces of the bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+import ufl
+from dolfinx import default_scalar_type, fem
+
+from ..bodies import Bodies
+from ..compiled import assembled, compiled
+from ..kinematics import Model
+
+
+def surface_heat(
+    bodies: Bodies, model: Model, space: fem.FunctionSpace, surface: str, flux: float
+) -> np.ndarray:
+    """Nodal heat of an even flux into the body through a surface [W], owned rows.
+
+    Every rank calls.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    space : dolfinx.fem.FunctionSpace
+        Of the temperature.
+    surface : str
+    flux : float
+        [W/m²]
+    """
+    δT, q = ufl.TestFunction(space), fem.Constant(bodies.mesh, default_scalar_type(flux))
+    form = model.integral(bodies.mesh, q * δT, bodies.surface_measure(surface))
+    return assembled(compiled(form))

@@ -1,0 +1,211 @@
+"""Conductivity and thermal expansion that change with temperature.
+
+The flux ``k(T) grad T`` is ``k0 grad Θ`` with Kirchhoff's integral ``Θ(T) = ∫ k dT/k0``. Θ is
+interpolated between the nodes as the temperature itself is, so that conduction is ``K Θ(T)`` with
+the matrix of a constant conductivity, and its tangent ``K diag(k/k0)``: exact for heat that flows
+straight, and of the order of the elements (the product approximation of Christie, Griffiths,
+Mitchell and Sanz-Serna, IMA J. Numer. Anal. 1 (1981) 253). Thermal strain is interpolated likewise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Protocol
+
+from petsc4py import PETSc
+
+import numpy as np
+import ufl
+from dolfinx import fem
+from dolfinx.fem.petsc import assemble_matrix
+
+from ..bodies import Bodies
+from ..compiled import compiled
+from ..field import as_function
+from ..kinematics import Model, section_measure
+from ..mechanics.elasticity import Elasticity
+from .conduction import Conduction
+from .heat_equation import ThermalMaterial
+
+_SAME = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+
+
+class Factor(Protocol):
+    """How many times its value at ambient a property is at a temperature [K]."""
+
+    def value(self, x: np.ndarray) -> np.ndarray: ...
+
+    def slope(self, x: np.ndarray) -> np.ndarray: ...
+
+    def integral(self, start: float, x: np.ndarray) -> np.ndarray: ...
+
+
+@dataclass(frozen=True)
+class VaryingConductivity:
+    """Of one part of a body.
+
+    Attributes
+    ----------
+    matrix : petsc4py.PETSc.Mat
+        Conduction of the part at its constant conductivity [W/K].
+    factor : Factor
+    ambient : float
+        [K]
+    """
+
+    matrix: PETSc.Mat
+    factor: Factor
+    ambient: float
+
+    def excess(self, rise: np.ndarray) -> np.ndarray:
+        """``Θ - T`` at the nodes, for their rise (n_owned,) [K]."""
+        return self.factor.integral(self.ambient, self.ambient + rise) - rise
+
+    def slope(self, rise: np.ndarray) -> np.ndarray:
+        """Its derivative."""
+        return self.factor.value(self.ambient + rise) - 1
+
+
+@dataclass(frozen=True)
+class VaryingExpansion:
+    """Of one part of a body.
+
+    Attributes
+    ----------
+    part : str
+    matrix : petsc4py.PETSc.Mat
+        Nodal forces of the part at its constant expansion [N/K].
+    factor : Factor
+    ambient : float
+        [K]
+    """
+
+    part: str
+    matrix: PETSc.Mat
+    factor: Factor
+    ambient: float
+
+    def excess(self, rise: np.ndarray) -> np.ndarray:
+        """Rise that would strain as much more at constant expansion, at the nodes [K]."""
+        return (self.factor.value(self.ambient + rise) - 1) * rise
+
+    def slope(self, rise: np.ndarray) -> np.ndarray:
+        """Its derivative."""
+        T = self.ambient + rise
+        return self.factor.value(T) - 1 + self.factor.slope(T) * rise
+
+
+@dataclass(frozen=True)
+class VaryingConduction(Conduction):
+    """Conduction whose conductivity changes: what it inherits is that at ambient.
+
+    Attributes
+    ----------
+    parts : tuple of VaryingConductivity
+    """
+
+    parts: tuple[VaryingConductivity, ...]
+
+    def tangent(self, rise: np.ndarray, step: float | None = None) -> Conduction:
+        """Linear conduction of small changes of a rise, over a step of time [s] if there is one.
+
+        Every rank calls.
+        """
+        change = self.conductivity.duplicate()
+        change.zeroEntries()
+        for part in self.parts:
+            change.axpy(1.0, _columns(part.matrix, part.slope(rise)), _SAME)
+        if step is not None:
+            assert self.capacity is not None
+            change.axpy(1 / step, self.capacity, _SAME)
+        return self.plus(change, 1.0, symmetric=not self.parts and self.symmetric)
+
+    def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:
+        """Nodal heat that a tangent in a reference needs to hold a rise [W]."""
+        tangents = ((p.matrix, p.slope(reference) * rise - p.excess(rise)) for p in self.parts)
+        return _products(len(rise), tangents)
+
+    def losses(self, rise, heat, storage=None, ambient=0.0):
+        return super().losses(rise, heat + self._held_back(rise), storage, ambient)
+
+    def turnover(self, rise, heat, storage=None, ambient=0.0):
+        return super().turnover(rise, heat + self._held_back(rise), storage, ambient)
+
+    def _held_back(self, rise: np.ndarray) -> np.ndarray:
+        """Nodal heat that flows off as it would not at constant conductivity [W]."""
+        return -_products(len(rise), ((part.matrix, part.excess(rise)) for part in self.parts))
+
+
+def varying_conduction(
+    conducting: Conduction,
+    bodies: Bodies,
+    model: Model,
+    materials: dict[str, ThermalMaterial],
+    factors: Mapping[str, Factor],
+    ambient: float,
+) -> VaryingConduction:
+    """Let conductivities change; parameters as in `conduction`, factors by part."""
+    mesh, space = bodies.mesh, conducting.space
+    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
+    measure = section_measure(mesh, space.ufl_element().degree)
+    parts = []
+    for name, factor in factors.items():
+        alone = {part: (part == name) * m.conductivity for part, m in materials.items()}
+        flow = bodies.per_body(alone) * ufl.inner(ufl.grad(T), ufl.grad(δT))
+        matrix = assemble_matrix(compiled(model.integral(mesh, flow, measure)))
+        matrix.assemble()
+        parts.append(VaryingConductivity(matrix, factor, ambient))
+    constant = {field.name: getattr(conducting, field.name) for field in fields(Conduction)}
+    return VaryingConduction(**constant, parts=tuple(parts))
+
+
+def varying_expansion(
+    elastic: Elasticity, space: fem.FunctionSpace, factors: Mapping[str, Factor], ambient: float
+) -> tuple[VaryingExpansion, ...]:
+    """Expansions that change, from factors by part."""
+    return tuple(
+        VaryingExpansion(name, elastic.thermal_load(space, only=name), factor, ambient)
+        for name, factor in factors.items()
+    )
+
+
+def straining_rise(
+    space: fem.FunctionSpace,
+    rise: np.ndarray,
+    bodies: Bodies,
+    parts: tuple[VaryingExpansion, ...],
+) -> ufl.core.expr.Expr:
+    """Rise that strains as much at constant expansion, from the true one (n_owned,) [K]."""
+    result = as_function(space, rise, "rise")
+    for part in parts:
+        more = as_function(space, part.excess(rise), "more")
+        result = result + bodies.per_body({part.part: 1.0}) * more
+    return result
+
+
+def thermal_forces(
+    load: PETSc.Mat, parts: tuple[VaryingExpansion, ...], rise: np.ndarray
+) -> np.ndarray:
+    """Nodal forces of a rise (n_owned,), owned rows [N]."""
+    each = [(load, rise), *((part.matrix, part.excess(rise)) for part in parts)]
+    return _products(load.getLocalSize()[0], each)
+
+
+def _columns(matrix: PETSc.Mat, scales: np.ndarray) -> PETSc.Mat:
+    """``matrix diag(scales)``; every rank calls."""
+    scaled, right = matrix.copy(), matrix.createVecRight()
+    right.setArray(scales)
+    scaled.diagonalScale(R=right)
+    return scaled
+
+
+def _products(rows: int, pairs: Iterable[tuple[PETSc.Mat, np.ndarray]]) -> np.ndarray:
+    """Sum of matrices times values, owned rows."""
+    result = np.zeros(rows)
+    for matrix, values in pairs:
+        x, y = matrix.createVecs()
+        x.setArray(values)
+        matrix.mult(x, y)
+        result += y.getArray()
+    return result

@@ -1,0 +1,218 @@
+"""Linear elasticity of both bodies, with thermal strain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from petsc4py import PETSc
+
+import numpy as np
+import scipy.sparse as sp
+import ufl
+from dolfinx import fem
+from dolfinx import mesh as dmesh
+from dolfinx.fem.petsc import assemble_matrix
+
+from ..bodies import Bodies
+from ..compiled import compiled
+from ..direct_solver import Factor
+from ..field import lagrange_space, owned
+from ..kinematics import Model, section_measure
+
+
+@dataclass(frozen=True)
+class ElasticMaterial:
+    """Isotropic: Young's modulus [Pa], Poisson ratio, thermal expansion [1/K]."""
+
+    young_modulus: float
+    poisson_ratio: float
+    expansion: float = 0.0
+
+
+@dataclass(frozen=True)
+class Elasticity:
+    """The elastic bodies, factorised.
+
+    Attributes
+    ----------
+    bodies : Bodies
+    model : Model
+    space : dolfinx.fem.FunctionSpace
+        Displacement [m].
+    stiffness : petsc4py.PETSc.Mat
+        Without supports: its residual holds the support reactions.
+    fixed : ndarray of bool, shape (n_owned,)
+        Values held at zero.
+    factor : Factor
+        Of the supported stiffness.
+    lame : tuple of dolfinx.fem.Function
+        λ, μ of the model and its thermal modulus times α, constant on each body [Pa, Pa/K].
+    """
+
+    bodies: Bodies
+    model: Model
+    space: fem.FunctionSpace
+    stiffness: PETSc.Mat
+    fixed: np.ndarray
+    factor: Factor
+    lame: tuple[fem.Function, fem.Function, fem.Function]
+
+    def stress(self, u, rise=None):
+        """Stress of a displacement and a temperature rise, 3 x 3 [Pa]."""
+        λ, μ, m = self.lame
+        ε = self.model.strain(self.bodies.mesh, u)
+        return self.model.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
+
+    def virtual_work(self, u, δu, degree: int):
+        """Form of the work of the stress of one displacement on the strain of another [J].
+
+        `degree` is that of the polynomials for which the quadrature is meant.
+        """
+        measure = section_measure(self.bodies.mesh, degree)
+        return _virtual_work(self.bodies.mesh, self.model, self.lame, u, δu, measure)
+
+    def thermal_work(self, rise, δu, degree: int):
+        """Form of the work of thermal stress of a temperature rise on a displacement [J]."""
+        mesh = self.bodies.mesh
+        ε = self.model.strain(mesh, δu)
+        measure = section_measure(mesh, degree)
+        return self.model.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
+
+    def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
+        """Displacements [m] under nodal loads [N], owned rows, one or several columns."""
+        if sp.issparse(loads):
+            return self.factor.solve((sp.diags(~self.fixed, dtype=float) @ loads).tocsr())
+        supported = np.array(loads, dtype=float)
+        supported[self.fixed] = 0.0
+        return self.factor.solve(supported)
+
+    def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Forces of the supports on the bodies [N], owned rows; zero where nothing is fixed."""
+        x, y = self.stiffness.createVecs()
+        x.setArray(displacement)
+        self.stiffness.mult(x, y)
+        return np.where(self.fixed, y.getArray() - loads, 0.0)
+
+    def owned_by(self, *parts: str) -> np.ndarray:
+        """Which owned nodes belong to parts of bodies, shape (n_owned / gdim,)."""
+        tags = self.bodies.cell_tags
+        cells = np.concatenate([tags.find(self.bodies.body_tag(part)) for part in parts])
+        nodes = np.unique(self.space.dofmap.list[cells])
+        belongs = np.zeros(self.space.dofmap.index_map.size_local, dtype=bool)
+        belongs[nodes[nodes < len(belongs)]] = True
+        return belongs
+
+    def nodes(self) -> np.ndarray:
+        """Coordinates of the owned nodes, shape (n_owned / gdim, gdim) [m]."""
+        count, dim = self.space.dofmap.index_map.size_local, self.bodies.mesh.geometry.dim
+        return self.space.tabulate_dof_coordinates()[:count, :dim]
+
+    def thermal_load(
+        self, temperature_space: fem.FunctionSpace, only: str | None = None
+    ) -> PETSc.Mat:
+        """G: nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV``, of all or one part [N/K]."""
+        mesh, modulus = self.bodies.mesh, self.lame[2]
+        if only is not None:
+            modulus = self.bodies.per_body({only: 1.0})
+            modulus.x.array[:] *= self.lame[2].x.array
+        rise, δu = ufl.TrialFunction(temperature_space), ufl.TestFunction(self.space)
+        ε = self.model.strain(mesh, δu)
+        measure = section_measure(mesh, temperature_space.ufl_element().degree)
+        form = self.model.integral(mesh, modulus * rise * ufl.tr(ε), measure)
+        matrix = assemble_matrix(compiled(form))
+        matrix.assemble()
+        return matrix
+
+
+def elasticity(
+    bodies: Bodies,
+    model: Model,
+    degree: int,
+    materials: dict[str, ElasticMaterial],
+    clamped: list[str],
+    symmetric: tuple[str, ...] = (),
+    rollers: tuple[str, ...] = (),
+) -> Elasticity:
+    """Assemble and factorise.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    degree : int
+        Polynomial degree of the displacement.
+    materials : dict of str to ElasticMaterial
+        By body.
+    clamped : list of str
+        Surfaces held in all directions. Every body needs one.
+    symmetric : tuple of str
+        Surfaces on a plane of symmetry x = const.: the first displacement vanishes.
+    rollers : tuple of str
+        Surfaces whose second displacement vanishes.
+    """
+    mesh = bodies.mesh
+    space = lagrange_space(mesh, degree, mesh.geometry.dim)
+    lame = _lame(bodies, model, materials)
+    u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
+    form = _virtual_work(mesh, model, lame, u, δu, section_measure(mesh, degree))
+    stiffness = assemble_matrix(compiled(form))
+    stiffness.assemble()
+    fixed = fixed_values(bodies, model, space, clamped, {0: symmetric, 1: rollers})
+    factor = Factor(supported(stiffness, fixed), dim=mesh.topology.dim)
+    return Elasticity(bodies, model, space, stiffness, fixed, factor, lame)
+
+
+def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
+    """A copy of a stiffness with rows and columns of fixed values eliminated. Every rank calls."""
+    result = stiffness.copy()
+    first = stiffness.getOwnershipRange()[0]
+    rows = (np.flatnonzero(fixed) + first).astype(PETSc.IntType)
+    largest = float(np.abs(stiffness.getDiagonal().getArray()).max(initial=0.0))
+    result.zeroRowsColumns(rows, diag=max(stiffness.comm.tompi4py().allgather(largest)))
+    return result
+
+
+def _virtual_work(mesh, model: Model, lame, u, δu, measure):
+    λ, μ, _ = lame
+    ε, δε = model.strain(mesh, u), model.strain(mesh, δu)
+    density = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
+    return model.integral(mesh, density, measure)
+
+
+def _lame(bodies: Bodies, model: Model, materials: dict[str, ElasticMaterial]):
+    λ, μ, m = {}, {}, {}
+    for name, material in materials.items():
+        E, ν = material.young_modulus, material.poisson_ratio
+        λ[name], μ[name] = model.lame(E, ν)
+        m[name] = model.thermal_modulus(E, ν) * material.expansion
+    return bodies.per_body(λ), bodies.per_body(μ), bodies.per_body(m)
+
+
+def fixed_values(bodies: Bodies, model: Model, space, clamped, guided) -> np.ndarray:
+    """Which owned values of a space the supports and planes or axis of symmetry hold at zero.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    model : Model
+    space : dolfinx.fem.FunctionSpace
+        Of vectors.
+    clamped : sequence of str
+        Surfaces held in all directions.
+    guided : dict of int to sequence of str
+        Surfaces by the component that they hold.
+    """
+    mesh = bodies.mesh
+    tdim = mesh.topology.dim
+    bs, count = space.dofmap.index_map_bs, space.dofmap.index_map.size_local
+    held = np.zeros(owned(space), dtype=bool)
+    for component in range(mesh.geometry.dim):
+        facets = [bodies.facets(surface) for surface in clamped]
+        facets += [bodies.facets(surface) for surface in guided.get(component, ())]
+        if component == 0:
+            facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, model.on_axis))
+        nodes = fem.locate_dofs_topological(
+            space, tdim - 1, np.unique(np.concatenate(facets)).astype(np.int32)
+        )
+        held[nodes[nodes < count] * bs + component] = True
+    return held

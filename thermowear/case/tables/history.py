@@ -1,0 +1,240 @@
+"""What changes in time: straight lines between given instants."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError, ValidationInfo, model_validator
+
+from ..values import units
+from ..values.csv_columns import Columns, read_columns
+from ..values.paths import UserFile
+from ..values.section import KeyFault, Section, Switch
+from .multipliers import NotNegative, must_increase, must_match
+
+_PATH = TypeAdapter(UserFile)
+_CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
+
+
+class Course(Section):
+    """Base of what is given at instants: straight lines between them, constant before and after.
+
+    A table of lists, or a CSV file with a column for each of them: the name of the file instead of
+    the table, or ``file`` in the table beside keys that are no lists.
+
+    Attributes
+    ----------
+    time : tuple of float
+        Increasing [s].
+    repeat : bool
+        From the last instant on it goes on as from the first one, again and again.
+    """
+
+    COLUMNS: ClassVar[dict[str, str]]
+    """Lists that a CSV file may hold, with a unit that fits each; empty for plain numbers."""
+
+    time: tuple[units.Instant, ...]
+    repeat: Switch = False
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _from_file(cls, data: Any, handler, info: ValidationInfo):
+        data = {"file": data} if isinstance(data, str) else data
+        if not isinstance(data, dict) or "file" not in data:
+            return handler(data)
+        name, others = data["file"], {key: data[key] for key in data if key != "file"}
+        if not isinstance(name, str):
+            raise KeyFault("file", "must be the name of a CSV file")
+        path = _PATH.validate_python(name, context=info.context)
+        columns = read_columns(Path(path), cls.COLUMNS)
+        for key in columns.values:
+            if key in others:
+                raise KeyFault(key, f"is a column of {columns.name} already")
+        try:
+            return handler(others | columns.values)
+        except ValidationError as error:
+            _charge(error, columns)
+            raise
+
+    @model_validator(mode="after")
+    def _in_order(self):
+        must_increase("time", self.time)
+        if self.repeat and len(self.time) < 2:
+            raise KeyFault("repeat", "needs at least two instants in time")
+        return self
+
+    def _closes(self, key: str, values: tuple[float, ...]) -> None:
+        """Refuse repetitions of values that jump from the end back to the begin."""
+        if self.repeat and abs(values[-1] - values[0]) > _CLOSED * max(map(abs, values)):
+            raise KeyFault("repeat", f"{key} must end with the value that it begins with")
+
+    @property
+    def period(self) -> float:
+        """From the first instant to the last [s]."""
+        return self.time[-1] - self.time[0]
+
+    def instant(self, time: float) -> float:
+        """The instant between the first and the last one that holds at any time [s]."""
+        begin, end = self.time[0], self.time[-1]
+        if self.repeat and time > end:
+            return begin + (time - begin) % self.period
+        return min(max(time, begin), end)
+
+    def corners(self, end: float) -> tuple[float, ...]:
+        """Where a straight line ends or begins, after 0 and up to a time, repetitions too [s]."""
+        times = np.array(self.time)
+        if self.repeat:
+            again = np.arange(math.ceil(max(end - times[-1], 0.0) / self.period) + 1)
+            cycles = times[1:] + self.period * again[:, None]
+            times = np.concatenate([times[:1], cycles.ravel()])
+        return tuple(float(time) for time in times if 0 < time <= end)
+
+
+def _charge(error: ValidationError, columns: Columns) -> None:
+    """Refuse a value of a file with its line; other faults are those of the table."""
+    for fault in error.errors(include_url=False):
+        place = fault["loc"]
+        if len(place) == 2 and place[0] in columns.values and isinstance(place[1], int):
+            said = fault.get("ctx", {}).get("error", fault["msg"])
+            said = str(said).replace("Input should be", "must be")
+            line = columns.lines[place[1]]
+            raise ValueError(f"{columns.name}, line {line}: {place[0]}: {said}") from None
+
+
+class FactorHistory(Course):
+    """What changes by a factor: the motion of the case, or its friction.
+
+    Attributes
+    ----------
+    factor : tuple of float
+        One of them at least greater than 0.
+    """
+
+    COLUMNS = {"time": "s", "factor": ""}
+
+    factor: tuple[NotNegative, ...]
+
+    @model_validator(mode="after")
+    def _fits(self):
+        must_match("factor", self.factor, self.time, "times")
+        if not any(self.factor):
+            raise KeyFault("factor", "one at least must be greater than 0")
+        self._closes("factor", self.factor)
+        return self
+
+    def factor_at(self, time: float) -> float:
+        """Factor at a time [s]."""
+        return float(np.interp(self.instant(time), self.time, self.factor))
+
+
+class TemperatureHistory(Course):
+    """Temperature of a surface, or of the surroundings.
+
+    Attributes
+    ----------
+    temperature : tuple of float
+        [K]
+    """
+
+    COLUMNS = {"time": "s", "temperature": "degC"}
+
+    temperature: tuple[units.Temperature, ...]
+
+    @model_validator(mode="after")
+    def _fits(self):
+        must_match("temperature", self.temperature, self.time, "times")
+        self._closes("temperature", self.temperature)
+        return self
+
+    def at(self, time: float) -> float:
+        """Temperature [K] at a time [s]."""
+        return float(np.interp(self.instant(time), self.time, self.temperature))
+
+
+class History(Course):
+    """Loads of the holder of body 1 at instants; straight lines between them.
+
+    Attributes
+    ----------
+    force, approach : tuple of float or None
+        Along the press [N, m]; at most one of them. Neither: the constant load of the case.
+    tangential_force, tangential_displacement : tuple of float or None
+        Along x [N, m]; at most one of them. Neither: the holder only moves along the press.
+    cycle_start : float or None
+        From there to the end the loads of a fretting analysis may be repeated, cycle by cycle; by
+        default the first of the instants with the loads of the last one [s].
+    """
+
+    COLUMNS = {
+        "time": "s",
+        "force": "kN",
+        "approach": "um",
+        "tangential_force": "N",
+        "tangential_displacement": "um",
+    }
+
+    force: tuple[units.LeastForce, ...] | None = None
+    approach: tuple[units.Length, ...] | None = None
+    tangential_force: tuple[units.SignedForce, ...] | None = None
+    tangential_displacement: tuple[units.Displacement, ...] | None = None
+    cycle_start: units.Instant | None = None
+
+    @model_validator(mode="after")
+    def _fits(self):
+        pairs = ("force", "approach"), ("tangential_force", "tangential_displacement")
+        for first, second in pairs:
+            if getattr(self, first) is not None and getattr(self, second) is not None:
+                raise KeyFault(second, f"only one of {first} and {second} can be given")
+        for key in (key for pair in pairs for key in pair):
+            values = getattr(self, key)
+            if values is not None:
+                must_match(key, values, self.time, "times")
+                self._closes(key, values)
+        if self.force is not None and not any(self.force):
+            raise KeyFault("force", "one at least must be greater than 0 N")
+        start = self.cycle_start
+        if start is not None:
+            if not self.time[0] <= start < self.time[-1]:
+                raise KeyFault(
+                    "cycle_start",
+                    f"found {start:g} s; must be at least {self.time[0]:g} s and less than "
+                    f"{self.time[-1]:g} s, the ends of time",
+                )
+            if not self._as_at_the_end(start):
+                raise KeyFault("cycle_start", "a cycle must end with the loads that it begins with")
+        return self
+
+    @property
+    def cycle(self) -> tuple[float, float] | None:
+        """Begin and end of what may be repeated [s]; None where nothing can be."""
+        starts = self.time[:-1] if self.cycle_start is None else (self.cycle_start,)
+        closed = [start for start in starts if self._as_at_the_end(start)]
+        return (closed[0], self.time[-1]) if closed else None
+
+    def _as_at_the_end(self, time: float) -> bool:
+        """Whether the loads at an instant are those of the last one."""
+        now, last = self.at(time), self.at(self.time[-1])
+        sizes = {key: max(map(abs, getattr(self, key))) for key in now}
+        return all(abs(now[key] - last[key]) <= _CLOSED * sizes[key] for key in now)
+
+    @property
+    def tangential(self) -> bool:
+        """Whether the holder moves, or is pushed, across the press."""
+        return self.tangential_force is not None or self.tangential_displacement is not None
+
+    def at(self, time: float) -> dict[str, float]:
+        """Values of the keys that are given, at a time [s]."""
+        keys = ("force", "approach", "tangential_force", "tangential_displacement")
+        given = {key: getattr(self, key) for key in keys}
+        return {
+            key: float(np.interp(self.instant(time), self.time, values))
+            for key, values in given.items()
+            if values is not None
+        }
+
+    def factor_at(self, time: float) -> float:
+        """Part of the largest force that presses at a time [s]; 1 where the force is constant."""
+        return 1.0 if self.force is None else self.at(time)["force"] / max(self.force)

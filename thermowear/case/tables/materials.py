@@ -1,0 +1,118 @@
+"""The materials of a body, or the name of the body whose material it shares."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from pydantic import Field
+
+from ...errors import quoted
+from ..values import units
+from ..values.section import Number, Section
+from .geometry import Geometry
+from .multipliers import ExpansionFactor, TemperatureFactor
+
+
+class Properties(Section):
+    """Base: a material, or the name of the body whose material it shares.
+
+    Attributes
+    ----------
+    conductivity, conductivity_factor
+        At the ambient temperature [W/(m K)], and its factor at others.
+    expansion, expansion_factor
+        Secant coefficient from the ambient temperature [1/K], and its factor at others: the thermal
+        strain is ``expansion factor(T) (T - ambient)``.
+    hardness : float or None
+        Of the softer surface layer, for a contact conductance that depends on the pressure [Pa].
+    """
+
+    like: str | None = None
+    young_modulus: units.Pressure | None = None
+    poisson_ratio: Annotated[Number, Field(gt=-1.0, lt=0.5)] | None = None
+    conductivity: units.Conductivity | None = None
+    expansion: units.Expansion | None = None
+    density: units.Density | None = None
+    specific_heat: units.SpecificHeat | None = None
+    hardness: units.Pressure | None = None
+    conductivity_factor: TemperatureFactor | None = None
+    expansion_factor: ExpansionFactor | None = None
+
+    @property
+    def effusivity(self) -> float:
+        """``sqrt(k rho c)`` [W sqrt(s)/(m² K)]."""
+        k, rho, c = self.conductivity, self.density, self.specific_heat
+        assert k is not None  # the case has been checked
+        assert rho is not None
+        assert c is not None
+        return math.sqrt(k * rho * c)
+
+
+class Material(Properties):
+    """Material of a cell set in a body."""
+
+
+class Body(Properties):
+    """Material of a body, and those of cell sets in it.
+
+    Attributes
+    ----------
+    materials : dict of str to Material
+        By cell sets of a mesh file that lie in the body. Its other cells have the body's own
+        material, which may be left out where the file's sets that the body is made of all have one.
+    """
+
+    materials: dict[str, Material] = {}
+
+    @property
+    def has_own(self) -> bool:
+        """Whether the body has a material of its own, beside those of its cell sets."""
+        return bool(self.model_fields_set - {"materials"})
+
+
+def resolve_like(bodies: dict[str, Body], name: str) -> str:
+    """Follow ``like`` from body to body.
+
+    Raises
+    ------
+    ValueError
+        If the chain names a body that does not exist, or comes back to itself.
+    """
+    seen = [name]
+    while (other := bodies[seen[-1]].like) is not None:
+        check_named(bodies, other)
+        if other in seen:
+            raise ValueError(f"like = {quoted(other)} leads back to itself")
+        seen.append(other)
+    return seen[-1]
+
+
+def check_named(bodies: dict[str, Body], name: str) -> None:
+    """Raise a `ValueError` where `like` names no body."""
+    if name not in bodies:
+        raise ValueError(f"like = {quoted(name)} names no body; one of: {', '.join(bodies)}")
+
+
+def material_of(geometry: Geometry, bodies: dict[str, Body], part: str) -> tuple[str, Properties]:
+    """Key's path of the table that has the material of a part, and that material.
+
+    Raises
+    ------
+    ValueError
+        If ``like`` names no body, or comes back to itself.
+    """
+    owner = geometry.zones.get(part, part)
+    name = part if part in bodies else owner
+    chosen = geometry.set_of.get(part)
+    if chosen is None and not bodies[name].has_own and bodies[name].materials:
+        chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
+    if chosen is None:
+        found = resolve_like(bodies, name)
+        return f"bodies.{found}", bodies[found]
+    own = bodies[owner].materials[chosen]
+    if own.like is None:
+        return f"bodies.{owner}.materials.{chosen}", own
+    check_named(bodies, own.like)
+    found = resolve_like(bodies, own.like)
+    return f"bodies.{found}", bodies[found]

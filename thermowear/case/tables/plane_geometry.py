@@ -1,0 +1,45 @@
+"""Bases of geometries for plane models."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from ..values.section import Switch
+from ..values.units import Length
+from .geometry import Geometry
+
+
+class PlaneGeometry(Geometry):
+    """Base of geometries for plane models.
+
+    Attributes
+    ----------
+    thickness : float
+        Forces are of this thickness [m].
+    """
+
+    name: ClassVar[str] = ""
+
+    thickness: Length = 1e-3
+
+    @property
+    def thickness_factor(self) -> float | None:
+        return self.thickness
+
+
+class HalvableGeometry(PlaneGeometry):
+    """Base of plane geometries that are symmetric, or may be.
+
+    Attributes
+    ----------
+    half : bool
+        Mesh only x >= 0 of bodies and loads that are symmetric about x = 0.
+    """
+
+    name: ClassVar[str] = ""
+
+    half: Switch = False
+
+    @property
+    def thickness_factor(self) -> float | None:
+        return 2 * self.thickness if self.half else self.thickness

@@ -1,0 +1,159 @@
+"""The wear tables: ``rate = coefficient · s^b · v^a`` of each body; s: friction stress or pressure.
+
+Beside them stands how worn faces are followed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import ItemsView, Iterator, KeysView, ValuesView
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
+
+from ...errors import quoted
+from ..values.section import KeyFault, Number, Section
+from ..values.units import parse, registry
+from .multipliers import Factors
+
+_EXAMPLE = "2e-7 1/MPa"
+
+
+def _coefficient(text: Any):
+    value = parse(text, _EXAMPLE)
+    if not value.magnitude > 0:
+        raise ValueError(f'found "{text}"; must be greater than 0')
+    return value
+
+
+def _text(value) -> str:
+    """As text that is read back to the very same quantity."""
+    unit = f"{value.units:~C}"
+    if registry().parse_units(unit) != value.units:  # pint rounds the exponents it writes
+        unit = " * ".join(f"{name}**{power!r}" for name, power in value.unit_items())
+    return f"{value.magnitude!r} {unit}"
+
+
+Coefficient = Annotated[Any, BeforeValidator(_coefficient), PlainSerializer(_text, return_type=str)]
+
+
+class Wear(Section):
+    """Wear law of one body.
+
+    Attributes
+    ----------
+    coefficient : pint.Quantity
+        In the unit that fits both exponents.
+    per : str
+        ``"friction-stress"``: it multiplies ``(mu p)^b v^a``; ``"pressure"``: ``p^b v^a``.
+    pressure_exponent, velocity_exponent : float
+        b and a.
+    spread : str
+        ``"in-place"``: the body wears where it is pressed; ``"track"``: a body 2 that passes under
+        body 1 wears along its whole track: evenly under a plane body 1; a turning disk at each
+        radius, by the part of a turn for which it is under the pad.
+    factor : Factors
+        Of the coefficient, by the temperature of the body's own face, pressure and speed.
+    """
+
+    coefficient: Coefficient
+    per: Literal["friction-stress", "pressure"] = "friction-stress"
+    pressure_exponent: Annotated[Number, Field(ge=0.1, le=10.0)] = 1.0
+    velocity_exponent: Annotated[Number, Field(ge=0.0, le=10.0)] = 1.0
+    spread: Literal["in-place", "track"] = "in-place"
+    factor: Factors = Factors()
+
+    @model_validator(mode="after")
+    def _unit_fits(self):
+        try:
+            number = self.coefficient_si()
+        except (OverflowError, ZeroDivisionError):
+            number = math.inf
+        if not 0 < number < math.inf:
+            raise KeyFault("coefficient", f'found "{_text(self.coefficient)}"; out of range in SI')
+        return self
+
+    def coefficient_si(self) -> float:
+        """The coefficient in ``(m/s)^(1-a) Pa^(-b)``.
+
+        Raises
+        ------
+        ValueError
+            If its unit does not fit the exponents.
+        """
+        a, b = self.velocity_exponent, self.pressure_exponent
+        due = {"[length]": 1 - a + b, "[time]": a - 1 + 2 * b, "[mass]": -b}
+        found = dict(self.coefficient.dimensionality)
+        if any(abs(due.get(k, 0) - found.get(k, 0)) > 1e-9 for k in due.keys() | found.keys()):
+            rate = "" if a == 1 else f"(m/s)^{1 - a:.12g} "
+            raise KeyFault(
+                "coefficient",
+                f'the unit of "{_text(self.coefficient)}" does not fit the exponents'
+                f" a = {a:g} and b = {b:g}; needs {rate}1/MPa^{b:.12g} or the like",
+            )
+        return float(self.coefficient.to_base_units().magnitude)
+
+
+def _update(value: Any) -> Any:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if value in ("auto", "never") or (number and 0.0 < value <= 1.0):
+        return value
+    raise ValueError(f'found {quoted(value)}; must be "auto", "never", or a number up to 1')
+
+
+class WearTable(Section):
+    """Wear laws by body, and beside them how wear is followed: a mapping of bodies to `Wear`.
+
+    Attributes
+    ----------
+    update : str or float
+        When the meshes are moved to the worn faces. ``"auto"``: when the wear kept in the gap
+        exceeds `AUTOMATIC` of the sizes that it is held against; a number: that part of them;
+        ``"never"``: all wear stays in the gap.
+    cycles : int or None
+        Of an analysis of cycles: how many of them wear.
+    max_jump : int or None
+        The most cycles that a computed one may stand for.
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+    AUTOMATIC: ClassVar[float] = 0.01
+
+    __pydantic_extra__: dict[str, Wear]
+
+    update: Annotated[float | Literal["auto", "never"], BeforeValidator(_update)] = "auto"
+    cycles: Annotated[int, Field(ge=1, strict=True)] | None = None
+    max_jump: Annotated[int, Field(ge=1, strict=True)] | None = None
+
+    @property
+    def largest_kept(self) -> float:
+        """Part of the sizes of the bodies up to which wear is kept in the gap."""
+        if self.update == "never":
+            return math.inf
+        return self.AUTOMATIC if self.update == "auto" else float(self.update)
+
+    def __getitem__(self, body: str) -> Wear:
+        return self._laws[body]
+
+    def __contains__(self, body: object) -> bool:
+        return body in self._laws
+
+    def __iter__(self) -> Iterator[str]:  # type: ignore[override]
+        return iter(self._laws)
+
+    def __len__(self) -> int:
+        return len(self._laws)
+
+    def keys(self) -> KeysView[str]:
+        return self._laws.keys()
+
+    def values(self) -> ValuesView[Wear]:
+        return self._laws.values()
+
+    def items(self) -> ItemsView[str, Wear]:
+        return self._laws.items()
+
+    @property
+    def _laws(self) -> dict[str, Wear]:
+        return self.__pydantic_extra__

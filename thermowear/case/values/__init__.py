@@ -1,0 +1,1 @@
+"""Values of a case file: units, paths, columns of CSV files, bounds."""

@@ -1,0 +1,150 @@
+"""Columns of numbers from CSV files whose header names quantities and units."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from ...user_files import read_text
+
+LARGEST = 10_000_000
+"""Bytes of a file."""
+MOST_ROWS = 5_000
+"""Each of them is a corner that a step must end at, and stands in the resolved case."""
+_SHOWN = 40  # characters of what was found
+_HEAD = re.compile(r"([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """A table by columns.
+
+    Attributes
+    ----------
+    name : str
+        Of the file.
+    values : dict of str to list
+        By key: quantities as text; numbers where the header has no unit.
+    lines : list of int
+        Where each row stands in the file, from 1.
+    """
+
+    name: str
+    values: dict[str, list[str | float]]
+    lines: list[int]
+
+
+def read_columns(path: Path, known: dict[str, str]) -> Columns:
+    """Read a CSV file: a header such as ``time [s], force [kN]``, then rows of numbers.
+
+    Commas, semicolons or tabs separate the cells; numbers have a decimal point; empty lines and
+    those that begin with ``#`` are skipped. Times must increase.
+
+    Parameters
+    ----------
+    path : Path
+    known : dict of str to str
+        Keys that columns may stand for, with a unit that fits each; empty for plain numbers. Words
+        of a key may be separated by spaces.
+
+    Raises
+    ------
+    ValueError
+        With file and line, if it is not such a table.
+    """
+    name = path.name
+    rows = _rows(name, _text(path))
+    allowed = ", ".join(f"{key} [{unit}]" if unit else key for key, unit in known.items())
+    if not rows:
+        raise ValueError(f"{name} is empty; needs a header, of: {allowed}")
+    heads = _heads(name, *rows[0], known, allowed)
+    body = rows[1:]
+    if not body:
+        raise ValueError(f"{name} has a header, but no rows of numbers")
+    if len(body) > MOST_ROWS:
+        raise ValueError(f"{name} has {len(body)} rows; at most {MOST_ROWS} are read")
+    table = [_numbers(name, line, cells, list(heads)) for line, cells in body]
+    if "time" in heads:
+        _increasing(name, [row[list(heads).index("time")] for row in table], body)
+    values: dict[str, list[str | float]] = {
+        key: [f"{x!r} {unit}" if unit else x for x in column]
+        for (key, unit), column in zip(heads.items(), zip(*table, strict=True), strict=True)
+    }
+    return Columns(name, values, [line for line, _ in body])
+
+
+def _text(path: Path) -> str:
+    try:
+        return read_text(path, LARGEST)
+    except OSError as error:
+        raise ValueError(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError as error:  # not in UTF-8, or no name of a file
+        raise ValueError(f"{path} {error}") from None
+
+
+def _rows(name: str, text: str) -> list[tuple[int, list[str]]]:
+    """Rows with the number of their line; comments and empty lines are left out."""
+    lines = [
+        (number, line)
+        for number, line in enumerate(re.split("\r\n|\r|\n", text), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        return []
+    separator = next((mark for mark in ";\t" if mark in lines[0][1]), ",")
+    cells = csv.reader((line for _, line in lines), delimiter=separator, skipinitialspace=True)
+    found: list[tuple[int, list[str]]] = []
+    for number, _ in lines:
+        try:
+            found.append((number, [cell.strip() for cell in next(cells)]))
+        except csv.Error as error:
+            raise ValueError(f"{name}, line {number}: {error}") from None
+        except StopIteration:  # a quotation mark has joined lines
+            raise ValueError(f"{name}: a quotation mark is not closed on its line") from None
+    return found
+
+
+def _heads(
+    name: str, line: int, cells: list[str], known: dict[str, str], allowed: str
+) -> dict[str, str]:
+    """Units by key, in the order of the columns; empty for plain numbers."""
+    where, heads = f"{name}, line {line}", {}
+    for cell in cells:
+        match = _HEAD.fullmatch(cell)
+        key = "_".join(match[1].lower().split()) if match else ""
+        if match is None or key not in known:
+            raise ValueError(f"{where}: found the column {_shown(cell)}; known: {allowed}")
+        if key in heads:
+            raise ValueError(f"{where}: the column {key} is there twice")
+        unit = (match[2] or "").strip()
+        unit = "" if unit in ("-", "1") else unit
+        if known[key] and not unit:
+            raise ValueError(f"{where}: {key}: no unit; write it like {key} [{known[key]}]")
+        if unit and not known[key]:
+            raise ValueError(f"{where}: {key}: found the unit {_shown(unit)}; has none")
+        heads[key] = unit
+    return heads
+
+
+def _numbers(name: str, line: int, cells: list[str], keys: list[str]) -> list[float]:
+    where = f"{name}, line {line}"
+    if len(cells) != len(keys):
+        raise ValueError(f"{where}: has {len(cells)} cells for {len(keys)} columns")
+    for key, cell in zip(keys, cells, strict=True):
+        if not _NUMBER.fullmatch(cell):
+            raise ValueError(f"{where}: {key}: found {_shown(cell)}; must be a finite number")
+    return [float(cell) for cell in cells]
+
+
+def _increasing(name: str, times: list[float], body: list[tuple[int, list[str]]]) -> None:
+    for (before, after), (line, _) in zip(pairwise(times), body[1:], strict=True):
+        if not after > before:
+            raise ValueError(f"{name}, line {line}: time: found {after:g}; must increase")
+
+
+def _shown(cell: str) -> str:
+    return repr(cell if len(cell) <= _SHOWN else f"{cell[:_SHOWN]}…")

@@ -1,0 +1,218 @@
+"""Quantities with units, written by the user and turned to SI at the border.
+
+Every dimensional key of a case file is a string such as ``"50 MPa"``. Inside the
+program there are only SI numbers.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+import re
+from functools import lru_cache
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator, PlainSerializer
+
+from ...errors import quoted
+
+_LONGEST = 200
+"""Characters of a quantity."""
+_EXTREME = 1e100
+"""Sizes of numbers in SI: products of three of them are still numbers."""
+_NUMBER = re.compile(r"\s*([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))", re.IGNORECASE)
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
+_SUPERSCRIPT = re.compile(rf"[{''.join(map(chr, _SUPERSCRIPTS))}]+")
+_EXPONENT = r"[-+]?(?:\d{1,3}(?:\.\d*)?|\.\d+)"
+_POWER = re.compile(
+    rf"\s*(?:\^|\*\*)\s*(?:{_EXPONENT}|\(\s*{_EXPONENT}(?:\s*/\s*{_EXPONENT})?\s*\))"
+    r"(?![\d.]|e[-+]?\d|\s*(?:\^|\*\*))",
+    re.IGNORECASE,
+)
+_WORD = re.compile(r"[^\W\d]\w*")
+_ONE = re.compile(r"(?<![\w.])1(?![\w.])")
+_NUMERIC = re.compile(r"[\^\d]|\*\*")
+_BOUNDS = {
+    "gt": (operator.gt, "greater than"),
+    "ge": (operator.ge, "at least"),
+    "le": (operator.le, "at most"),
+    "ne": (operator.ne, "other than"),
+}
+_ANGLES = ("radian", "turn", "revolution", "degree")
+
+
+@lru_cache(maxsize=1)
+def registry():
+    """The one unit registry (made at first use: it is slow to build)."""
+    import pint
+
+    units = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
+    pint.set_application_registry(units)
+    return units
+
+
+def parse(text: Any, example: str):
+    """Read a quantity written as text.
+
+    Parameters
+    ----------
+    text : object
+        What the case file holds at the key.
+    example : str
+        A well-formed value, for the message.
+
+    Returns
+    -------
+    pint.Quantity
+
+    Raises
+    ------
+    ValueError
+        If it is not a string, has no unit, or is not understood.
+    """
+    import pint
+
+    if isinstance(text, pint.Quantity):
+        return text
+    if not isinstance(text, str):
+        raise ValueError(
+            f'found {quoted(text)}; needs a quantity with its unit, such as "{example}"'
+        )
+    if len(text) > _LONGEST:
+        raise ValueError(
+            f"found {quoted(text)}, {len(text)} characters; a quantity has at most {_LONGEST}"
+        )
+    try:
+        with np.errstate(over="ignore"):  # of decibels; what is not finite is refused
+            value = _read(text)
+            bare = value.unitless
+    except Exception as error:  # pint raises a dozen kinds, tokenizer errors among them
+        raise ValueError(f'cannot read "{text}"; write it like "{example}"') from error
+    if bare:
+        raise ValueError(f'found "{text}" without a unit; write it like "{example}"')
+    if not math.isfinite(value.magnitude):
+        raise ValueError(f'found "{text}"; the number must be finite')
+    return value
+
+
+def _read(text: str):
+    """Number and unit apart: only so does ``W/(m^2 degC)`` mean a difference of temperatures."""
+    number = _NUMBER.match(text)
+    if number is None:
+        raise ValueError("no number")
+    return registry().Quantity(float(number[1]), _unit(text[number.end() :].strip()))
+
+
+@lru_cache(maxsize=1000)
+def _unit(text: str):
+    """A unit as engineers write it: ``W/(m² K)``, ``/K``, ``mm^3/(N m)``, ``1/MPa**0.5``."""
+    text = _SUPERSCRIPT.sub(_as_power, text)
+    _check_unit(text)
+    return registry().parse_units(f"1{text}" if text.startswith("/") else text, as_delta=True)
+
+
+def _as_power(superscript: re.Match[str]) -> str:
+    return f"**{superscript[0].translate(_SUPERSCRIPTS)}"
+
+
+def _check_unit(unit: str) -> None:
+    """Refuse towers of powers and numbers beside exponents: pint works them out exactly.
+
+    ``m^9^9^9`` would have more digits than there is memory for. What may stand there are names,
+    signs, the number 1, and one small exponent behind each of them.
+    """
+    names_and_signs = _WORD.sub("u", _POWER.sub(" ", unit))
+    if _NUMERIC.search(_ONE.sub("", names_and_signs)):
+        raise ValueError("a power of a power, a large exponent, or a number")
+
+
+def _converted(value, unit: str) -> float | None:
+    """The number in a unit; infinite where powers of units overflow, None in other dimensions."""
+    try:
+        with np.errstate(over="ignore"):
+            return float(value.to(unit).magnitude) if value.is_compatible_with(unit) else None
+    except (OverflowError, ZeroDivisionError):
+        return math.inf
+
+
+def _to_si(unit: str, example: str, bounds: dict[str, float], text: Any) -> float:
+    value = parse(text, example)
+    number = _converted(value, unit)
+    if number is None:
+        raise ValueError(
+            f'"{text}" has the dimension {value.dimensionality}; needs one of {unit}, '
+            f'such as "{example}"'
+        )
+    if unit == "rad/s" and "hertz" in str(value.units):
+        raise ValueError(f'found "{text}", which counts turns; write turn/s, or rad/s')
+    if unit == "Hz" and any(angle in str(value.units) for angle in _ANGLES):
+        raise ValueError(f'found "{text}", which measures angles; write Hz, or 1/s')
+    if not math.isfinite(number):
+        raise ValueError(f'found "{text}"; the number must be finite in {unit} too')
+    if number != 0.0 and not 1 / _EXTREME <= abs(number) <= _EXTREME:
+        raise ValueError(
+            f'found "{text}"; a number other than 0 must be from {1 / _EXTREME:g} to {_EXTREME:g} '
+            f"{unit} in size"
+        )
+    for word, bound in bounds.items():
+        holds, phrase = _BOUNDS[word]
+        if not holds(number, bound):
+            raise ValueError(f'found "{text}"; must be {phrase} {bound:g} {unit}')
+    return number
+
+
+def quantity(unit: str, example: str, **bounds: float):
+    """Type of a key that holds a quantity: a float in SI inside, text with a unit outside.
+
+    Parameters
+    ----------
+    unit : str
+        The SI unit the number is kept in.
+    example : str
+        A well-formed value, shown in messages.
+    **bounds
+        ``gt``, ``ge``, ``le``, ``ne`` in SI, checked in their order.
+    """
+    return Annotated[
+        float,
+        BeforeValidator(lambda text: _to_si(unit, example, bounds, text)),
+        PlainSerializer(lambda value: f"{value!r} {unit}", return_type=str),
+    ]
+
+
+_SMALLEST, _FARTHEST = 1e-12, 1e7
+"""Lengths that a body can have [m]: beyond them sums of squares and products of areas overflow."""
+
+Length = quantity("m", "20 mm", gt=0, ge=_SMALLEST, le=_FARTHEST)
+Distance = quantity("m", "0.05 mm", ge=0, le=_FARTHEST)
+Radius = quantity("m", "0.5 mm", ge=0, le=_FARTHEST)
+Angle = quantity("rad", "30 deg")
+Coordinate = quantity("m", "-5 mm", ge=-_FARTHEST, le=_FARTHEST)
+Moment = quantity("N m", "200 N m", gt=0)
+SignedMoment = quantity("N m", "-5 N m")
+Compliance = quantity("m/Pa", "2e-7 mm/MPa", gt=0)
+Area = quantity("m^2", "200 mm^2", gt=0)
+Pressure = quantity("Pa", "50 MPa", gt=0)
+LeastPressure = quantity("Pa", "50 MPa", ge=0)
+Foundation = quantity("Pa/m", "1e15 Pa/m", gt=0)
+Force = quantity("N", "2.2 MN", gt=0)
+LeastForce = quantity("N", "2.2 MN", ge=0)
+SignedForce = quantity("N", "36 N")
+Displacement = quantity("m", "25 um")
+Instant = quantity("s", "1 s", ge=0)
+Time = quantity("s", "100 s", gt=0)
+AngularVelocity = quantity("rad/s", "10 rad/s", ne=0)
+Velocity = quantity("m/s", "50 mm/s", ne=0)
+Speed = quantity("m/s", "50 mm/s", ge=0)
+Frequency = quantity("Hz", "1 Hz", gt=0)
+Conductivity = quantity("W/m/K", "50 W/(m K)", gt=0)
+Expansion = quantity("1/K", "1.2e-5 1/K", ge=0)
+Density = quantity("kg/m^3", "7800 kg/m^3", gt=0)
+SpecificHeat = quantity("J/kg/K", "460 J/(kg K)", gt=0)
+HeatTransfer = quantity("W/m^2/K", "2000 W/(m^2 K)", gt=0)
+LeastHeatTransfer = quantity("W/m^2/K", "2000 W/(m^2 K)", ge=0)
+PerLength = quantity("1/m", "2e4 1/m", gt=0)
+HeatFlux = quantity("W/m^2", "1e4 W/m^2", ne=0)
+Power = quantity("W", "200 W", ne=0)
+Temperature = quantity("K", "20 degC", ge=0)

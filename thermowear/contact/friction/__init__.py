@@ -1,0 +1,1 @@
+"""Coulomb friction with stick and slip, and wear by slip."""

@@ -1,0 +1,184 @@
+"""Newton's method for friction and contact, and what to do where it fails."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...errors import ComputationError
+from ..solvers.lemke import lemke
+from .coulomb import CoulombProblem, CoulombSolution, jacobian, residual, scales, violated
+
+_ITERATIONS = 30
+_CONVERGED = 1e-12
+_SPRINGS = (1e-3, 1e-2, 1e-1, 1.0)  # parts of the contact's own stiffness, one after the other
+_SPRUNG_SOLUTIONS = 20
+
+
+def solve_directly(
+    problem: CoulombProblem, closed: np.ndarray, near: np.ndarray | None = None
+) -> CoulombSolution | None:
+    """Solve by Newton's method, which takes a few iterations; None where it fails.
+
+    Parameters
+    ----------
+    problem : CoulombProblem
+    closed : ndarray of bool, shape (m,)
+        Coefficients that are expected to press; the first guess sticks there.
+    near : ndarray, shape (M + k,), optional
+        The unknowns of a similar problem: a guess before that.
+    """
+    if near is not None:
+        solution = _newton(problem, near, damped=False)
+        if solution is not None and not violated(problem, solution):
+            return solution
+    start = _sticking(problem, closed)
+    return None if start is None else _from(problem, start)
+
+
+def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolution:
+    """Solve a problem on which `solve_directly` fails; arguments are the same.
+
+    Newton's method starts from solutions with a spring between holder and load, which exist where
+    the whole contact slips, and finally from the solution by complementary pivoting.
+
+    Raises
+    ------
+    ComputationError
+        If no solution is found.
+    """
+    for start in _better_starts(problem, closed):
+        solution = _from(problem, start)
+        if solution is not None:
+            return solution
+    raise ComputationError(
+        "contact: no pressure and shear satisfy the friction conditions at this load; take "
+        "smaller increments, and see that pressure and friction can carry the load"
+    )
+
+
+def _from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
+    """The checked solution from a start, with full steps or else with damped ones."""
+    for damped in (False, True):
+        solution = _newton(problem, start, damped)
+        if solution is not None and not violated(problem, solution):
+            return solution
+    return None
+
+
+def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> CoulombSolution | None:
+    for iteration in range(_ITERATIONS + 1):
+        error = residual(problem, unknowns)
+        small = np.all(np.abs(error) <= _CONVERGED * scales(problem, unknowns))
+        if small and iteration > 0:  # a step at least: it leaves no more than rounding
+            pressure, shear, sticking = problem.projection(unknowns)
+            motion = unknowns[len(problem.offset) :]
+            return CoulombSolution(pressure, shear, motion, sticking, iteration)
+        try:
+            step = np.linalg.solve(jacobian(problem, unknowns), -error)
+        except np.linalg.LinAlgError:
+            return None
+        if damped:
+            step = _shortened(problem, unknowns, step, float(np.linalg.norm(error)))
+        unknowns = unknowns + step
+    return None
+
+
+def _shortened(problem: CoulombProblem, unknowns, step, merit: float) -> np.ndarray:
+    """The longest of the halved steps that reduces the residual, or the shortest."""
+    for halvings in range(8):
+        trial = step / 2**halvings
+        if np.linalg.norm(residual(problem, unknowns + trial)) < (1 - 1e-4 / 2**halvings) * merit:
+            break
+    return trial
+
+
+def _sticking(problem: CoulombProblem, closed: np.ndarray) -> np.ndarray | None:
+    """Unknowns with closed contact that sticks at the given coefficients; None where singular."""
+    total, k = len(problem.offset), len(problem.force)
+    held = np.flatnonzero(np.tile(closed, total // len(closed)))
+    size = np.sqrt(np.diag(problem.compliance)[held])
+    border = problem.modes[held] / size[:, None]
+    stretch = np.abs(border).max(axis=0, initial=0.0)
+    if np.any(stretch == 0):
+        return None
+    border = border / stretch
+    compliance = problem.compliance[np.ix_(held, held)] / np.outer(size, size)
+    matrix = np.block([[compliance, -border], [-border.T, np.zeros((k, k))]])
+    right = np.concatenate([-problem.offset[held] / size, -problem.force / stretch])
+    try:
+        solution = np.linalg.solve(matrix, right) / np.concatenate([size, stretch])
+    except np.linalg.LinAlgError:
+        return None
+    result = np.zeros(total + k)
+    result[held], result[total:] = solution[: len(held)], solution[len(held) :]
+    return result
+
+
+def _better_starts(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]:
+    for part in _SPRINGS:
+        yield from _sprung(problem, closed, part)
+    start = _complementary(problem)
+    if start is not None:
+        yield start
+
+
+def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterator[np.ndarray]:
+    """Solutions with a spring between the holder and its load, whose other end follows.
+
+    ``Rᵀ x = F - k (d - d0)`` puts ``R k⁻¹ Rᵀ`` into the compliance and leaves no free motion;
+    ``d0 <- d`` makes it the method of multipliers for the equilibrium.
+    """
+    if len(problem.force) == 0:
+        return
+    modes, force = problem.modes, problem.force
+    spring = part * np.diag(modes.T @ np.linalg.solve(problem.compliance, modes))
+    softer = problem.compliance + modes / spring @ modes.T
+    anchor, start = np.zeros(len(force)), None
+    for _ in range(_SPRUNG_SOLUTIONS):
+        offset = problem.offset - modes @ (anchor + force / spring)
+        sprung = CoulombProblem(softer, offset, modes[:, :0], force[:0], problem.friction)
+        start = _sticking(sprung, closed) if start is None else start
+        solution = None if start is None else _from(sprung, start)
+        if solution is None:
+            return
+        start = solution.stacked
+        anchor = anchor + (force - modes.T @ start) / spring
+        yield np.concatenate([start, anchor])
+
+
+def _complementary(problem: CoulombProblem) -> np.ndarray | None:
+    """Unknowns by Lemke's method for one tangential direction; None where it ends on a ray.
+
+    With ``τ = b_1 - b_2`` the conditions are the copositive complementarity problem of Stewart and
+    Trinkle (Int. J. Numer. Methods Eng. 39 (1996) 2673), in (λ, b_1, b_2, amount of slip) and the
+    free motions as differences of two positives; the method solves it when the motions are given.
+    """
+    m, k = len(problem.friction), len(problem.force)
+    if len(problem.offset) != 2 * m:
+        return None
+    one, none = np.eye(m), np.zeros((m, m))
+    spread = np.block([[one, none, none], [none, one, -one]])  # (λ, b_1, b_2) to x
+    size = 1 / np.sqrt(np.diag(problem.compliance))
+    border, mixing = np.linalg.qr(problem.modes * size[:, None])
+    force = np.linalg.solve(mixing.T, problem.force)
+    free = spread.T @ np.hstack([-border, border])
+    elastic = spread.T @ (problem.compliance * np.outer(size, size)) @ spread
+    cone = np.hstack([np.diag(problem.friction * size[:m] / size[m:]), -one, -one])
+    slip = np.vstack([none, one, one])
+    matrix = np.block(
+        [
+            [elastic, slip, free],
+            [cone, none, np.zeros((m, 2 * k))],
+            [-free.T, np.zeros((2 * k, m + 2 * k))],
+        ]
+    )
+    right = np.concatenate([spread.T @ (problem.offset * size), np.zeros(m), -force, force])
+    scale = np.abs(right).max() or 1.0
+    solution = lemke(matrix, right / scale)
+    if solution is None:
+        return None
+    x = spread @ solution[: 3 * m] * size
+    forward, back = solution[4 * m :].reshape(2, k)
+    return scale * np.concatenate([x, np.linalg.solve(mixing, forward - back)])

@@ -1,0 +1,198 @@
+"""Stick and slip under loads that change: Coulomb friction by increments.
+
+Friction remembers where the faces stuck, so that a state follows from the state before it. Friction
+does not depend on the rate: a load history is a polygon, given by its corners. Wear: see
+`slip_wear`; signs: see `tangential`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import ComputationError
+from ..operators.tangential import FrictionalContact
+from ..solvers.signorini import solve_contact
+from .coulomb import CoulombProblem, CoulombSolution
+from .coulomb_solver import solve_directly, solve_patiently
+from .gross_slip import FullSliding, refuse_sliding
+from .loads import Loads
+from .slip_wear import SlipWear, implicitly
+from .stick_slip_state import Status, StickSlipState, unloaded
+
+_HALVINGS = 6
+
+
+def advance(
+    contact: FrictionalContact,
+    friction: float | np.ndarray,
+    state: StickSlipState,
+    loads: Loads,
+    wear: SlipWear | None = None,
+) -> StickSlipState:
+    """The state after one increment, at the end of which the conditions hold.
+
+    Parameters
+    ----------
+    contact : FrictionalContact
+    friction : float or ndarray, shape (m,)
+        Coulomb's coefficient, one or by coefficient.
+    state : StickSlipState
+        Before.
+    loads : Loads
+        At the end.
+    wear : SlipWear, optional
+        What the bodies lose in the increment, by default nothing.
+
+    Raises
+    ------
+    FullSliding
+        If the tangential force is more than friction carries.
+    ComputationError
+        If no solution is found.
+    """
+    given = loads.motions
+    if len(given) != len(state.motion):
+        raise ValueError(f"loads: the holder has {len(state.motion)} motions, not {len(given)}")
+    friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
+    mean = contact.weighted.T @ contact.basis  # of functions, from their coefficients
+    slid = _slid(state, loads)
+    worn = state.worn.sum(axis=0) if wear is None else wear.seen(state.worn, slid)
+
+    def solve(guess: StickSlipState, lost: np.ndarray, slope: np.ndarray) -> StickSlipState:
+        """Contact of bodies that lose depths ``lost + slope λ``."""
+        gap = contact.weighted.T @ contact.gap + mean @ (worn + lost)
+        compliance = contact.compliance.copy()
+        compliance[: len(slope), : len(slope)] += mean @ slope
+        return _solved(contact, friction, state, guess, loads, compliance, gap)
+
+    nothing = np.zeros_like(mean)
+    after = solve(state, nothing[0], nothing)
+    if wear is None:
+        return after
+    after, depths = implicitly(solve, wear, slid, state, after, mean.sum(axis=1))
+    lost = wear.repeats * (after.dissipated - state.dissipated)
+    return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
+
+
+def _slid(state: StickSlipState, loads: Loads) -> float:
+    """How far the holder has moved across the press: at the end, or so far if that is open [m]."""
+    if len(state.motion) < 2:
+        return 0.0
+    given = loads.motions[1]
+    return float(state.motion[1] if np.isnan(given) else given)
+
+
+def _solved(contact, friction, state, guess, loads: Loads, compliance, gap) -> StickSlipState:
+    """The state after one increment of bodies with an elastic and local compliance.
+
+    The guess is the state before or one with the same loads.
+    """
+    given = loads.motions
+    free = np.isnan(given)
+    fixed = np.where(free, 0.0, given)
+    start = contact.stack(gap, -state.slip) - contact.modes @ fixed
+    modes = contact.modes[:, free]
+    problem = CoulombProblem(compliance, start, modes, loads.forces[free], friction)
+    closed = _expected(problem, guess.pressure > 0, bool(free[0]))
+    near = None
+    if guess is not state:
+        near = np.append(contact.stack(guess.pressure, guess.shear), guess.motion[free])
+    solution = solve_directly(problem, closed, near)
+    if solution is None:
+        if len(free) > 1 and free[1]:
+            refuse_sliding(problem, bool(free[0]))
+        solution = solve_patiently(problem, closed)
+    return _after(contact, state, solution, free, fixed)
+
+
+def _after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipState:
+    """The state that a solution leads to."""
+    x = contact.stack(solution.pressure, solution.shear)
+    motion = fixed.copy()
+    motion[free] = solution.motion
+    slip = contact.split(contact.compliance @ x - contact.modes @ motion)[1]
+    point_slip = contact.point_slip(x, motion)
+    traction = contact.basis @ solution.shear
+    lost = -(traction * (point_slip - state.point_slip)).sum(axis=1)
+    closed = np.where(solution.sticking, Status.STICK, Status.SLIP)
+    return replace(
+        state,
+        pressure=solution.pressure,
+        shear=solution.shear,
+        slip=slip,
+        motion=motion,
+        force=contact.modes.T @ x,
+        status=np.where(solution.pressure > 0, closed, Status.OPEN),
+        point_slip=point_slip,
+        dissipated=state.dissipated + lost,
+        iterations=solution.iterations,
+    )
+
+
+def _expected(problem: CoulombProblem, closed: np.ndarray, pressed: bool) -> np.ndarray:
+    """Coefficients that will probably press: those that do, at first those without friction."""
+    if np.any(closed):
+        return closed
+    m, k = len(closed), int(pressed)
+    modes, force = problem.modes[:m, :k], problem.force[:k]
+    return solve_contact(problem.compliance[:m, :m], problem.offset[:m], modes, force).active
+
+
+def follow(
+    contact: FrictionalContact,
+    friction: float | np.ndarray,
+    corners: Iterable[Loads],
+    increments: int,
+    state: StickSlipState | None = None,
+    wear: SlipWear | None = None,
+) -> Iterator[StickSlipState]:
+    """Follow a polygon of loads from a state, by default the unloaded one.
+
+    Parameters
+    ----------
+    contact : FrictionalContact
+    friction : float or ndarray, shape (m,)
+        See `advance`.
+    corners : iterable of Loads
+        Reached one after the other, each on a straight line from what is the case before; along a
+        motion, force may give way to translation and back.
+    increments : int
+        Between two corners; halved where no solution is found.
+    state : StickSlipState, optional
+    wear : SlipWear, optional
+        Of each increment, see `advance`.
+
+    Yields
+    ------
+    StickSlipState
+        After each increment.
+
+    Raises
+    ------
+    FullSliding, ComputationError
+        See `advance`.
+    """
+    state = unloaded(contact) if state is None else state
+    for corner in corners:
+        origin = state
+        for step in range(1, increments + 1):
+            loads = corner.after(origin.force, origin.motion, step / increments)
+            state = _halving(contact, friction, state, loads, wear, _HALVINGS)
+            yield state
+
+
+def _halving(contact, friction, state, loads: Loads, wear, halvings: int) -> StickSlipState:
+    """Advance in one step, or in two halves where that fails."""
+    try:
+        return advance(contact, friction, state, loads, wear)
+    except FullSliding:
+        raise
+    except ComputationError:
+        if halvings == 0:
+            raise
+    half, wear = loads.after(state.force, state.motion, 0.5), wear and wear.halved()
+    middle = _halving(contact, friction, state, half, wear, halvings - 1)
+    return _halving(contact, friction, middle, loads, wear, halvings - 1)

@@ -1,0 +1,1 @@
+"""Penalty and Nitsche contact on the full finite-element system."""

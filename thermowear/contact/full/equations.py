@@ -1,0 +1,312 @@
+"""The equations of contact on the full system, for the penalty method and for Nitsche's.
+
+With the gap ``g + B u - R d`` at the points, a stiffness γ and a local compliance c,
+
+    p = max(0, P),   P = φ (-(S u + s) - γ (g + B u - R d)),   φ = 1 / (1 + γ c),
+
+    K u - θ Sᵀ (w/γ) (S u + s) - (θ S + γ B_t)ᵀ (w/γ) p = f,      Tᵀ w p = F.
+
+Faces may have motions on springs as well, see `edge_deflection`: they close the gap as d does, with
+``Tᵀ w p`` equal to the force of the springs.
+
+Without S and s this is the penalty method. With them it is Nitsche's method, which is consistent
+for any γ (Chouly, Hild and Renard, Math. Comput. 84 (2015) 1089); θ = 1 is symmetric and needs γ
+above a limit (see `stabilisation`), θ = -1 works with any γ. Where the equations are symmetric they
+are the minimum of a convex energy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg import block_diag
+
+from ...bulk.mechanics.elasticity import Elasticity
+from ...parallel import sum_over_ranks
+from ..search.pairing import Pairing
+from ..wear.edge_deflection import EdgeDeflection
+from .newton_matrix import NewtonMatrix
+
+
+@dataclass(frozen=True)
+class Loading:
+    """What acts on the bodies.
+
+    Attributes
+    ----------
+    gap : ndarray, shape (n,)
+        g at the points, wear and given approach included [m].
+    load : ndarray, shape (k,)
+        F on the free motions of the holder.
+    compliance : ndarray, shape (n,)
+        c >= 0: how much the pressure opens the gap on the spot [m/Pa].
+    nodal_loads : ndarray, shape (n_owned,)
+        f [N].
+    thermal_traction : ndarray, shape (n,)
+        s: normal traction of body 1 without any displacement [Pa].
+    deflection : EdgeDeflection, optional
+        What the points of the faces yield by themselves.
+    """
+
+    gap: np.ndarray
+    load: np.ndarray
+    compliance: np.ndarray
+    nodal_loads: np.ndarray
+    thermal_traction: np.ndarray
+    deflection: EdgeDeflection | None = None
+
+    def part(self, share: float) -> Loading:
+        """A part of it; where the approach is given, the faces only just touch at share 0."""
+        lift = 0.0 if len(self.load) else max(0.0, -float(self.gap.min()))
+        return Loading(
+            self.gap + (1 - share) * lift,
+            share * self.load,
+            self.compliance,
+            share * self.nodal_loads,
+            share * self.thermal_traction,
+            self.deflection,
+        )
+
+
+@dataclass(frozen=True)
+class Residual:
+    """How far a displacement and a motion are from a solution.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (n,)
+        P; the pressure where positive [Pa].
+    forces : ndarray, shape (n_owned,)
+        Unbalanced nodal forces [N].
+    balance : ndarray, shape (k,)
+        Force that the pressure carries on each motion, with its springs, less the load.
+    relative : float
+        The larger of both, relative to what they are sums of.
+    """
+
+    pressure: np.ndarray
+    forces: np.ndarray
+    balance: np.ndarray
+    relative: float
+
+    @property
+    def active(self) -> np.ndarray:
+        return self.pressure > 0.0
+
+
+@dataclass(frozen=True)
+class _Motions:
+    """All that closes the gap as a whole: the holder, then points of the faces on springs.
+
+    Attributes
+    ----------
+    modes, carried : ndarray, shape (n, k)
+        R and w T.
+    springs : ndarray, shape (k, k)
+        Force per motion; none on the holder.
+    load : ndarray, shape (k,)
+    """
+
+    modes: np.ndarray
+    carried: np.ndarray
+    springs: np.ndarray
+    load: np.ndarray
+
+
+@dataclass(frozen=True)
+class _AtPoints:
+    """A displacement as the points see it, shape (n,) each: (S + γB) u, S u, (θS + γB_t) u."""
+
+    closing: np.ndarray
+    stress: np.ndarray
+    work: np.ndarray
+
+
+class ContactEquations:
+    """The equations of the module's docstring, and Newton's steps. Every rank calls everything.
+
+    Parameters
+    ----------
+    elastic : Elasticity
+    pairing : Pairing
+    trace, traction : csr_matrix, shape (n_owned, n)
+        Bᵀ and B_tᵀ: of the gap and of what the pressure does work on; the same matrix where there
+        is no friction in the section.
+    modes, force_modes : ndarray, shape (n, k)
+        R and T of the free motions of the holder; k = 0 where there are none.
+    stiffness : ndarray, shape (n,)
+        γ [Pa/m].
+    stress : csr_matrix, shape (n_owned, n), optional
+        Sᵀ of Nitsche's method; without it, γ is a penalty.
+    theta : int
+        θ, 1, 0 or -1; the penalty method has none.
+    """
+
+    def __init__(
+        self,
+        elastic: Elasticity,
+        pairing: Pairing,
+        trace: sp.csr_matrix,
+        traction: sp.csr_matrix,
+        modes: np.ndarray,
+        force_modes: np.ndarray,
+        stiffness: np.ndarray,
+        stress: sp.csr_matrix | None = None,
+        theta: int = 1,
+    ):
+        self.elastic, self.pairing = elastic, pairing
+        self.modes, self.stiffness = modes, stiffness
+        self.nitsche, self.theta = stress is not None, theta if stress is not None else 0
+        self.carried = pairing.weights[:, None] * force_modes
+        symmetry = "none"
+        if traction is trace and (theta == 1 or not self.nitsche):
+            symmetry = "symmetric" if self.nitsche else "definite"
+        self._scale = pairing.weights / stiffness
+        self._trace, self._traction = _held(elastic, trace), _held(elastic, traction)
+        self._stress = _held(elastic, 0 * trace if stress is None else stress)
+        self._closing = (self._stress + self._trace.multiply(stiffness)).tocsr()
+        self._work = (self.theta * self._stress + self._traction.multiply(stiffness)).tocsr()
+        self._all = sp.hstack([self._closing, self._stress, self._work], format="csr").T
+        operators = self._work, self._closing, self._stress
+        self._matrix = NewtonMatrix(elastic, *operators, self.theta * self._scale, symmetry)
+
+    def gap(self, loading: Loading, displacement: np.ndarray) -> np.ndarray:
+        """Gap with the holder unmoved, shape (n,) [m]."""
+        return loading.gap + self._opening(displacement)
+
+    def _opening(self, displacement: np.ndarray) -> np.ndarray:
+        """B u at the points, of one or several displacements."""
+        comm = self.elastic.space.mesh.comm
+        return sum_over_ranks(comm, self._trace.T @ displacement)
+
+    def residual(self, loading: Loading, displacement: np.ndarray, motion: np.ndarray) -> Residual:
+        """Residual of both equations, and the pressure."""
+        at, moving = self._at_points(displacement), self._motions(loading)
+        stress = at.stress + loading.thermal_traction
+        opening = at.closing + self.stiffness * (loading.gap - moving.modes @ motion)
+        trial = -self._softening(loading) * (opening + loading.thermal_traction)
+        pressure = np.maximum(trial, 0.0)
+        contact = self._work @ (self._scale * pressure)
+        contact += self.theta * (self._stress @ (self._scale * stress))
+        elastic = self.elastic_forces(displacement)
+        loads = np.where(self.elastic.fixed, 0.0, loading.nodal_loads)
+        forces = elastic - contact - loads
+        balance = moving.carried.T @ pressure + moving.springs @ motion - moving.load
+        size = self._largest(elastic, contact, loads)
+        carried = np.abs(moving.carried).T @ pressure + np.abs(moving.load)
+        own = slice(len(loading.load), None)
+        carried[own] = carried[own].max(initial=0.0)  # some of them carry nothing
+        relative = self._largest(forces) / size if size != 0.0 else 0.0
+        off = np.divide(np.abs(balance), carried, out=np.zeros(len(balance)), where=carried > 0)
+        return Residual(trial, forces, balance, float(np.max([relative, *off])))
+
+    def jacobian(
+        self,
+        loading: Loading,
+        active: np.ndarray,
+        displacement: np.ndarray,
+        motion: np.ndarray,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Change of both residuals along a displacement and a motion, with given active points."""
+        at, moving = self._at_points(displacement), self._motions(loading)
+        change = self.stiffness * (moving.modes @ motion) - at.closing
+        pressure = active * self._softening(loading) * change
+        contact = self._work @ (self._scale * pressure)
+        contact += self.theta * (self._stress @ (self._scale * at.stress))
+        balance = moving.carried.T @ pressure + moving.springs @ motion
+        return self.elastic_forces(displacement) - contact, balance
+
+    def newton_step(
+        self, loading: Loading, residual: Residual, active: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        """Change of displacement and motion that solves the equations with given active points.
+
+        None where these leave a motion of the holder free.
+
+        Raises
+        ------
+        ComputationError
+            If the symmetric variant of Nitsche's method is found unstable.
+        """
+        pressing, moving = active * self._softening(loading), self._motions(loading)
+        column = -self._work @ (pressing[:, None] * self.pairing.weights[:, None] * moving.modes)
+        factor = self._matrix.factor(self._scale * pressing)
+        # the residual as it would be if exactly the active points pressed, also with tension
+        switched = np.where(active, residual.pressure, 0.0) - np.maximum(residual.pressure, 0.0)
+        forces = residual.forces - self._work @ (self._scale * switched)
+        balance = residual.balance + moving.carried.T @ switched
+        solved = factor.solve(np.column_stack([-forces, column]))
+        step, column = solved[:, 0], solved[:, 1:]
+        if moving.modes.shape[1] == 0:
+            return step, np.zeros(0)
+        per_motion = pressing[:, None] * (self.stiffness[:, None] * moving.modes)
+        row = -moving.carried.T * pressing
+        seen = self._sum(self._closing.T @ solved)
+        schur = moving.carried.T @ per_motion + moving.springs - row @ seen[:, 1:]
+        size = np.sqrt(np.abs(np.diag(schur)))
+        if size.min() == 0.0 or np.linalg.cond(schur / np.outer(size, size)) > 1e12:
+            return None
+        motion = np.linalg.solve(schur, -balance - row @ seen[:, 0])
+        return step - column @ motion, motion
+
+    def along(self, loading: Loading, residual: Residual, step: np.ndarray, motion: np.ndarray):
+        """What `step_length` asks for: the work of the residual on a step, along that step.
+
+        Returns
+        -------
+        constant, slope : float
+            Part that is linear in the length of the step.
+        factors, pressure, change : ndarray, shape (n,)
+            ``factors · max(0, pressure + length * change)`` is the rest.
+        """
+        at, moving = self._at_points(step), self._motions(loading)
+        change = self.stiffness * (moving.modes @ motion) - at.closing
+        change *= self._softening(loading)
+        factors = moving.carried @ motion - self._scale * at.work
+        now = np.maximum(residual.pressure, 0.0)
+        constant = self._sum(step @ residual.forces) + motion @ residual.balance - factors @ now
+        slope = self._sum(step @ self.elastic_forces(step)) + motion @ moving.springs @ motion
+        slope -= self.theta * (at.stress @ (self._scale * at.stress))
+        return constant, slope, factors, residual.pressure, change
+
+    def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """K u, zero where the bodies are held."""
+        x, y = self.elastic.stiffness.createVecs()
+        x.setArray(displacement)
+        self.elastic.stiffness.mult(x, y)
+        return np.where(self.elastic.fixed, 0.0, y.getArray())
+
+    def _motions(self, loading: Loading) -> _Motions:
+        own, k = loading.deflection, len(loading.load)
+        if own is None:
+            return _Motions(self.modes, self.carried, np.zeros((k, k)), loading.load)
+        return _Motions(
+            np.hstack([self.modes, own.modes]),
+            np.hstack([self.carried, self.pairing.weights[:, None] * own.modes]),
+            block_diag(np.zeros((k, k)), own.stiffness),
+            np.concatenate([loading.load, np.zeros(own.modes.shape[1])]),
+        )
+
+    def _softening(self, loading: Loading) -> np.ndarray:
+        """φ."""
+        return 1 / (1 + self.stiffness * loading.compliance)
+
+    def _at_points(self, displacement: np.ndarray) -> _AtPoints:
+        return _AtPoints(*self._sum(self._all @ displacement).reshape(3, -1))
+
+    def _sum(self, values):
+        return sum_over_ranks(self.elastic.space.mesh.comm, values)
+
+    def _largest(self, *arrays: np.ndarray) -> float:
+        largest = np.max([np.abs(array).max(initial=0.0) for array in arrays])
+        return float(np.max(self.elastic.space.mesh.comm.allgather(largest)))
+
+
+def _held(elastic: Elasticity, matrix: sp.csr_matrix) -> sp.csr_matrix:
+    """A transposed trace without the rows that supports hold and without rounding noise."""
+    held = sp.csr_matrix(sp.diags((~elastic.fixed).astype(float)) @ matrix)
+    held.data[np.abs(held.data) < 1e-14 * np.abs(held.data).max(initial=0.0)] = 0.0
+    held.eliminate_zeros()
+    return held

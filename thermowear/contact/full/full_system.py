@@ -1,0 +1,266 @@
+"""Contact on the full system: Newton's method on all nodal displacements.
+
+It solves the equations of `equations` without condensing the bodies: an independent check of the
+condensed solution, and the way on where the bulk is not linear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.optimize import nnls
+
+from ...errors import ComputationError
+from ...serialise import serialisable
+from ..solvers.signorini import solve_contact
+from ..wear.edge_deflection import EdgeDeflection
+from .equations import ContactEquations, Loading
+
+_TOLERANCE = 1e-10
+_LOOSE = 1e-8
+"""Accepted where rounding allows no less."""
+_ITERATIONS = 25
+_SMALLEST_STEP = 1 / 16
+_COARSE = 24
+"""Pressure functions of the problem that Newton's method starts from."""
+_ZOOMS, _ENOUGH = 3, 5
+"""How often they are put closer together, until so many have the width of the contact."""
+_INNER = 0.15
+"""Part of the coarse peak pressure from which points are taken to press: all points that then
+penetrate are found at once, while too large a contact loses only its outermost points in each
+iteration."""
+_SLACK = 0.9
+"""A whole step is taken if the work left on it is at most this part of the work at its start."""
+
+
+@serialisable
+@dataclass(frozen=True)
+class FullSolution:
+    """Contact of the full system.
+
+    Attributes
+    ----------
+    displacement : ndarray, shape (n_owned,) [m]
+    motion : ndarray, shape (k,)
+        d of the holder.
+    pressure : ndarray, shape (n,) [Pa]
+    iterations : int
+        Of Newton's method, over all load steps.
+    """
+
+    displacement: np.ndarray
+    motion: np.ndarray
+    pressure: np.ndarray
+    iterations: int
+
+    @property
+    def active(self) -> np.ndarray:
+        """Points that press, shape (n,)."""
+        return self.pressure > 0.0
+
+
+class FullContact(ContactEquations):
+    """Two elastic bodies and the contact between them; parameters as in `ContactEquations`.
+
+    Every rank calls everything.
+    """
+
+    def solve(
+        self,
+        gap: np.ndarray,
+        load: np.ndarray,
+        compliance: np.ndarray | None = None,
+        nodal_loads: np.ndarray | None = None,
+        thermal_traction: np.ndarray | None = None,
+        start: FullSolution | None = None,
+        deflection: EdgeDeflection | None = None,
+    ) -> FullSolution:
+        """Find the contact; parameters as in `Loading`, and a neighbouring solution to start from.
+
+        Where Newton's method does not converge the load is brought up in steps.
+
+        Raises
+        ------
+        ComputationError
+            If there is no solution, or none is found.
+        """
+        nothing = np.zeros(len(gap))
+        loading = Loading(
+            gap,
+            load,
+            nothing if compliance is None else compliance,
+            np.zeros(len(self.elastic.fixed)) if nodal_loads is None else nodal_loads,
+            nothing if thermal_traction is None or not self.nitsche else thermal_traction,
+            deflection,
+        )
+        self._check(loading)
+        # measured from where it starts: a far approach would leave no digits to the deformation
+        origin = start.motion if start else self._held(loading, np.zeros(len(loading.nodal_loads)))
+        near = replace(loading, gap=gap - self.modes @ origin)
+        start = replace(start, motion=0 * origin) if start else self._guess(near)
+        found = self._newton(near, start)[0] or self._in_steps(near)
+        return replace(found, motion=origin + found.motion)
+
+    def _check(self, loading: Loading) -> None:
+        """Refuse what is no number, and what no pressure can carry."""
+        given = loading.gap, loading.load, loading.compliance, loading.thermal_traction
+        wrong = sum(np.sum(~np.isfinite(values)) for values in (*given, loading.nodal_loads))
+        if self._sum(wrong):
+            raise ComputationError("contact: gap, loads or temperatures are not finite")
+        if np.any(loading.load != 0.0):
+            scale = np.abs(self.carried).sum(axis=0)
+            scale[scale == 0.0] = 1.0
+            forces, target = self.carried / scale, loading.load / scale
+            # the solver takes small columns for zero: only their directions matter
+            size = np.linalg.norm(forces, axis=1, keepdims=True)
+            directions = forces[size[:, 0] > 0] / size[size[:, 0] > 0]
+            if nnls(directions.T, target / np.linalg.norm(target))[1] > _LOOSE:
+                raise ComputationError("contact: the load cannot be carried by the contact zone")
+
+    def _guess(self, loading: Loading) -> FullSolution:
+        """The contact with a coarse pressure, on the part of the face where it presses."""
+        own = self.elastic.solve(loading.nodal_loads)
+        s = self.pairing.position
+        start, end = s[0], s[-1]
+        for _ in range(_ZOOMS):
+            found = self._coarse(loading, own, start, end)
+            pressing = s[found.active]
+            width = (end - start) / _COARSE
+            if np.ptp(pressing) > _ENOUGH * width:
+                break
+            start, end = pressing.min() - width, pressing.max() + width
+        return found
+
+    def _coarse(self, loading: Loading, own: np.ndarray, start: float, end: float) -> FullSolution:
+        """Contact with hats for pressures, from one position to another, and their weak gaps.
+
+        It costs one solution of the bodies for each of them, and no factorisation.
+        """
+        hats = _hats(self.pairing.position, start, end)
+        weighted = self.pairing.weights[:, None] * hats
+        fields = self.elastic.solve(self._traction @ sp.csr_matrix(weighted))
+        softness = loading.compliance + (0.0 if self.nitsche else 1 / self.stiffness)
+        opened = self._opening(fields) + softness[:, None] * hats
+        everywhere = np.ones(len(loading.gap))
+        try:
+            coarse = solve_contact(
+                weighted.T @ opened,
+                weighted.T @ self.gap(loading, own),
+                weighted.T @ self.modes,
+                loading.load,
+                force_modes=hats.T @ self.carried,
+            )
+        except ComputationError:  # Newton's method says what is wrong, if anything
+            return FullSolution(own, np.zeros(len(loading.load)), everywhere, 0)
+        pressure = hats @ coarse.coefficients
+        if not pressure.any():
+            return FullSolution(own, coarse.motion, everywhere, 0)
+        inner = np.maximum(pressure - _INNER * pressure.max(), 0.0)
+        return FullSolution(own + fields @ coarse.coefficients, coarse.motion, inner, 0)
+
+    def _held(self, loading: Loading, displacement: np.ndarray) -> np.ndarray:
+        """Motion of the holder that carries the load on springs γ, the bodies staying as they are.
+
+        Newton's method from all springs closed: with one motion every step ends at or beyond the
+        solution, and the steps never turn round.
+        """
+        gap, springs = self.gap(loading, displacement), self.carried * self.stiffness[:, None]
+        closed: np.ndarray = np.ones(len(gap), dtype=bool)
+        motion = np.zeros(len(loading.load))
+        for _ in range(_ITERATIONS):
+            matrix, right = springs[closed].T @ self.modes[closed], springs[closed].T @ gap[closed]
+            motion = np.linalg.lstsq(matrix, loading.load + right, rcond=None)[0]
+            pressing = self.modes @ motion > gap
+            if np.array_equal(pressing, closed) or not pressing.any():
+                break
+            closed = pressing
+        return motion
+
+    def _newton(self, loading: Loading, start: FullSolution) -> tuple[FullSolution | None, int]:
+        """Newton's method; no solution where it does not converge, and the iterations spent."""
+        own = 0 if loading.deflection is None else loading.deflection.modes.shape[1]
+        u, d = start.displacement, np.append(start.motion, np.zeros(own))
+        before = np.inf
+        for iteration in range(_ITERATIONS):
+            residual = self.residual(loading, u, d)
+            stuck = iteration > 0 and residual.relative > 0.1 * before
+            if residual.relative <= (_LOOSE if stuck else _TOLERANCE):
+                pressure = np.maximum(residual.pressure, 0.0)
+                held = d[: len(loading.load)]
+                return FullSolution(u, held, pressure, iteration), iteration
+            if not np.isfinite(residual.relative):
+                return None, iteration
+            before = residual.relative
+            guessed = iteration == 0 and bool(start.active.any())
+            step = self.newton_step(loading, residual, (start if guessed else residual).active)
+            if step is None:  # too few points press to hold the holder: bring it back
+                d = np.append(self._held(loading, u), np.zeros(own))
+                continue
+            length = step_length(*self.along(loading, residual, *step))
+            u, d = u + length * step[0], d + length * step[1]
+        return None, _ITERATIONS
+
+    def _in_steps(self, loading: Loading) -> FullSolution:
+        """Bring up the load in steps, halved where Newton's method fails."""
+        share, step, spent = 0.0, 0.5, _ITERATIONS
+        solution = None
+        while share < 1.0:
+            part = loading.part(min(1.0, share + step))
+            found, iterations = self._newton(part, solution or self._guess(part))
+            spent += iterations
+            if found is not None:
+                solution, share, step = found, min(1.0, share + step), 2 * step
+            elif step < _SMALLEST_STEP:
+                raise ComputationError(self._advice())
+            else:
+                step /= 2
+        assert solution is not None
+        return FullSolution(solution.displacement, solution.motion, solution.pressure, spent)
+
+    def _advice(self) -> str:
+        change = "make contact.penalty smaller"
+        if self.nitsche:
+            change = "leave contact.gamma at its default, set contact.theta = -1"
+        return (
+            "contact: Newton's method found no equilibrium, however small the load; "
+            f'{change}, or use contact.method = "condensed"'
+        )
+
+
+def _hats(position: np.ndarray, start: float, end: float) -> np.ndarray:
+    """Piecewise linear functions of equal width on part of the face, shape (n, m)."""
+    count = int(np.sum((position >= start) & (position <= end)))
+    knots = np.linspace(start, end, max(2, min(_COARSE, count // 3)))
+    distance = np.abs(position[:, None] - knots) / (knots[1] - knots[0])
+    hats = np.maximum(1.0 - distance, 0.0)
+    return hats[:, hats.sum(axis=0) > 0.5]  # points may be too far apart for some
+
+
+def step_length(
+    constant: float, slope: float, factors: np.ndarray, pressure: np.ndarray, change: np.ndarray
+) -> float:
+    """Part of Newton's step to take, from the work of the residual along it.
+
+    The work ``constant + slope a + factors · max(0, pressure + a change)`` is the derivative of the
+    energy where there is one: continuous, piecewise linear, and increasing, so that its zero is the
+    minimum along the step. Whole steps are kept as long as they do not do harm, since they
+    end exactly at the solution once no point changes side any more.
+    """
+
+    def work(a):
+        pressing = np.maximum(pressure + np.multiply.outer(a, change), 0.0)
+        return constant + slope * a + pressing @ factors
+
+    start, whole = work(np.array([0.0, 1.0]))
+    if start >= 0.0 or whole <= _SLACK * abs(start):
+        return 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        kinks = -pressure / change
+    kinks = np.unique(np.concatenate([[0.0, 1.0], kinks[(kinks > 0.0) & (kinks < 1.0)]]))
+    values = work(kinks)
+    after = int(np.argmax(values > 0.0))
+    a, b = kinks[after - 1], kinks[after]
+    fa, fb = values[after - 1], values[after]
+    return float(a + (b - a) * fa / (fa - fb))

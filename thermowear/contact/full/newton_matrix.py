@@ -1,0 +1,105 @@
+"""Newton's matrix of contact on the full system, refactorised as points open and close."""
+
+from __future__ import annotations
+
+from petsc4py import PETSc
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...bulk.direct_solver import Factor
+from ...bulk.mechanics.elasticity import Elasticity, supported
+from ...errors import ComputationError
+from ..operators.traces import distributed
+
+_SAME = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+_SUBSET = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
+_DIFFERENT = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
+
+
+class NewtonMatrix:
+    """``K - Sᵀ diag(b) S + W diag(a) C``, with factors a that change from step to step.
+
+    K is the supported stiffness. W and C are kept for all points, open or closed, so that pattern
+    and order of elimination are found only once. Every rank calls everything.
+
+    Parameters
+    ----------
+    elastic : Elasticity
+    work, closing, stress : csr_matrix, shape (n_owned, n)
+        W, Cᵀ and Sᵀ, without the rows that supports hold.
+    subtracted : ndarray, shape (n,)
+        b.
+    symmetry : str
+        As for `Factor`.
+    """
+
+    def __init__(
+        self,
+        elastic: Elasticity,
+        work: sp.csr_matrix,
+        closing: sp.csr_matrix,
+        stress: sp.csr_matrix,
+        subtracted: np.ndarray,
+        symmetry: str,
+    ):
+        self._symmetry = symmetry
+        fixed = supported(elastic.stiffness, elastic.fixed)
+        if subtracted.any():
+            columns = distributed(elastic.space, stress)
+            rows = _transposed(columns)
+            _scale_rows(rows, subtracted)
+            fixed.axpy(-1.0, columns.matMult(rows), _DIFFERENT)
+        self._columns = distributed(elastic.space, work)
+        self._rows = _transposed(distributed(elastic.space, closing))
+        self._weighted_rows = self._rows.copy()
+        self._product = self._columns.matMult(self._weighted_rows)
+        self._matrix = fixed.copy()
+        self._matrix.axpy(1.0, self._product, _DIFFERENT)
+        self._constant = self._matrix.copy()
+        self._constant.zeroEntries()
+        self._constant.axpy(1.0, fixed, _SUBSET)
+        self._factor: Factor | None = None
+        self._factors = np.zeros(0)
+
+    def factor(self, factors: np.ndarray) -> Factor:
+        """Triangular factors for values of a, shape (n,).
+
+        Raises
+        ------
+        ComputationError
+            If the symmetric variant of Nitsche's method is found unstable.
+        """
+        if self._factor is not None and np.array_equal(self._factors, factors):
+            return self._factor
+        self._rows.copy(self._weighted_rows, _SAME)
+        _scale_rows(self._weighted_rows, factors)
+        self._columns.matMult(self._weighted_rows, self._product)
+        self._constant.copy(self._matrix, _SAME)
+        self._matrix.axpy(1.0, self._product, _SUBSET)
+        if self._factor is None:
+            self._factor = Factor(self._matrix, self._symmetry)
+        else:
+            self._factor.repeat()
+        if self._symmetry == "symmetric" and self._factor.negative_pivots:
+            self._factors = np.zeros(0)
+            raise ComputationError(
+                "contact: Nitsche's method is unstable with this stabilisation; make contact.gamma "
+                "larger or set contact.theta = -1"
+            )
+        self._factors = factors
+        return self._factor
+
+
+def _transposed(matrix: PETSc.Mat) -> PETSc.Mat:
+    result = PETSc.Mat()
+    matrix.transpose(result)
+    return result
+
+
+def _scale_rows(matrix: PETSc.Mat, factors: np.ndarray) -> None:
+    """Multiply the rows, one a contact point, by factors that every rank knows."""
+    scale = matrix.createVecLeft()
+    first, last = scale.getOwnershipRange()
+    scale.setArray(factors[first:last])
+    matrix.diagonalScale(scale, None)

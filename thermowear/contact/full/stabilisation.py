@@ -1,0 +1,150 @@
+"""How stiff a penalty or Nitsche's stabilisation has to be, from the cells at the contact."""
+
+from __future__ import annotations
+
+import basix
+import numpy as np
+
+from ...bulk.field import reference_element
+from ...bulk.mechanics.elasticity import Elasticity
+from ...parallel import sum_over_ranks
+from ..operators.traction import (
+    at_points,
+    cell_traction,
+    cell_values,
+    displacement_slopes,
+    on_every_facet,
+)
+from ..search.pairing import Pairing, Side
+from ..search.quadrature import lobatto
+
+GAMMA = 10.0
+"""Default of γ0. The limit lies between 0.6 and 1.8 for ν <= 0.3 and below 4.2 at ν = 0.49, over
+degree 1 to 8, both kinds of cells and all models."""
+PENALTY = 10.0
+"""Default of the penalty, on the scale of γ0: approach and mean pressures of a cylinder are then
+within 2e-3 (degree 1) to 1e-4 (degree 8) of the limit, and degree 1 does not yet oscillate."""
+_TOO_STIFF = 1e4
+_RIGID = 1e-9
+
+
+def nitsche_stiffness(elastic: Elasticity, pairing: Pairing, gamma: float = GAMMA) -> np.ndarray:
+    """Nitsche's γ = γ0 (λ + 2μ) k² / h of body 1, shape (n,) [Pa/m]. Every rank calls.
+
+    k is the degree of the displacement and h the depth of the cell under its facet, volume over
+    area: that is the length in the inverse trace inequality which γ has to exceed (Warburton and
+    Hesthaven, Comput. Methods Appl. Mech. Eng. 192 (2003) 2765), whatever the shape of the cell;
+    λ + 2μ is the exact factor between the square of a normal stress and the energy.
+    """
+    return gamma * elastic.space.ufl_element().degree ** 2 * _modulus_over_depth(elastic, pairing)
+
+
+def default_penalty(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
+    """A penalty that grows as cells shrink, ``10 (λ + 2μ) k² / h``, shape (n,) [Pa/m].
+
+    Every rank calls; see `nitsche_stiffness`, whose scale it has.
+    """
+    return nitsche_stiffness(elastic, pairing, PENALTY)
+
+
+def stability_limit(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
+    """γ that the symmetric variant of Nitsche's method has to exceed, shape (n,) [Pa/m].
+
+    The largest eigenvalue of ``Sᵀ w S`` against the stiffness, in the cell of each facet: above it
+    the energy of Nitsche's method is convex. Every rank calls.
+    """
+    side, point, share = on_every_facet(pairing)
+    limit = np.zeros(len(side.face.nodes))
+    for facet in np.unique(side.facet):
+        if side.face.rank[facet] == elastic.bodies.mesh.comm.rank:
+            chosen = np.flatnonzero(side.facet == facet)
+            traction = cell_traction(elastic, side, chosen, pairing.normals[point[chosen]])
+            traction *= np.sqrt(pairing.weights[point] * share)[chosen, None, None]
+            stiffness = _cell_stiffness(elastic, side.face.cell[facet])
+            limit[facet] = _largest_share(traction.reshape(len(chosen), -1), stiffness)
+    limit = sum_over_ranks(elastic.bodies.mesh.comm, limit)
+    return _largest_at(point, limit[side.facet])
+
+
+def nitsche_warning(stiffness: np.ndarray, limit: np.ndarray, theta: int) -> str | None:
+    """What to say about γ that is out of range, None where nothing is.
+
+    Parameters
+    ----------
+    stiffness, limit : ndarray, shape (n,)
+        From `nitsche_stiffness` and `stability_limit`.
+    theta : int
+    """
+    margin = stiffness / limit
+    if margin.min() < 1.0 and theta != -1:
+        return (
+            f"contact.gamma is {1 / margin.min():.2g} times too small: Nitsche's method may be "
+            f"unstable. Multiply it by {2 / margin.min():.2g} or more, or set contact.theta = -1"
+        )
+    if margin.max() > _TOO_STIFF:
+        return (
+            f"contact.gamma is {margin.max():.1g} times what stability needs: the method acts like "
+            "a stiff penalty and the equations are ill conditioned. Make it smaller"
+        )
+    return None
+
+
+def _modulus_over_depth(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
+    """(λ + 2μ) / h at the points; the larger value where two facets meet."""
+    side, point, _ = on_every_facet(pairing)
+    comm, face = elastic.bodies.mesh.comm, side.face
+    volume = np.zeros(len(face.nodes))
+    for facet in np.flatnonzero(face.rank == comm.rank):
+        volume[facet] = _cell_rule(elastic, face.cell[facet])[0].sum()
+    depth = sum_over_ranks(comm, volume) / _areas(elastic, side)
+    modulus = at_points(elastic.lame[0], side) + 2 * at_points(elastic.lame[1], side)
+    return _largest_at(point, modulus / depth[side.facet])
+
+
+def _largest_at(point: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """The larger value at points that two facets share."""
+    largest = np.zeros(point.max() + 1)
+    np.maximum.at(largest, point, values)
+    return largest
+
+
+def _areas(elastic: Elasticity, side: Side) -> np.ndarray:
+    """Area of each facet of a face, shape (n_facets,) [m²]."""
+    face = side.face
+    x, w = lobatto(face.nodes.shape[1] + 4)
+    facet = np.repeat(np.arange(len(face.nodes)), len(x))
+    t = np.tile(x, len(face.nodes))
+    speed = np.linalg.norm(face.tangents(facet, t), axis=1)
+    density = speed * elastic.model.area_factor(face.points(facet, t))
+    return density.reshape(-1, len(x)) @ w
+
+
+def _cell_rule(elastic: Elasticity, cell: int):
+    """Volume weights, slopes and divergence at the points of a rule in one cell."""
+    kind = reference_element(elastic.bodies.mesh, 1).cell_type
+    degree = 2 * elastic.space.ufl_element().degree + 2
+    reference, weights = (np.asarray(part) for part in basix.make_quadrature(kind, degree))
+    cells = np.full(len(weights), cell)
+    volume, slopes, divergence = displacement_slopes(elastic, cells, reference)
+    return weights * volume, slopes, divergence
+
+
+def _cell_stiffness(elastic: Elasticity, cell: int) -> np.ndarray:
+    """Stiffness matrix of one cell, made regular by a tiny resistance to rigid motions."""
+    λ, μ = (cell_values(function, np.array([cell]))[0] for function in elastic.lame[:2])
+    weights, slopes, divergence = _cell_rule(elastic, cell)
+    strain = np.zeros((len(weights), 4, *slopes.shape[1:]))
+    strain[:, 0, :, 0], strain[:, 1, :, 1] = slopes[..., 0], slopes[..., 1]
+    strain[:, 2, :, 0] = divergence[..., 0] - slopes[..., 0]
+    strain[:, 3] = slopes[..., ::-1] / np.sqrt(2)
+    strain *= np.sqrt(2 * μ * weights)[:, None, None, None]
+    trace = (np.sqrt(λ * weights)[:, None, None] * divergence).reshape(len(weights), -1)
+    strain = strain.reshape(-1, trace.shape[1])
+    stiffness = strain.T @ strain + trace.T @ trace
+    stiffness[np.diag_indices_from(stiffness)] += _RIGID * stiffness.max()
+    return stiffness
+
+
+def _largest_share(traction: np.ndarray, stiffness: np.ndarray) -> float:
+    """Largest eigenvalue of ``tractionᵀ traction`` against the stiffness."""
+    return np.linalg.eigvalsh(traction @ np.linalg.solve(stiffness, traction.T))[-1]

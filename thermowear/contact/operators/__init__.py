@@ -1,0 +1,1 @@
+"""Operators of the interface: traces, pressure space, condensation, heat exchange."""

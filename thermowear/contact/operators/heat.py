@@ -1,0 +1,219 @@
+"""Heat at the interface: friction heat, its partition, exchange between the faces.
+
+The bodies are linear and are condensed to their contact points once (`heat_condensation`); what
+couples them (conductance, perfect contact, separated points) is solved here on small dense
+matrices.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...errors import ComputationError
+from ...parallel import sum_over_ranks
+from ...serialise import serialisable
+
+_REGULARITY = 1e-12
+"""Part of the bodies' own resistance that stands for an infinite one: functions of the heat flux
+that differ only where nothing crosses stay independent."""
+_DIRECT = 10.0
+"""Largest conductance across which heat goes point by point, over that of a layer of the bodies as
+thick as the functions are wide."""
+_NO_WAY_OUT = (
+    "heat: a body is heated that nothing cools and that touches nothing, so that it has no steady "
+    "temperature; give it heat.cooling, heat.temperature, or heat.gap_conductance"
+)
+
+
+@serialisable
+@dataclass(frozen=True)
+class ThermalState:
+    """Heat at the contact points, shape (n,) each; index 0 is body 1.
+
+    Attributes
+    ----------
+    rise : tuple of ndarray
+        Temperature of each face over the ambient [K].
+    flux : tuple of ndarray
+        Heat into each body [W/m²].
+    """
+
+    rise: tuple[np.ndarray, np.ndarray]
+    flux: tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Resting:
+    """What the bodies do without any heat at the contact: given temperatures, or heat stored.
+
+    Attributes
+    ----------
+    rise : tuple of ndarray, shape (n,)
+        Of the faces [K].
+    opening : ndarray or None, shape (m,)
+        Weak gap that it opens [m³]; None where that is not asked for.
+    """
+
+    rise: tuple[np.ndarray, np.ndarray]
+    opening: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class InterfaceHeat:
+    """Both conducting bodies, condensed to the contact points.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n,)
+        Areas [m²].
+    basis : ndarray, shape (n, m)
+        Ψ, the space of the exchanged heat in perfect contact.
+    traces : tuple of csr_matrix, shape (n_owned, n)
+        Eᵀ of each face.
+    shift : float
+        Heat transfer to a bath at ambient that the factorised conduction holds on both faces, and
+        that is taken out again here [W/(m² K)].
+    response : tuple of ndarray, shape (n, n)
+        Face rise per heat flux at the points, the bath included [m² K/W].
+    partition : float or ndarray, shape (n,)
+        Part of the friction heat set free on body 1.
+    """
+
+    weights: np.ndarray
+    basis: np.ndarray
+    traces: tuple[sp.csr_matrix, sp.csr_matrix]
+    shift: float
+    response: tuple[np.ndarray, np.ndarray]
+    partition: float | np.ndarray
+
+    def exchange(self, conductance: np.ndarray) -> HeatExchange:
+        """Couple the faces.
+
+        Up to a conductance ``k``, some times that of the bodies, heat crosses point by point:
+        ``c = h (T2 - T1)``. Finite elements that do not match cannot follow a larger one point by
+        point, and no small difference of temperatures may be multiplied by a large number: what
+        is above, ``h - k``, has a resistance ``r = 1/(h - k)``, zero in perfect contact, and an
+        unknown of moderate size, ``z = Ψ μ``. With ``η = 1/(1 + k r)`` it gives both the heat that
+        crosses, ``η z``, and the jump of the temperature, ``r η z = (1 - η) z / k``, which is
+        imposed weakly by the test functions ``η Ψ``. The equations are symmetric and regular from
+        no conductance to an infinite one.
+
+        Parameters
+        ----------
+        conductance : ndarray, shape (n,)
+            Of the contact, or of the gap, at each point [W/(m² K)]; infinite where both faces have
+            the same temperature.
+
+        Raises
+        ------
+        ComputationError
+            If no heat can leave a body that is heated.
+        """
+        n, s, (Θ1, Θ2) = len(self.weights), self.shift, self.response
+        own = _DIRECT * s * self.basis.shape[1]
+        direct = np.minimum(conductance, own)
+        passing, held_back = _parts(own, conductance - direct)
+        resisting = held_back * (passing + _REGULARITY * held_back) / own
+        crossing = passing[:, None] * self.basis
+        jump = crossing.T * self.weights
+        resisted = (self.basis.T * (self.weights * resisting)) @ self.basis
+        sizes = np.sqrt(np.diag(resisted) + np.einsum("in,nm,mi->i", jump, Θ1 + Θ2, crossing))
+        crossing, jump = crossing / sizes, jump / sizes[:, None]
+        identity, count = np.eye(n), len(sizes)
+        matrix = np.block(
+            [
+                [identity - Θ1 * (s - direct), -Θ1 * direct, -Θ1 @ crossing],
+                [-Θ2 * direct, identity - Θ2 * (s - direct), Θ2 @ crossing],
+                [-jump, jump, -resisted / np.outer(sizes, sizes)],
+            ]
+        )
+        try:
+            rise = np.linalg.solve(matrix, np.eye(2 * n + count, 2 * n))
+        except np.linalg.LinAlgError:
+            raise ComputationError(_NO_WAY_OUT) from None
+        across = direct[:, None] * (rise[n : 2 * n] - rise[:n]) + crossing @ rise[2 * n :]
+        return HeatExchange(self, rise[: 2 * n], across)
+
+    def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
+        """Nodal heat of the contact [W], owned rows; with what the bath gives where asked."""
+        shift = self.shift if bath else 0.0
+        first, second = (
+            trace @ (self.weights * (flux + shift * rise))
+            for trace, rise, flux in zip(self.traces, state.rise, state.flux, strict=True)
+        )
+        return first + second
+
+
+@dataclass(frozen=True)
+class HeatExchange:
+    """Faces that exchange heat, as a linear function of what their rises would be without it.
+
+    Attributes
+    ----------
+    interface : InterfaceHeat
+    rise : ndarray, shape (2 n, 2 n)
+        Of both faces, one after the other.
+    crossing : ndarray, shape (n, 2 n)
+        Heat from body 2 to body 1 [W/(m² K)].
+    """
+
+    interface: InterfaceHeat
+    rise: np.ndarray
+    crossing: np.ndarray
+
+    def state(self, friction_heat: np.ndarray, resting: Resting) -> ThermalState:
+        """Temperatures and fluxes due to friction heat [W/m²] at the points, shape (n,)."""
+        alone = self._alone @ friction_heat + np.concatenate(resting.rise)
+        T1, T2 = np.split(self.rise @ alone, 2)
+        crossing = self.crossing @ alone
+        f = self.interface.partition
+        return ThermalState(
+            (T1, T2), (f * friction_heat + crossing, (1 - f) * friction_heat - crossing)
+        )
+
+    def into_bath(self, alone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Heat that crosses, and that the bath gives, into both bodies for rises without it."""
+        T1, T2 = np.split(self.rise @ alone, 2)
+        crossing, s = self.crossing @ alone, self.interface.shift
+        return crossing + s * T1, s * T2 - crossing
+
+    @cached_property
+    def crossing_per_friction_heat(self) -> np.ndarray:
+        """Heat from body 2 to body 1 per friction heat, shape (n, n)."""
+        return self.crossing @ self._alone
+
+    @cached_property
+    def per_friction_heat(self) -> tuple[np.ndarray, np.ndarray]:
+        """Heat into both bodies, that of the bath included, per friction heat, shape (n, n)."""
+        first, second = self.into_bath(self._alone)
+        f, identity = self.interface.partition, np.eye(len(self.interface.weights))
+        return f * identity + first, (1 - f) * identity + second
+
+    @cached_property
+    def _alone(self) -> np.ndarray:
+        """Rises of both faces without exchange per friction heat, shape (2 n, n)."""
+        f, (Θ1, Θ2) = self.interface.partition, self.interface.response
+        return np.vstack([f * Θ1, (1 - f) * Θ2])
+
+
+def _parts(own: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
+    inverse = np.full(len(conductance), np.inf)
+    np.divide(own, conductance, out=inverse, where=conductance > 0)
+    return 1 / (1 + inverse), own / (own + conductance)
+
+
+def at_rest(
+    rise: np.ndarray,
+    traces: tuple[sp.csr_matrix, sp.csr_matrix],
+    comm,
+    per_rise: np.ndarray | None = None,
+) -> Resting:
+    """What a nodal rise (n_owned,) does to faces and, with `per_rise`, to the weak gap."""
+    T1, T2 = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
+    opening = None if per_rise is None else sum_over_ranks(comm, per_rise.T @ rise)
+    return Resting((T1, T2), opening)

@@ -1,0 +1,131 @@
+"""Trace operators: from nodal values of a body to values at the contact points.
+
+They are kept transposed and by rows that a rank owns, as nodal loads need them: column j holds the
+shape functions of one side's cell at contact point j.
+"""
+
+from __future__ import annotations
+
+from petsc4py import PETSc
+
+import numpy as np
+import scipy.sparse as sp
+from dolfinx import fem
+
+from ...bulk.field import basis_element, owned
+from ..search.pairing import Pairing, Side
+
+
+def value_trace(space: fem.FunctionSpace, side: Side) -> sp.csr_matrix:
+    """Eᵀ of a scalar space: shape (n_owned, n_points). Every rank calls.
+
+    ``E v`` are the values of a field at the points of one side.
+    """
+    nodes, point, values = _local_values(space, side)
+    return gather_rows(space, nodes, point, values, len(side.t))
+
+
+def gap_trace(space: fem.FunctionSpace, pairing: Pairing) -> sp.csr_matrix:
+    """Bᵀ of a vector space: shape (n_owned, n_points). Every rank calls.
+
+    ``B u = (u2 - u1)·n``, see `pairing` for the sign.
+    """
+    return vector_trace(space, pairing, pairing.normals)
+
+
+def vector_trace(
+    space: fem.FunctionSpace, pairing: Pairing, directions: np.ndarray
+) -> sp.csr_matrix:
+    """Transposed trace of ``(u2 - u1)·e``: shape (n_owned, n_points). Every rank calls.
+
+    Parameters
+    ----------
+    space : dolfinx.fem.FunctionSpace
+        Of vectors.
+    pairing : Pairing
+    directions : ndarray, shape (n_points, gdim)
+        e at each point; not necessarily a unit vector (the traction of a sliding contact).
+    """
+    result = sp.csr_matrix((owned(space), len(pairing.weights)))
+    for sign, side in zip((-1.0, 1.0), pairing.sides, strict=True):
+        nodes, point, values = _local_values(space, side)
+        for component in range(space.dofmap.index_map_bs):
+            scaled = sign * directions[point, component] * values
+            dofs = nodes * space.dofmap.index_map_bs + component
+            result = result + gather_rows(space, dofs, point, scaled, len(pairing.weights))
+    return result.tocsr()
+
+
+def distributed(space: fem.FunctionSpace, trace: sp.csr_matrix) -> PETSc.Mat:
+    """A transposed trace as a PETSc matrix, its columns (points) spread over the ranks too."""
+    index_map, bs = space.dofmap.index_map, space.dofmap.index_map_bs
+    rows = (index_map.size_local * bs, index_map.size_global * bs)
+    csr = (trace.indptr.astype(PETSc.IntType), trace.indices.astype(PETSc.IntType), trace.data)
+    return PETSc.Mat().createAIJ(
+        (rows, (PETSc.DECIDE, trace.shape[1])), csr=csr, comm=space.mesh.comm
+    )
+
+
+def _local_values(space: fem.FunctionSpace, side: Side):
+    """Local nodes, points and basis values at the points whose cell this rank owns."""
+    mesh = space.mesh
+    mine = np.flatnonzero(side.face.rank[side.facet] == mesh.comm.rank)
+    element = basis_element(space)
+    reference = reference_points(side, mine, element.cell_type)
+    if len(mine) == 0:  # basix takes no empty lists
+        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64), np.empty(0)
+    values = element.tabulate(0, reference)[0].reshape(len(mine), -1)
+    cells = side.face.cell[side.facet[mine]]
+    if not element.dof_transformations_are_permutations:  # those are part of the dofmap
+        values = _oriented(mesh, element, cells, values)
+    nodes = space.dofmap.list[cells].astype(np.int64)
+    point = np.repeat(mine, nodes.shape[1])
+    return nodes.ravel(), point, values.ravel()
+
+
+def _oriented(mesh, element, cells: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Reference basis values, a row a point, turned as the edges and facets of the cells are."""
+    mesh.topology.create_entity_permutations()
+    orientation = mesh.topology.get_cell_permutation_info()[cells]
+    result = np.empty_like(values)
+    for kind in np.unique(orientation):
+        chosen = orientation == kind
+        turned = np.ascontiguousarray(values[chosen].T)
+        element.T_apply(turned.reshape(-1), turned.shape[1], int(kind))
+        result[chosen] = turned.T
+    return result
+
+
+def reference_points(side: Side, chosen: np.ndarray, cell_type) -> np.ndarray:
+    """Reference coordinates of points on facets of their cells."""
+    import basix
+
+    corners, facets = np.asarray(basix.geometry(cell_type)), np.array(basix.topology(cell_type)[-2])
+    facet = side.facet[chosen]
+    first, *others = np.moveaxis(corners[facets[side.face.local_facet[facet]]], 1, 0)
+    reference = first.copy()
+    for t, other in zip(side.face.in_cell(facet, side.t[chosen]).T, others, strict=False):
+        reference += t[:, None] * (other - first)
+    return reference
+
+
+def gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:
+    """Sum entries of all ranks into the rows that each rank owns; rows are local dof numbers.
+
+    Every rank calls; shape (n_owned, n_points).
+    """
+    comm, bs, index_map = space.mesh.comm, space.dofmap.index_map_bs, space.dofmap.index_map
+    nodes = index_map.local_to_global((rows // bs).astype(np.int32))
+    rows = nodes * bs + rows % bs
+    first = index_map.local_range[0] * bs
+    if comm.size > 1:
+        starts = np.array(comm.allgather(first))
+        owner = np.searchsorted(starts, rows, side="right") - 1
+        parcels = [
+            tuple(part[owner == rank] for part in (rows, columns, values))
+            for rank in range(comm.size)
+        ]
+        received = comm.alltoall(parcels)
+        rows, columns, values = (np.concatenate([part[k] for part in received]) for k in range(3))
+    shape = (index_map.size_local * bs, n_points)
+    return sp.coo_matrix((values, (rows - first, columns)), shape=shape).tocsr()

@@ -1,0 +1,1 @@
+"""Contact search: faces, projection, common refinement, pairing."""

@@ -1,0 +1,58 @@
+"""Both contact faces of a case; closed curves are opened far from the contact.
+
+A whole pin in a whole bush has no ends, and contact points are ordered along a face from its first
+end to its last. Such a curve begins and ends at the vertex that is farthest from the other face.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from dolfinx import fem
+
+from ...bulk.bodies import Bodies
+from .face import ONWARD, Face, gather_face
+from .projection import project
+from .surface import Surface
+
+
+def gather_faces(
+    bodies: Bodies, surfaces: tuple[str, str], softness: fem.Function | None = None
+) -> tuple[Face | Surface, Face | Surface]:
+    """Collect both contact faces, see `face.gather_face`; every rank calls."""
+    first, second = (gather_face(bodies, surface, softness) for surface in surfaces)
+    return _opened(first, second), _opened(second, first)
+
+
+def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
+    """The same face; a closed curve begins far from the other face and runs onward past it."""
+    if isinstance(face, Surface) or not face.closed:
+        return face
+    offsets = project(other, face.nodes[:, 0])[2]
+    first = int(np.linalg.norm(offsets, axis=1).argmax())
+    rolled = _taken(face, np.roll(np.arange(len(face.nodes)), -first))
+    position = np.concatenate([[0.0], np.cumsum(rolled.sizes)])
+    middle = int(np.searchsorted(position, position[-1] / 2, side="right")) - 1
+    onward = (rolled.nodes[middle, -1] - rolled.nodes[middle, 0]) @ ONWARD
+    return rolled if onward > 0 else _turned_round(rolled)
+
+
+def _taken(face: Face, order: np.ndarray) -> Face:
+    """The facets of a face in another order."""
+    return replace(
+        face,
+        nodes=face.nodes[order],
+        outward=face.outward[order],
+        rank=face.rank[order],
+        cell=face.cell[order],
+        local_facet=face.local_facet[order],
+        reversed=face.reversed[order],
+        softness=np.broadcast_to(face.softness, len(order))[order],
+    )
+
+
+def _turned_round(face: Face) -> Face:
+    """The same face run through from its last end to its first."""
+    back = _taken(face, np.arange(len(face.nodes))[::-1])
+    return replace(back, nodes=back.nodes[:, ::-1], outward=-back.outward, reversed=~back.reversed)

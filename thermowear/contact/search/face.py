@@ -1,0 +1,219 @@
+"""A contact face of a plane body, gathered from all ranks as a chain of curved facets.
+
+Every rank holds the same chain, so that pairing needs no further communication. A face in space is
+a `surface`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from dolfinx import fem
+
+from ...bulk.bodies import Bodies
+from ...compat import entities_to_geometry_layout, geometry_dofmap
+from ...errors import CaseError
+from .facets import lagrange, lagrange_slopes, owned_facets, softness_behind
+from .quadrature import lobatto
+from .smooth_normals import corner_corrections, smooth_normals
+from .surface import Surface, gather_surface
+
+ONWARD = (1.0, 0.3)
+"""Along x; faces that stand upright begin at their lower end, even when it has worn a little."""
+
+
+@dataclass(frozen=True)
+class Face:
+    """Facets in order along the face; a facet's parameter t runs 0…1 along the chain.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n_facets, order + 1, 2) [m]
+        Geometry nodes of each facet, at equal steps of t.
+    outward : ndarray, shape (n_facets,)
+        +1 where the outward normal is the tangent turned clockwise, -1 otherwise.
+    rank, cell, local_facet : ndarray of int, shape (n_facets,)
+        Who owns the facet's cell, its local index there, and which of its facets it is.
+    reversed : ndarray of bool, shape (n_facets,)
+        Whether t runs against the cell's own direction of the facet.
+    softness : float or ndarray, shape (n_facets,)
+        ``(1 - ν²) / E`` of the material behind each facet [1/Pa]; only its ratio to that of the
+        other face counts.
+    name : str
+        Of the surface.
+    wears : bool
+        Whether the softness is that of wear, see `common_face`.
+    """
+
+    nodes: np.ndarray
+    outward: np.ndarray
+    rank: np.ndarray
+    cell: np.ndarray
+    local_facet: np.ndarray
+    reversed: np.ndarray
+    softness: float | np.ndarray = 1.0
+    name: str = "the contact face"
+    wears: bool = False
+
+    def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Coordinates at parameters t of facets, shape (n, 2) [m]."""
+        return np.einsum("nk,nki->ni", lagrange(self.nodes.shape[1] - 1, t), self.nodes[facet])
+
+    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Derivatives of the coordinates along t, shape (n, 2) [m]."""
+        slopes = lagrange_slopes(self.nodes.shape[1] - 1, t)
+        return np.einsum("nk,nki->ni", slopes, self.nodes[facet])
+
+    def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Outward unit normals, shape (n, 2)."""
+        tangent = self.tangents(facet, t)
+        normal = np.column_stack([tangent[:, 1], -tangent[:, 0]]) * self.outward[facet, None]
+        return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+    def smooth_normals(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Normals that are continuous across facets, and their derivatives along t.
+
+        Shapes (n, 2) and (n, 1, 2).
+        """
+        return smooth_normals(self.nodes, self.outward, self._corrections, facet, t[:, None])
+
+    def soft(self, facet: np.ndarray) -> np.ndarray:
+        """Softness behind facets, shape (n,) [1/Pa]."""
+        return np.broadcast_to(self.softness, len(self.nodes))[facet]
+
+    def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Length per parameter, shape (n,) [m]."""
+        return np.linalg.norm(self.tangents(facet, t), axis=1)
+
+    def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Length along the face from its first end, shape (n,) [m]."""
+        start = np.concatenate([[0.0], np.cumsum(self.sizes)])
+        return start[facet] + self._length_within(facet, t)
+
+    def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Parameters in the cell's own direction of the facet, shape (n, 1)."""
+        return np.where(self.reversed[facet], 1 - t, t)[:, None]
+
+    @cached_property
+    def sizes(self) -> np.ndarray:
+        """Lengths of the facets, shape (n_facets,) [m]."""
+        every = np.arange(len(self.nodes))
+        return self._length_within(every, np.ones(len(every)))
+
+    @property
+    def closed(self) -> bool:
+        """Whether the chain ends where it begins."""
+        return bool(np.all(self.nodes[0, 0] == self.nodes[-1, -1]))
+
+    @property
+    def extent(self) -> float:
+        """Size of the face [m]."""
+        return float(np.ptp(self.nodes.reshape(-1, 2), axis=0).max())
+
+    def numbers(self, degree: int) -> np.ndarray:
+        """Numbers of continuous polynomials' coefficients, shape (n_facets, degree + 1)."""
+        return np.arange(len(self.nodes))[:, None] * degree + np.arange(degree + 1)
+
+    @cached_property
+    def _corrections(self) -> np.ndarray:
+        corners = np.arange(len(self.nodes))[:, None] + np.arange(2)
+        if self.closed:
+            corners %= len(self.nodes)
+        return corner_corrections(self.nodes, self.outward, corners)
+
+    def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Length of each facet from its start to t [m]."""
+        x, w = lobatto(self.nodes.shape[1] + 4)
+        at = (t[:, None] * x).ravel()
+        return t * (self.stretch(np.repeat(facet, len(x)), at).reshape(-1, len(x)) @ w)
+
+
+def gather_face(
+    bodies: Bodies, surface: str, softness: fem.Function | None = None
+) -> Face | Surface:
+    """Collect a surface's facets from all ranks and put them in order; every rank calls.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    surface : str
+    softness : dolfinx.fem.Function, optional
+        ``(1 - ν²) / E``, constant on each cell; without it all materials count alike [1/Pa].
+    """
+    gather = gather_surface if bodies.mesh.topology.dim == 3 else _gather_chain
+    return gather(bodies, surface, softness)
+
+
+def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -> Face:
+    mesh = bodies.mesh
+    local = _local_facets(bodies, surface)
+    parts = mesh.comm.allgather((*local, softness_behind(local[4], softness)))
+    nodes, ends, inside, rank, cell, local_facet, soft = (
+        np.concatenate([part[k] for part in parts]) for k in range(7)
+    )
+    if len(nodes) == 0:
+        raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
+    order, flip = _chain(ends, nodes, surface)
+    nodes, flip = nodes[order], flip[order]
+    nodes[flip] = nodes[flip, ::-1]
+    tangent = nodes[:, -1] - nodes[:, 0]
+    inward = inside[order] - nodes.mean(axis=1)
+    turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
+    owner = rank[order], cell[order], local_facet[order]
+    return Face(nodes, -np.sign(turned), *owner, flip, soft[order], surface)
+
+
+def _local_facets(bodies: Bodies, surface: str):
+    """Facets of the surface whose cell this rank owns."""
+    mesh = bodies.mesh
+    fdim = mesh.topology.dim - 1
+    cells, local = owned_facets(bodies, surface)
+    layout = np.array(entities_to_geometry_layout(mesh, fdim))
+    of_cells = geometry_dofmap(mesh)[cells]
+    x = mesh.geometry.x[:, :2]
+    # closure dofs list the two ends first, then the nodes between them
+    along = np.concatenate([layout[:, :1], layout[:, 2:], layout[:, 1:2]], axis=1)
+    of_facets = np.take_along_axis(of_cells, along[local], axis=1)
+    to_global = mesh.geometry.index_map().local_to_global
+    ends = to_global(of_facets[:, [0, -1]].ravel().astype(np.int32)).reshape(-1, 2)
+    rank = np.full(len(cells), mesh.comm.rank)
+    return x[of_facets], ends, x[of_cells].mean(axis=1), rank, cells, local
+
+
+def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:
+    """Order of the facets from the first end to the last, and which must be turned round.
+
+    A closed curve begins anywhere, see `closed_face`.
+    """
+    vertices, compact = np.unique(ends, return_inverse=True)
+    ends = compact.reshape(ends.shape)
+    at: list[list[int]] = [[] for _ in vertices]
+    for facet, pair in enumerate(ends):
+        for vertex in pair:
+            at[vertex].append(facet)
+    loose = [v for v, facets in enumerate(at) if len(facets) == 1]
+    if len(loose) not in (0, 2) or max(len(facets) for facets in at) > 2:
+        raise CaseError(_not_one(surface))
+    where = {v: nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1] for v in loose or (0,)}
+    vertex = min(where, key=lambda v: float(where[v] @ ONWARD))
+    order, flip, facet = [], np.zeros(len(ends), dtype=bool), at[vertex][0]
+    for _ in ends:
+        order.append(facet)
+        flip[facet] = ends[facet, 0] != vertex
+        vertex = ends[facet, 0] if flip[facet] else ends[facet, 1]
+        following = [f for f in at[vertex] if f != facet]
+        if not following or following[0] == order[0]:
+            break
+        facet = following[0]
+    if len(order) < len(ends):
+        raise CaseError(_not_one(surface))
+    return np.array(order), flip
+
+
+def _not_one(surface: str) -> str:
+    return (
+        f"geometry: the contact face {surface} is not one connected curve, open or closed; give "
+        "each part that touches a run of its own, or name one part only"
+    )

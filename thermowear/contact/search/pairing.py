@@ -1,0 +1,207 @@
+"""Contact points: where both faces are compared, with what weight, and which way is up.
+
+Sign convention (the only place where it is stated)
+---------------------------------------------------
+``n`` is the normal of the common face, see `common_face`, outward from body 1, the held body. The
+gap is open where positive::
+
+    g = g0 + (u2 - u1)·n
+
+A pressure ``p >= 0`` presses and sliding friction drags: traction ``-p (n + mu e)`` on body 1 and
+the opposite on body 2, where ``e`` is the unit direction in which body 1 slides over body 2. The
+nodal loads of a pressure are ``B_tᵀ w p``, ``B_t u = (u2 - u1)·(n + mu e)``; where there is no
+friction in the section that is ``B u = (u2 - u1)·n``. The holder moves body 1 by ``m d``, where
+``m`` is a unit rigid motion along its load; that changes the gap by ``-R d`` with ``R = m·n``, and
+the load ``F`` is in equilibrium when ``Tᵀ w p = F`` with ``T = m·(n + mu e)``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ...bulk.kinematics import Model
+from ...errors import CaseError
+from .common_face import opposite, stretch
+from .face import Face
+from .refinement import BESIDE, SLIVER, Rule, folded, rule
+from .surface import Surface
+
+_SAME = 1e-10
+"""Of the face's size: points nearer to each other are one."""
+_TWICE = 1e-3
+"""Of a facet: so much of it may have two facets opposite, by rounding and curved edges."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """Where the contact points lie on one face.
+
+    Attributes
+    ----------
+    face : Face or Surface
+    facet : ndarray of int, shape (n,)
+    t : ndarray, shape (n,), on a surface (n, 2)
+        Parameters.
+    """
+
+    face: Face | Surface
+    facet: np.ndarray
+    t: np.ndarray
+
+    @property
+    def points(self) -> np.ndarray:
+        """Coordinates, shape (n, gdim) [m]."""
+        return self.face.points(self.facet, self.t)
+
+
+@dataclass(frozen=True)
+class Pairing:
+    """The contact points, in a plane model in order along the face of body 1.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, gdim) [m]
+        On the common face.
+    position : ndarray, shape (n,)
+        Length along the face of body 1 from its first end [m]; NaN on a surface.
+    weights : ndarray, shape (n,)
+        Area of the common face that each point stands for [m²].
+    normals : ndarray, shape (n, gdim)
+        Unit normals of the common face, outward from body 1.
+    gap : ndarray, shape (n,)
+        Of the unloaded, unworn bodies along the normal [m].
+    share : ndarray, shape (n,)
+        s_1: what body 1 takes of the approach of opposite points.
+    sides : tuple of Side
+        On body 1 and body 2.
+    unpaired : float
+        Part of the face of body 1 that has nothing opposite and cannot touch.
+    pieces : Rule
+        Where the points come from: those of all pieces of the facets of body 1, one by one.
+    """
+
+    points: np.ndarray
+    position: np.ndarray
+    weights: np.ndarray
+    normals: np.ndarray
+    gap: np.ndarray
+    share: np.ndarray
+    sides: tuple[Side, Side]
+    unpaired: float
+    pieces: Rule
+
+    @property
+    def extent(self) -> float:
+        """Size of the face of body 1 [m]."""
+        return self.sides[0].face.extent
+
+    @property
+    def on_body_1(self) -> np.ndarray:
+        """The points on the face of body 1, shape (n, gdim) [m]."""
+        return self.sides[0].points
+
+    def locate(self, position) -> np.ndarray:
+        """Coordinates of positions along the face of a plane body, shape (n, 2) [m]."""
+        columns = [np.interp(position, self.position, x) for x in self.points.T]
+        return np.column_stack(columns)
+
+
+def pair(
+    face_1: Face | Surface,
+    face_2: Face | Surface,
+    model: Model,
+    order: int,
+    refine: bool = True,
+    sliver: float = SLIVER,
+    beside: float = BESIDE,
+) -> Pairing:
+    """Pair two faces on their common refinement.
+
+    The facets of body 1 are cut where facets of body 2 end, see `refinement`. Each piece gets a
+    Gauss-Lobatto rule; points that pieces share are merged.
+
+    Parameters
+    ----------
+    face_1, face_2 : Face or Surface
+    model : thermowear.bulk.kinematics.Model
+    order : int
+        Points on each piece, on a surface along each side of it; the rule is exact to degree
+        ``2 order - 3``.
+    refine : bool
+        False: the facets of body 1 are not cut, each has the points of one rule.
+    sliver : float
+        Part of a facet in a section: it is not cut so near to its ends.
+    beside : float
+        Part of the face's size in a section: so far beside body 2 it is taken to go on straight.
+
+    Raises
+    ------
+    CaseError
+        If no point of body 1 faces body 2, or it is not clear which points meet.
+    """
+    pieces = rule(face_1, face_2, order, refine, sliver, beside)
+    if len(pieces.facet) == 0:
+        raise CaseError(
+            f"geometry.contact: {face_1.name} and {face_2.name} do not lie opposite each other; "
+            "their outward normals must point against each other where they are to touch"
+        )
+    return paired(face_1, face_2, model, pieces)
+
+
+def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces: Rule) -> Pairing:
+    """Pair two faces at given points of the face of body 1; those that coincide are one."""
+    facet, t = pieces.facet, pieces.t
+    on_face = face_1.points(facet, t)
+    pairs = opposite(face_1, facet, t, face_2)
+    weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
+    on_common = on_face + pairs.share[:, None] * pairs.offset
+    weights *= np.maximum(model.area_factor(on_common), 0.0)  # on the axis but for rounding
+    covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
+    if covered.max() > 1.0 + _TWICE:
+        raise CaseError(folded(face_1, face_2))
+    unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
+    position = face_1.position(facet, t)
+    # along a curve by the length: both ends of a closed one are at the same place
+    places = on_face if isinstance(face_1, Surface) else position[:, None]
+    group, first = _groups(places, _SAME * face_1.extent)
+    summed = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
+    normals = summed / np.linalg.norm(summed, axis=1, keepdims=True)
+    sides = (
+        Side(face_1, facet[first], t[first]),
+        Side(face_2, pairs.facet[first], pairs.t[first]),
+    )
+    return Pairing(
+        points=on_common[first],
+        position=position[first],
+        weights=np.bincount(group, weights),
+        normals=normals,
+        gap=pairs.gap[first],
+        share=pairs.share[first],
+        sides=sides,
+        unpaired=max(unpaired, 0.0),
+        pieces=pieces,
+    )
+
+
+def _groups(points: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
+    """Number points anew, one number for those that coincide, in the order of first appearance.
+
+    Returns
+    -------
+    group : ndarray of int, shape (n,)
+    first : ndarray of int, shape (n_groups,)
+        The first point of each group.
+    """
+    pairs = cKDTree(points).query_pairs(near, output_type="ndarray")
+    links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
+    _, label = connected_components(links, directed=False)
+    _, first, group = np.unique(label, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(order), dtype=np.int64)
+    rank[order] = np.arange(len(order))
+    return rank[group], first[order]

@@ -1,0 +1,172 @@
+"""Quadrature on the common refinement of two contact faces.
+
+The facets of body 1 are cut where facets of body 2 end, so that everything that is smooth between
+the ends of elements is integrated accurately, whether the faces match or not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import CaseError
+from .clipping import parts_opposite
+from .common_face import FACING, Opposite, opposite
+from .face import Face
+from .quadrature import gauss, lobatto, square
+from .surface import Surface
+
+BESIDE = 1e-9
+"""Of the face's size: points that lie further beside body 2 have nothing opposite."""
+
+SLIVER = 1e-9
+"""Of a facet: it is not cut so near to its ends."""
+_BACK = 2.0
+"""Of their gap: so far may points opposite to consecutive ones go back."""
+_SAME = 1e-6
+"""Of the length of a face: the same by rounding."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """Points on the facets of body 1 that have body 2 opposite.
+
+    Attributes
+    ----------
+    facet : ndarray of int, shape (n,)
+    t : ndarray, shape (n,) or (n, 2)
+        Parameters.
+    weight : ndarray, shape (n,)
+        Length or area in parameters: those of a facet that is all opposite sum to one.
+    """
+
+    facet: np.ndarray
+    t: np.ndarray
+    weight: np.ndarray
+
+
+def rule(
+    face_1: Face | Surface,
+    face_2: Face | Surface,
+    order: int,
+    refine: bool,
+    sliver: float,
+    beside: float = BESIDE,
+) -> Rule:
+    """Points and weights; parameters as in `pairing.pair`."""
+    if isinstance(face_1, Surface):
+        assert isinstance(face_2, Surface)
+        return _on_parts(face_1, face_2, order) if refine else _on_facets(face_1, face_2, order)
+    assert isinstance(face_2, Face)
+    return _on_pieces(face_1, face_2, order, refine, sliver, beside)
+
+
+def _on_pieces(
+    face_1: Face, face_2: Face, order: int, refine: bool, sliver: float, beside: float
+) -> Rule:
+    """A Gauss-Lobatto rule on each piece of the facets of a chain."""
+    whole = [np.array([0.0, 1.0])] * len(face_1.nodes)
+    cuts = _cuts(face_1, face_2, sliver) if refine else whole
+    x, w = lobatto(order)
+    start = np.concatenate([c[:-1] for c in cuts])
+    size = np.concatenate([np.diff(c) for c in cuts])
+    facet = np.repeat(np.arange(len(cuts)), [len(c) - 1 for c in cuts])
+    t = (start[:, None] + size[:, None] * x).ravel()
+    pieces = Rule(np.repeat(facet, order), t, (size[:, None] * w).ravel())
+    # whole pieces: the end of one outside the contact is a point of the next one inside
+    inner = np.arange(1, order - 1) if order > 2 else np.arange(order)
+    return _facing(face_1, face_2, pieces, order, inner, beside)
+
+
+def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
+    """Parameters at which each facet of body 1 is cut, its own ends included."""
+    count = len(face_2.nodes)
+    pairs = opposite(
+        face_2, np.append(np.arange(count), count - 1), np.append(np.zeros(count), 1.0), face_1
+    )
+    meeting = pairs.meets(face_1.extent, BESIDE)
+    facet, t = pairs.facet[meeting], pairs.t[meeting]
+    cuts = []
+    for f in range(len(face_1.nodes)):
+        inner = np.sort(t[facet == f])
+        inner = inner[(inner > sliver) & (inner < 1 - sliver)]
+        if len(inner):
+            inner = inner[np.concatenate([[True], np.diff(inner) > 1e-9])]
+        cuts.append(np.concatenate([[0.0], inner, [1.0]]))
+    return cuts
+
+
+def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
+    """Rules on the parts of facets that are opposite: Gauss-Lobatto's, in triangles Gauss's."""
+    facet, corners = parts_opposite(face_1, face_2)
+    triangular = np.all(corners[:, 2] == corners[:, 3], axis=1)
+    parts = []
+    for chosen, line in ((~triangular, lobatto(order)), (triangular, gauss(order))):
+        places, weights = square(*line)
+        s, t = places.T
+        shape = np.stack([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t])
+        along = np.stack([t - 1, 1 - t, t, -t])
+        across = np.stack([s - 1, -s, s, 1 - s])
+        at, u, v = (
+            np.einsum("cq,pci->pqi", values, corners[chosen]) for values in (shape, along, across)
+        )
+        area = weights * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+        at = np.clip(at, 0.0, 1.0)  # corners on an edge of the facet are beyond it by rounding
+        parts.append((np.repeat(facet[chosen], len(weights)), at.reshape(-1, 2), area.ravel()))
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    counting = columns[2] > 0.0
+    by_facet = np.argsort(columns[0][counting], kind="stable")
+    return Rule(*(column[counting][by_facet] for column in columns))
+
+
+def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
+    """A Gauss-Lobatto rule on each whole facet."""
+    places, weights = square(*lobatto(order))
+    count = len(face_1.nodes)
+    facet = np.repeat(np.arange(count), len(weights))
+    whole = Rule(facet, np.tile(places, (count, 1)), np.tile(weights, count))
+    within = np.flatnonzero(np.all((places > 0) & (places < 1), axis=1))
+    inner = within if len(within) else np.arange(len(weights))
+    return _facing(face_1, face_2, whole, len(weights), inner, BESIDE)
+
+
+def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed: float) -> Rule:
+    """Those pieces, of so many points each, whose inner points have body 2 opposite."""
+    pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
+    meeting = pairs.meets(face_1.extent, allowed).reshape(-1, count)[:, inner]
+    whole = meeting.all(axis=1)
+    kept = np.repeat(whole, count)
+    if isinstance(face_1, Face):
+        facing = (pairs.cosine <= FACING).reshape(-1, count)[:, inner].all(axis=1)
+        _check_order(face_1, face_2, pairs, whole, facing & ~whole)
+    return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])
+
+
+def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, lost: np.ndarray):
+    """Refuse pieces of a chain whose opposite points are lost on the way, or go back.
+
+    Points may go back a little where faces have edges or bend: by less than they are apart.
+    """
+    between = np.flatnonzero(kept)
+    if len(between) == 0:
+        return
+    if lost[between[0] : between[-1]].any():
+        raise CaseError(folded(face_1, face_2))
+    chosen = np.repeat(kept, len(pairs.gap) // len(kept))
+    s, apart = face_2.position(pairs.facet, pairs.t)[chosen], np.abs(pairs.gap[chosen])
+    step, length = np.diff(s), face_2.sizes.sum()
+    if face_2.closed:
+        step = (step + length / 2) % length - length / 2
+    step = step * np.sign(np.median(step))
+    allowed = _BACK * np.maximum(apart[1:], apart[:-1]) + _SAME * length
+    if np.any(step < -allowed):
+        raise CaseError(folded(face_1, face_2))
+
+
+def folded(face_1: Face | Surface, face_2: Face | Surface) -> str:
+    """The message about faces of which it is not clear which points meet."""
+    return (
+        f"geometry.contact: it is not clear which points of {face_1.name} and {face_2.name} meet, "
+        "as one of them folds back opposite the other; name only the part that is to touch"
+    )

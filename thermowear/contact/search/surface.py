@@ -1,0 +1,251 @@
+"""A contact face in space, gathered from all ranks as a set of curved quadrilaterals.
+
+Every rank holds the same facets in the same order, whatever the number of ranks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import basix
+import numpy as np
+from dolfinx import fem
+
+from ...bulk.bodies import Bodies
+from ...bulk.field import reference_element
+from ...compat import coordinate_element, geometry_dofmap
+from ...errors import CaseError
+from .facets import lagrange, lagrange_slopes, owned_facets, softness_behind
+from .quadrature import gauss, square
+from .smooth_normals import corner_corrections, smooth_normals
+
+_FLAT = 1e-9
+"""Of a facet's shorter side: nearer to a parallelogram it is one."""
+
+
+@dataclass(frozen=True)
+class Parallelograms:
+    """Facets as if they were flat.
+
+    Attributes
+    ----------
+    middle : ndarray, shape (n_facets, 3) [m]
+    sides : ndarray, shape (n_facets, 2, 3)
+        Tangents along both parameters [m].
+    inverse : ndarray, shape (n_facets, 2, 3)
+        Parameters per coordinate [1/m].
+    """
+
+    middle: np.ndarray
+    sides: np.ndarray
+    inverse: np.ndarray
+
+    def only(self, facet: int) -> Parallelograms:
+        """One of them."""
+        chosen = slice(facet, facet + 1)
+        return Parallelograms(self.middle[chosen], self.sides[chosen], self.inverse[chosen])
+
+    def points(self, t: np.ndarray) -> np.ndarray:
+        """Coordinates at parameters of every facet, of shape (..., n_facets, 2) [m]."""
+        return self.middle + np.einsum("...fk,fki->...fi", t - 0.5, self.sides)
+
+    def parameters(self, points: np.ndarray) -> np.ndarray:
+        """Parameters of points (n, 3) projected on every facet, shape (n, n_facets, 2)."""
+        return 0.5 + np.einsum("fki,nfi->nfk", self.inverse, points[:, None] - self.middle)
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Facets with two parameters t that run 0…1 along their edges, as in their cells.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n_facets, order + 1, order + 1, 3) [m]
+        Geometry nodes of each facet, at equal steps of the first and of the second parameter.
+    corners : ndarray of int, shape (n_facets, 2, 2)
+        Numbers of the corners by both parameters; facets that meet share them.
+    outward : ndarray, shape (n_facets,)
+        +1 where the outward normal is the first tangent times the second, -1 otherwise.
+    rank, cell, local_facet : ndarray of int, shape (n_facets,)
+        Who owns the facet's cell, its local index there, and which of its facets it is.
+    softness : float or ndarray, shape (n_facets,)
+        ``(1 - ν²) / E`` of the material behind each facet [1/Pa]; only its ratio to that of the
+        other face counts.
+    name : str
+        Of the surface.
+    wears : bool
+        Whether the softness is that of wear, see `common_face`.
+    """
+
+    nodes: np.ndarray
+    corners: np.ndarray
+    outward: np.ndarray
+    rank: np.ndarray
+    cell: np.ndarray
+    local_facet: np.ndarray
+    softness: float | np.ndarray = 1.0
+    name: str = "the contact face"
+    wears: bool = False
+
+    def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Coordinates at parameters t of shape (n, 2) of facets, shape (n, 3) [m]."""
+        values = [lagrange(self._order, t[:, k]) for k in (0, 1)]
+        return np.einsum("na,nb,nabi->ni", *values, self.nodes[facet])
+
+    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Derivatives of the coordinates along both parameters, shape (n, 2, 3) [m]."""
+        nodes = self.nodes[facet]
+        values = [lagrange(self._order, t[:, k]) for k in (0, 1)]
+        slopes = [lagrange_slopes(self._order, t[:, k]) for k in (0, 1)]
+        first = np.einsum("na,nb,nabi->ni", slopes[0], values[1], nodes)
+        second = np.einsum("na,nb,nabi->ni", values[0], slopes[1], nodes)
+        return np.stack([first, second], axis=1)
+
+    def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Outward unit normals, shape (n, 3)."""
+        normal = self._across(facet, t) * self.outward[facet, None]
+        return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+    def smooth_normals(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Normals that are continuous across facets, and their derivatives along t.
+
+        Shapes (n, 3) and (n, 2, 3).
+        """
+        return smooth_normals(self.nodes, self.outward, self._corrections, facet, t)
+
+    def soft(self, facet: np.ndarray) -> np.ndarray:
+        """Softness behind facets, shape (n,) [1/Pa]."""
+        return np.broadcast_to(self.softness, len(self.nodes))[facet]
+
+    def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Area per area of parameters, shape (n,) [m²]."""
+        return np.linalg.norm(self._across(facet, t), axis=1)
+
+    def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Nothing: points of a surface have no order."""
+        return np.full(len(facet), np.nan)
+
+    def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Parameters in the cell's own directions of the facet, shape (n, 2)."""
+        return t
+
+    @cached_property
+    def sizes(self) -> np.ndarray:
+        """Areas of the facets, shape (n_facets,) [m²]."""
+        t, w = square(*gauss(self._order + 4))
+        facet = np.repeat(np.arange(len(self.nodes)), len(w))
+        return self.stretch(facet, np.tile(t, (len(self.nodes), 1))).reshape(-1, len(w)) @ w
+
+    @cached_property
+    def flattened(self) -> Parallelograms:
+        """The parallelograms nearest to the corners of the facets."""
+        corners = self.nodes[:, :: self._order, :: self._order]
+        along = (corners[:, 1] - corners[:, 0]).mean(axis=1)
+        across = (corners[:, :, 1] - corners[:, :, 0]).mean(axis=1)
+        sides = np.stack([along, across], axis=1)
+        return Parallelograms(corners.mean(axis=(1, 2)), sides, np.linalg.pinv(sides).mT)
+
+    @cached_property
+    def flat(self) -> np.ndarray:
+        """Which facets are parallelograms, shape (n_facets,)."""
+        steps = np.linspace(0.0, 1.0, self._order + 1)
+        grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1)
+        as_flat = self.flattened.points(np.repeat(grid[:, :, None], len(self.nodes), axis=2))
+        off = np.abs(np.moveaxis(as_flat, 2, 0) - self.nodes).max(axis=(1, 2, 3))
+        return off < _FLAT * np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
+
+    @cached_property
+    def middle_normals(self) -> np.ndarray:
+        """Outward unit normals in the middle of the facets, shape (n_facets, 3)."""
+        every = np.arange(len(self.nodes))
+        return self.normals(every, np.full((len(every), 2), 0.5))
+
+    @property
+    def extent(self) -> float:
+        """Size of the face [m]."""
+        return float(np.ptp(self.nodes.reshape(-1, 3), axis=0).max())
+
+    def numbers(self, degree: int) -> np.ndarray:
+        """Numbers of continuous polynomials' coefficients.
+
+        Shape (n_facets, degree + 1, degree + 1). Facets share those at common corners and along
+        common edges, whichever way they run.
+        """
+        count, inner = len(self.nodes), degree - 1
+        _, corners = np.unique(self.corners, return_inverse=True)
+        corners = corners.reshape(self.corners.shape)
+        result = np.empty((count, degree + 1, degree + 1), dtype=np.int64)
+        result[:, ::degree, ::degree] = corners
+        first = corners.max() + 1
+        sides = (corners[:, :, 0], corners[:, :, 1], corners[:, 0, :], corners[:, 1, :])
+        along = result[:, 1:-1, 0], result[:, 1:-1, -1], result[:, 0, 1:-1], result[:, -1, 1:-1]
+        pairs = np.sort(np.concatenate(sides), axis=1)
+        _, edge = np.unique(pairs, axis=0, return_inverse=True)
+        for ends, on, view in zip(sides, np.split(edge.ravel(), 4), along, strict=True):
+            steps = np.where(ends[:, :1] < ends[:, 1:], np.arange(inner), np.arange(inner)[::-1])
+            view[:] = first + on[:, None] * inner + steps
+        first += (edge.max() + 1) * inner
+        within = first + np.arange(count * inner**2)
+        result[:, 1:-1, 1:-1] = within.reshape(count, inner, inner)
+        return result
+
+    @property
+    def _order(self) -> int:
+        return self.nodes.shape[1] - 1
+
+    @cached_property
+    def _corrections(self) -> np.ndarray:
+        return corner_corrections(self.nodes, self.outward, self.corners)
+
+    def _across(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        return np.cross(*np.moveaxis(self.tangents(facet, t), 1, 0))
+
+
+def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None = None) -> Surface:
+    """Collect a surface's facets from all ranks, in the order of their cells in the mesh file."""
+    mesh = bodies.mesh
+    cells, local = owned_facets(bodies, surface)
+    of_cells = geometry_dofmap(mesh)[cells]
+    of_facets = np.take_along_axis(of_cells, _grids(mesh)[local], axis=1)
+    numbers = np.asarray(mesh.geometry.input_global_indices)
+    x = mesh.geometry.x
+    part = (
+        mesh.topology.original_cell_index[cells],
+        x[of_facets],
+        numbers[of_facets],
+        x[of_cells].mean(axis=1),
+        np.full(len(cells), mesh.comm.rank),
+        cells,
+        local,
+        softness_behind(cells, softness),
+    )
+    parts = mesh.comm.allgather(part)
+    original, nodes, numbers, inside, rank, cells, local, soft = (
+        np.concatenate([part[k] for part in parts]) for k in range(len(part))
+    )
+    if len(nodes) == 0:
+        raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
+    order = np.lexsort((local, original))
+    n = int(np.sqrt(nodes.shape[1]))
+    nodes = nodes[order].reshape(-1, n, n, 3)
+    corners = numbers[order].reshape(-1, n, n)[:, :: n - 1, :: n - 1]
+    first, second = nodes[:, -1, 0] - nodes[:, 0, 0], nodes[:, 0, -1] - nodes[:, 0, 0]
+    from_inside = nodes.mean(axis=(1, 2)) - inside[order]
+    outward = np.sign(np.einsum("fi,fi->f", np.cross(first, second), from_inside))
+    owner = rank[order], cells[order], local[order]
+    return Surface(nodes, corners, outward, *owner, soft[order], surface)
+
+
+def _grids(mesh) -> np.ndarray:
+    """Nodes of each facet of a cell on a grid of both parameters, shape (6, (order + 1)²)."""
+    kind, order = reference_element(mesh, 1).cell_type, coordinate_element(mesh).degree
+    element = basix.create_element(
+        basix.ElementFamily.P, kind, order, basix.LagrangeVariant.equispaced
+    )
+    corners, facets = np.asarray(basix.geometry(kind)), np.array(basix.topology(kind)[-2])
+    a, b, c = np.moveaxis(corners[facets[:, :3]], 1, 0)[:, :, None]
+    s, t = np.indices((order + 1, order + 1)).reshape(2, -1, 1) / order
+    places = a + s * (b - a) + t * (c - a)
+    distance = np.abs(places[:, :, None] - element.points).sum(axis=-1)
+    return distance.argmin(axis=-1)

@@ -1,0 +1,1 @@
+"""Solvers of unilateral contact on condensed operators."""

@@ -1,0 +1,169 @@
+"""Several contacts that share the depths worn off their faces: one body in many positions.
+
+For each position j find λ_j, the rigid motion d_j of the holder, and for all of them the depths y:
+
+    r_j = A_j λ_j + g_j + S_j y - R_j d_j >= 0,   λ_j >= 0,   λ_j·r_j = 0,   T_jᵀ λ_j = F,
+    y = y_0 + Σ_j G_j λ_j.
+
+An implicit step of wear has this form. For given active sets it falls apart into small problems and
+a system for y, which is fast. Stacked it is one large contact problem like that of
+`complementarity`, with full coupling, which is always solved.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from ...serialise import serialisable
+from .signorini import solve_contact
+
+_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class CoupledContacts:
+    """J contacts with m coefficients and k free motions each, and N depths.
+
+    Attributes
+    ----------
+    compliance : ndarray, shape (J, m, m)
+        A; symmetric or not.
+    gap : ndarray, shape (J, m)
+        g.
+    seen : ndarray, shape (J, m, N)
+        S.
+    modes, force_modes : ndarray, shape (J, m, k)
+        R and T.
+    load : ndarray, shape (k,)
+        F.
+    """
+
+    compliance: np.ndarray
+    gap: np.ndarray
+    seen: np.ndarray
+    modes: np.ndarray
+    force_modes: np.ndarray
+    load: np.ndarray
+
+
+@serialisable
+@dataclass(frozen=True)
+class CoupledSolution:
+    """Coefficients, motions, which coefficients press, and the depths.
+
+    Attributes
+    ----------
+    coefficients : ndarray, shape (J, m)
+    motion : ndarray, shape (J, k)
+    active : ndarray of bool, shape (J, m)
+    depths : ndarray, shape (N,)
+    """
+
+    coefficients: np.ndarray
+    motion: np.ndarray
+    active: np.ndarray
+    depths: np.ndarray
+
+
+def solve_coupled(
+    contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
+) -> CoupledSolution:
+    """Solve by a primal-dual active set on all contacts at once, stacked where that fails.
+
+    Parameters
+    ----------
+    contacts : CoupledContacts
+    start : ndarray, shape (N,)
+        y_0.
+    gains : ndarray, shape (J, N, m)
+        G.
+    active : ndarray of bool, shape (J, m)
+        Coefficients that are expected to press.
+
+    Raises
+    ------
+    ComputationError
+        If there is no solution.
+    """
+    met, expected = set(), active
+    while active.tobytes() not in met:
+        met.add(active.tobytes())
+        solution = _with_active(contacts, start, gains, active)
+        if solution is None:
+            break
+        following = _pressing(contacts, solution)
+        if np.array_equal(following, active):
+            return solution
+        active = following
+    return _stacked(contacts, start, gains, expected)
+
+
+def _stacked(
+    contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
+) -> CoupledSolution:
+    """The solution of all contacts as one."""
+    count, m, k = contacts.modes.shape
+    seen = contacts.seen.reshape(count * m, -1)
+    compliance = block_diag(*contacts.compliance)
+    compliance = compliance + seen @ gains.transpose(1, 0, 2).reshape(len(start), -1)
+    solution = solve_contact(
+        compliance,
+        contacts.gap.ravel() + seen @ start,
+        block_diag(*contacts.modes),
+        np.tile(contacts.load, count),
+        active.ravel(),
+        block_diag(*contacts.force_modes),
+    )
+    λ = solution.coefficients.reshape(count, m)
+    depths = start + np.einsum("jnm,jm->n", gains, λ)
+    return CoupledSolution(λ, solution.motion.reshape(count, k), λ > 0, depths)
+
+
+def _with_active(
+    contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
+) -> CoupledSolution | None:
+    """The linear problem with closed contact at the active coefficients, none where singular."""
+    if np.any(active.sum(axis=1) < len(contacts.load)):
+        return None
+    free, by_depth = _eliminated(contacts, active)
+    m = active.shape[1]
+    spread = np.eye(len(start)) - np.einsum("jnm,jmk->nk", gains, by_depth[:, :m])
+    depths = np.linalg.solve(spread, start + np.einsum("jnm,jm->n", gains, free[:, :m]))
+    unknowns = free + by_depth @ depths
+    return CoupledSolution(unknowns[:, :m], unknowns[:, m:], active, depths)
+
+
+def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """λ and d without depths, shape (J, m + k), and their derivatives, shape (J, m + k, N)."""
+    count, m, k = contacts.modes.shape
+    size = np.sqrt(np.abs(np.einsum("jmm->jm", contacts.compliance)))
+    pressed = np.where(active, 1 / size, 0.0)
+    border, rows = (R * pressed[..., None] for R in (contacts.modes, contacts.force_modes))
+    stretch = np.abs(border).max(initial=0.0) or 1.0
+    matrix = np.zeros((count, m + k, m + k))
+    matrix[:, :m, :m] = contacts.compliance * pressed[:, :, None] * pressed[:, None]
+    matrix[:, np.arange(m), np.arange(m)] += ~active
+    matrix[:, :m, m:] = -border / stretch
+    matrix[:, m:, :m] = -rows.mT / stretch
+    right = np.zeros((count, m + k, 1 + contacts.seen.shape[2]))
+    right[:, :m, 0] = -contacts.gap * pressed
+    right[:, m:, 0] = -contacts.load / stretch
+    right[:, :m, 1:] = -contacts.seen * pressed[..., None]
+    unknowns = np.linalg.solve(matrix, right)
+    unknowns[:, :m] *= pressed[..., None]
+    unknowns[:, m:] /= stretch
+    return unknowns[..., 0], unknowns[..., 1:]
+
+
+def _pressing(contacts: CoupledContacts, solution: CoupledSolution) -> np.ndarray:
+    """Which coefficients should press next: those that do, and those that penetrate."""
+    λ, y = solution.coefficients, solution.depths
+    opened, worn = np.einsum("jmn,jn->jm", contacts.compliance, λ), contacts.seen @ y
+    closing = np.einsum("jmk,jk->jm", contacts.modes, solution.motion)
+    residual = opened + contacts.gap + worn - closing
+    scale = sum(np.abs(part) for part in (opened, contacts.gap, worn, closing))
+    presses = solution.active & (λ > -_TOLERANCE * np.abs(λ).max(axis=1, keepdims=True))
+    return presses | (~solution.active & (residual < -_TOLERANCE * scale))

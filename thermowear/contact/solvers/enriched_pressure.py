@@ -1,0 +1,103 @@
+"""The pressure that a richer pressure space would find: an estimate of its error.
+
+The space of the next degree is Ψ⁺. How the bodies answer Ψ is known at every contact point, so that
+of its compliance only the part between the details is missing, those pressures that Ψ does not see.
+They are so short that the bodies answer them on the spot, by a compliance in proportion to the size
+of the facets; one solution gives its constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ...parallel import sum_over_ranks
+from ..operators.condensation import Influence
+from ..operators.holder import Holder
+from ..operators.pressure import pressure_basis
+from ..search.pairing import Pairing
+from .signorini import solve_contact
+
+
+def enriched_pressure(
+    pairing: Pairing,
+    influence: Influence,
+    degree: int,
+    holder: Holder,
+    pressure: np.ndarray,
+    gap: np.ndarray,
+    local: np.ndarray,
+    answer: Callable[[np.ndarray], np.ndarray],
+) -> np.ndarray:
+    """Solve contact for a change of the pressure in the space of the next degree.
+
+    Parameters
+    ----------
+    pairing : Pairing
+    influence : Influence
+    degree : int
+        Of the pressure space Ψ.
+    holder : Holder
+    pressure : ndarray, shape (n,) [Pa]
+    gap : ndarray, shape (n,)
+        Under that pressure, as well as it is known [m].
+    local : ndarray, shape (n,)
+        Gap that the pressure of each point opens on the spot, beside the bodies [m/Pa].
+    answer : callable
+        Gap at the points that a pressure at them opens, about [m].
+
+    Returns
+    -------
+    ndarray, shape (n,) [Pa]
+
+    Raises
+    ------
+    ComputationError
+        If there is no solution.
+    """
+    basis, weights = pressure_basis(pairing, degree + 1), pairing.weights
+    weighted = weights[:, None] * basis
+    compliance = _compliance(pairing, influence, basis, answer)
+    compliance = compliance + weighted.T @ (local[:, None] * basis)
+    start = np.linalg.lstsq(basis, pressure, rcond=None)[0]
+    modes, force_modes = weighted.T @ holder.modes, weighted.T @ holder.force_modes
+    solution = solve_contact(
+        compliance,
+        weighted.T @ gap - compliance @ start,
+        modes,
+        force_modes.T @ start,
+        force_modes=force_modes,
+    )
+    return basis @ solution.coefficients
+
+
+def _compliance(pairing: Pairing, influence: Influence, basis: np.ndarray, answer) -> np.ndarray:
+    """Compliance of a richer basis: by the answers to Ψ, and on the spot where Ψ sees nothing."""
+    weighted = influence.weighted
+    opened = influence.trace[influence.touching].T @ influence.near
+    opened = sum_over_ranks(influence.comm, opened)
+    known = weighted.T @ opened
+    known = (known + known.T) / 2
+    mass = np.linalg.inv(weighted.T @ influence.basis)
+
+    def detail(values):
+        return values - influence.basis @ (mass @ (weighted.T @ values))
+
+    details = detail(basis)
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], basis.shape[1])
+    probe = details @ signs
+    found = answer(probe)
+    found = found - opened @ np.linalg.solve(known, weighted.T @ found)
+    sizes = _sizes(pairing)
+    softness = (pairing.weights * probe) @ found / ((pairing.weights * probe**2) @ sizes)
+    mixed = (pairing.weights[:, None] * basis).T @ opened
+    local = (softness * sizes * pairing.weights)[:, None] * details
+    result = mixed @ np.linalg.solve(known, mixed.T) + details.T @ local
+    return (result + result.T) / 2
+
+
+def _sizes(pairing: Pairing) -> np.ndarray:
+    """Size of the facet of body 1 at each point, shape (n,) [m]."""
+    face, dim = pairing.sides[0].face, pairing.points.shape[1]
+    return face.sizes[pairing.sides[0].facet] ** (1 / (dim - 1))

@@ -1,0 +1,200 @@
+"""Signorini's conditions with given loads, on the condensed interface.
+
+Find λ and the rigid motion d of the holder with
+
+    r = A λ + g - R d >= 0,   λ >= 0,   λ·r = 0,   Tᵀ λ = F.
+
+T = R without friction in the section.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...errors import ComputationError
+from ...serialise import serialisable
+from .lemke import lemke
+
+_TOLERANCE = 1e-9
+
+
+class NoEquilibrium(ComputationError):
+    """No pressure satisfies Signorini's conditions and carries the load."""
+
+
+@serialisable
+@dataclass(frozen=True)
+class ContactSolution:
+    """Coefficients of the pressure, rigid motion of the holder, and which coefficients press.
+
+    Attributes
+    ----------
+    coefficients : ndarray, shape (m,)
+    motion : ndarray, shape (k,)
+    active : ndarray of bool, shape (m,)
+    """
+
+    coefficients: np.ndarray
+    motion: np.ndarray
+    active: np.ndarray
+
+
+def solve_contact(
+    compliance: np.ndarray,
+    gap: np.ndarray,
+    modes: np.ndarray,
+    load: np.ndarray,
+    start: np.ndarray | None = None,
+    force_modes: np.ndarray | None = None,
+) -> ContactSolution:
+    """Solve by a primal-dual active set, and by Lemke's method where that runs in circles.
+
+    Parameters
+    ----------
+    compliance : ndarray, shape (m, m)
+        A; symmetric or not (friction, friction heat).
+    gap : ndarray, shape (m,)
+        g.
+    modes : ndarray, shape (m, k)
+        R; k = 0 where the holder does not move freely.
+    load : ndarray, shape (k,)
+        F.
+    start : ndarray of bool, shape (m,), optional
+        Coefficients that are expected to press.
+    force_modes : ndarray, shape (m, k), optional
+        T, by default R.
+
+    Returns
+    -------
+    ContactSolution
+        Checked: every inequality holds for every coefficient to 1e-9 of its scale.
+
+    Raises
+    ------
+    NoEquilibrium
+        If there is no solution. The reason is known to who made the compliance: friction that
+        locks the body, or friction heat beyond the critical speed.
+    """
+    # measured from where the faces are near: a far start would leave no digits to the deflection
+    origin = np.linalg.lstsq(modes, gap, rcond=None)[0]
+    forces = modes if force_modes is None else force_modes
+    problem = _Problem(compliance, gap - modes @ origin, modes, load, forces)
+    solution = _solve(problem, start)
+    return replace(solution, motion=solution.motion + origin)
+
+
+def _solve(problem: _Problem, start: np.ndarray | None) -> ContactSolution:
+    """Active sets from the expected one and from full contact, then Lemke's method."""
+    everywhere = np.ones(len(problem.gap), dtype=bool)
+    for active in (everywhere,) if start is None else (start, everywhere):
+        solution = _active_set(problem, active)
+        if solution is not None:
+            return _checked(problem, solution)
+    solution = _with_active(problem, _pressing_by_lemke(problem))
+    if solution is None:
+        raise NoEquilibrium("contact: the load cannot be carried by the contact zone")
+    return _checked(problem, solution)
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """A, g, R, F and T of the module's docstring."""
+
+    compliance: np.ndarray
+    gap: np.ndarray
+    modes: np.ndarray
+    load: np.ndarray
+    force_modes: np.ndarray
+
+    def residual(self, solution: ContactSolution) -> np.ndarray:
+        return self.compliance @ solution.coefficients + self.gap - self.modes @ solution.motion
+
+    def scales(self, solution: ContactSolution) -> tuple[np.ndarray, np.ndarray]:
+        """Sizes that errors of each coefficient and weak gap are measured against."""
+        λ = np.abs(solution.coefficients)
+        return np.full(len(λ), λ.max()), np.abs(self.compliance) @ λ + np.abs(self.gap)
+
+
+def _active_set(problem: _Problem, active: np.ndarray) -> ContactSolution | None:
+    """Primal-dual active set from a first guess; None where it runs in circles or dry."""
+    seen = set()
+    gap, held = problem.gap, len(problem.load) == 0
+    while active.tobytes() not in seen:
+        seen.add(active.tobytes())
+        solution = _with_active(problem, active)
+        if solution is None:
+            return None
+        following = _pressing(problem, solution)
+        if np.array_equal(following, active):
+            return solution
+        active = following if following.any() or held else active | (gap <= gap.min())
+    return None
+
+
+def _with_active(problem: _Problem, active: np.ndarray) -> ContactSolution | None:
+    """The linear problem with closed contact at the active coefficients, none where singular."""
+    count, k = int(active.sum()), len(problem.load)
+    if count < k:
+        return None
+    compliance = problem.compliance[np.ix_(active, active)]
+    size = np.sqrt(np.abs(np.diag(compliance)))
+    border, rows = (modes[active] / size[:, None] for modes in (problem.modes, problem.force_modes))
+    stretch = np.abs(border).max(initial=0.0) or 1.0
+    matrix = np.zeros((count + k, count + k))
+    matrix[:count, :count] = compliance / np.outer(size, size)
+    matrix[:count, count:] = -border / stretch
+    matrix[count:, :count] = -rows.T / stretch
+    right = np.concatenate([-problem.gap[active] / size, -problem.load / stretch])
+    try:
+        unknowns = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return None
+    coefficients = np.zeros(len(problem.gap))
+    coefficients[active] = unknowns[:count] / size
+    return ContactSolution(coefficients, unknowns[count:] / stretch, active)
+
+
+def _pressing(problem: _Problem, solution: ContactSolution) -> np.ndarray:
+    """Which coefficients should press next: those that do, and those that penetrate."""
+    residual = problem.residual(solution)
+    scales = problem.scales(solution)
+    presses = solution.active & (solution.coefficients > -_TOLERANCE * scales[0])
+    return presses | (~solution.active & (residual < -_TOLERANCE * scales[1]))
+
+
+def _checked(problem: _Problem, solution: ContactSolution) -> ContactSolution:
+    λ = solution.coefficients
+    residual = problem.residual(solution)
+    force_scale, gap_scale = problem.scales(solution)
+    carried = np.abs(problem.force_modes).T @ np.abs(λ)
+    unbalanced = np.abs(problem.force_modes.T @ λ - problem.load)
+    wrong = (
+        np.any(λ < -_TOLERANCE * force_scale)
+        or np.any(residual < -_TOLERANCE * gap_scale)
+        or np.any(np.abs(residual[solution.active]) > _TOLERANCE * gap_scale[solution.active])
+        or np.any(unbalanced > _TOLERANCE * (carried + np.abs(problem.load)))
+    )
+    if wrong or not np.all(np.isfinite(λ)):
+        raise NoEquilibrium("contact: no pressure satisfies the contact conditions at this load")
+    return ContactSolution(np.maximum(λ, 0.0), solution.motion, solution.active)
+
+
+def _pressing_by_lemke(problem: _Problem) -> np.ndarray:
+    """The active set by Lemke's method; the rigid motion is a difference of two positives."""
+    m, k = problem.modes.shape
+    size = 1 / np.sqrt(np.abs(np.diag(problem.compliance)))
+    # orthonormal modes: given ones may be nearly parallel (a tilt about a far pivot)
+    border, _ = np.linalg.qr(problem.modes * size[:, None])
+    rows, mixing = np.linalg.qr(problem.force_modes * size[:, None])
+    force = np.linalg.solve(mixing.T, problem.load)
+    matrix = np.zeros((m + 2 * k, m + 2 * k))
+    matrix[:m, :m] = problem.compliance * np.outer(size, size)
+    matrix[:m, m:] = np.hstack([-border, border])
+    matrix[m:, :m] = np.vstack([rows.T, -rows.T])
+    right = np.concatenate([problem.gap * size, -force, force])
+    solution = lemke(matrix, right / np.abs(right).max())
+    if solution is None:
+        raise NoEquilibrium("contact: no equilibrium found")
+    return solution[:m] > 1e-12 * solution[:m].max()

@@ -1,0 +1,1 @@
+"""Wear at the interface: worn faces, tracks, edges of the wear."""

@@ -1,0 +1,193 @@
+"""How the nodes of a worn face move: by the depth worn off it, along its unworn normals.
+
+Each node goes along the normal of the unworn face so far that the face moves by the depth along
+its present normal. Nodes of faces that matched when they were new so stay opposite each other, and
+those at the ends of a face go along the sides of its body.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from ..search.face import Face
+from ..search.facets import lagrange
+from ..search.pairing import Pairing, Side
+from ..search.surface import Surface
+
+_ROUGH = 1e-8
+"""How much less differences between neighbours count: they decide for nodes hardly seen alone."""
+
+
+@dataclass(frozen=True)
+class Paths:
+    """Ways of the nodes of a face, in the order of `nodes_of`.
+
+    Attributes
+    ----------
+    directions : ndarray, shape (n_nodes, gdim)
+        Unit vectors out of the unworn body.
+    held : ndarray of bool, shape (n_nodes,)
+        Nodes that stay where they are.
+    """
+
+    directions: np.ndarray
+    held: np.ndarray
+
+
+def nodes_of(face: Face | Surface) -> np.ndarray:
+    """Geometry nodes, in a section in order along the face, shape (n_nodes, gdim) [m]."""
+    number, gdim = _numbers(face), face.nodes.shape[-1]
+    result = np.empty((number.max() + 1, gdim))
+    result[number] = face.nodes.reshape(*number.shape, gdim)
+    return result
+
+
+def node_normals(face: Face | Surface) -> np.ndarray:
+    """Outward unit normals at the nodes, means where facets meet, shape (n_nodes, gdim)."""
+    number = _numbers(face).ravel()
+    normals = _at(face, face.normals, np.linspace(0.0, 1.0, _order(face) + 1))
+    summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
+    return summed / np.linalg.norm(summed, axis=1, keepdims=True)
+
+
+def ways_between(
+    sides: tuple[Side, Side], directions: tuple[np.ndarray, ...], gone: np.ndarray
+) -> np.ndarray:
+    """Ways on which body 2 lies opposite, unit vectors at contact points, shape (n, gdim).
+
+    Those out of body 1 and into body 2 of the nodes, by how far each face has gone.
+
+    Parameters
+    ----------
+    sides : tuple of Side
+    directions : tuple of ndarray, shape (n_nodes, gdim)
+        Of the nodes of both faces, see `Paths`.
+    gone : ndarray, shape (2,)
+        How far each face has gone; only the ratio counts.
+    """
+    pairs = zip(sides, directions, strict=True)
+    out_1, out_2 = (_ways_at(side, along) for side, along in pairs)
+    ways = gone[0] * out_1 - gone[1] * out_2
+    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+
+
+def _ways_at(side: Side, directions: np.ndarray) -> np.ndarray:
+    """Ways of the points of a face between those of its nodes, unit vectors (n, gdim)."""
+    values = _polynomials(_order(side.face), side.t)
+    ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])
+    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+
+
+def curvatures(face: Face | Surface) -> np.ndarray:
+    """Largest of each facet, of circles through two of its corners, shape (n_facets,) [1/m]."""
+    ends = np.array([0.0, 1.0])
+    points, normals = _at(face, face.points, ends), _at(face, face.normals, ends)
+    pairs = np.array(list(itertools.combinations(range(points.shape[1]), 2))).T
+    chord, turn = (np.subtract(*v[:, pairs].swapaxes(0, 1)) for v in (points, normals))
+    return (np.linalg.norm(turn, axis=2) / np.linalg.norm(chord, axis=2)).max(axis=1)
+
+
+def lengths(face: Face | Surface) -> np.ndarray:
+    """Sizes of the facets, on a surface the sides of squares of their areas, (n_facets,) [m]."""
+    return face.sizes ** (1 / _dimension(face))
+
+
+class WornFace:
+    """One face of a pairing, as depths at the contact points move its nodes.
+
+    Parameters
+    ----------
+    pairing : Pairing
+    index : int
+        0 for body 1, 1 for body 2.
+    paths : Paths
+    """
+
+    def __init__(self, pairing: Pairing, index: int, paths: Paths):
+        side = pairing.sides[index]
+        self._paths = paths
+        out = pairing.normals if index == 0 else -pairing.normals
+        node = _numbers(side.face)[side.facet]
+        values = _polynomials(_order(side.face), side.t)
+        values = values * np.einsum("ni,nki->nk", out, paths.directions[node])
+        point = np.broadcast_to(np.arange(len(node))[:, None], node.shape)
+        shape = len(node), len(paths.directions)
+        # depths at the points, by amounts of the nodes
+        self._depths = sp.csr_matrix((values.ravel(), (point.ravel(), node.ravel())), shape=shape)
+        self._weights = pairing.weights
+        share = pairing.weights.sum() / side.face.sizes[np.unique(side.facet)].sum()
+        self._smoothing = _ROUGH * share * _roughness(side.face)
+
+    def amounts(self, depth: np.ndarray) -> np.ndarray:
+        """How far the nodes go so that the face loses a depth (n,), shape (n_nodes,) [m].
+
+        Nearest to it in the mean of squares over the area, with the same volume. Nodes that the
+        points hardly see go with their neighbours, those that they do not see at all stay.
+        """
+        weighted = sp.diags(self._weights) @ self._depths
+        volume = weighted.sum(axis=0).A1
+        free = ~self._paths.held & (abs(weighted).sum(axis=0).A1 > 0.0)
+        weighted, depths, volume = weighted[:, free], self._depths[:, free], volume[free]
+        factor = splu((weighted.T @ depths + self._smoothing[free][:, free]).tocsc())
+        nearest, fuller = factor.solve(weighted.T @ depth), factor.solve(volume)
+        lacking = self._weights @ depth - volume @ nearest
+        result = np.zeros(len(free))
+        result[free] = nearest + lacking / (volume @ fuller) * fuller
+        return result
+
+    def depths(self, amounts: np.ndarray) -> np.ndarray:
+        """Depth that the face loses at the contact points, shape (n,) [m]."""
+        return self._depths @ amounts
+
+    def displacement(self, amounts: np.ndarray) -> np.ndarray:
+        """Of the nodes, into the body, shape (n_nodes, gdim) [m]."""
+        return -amounts[:, None] * self._paths.directions
+
+
+def _dimension(face: Face | Surface) -> int:
+    return face.nodes.ndim - 2
+
+
+def _order(face: Face | Surface) -> int:
+    return face.nodes.shape[1] - 1
+
+
+def _numbers(face: Face | Surface) -> np.ndarray:
+    """Of the nodes of each facet, shape (n_facets, nodes_per_facet)."""
+    return face.numbers(_order(face)).reshape(len(face.nodes), -1)
+
+
+def _roughness(face: Face | Surface) -> sp.csr_matrix:
+    """Squared differences between neighbouring nodes times the facets' sizes, as a matrix."""
+    numbers = face.numbers(_order(face))
+    a, b = (
+        np.concatenate([np.delete(numbers, k, axis).ravel() for axis in range(1, numbers.ndim)])
+        for k in (0, -1)
+    )
+    size = np.repeat(face.sizes, numbers[0].size - numbers[0].shape[0] ** (numbers.ndim - 2))
+    size = np.tile(size, numbers.ndim - 1)
+    values = np.concatenate([size, size, -size, -size])
+    where = np.concatenate([a, b, a, b]), np.concatenate([a, b, b, a])
+    return sp.csr_matrix((values, where), shape=(numbers.max() + 1,) * 2)
+
+
+def _at(face: Face | Surface, values, knots: np.ndarray) -> np.ndarray:
+    """Values of a face's method on a grid of parameters of each facet, (n_facets, n_places, …)."""
+    dim, count = _dimension(face), len(face.nodes)
+    grid = np.array(list(itertools.product(knots, repeat=dim)))
+    facet, t = np.repeat(np.arange(count), len(grid)), np.tile(grid, (count, 1))
+    return values(facet, t if dim > 1 else t[:, 0]).reshape(count, len(grid), -1)
+
+
+def _polynomials(order: int, t: np.ndarray) -> np.ndarray:
+    """Those of the nodes of a facet at parameters (n,) or (n, 2), shape (n, nodes_per_facet)."""
+    values = np.ones((len(t), 1))
+    for along in t.reshape(len(t), -1).T:
+        values = values[:, :, None] * lagrange(order, along)[:, None]
+        values = values.reshape(len(t), -1)
+    return values

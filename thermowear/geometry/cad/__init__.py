@@ -1,0 +1,1 @@
+"""Designed shapes as worn bodies, meshes and STEP files."""

@@ -1,0 +1,41 @@
+"""A design as a mesh: the body with its face moved, and how far each node was moved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..mesh.orders import quadratic
+from ..mesh.tagged import TaggedMesh
+from ..reading.export import write_mesh
+from .design import Design
+from .worn_body import moved_body
+
+
+def write_design_mesh(mesh: TaggedMesh, design: Design, face: str, path: Path) -> None:
+    """Write the mesh of a body whose contact face has a worn shape.
+
+    Straight-sided cells become quadratic, as they could not follow the shape; .vtu knows no others.
+    ``displacement_m`` tells how far the nodes were moved.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Of the body, unworn.
+    design : Design
+    face : str
+        Name of its contact face.
+    path : Path
+
+    Raises
+    ------
+    CaseError
+        If the file cannot be written.
+    """
+    if mesh.order == 1 or (path.suffix == ".vtu" and mesh.order > 2):
+        mesh = quadratic(mesh)
+    points = moved_body(mesh, design, face)
+    told = np.pad(points - mesh.points, ((0, 0), (0, 3 - points.shape[1])))
+    write_mesh(replace(mesh, points=points), path, {"displacement_m": told})

@@ -1,0 +1,185 @@
+"""An annular punch turning about its axis on a plate (half section, r and z).
+
+The punch is above the plate. Their faces coincide: flat at z = 0, or a cone or a torus that passes
+through z = 0 at the mean radius. Beside a face that is not flat the plate goes on level.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from ...case.values.section import KeyFault
+from ...case.values.units import Angle, Length
+from ..mesh.tagged import TaggedMesh
+from ..meshing.blocks import growing
+from ..meshing.face_profiles import Arc, Profile, Straight
+from .stacked import Section, Stacked
+
+_STEEPEST = math.radians(80)
+"""Slope of a face up to which cells on it stay well shaped."""
+
+_DEEPEST = 0.9
+"""Part of a body's height that a face may take up."""
+
+
+class AnnularPunch(Stacked):
+    """Sizes of punch and plate.
+
+    Attributes
+    ----------
+    inner_radius, outer_radius, plate_radius : float [m]
+    punch_height, plate_height : float
+        At the mean radius, from the face to the level top and bottom [m].
+    face : str
+        ``"flat"``, ``"conical"`` or ``"toroidal"``.
+    cone_angle : float or None
+        From the axis to the face, in the half section: with less than 90° the face rises outwards,
+        with more it falls [rad].
+    torus_radius : float or None
+        Of the face in the half section, an arc that bulges downwards in the middle [m].
+    """
+
+    name = "annular-punch"
+    models = ("axisymmetric",)
+    bodies = ("punch", "plate")
+    surfaces = (
+        "punch_face",
+        "punch_top",
+        "punch_inside",
+        "punch_outside",
+        "plate_face",
+        "plate_bottom",
+        "plate_side",
+    )
+    contact = ("punch_face", "plate_face")
+    held = "punch_top"
+    fixed = "plate_bottom"
+
+    type: Literal["annular-punch"]
+    inner_radius: Length
+    outer_radius: Length
+    punch_height: Length
+    plate_radius: Length
+    plate_height: Length
+    face: Literal["flat", "conical", "toroidal"] = "flat"
+    cone_angle: Angle | None = None
+    torus_radius: Length | None = None
+
+    @model_validator(mode="after")
+    def _nested(self):
+        if not self.inner_radius < self.outer_radius:
+            raise KeyFault(
+                "inner_radius",
+                f"{self.inner_radius:g} m must be less than outer_radius {self.outer_radius:g} m",
+            )
+        if not self.outer_radius < self.plate_radius:
+            raise KeyFault(
+                "plate_radius",
+                f"{self.plate_radius:g} m must be greater than "
+                f"outer_radius {self.outer_radius:g} m",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _shaped(self):
+        keys = {"cone_angle": "conical", "torus_radius": "toroidal"}
+        for key, face in keys.items():
+            if self.face == face and getattr(self, key) is None:
+                raise KeyFault(key, f"missing; a {face} face needs it")
+            if self.face != face and getattr(self, key) is not None:
+                raise KeyFault(key, f'is for face = "{face}"')
+        if self.cone_angle is not None:
+            self._check_angle(math.degrees(self.cone_angle))
+            self._check_rise("cone_angle", "punch_height", "plate_height")
+        if self.torus_radius is not None:
+            least = (self.outer_radius - self.inner_radius) / 2 / math.sin(_STEEPEST)
+            if not self.torus_radius >= least:
+                raise KeyFault(
+                    "torus_radius", f"{self.torus_radius:g} m must be at least {least:.4g} m"
+                )
+            self._check_rise("torus_radius", "punch_height")
+        return self
+
+    def _check_angle(self, degrees: float) -> None:
+        level, steepest = 90.0, math.degrees(_STEEPEST)
+        if not abs(degrees - level) <= steepest * (1 + 1e-12):
+            raise KeyFault(
+                "cone_angle",
+                f"{degrees:g} deg must be from {level - steepest:g} deg to "
+                f"{level + steepest:g} deg (90 deg is flat)",
+            )
+
+    def _check_rise(self, key: str, *heights: str) -> None:
+        rise = abs(float(self.profile.height(np.array(self.outer_radius))))
+        for name in heights:
+            largest = _DEEPEST * getattr(self, name)
+            if not rise < largest:
+                raise KeyFault(
+                    key,
+                    f"puts the edge of the face {rise:.4g} m off its middle; "
+                    f"must be less than {largest:.4g} m, {_DEEPEST:g} of {name}",
+                )
+
+    @property
+    def upper(self) -> Section:
+        return Section(self.inner_radius, self.outer_radius, self.punch_height)
+
+    @property
+    def lower(self) -> Section:
+        return Section(0.0, self.plate_radius, self.plate_height)
+
+    @property
+    def profile(self) -> Profile:
+        """Of both faces."""
+        middle = (self.inner_radius + self.outer_radius) / 2
+        if self.torus_radius is not None:
+            return Arc(middle, self.torus_radius)
+        return Straight(middle, 0.0 if self.cone_angle is None else 1 / math.tan(self.cone_angle))
+
+    @property
+    def cell_order(self) -> int:
+        return self.profile.order
+
+    def contact_area(self) -> float:
+        """Seen along the axis, also of a cone or a torus."""
+        return math.pi * (self.outer_radius**2 - self.inner_radius**2)
+
+    def _beside(self, sizes, elements, grading):
+        contact, _, largest = sizes
+        _, outside = super()._beside(sizes, elements, grading)
+        # nothing ends at the axis
+        return growing(self.inner_radius, 0.0, contact, grading, largest), outside
+
+    def build(self, mesh, zone=None) -> TaggedMesh:
+        flat = super().build(mesh, zone)
+        points = flat.points.copy()
+        for tag, height in enumerate((self.punch_height, -self.plate_height), start=1):
+            cells = flat.cells[flat.cell_tags == tag]
+            nodes, columns = np.unique(cells), np.unique(flat.points[cells[:, :4], 0])
+            points[nodes] = self._bent(flat.points[nodes], columns, height)
+        return replace(flat, points=points)
+
+    def _bent(self, points: np.ndarray, columns: np.ndarray, height: float) -> np.ndarray:
+        """Where points of a body go whose flat face becomes the profile and whose end stays.
+
+        Parameters
+        ----------
+        points : ndarray, shape (n, 2) [m]
+        columns : ndarray
+            Radii at the ends of the body's cells, increasing [m].
+        height : float
+            z of its end [m].
+        """
+        limits = self.inner_radius, self.outer_radius
+        r, z = points.T
+        within = np.clip(r, *limits)
+        on_face = self.profile.spaced(within, np.unique(np.clip(columns, *limits)))
+        part = 1 - z / height
+        return np.column_stack(
+            [r + part * (on_face - within), z + part * self.profile.height(on_face)]
+        )

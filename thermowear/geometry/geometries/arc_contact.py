@@ -1,0 +1,146 @@
+"""What geometries share whose body 1 fits a circle of a turning body 2.
+
+Body 2 is a whole ring (a disk with a bore, a drum) about the origin. Angles are measured from
+12 o'clock (the direction +y), clockwise: positive towards +x.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+import numpy as np
+from pydantic import model_validator
+
+from ...case.tables.geometry import keyed
+from ...case.tables.plane_geometry import PlaneGeometry
+from ...case.values.section import KeyFault
+from ...case.values.units import Angle
+from ..meshing.polar import Division, Polar, complete
+from ..meshing.quads import Sheet, mesh_body, tagged_bodies
+from .on_block import ORDER
+
+ORIGIN = Polar()
+
+
+class ArcContact(PlaneGeometry):
+    """Base: the whole face of body 1, an arc, touches.
+
+    Attributes
+    ----------
+    arc_start, arc_end : float
+        Angles at the edges of the contact, clockwise from 12 o'clock (+y) [rad].
+    rest : str
+        Surface of body 2 that is left of its contact circle.
+    """
+
+    name: ClassVar[str] = ""
+    models = ("plane-strain", "plane-stress")
+    rest: ClassVar[str]
+
+    arc_start: Angle
+    arc_end: Angle
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        if not self.arc_start < self.arc_end:
+            raise KeyFault(
+                "arc_end",
+                f"{degrees(self.arc_end)} must be greater than arc_start {degrees(self.arc_start)}",
+            )
+        return self
+
+    def check_arc(self, limit: float) -> None:
+        """Refuse arcs beyond an angle from 12 o'clock (+y) on either side."""
+        for key, angle in (("arc_start", self.arc_start), ("arc_end", self.arc_end)):
+            if abs(angle) > limit:
+                raise KeyFault(
+                    key,
+                    f"{degrees(angle)} must be within {degrees(limit)} of 12 o'clock (+y), on "
+                    "either side",
+                )
+
+    @property
+    def radius(self) -> float:
+        """Of the contact circle [m]."""
+        raise NotImplementedError
+
+    @property
+    def far_radius(self) -> float:
+        """Of the circle where body 2 is fixed [m]."""
+        raise NotImplementedError
+
+    def upper_sheets(self, division: Division) -> list[Sheet]:
+        """Cells of body 1."""
+        raise NotImplementedError
+
+    def on_holder(self, p: np.ndarray) -> np.ndarray:
+        """Which edges of body 1, given by the places of their nodes, are held."""
+        raise NotImplementedError
+
+    @keyed
+    def contact(self) -> tuple[str, str]:
+        upper, ring = self.bodies
+        return f"{upper}_face", f"{ring}_face"
+
+    @keyed
+    def surfaces(self) -> tuple[str, ...]:
+        return tuple(self._claims())
+
+    @property
+    def arc(self) -> tuple[float, float]:
+        return self.arc_start, self.arc_end
+
+    @property
+    def rotation_center(self) -> tuple[float, float]:
+        return (0.0, 0.0)
+
+    @property
+    def track(self) -> float:
+        return 2 * math.pi * self.radius
+
+    @property
+    def follows_contact(self) -> bool:
+        """Where each x belongs to one point of the arc: heat can part the faces."""
+        return max(map(abs, self.arc)) < math.pi / 2
+
+    def contact_area(self) -> float:
+        """Of the arc as seen along the press: a uniform pressure has this resultant per Pa [m²]."""
+        x, y = self.press_direction
+        start, end = self.arc
+        across = x * (math.cos(start) - math.cos(end)) + y * (math.sin(end) - math.sin(start))
+        return abs(across) * self.radius * self.thickness
+
+    def build(self, mesh, zone=None):
+        upper, ring = self.bodies
+        angles = None if zone is None else self._angles(zone)
+        divisions = [
+            complete(self.arc, self.radius, mesh.face(body), angles) for body in self.bodies
+        ]
+        around = divisions[1].all_round(), divisions[1].rows(self.radius, self.far_radius)
+        bodies = {
+            upper: mesh_body(self.upper_sheets(divisions[0]), ORDER),
+            ring: mesh_body([ORIGIN.sheet(*around)], ORDER),
+        }
+        return tagged_bodies(bodies, self._claims())
+
+    def _angles(self, zone: tuple[float, float]) -> tuple[float, float]:
+        """Angles of the arc at both ends of a range of x."""
+        first, last = (math.asin(min(max(x / self.radius, -1.0), 1.0)) for x in zone)
+        return first, last
+
+    def _claims(self):
+        """All surfaces, see `tagged_bodies`."""
+        upper_face, ring_face = self.contact
+        return {
+            upper_face: lambda p: ORIGIN.on_circle(p, self.radius),
+            self.held: self.on_holder,
+            f"{self.bodies[0]}_side": lambda p: np.full(len(p), True),
+            ring_face: lambda p: ORIGIN.on_arc(p, self.radius, self.arc),
+            self.rest: lambda p: ORIGIN.on_circle(p, self.radius),
+            self.fixed: lambda p: ORIGIN.on_circle(p, self.far_radius),
+        }
+
+
+def degrees(angle: float) -> str:
+    return f"{math.degrees(angle):g} deg"

@@ -1,0 +1,128 @@
+"""A beam, clamped on the left and supported on the right, above a foundation that moves along x.
+
+The foundation's top lies at y = 0, the lower face of the unloaded beam a gap above it.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from ...case.tables.plane_geometry import PlaneGeometry
+from ...case.values.section import KeyFault
+from ...case.values.units import Distance, Length
+from ..mesh.tagged import TaggedMesh
+from ..meshing.quads import Body, Sheet, grid, mesh_body, tagged_bodies
+from .on_block import near, within
+
+
+class BeamOnFoundation(PlaneGeometry):
+    """Sizes of beam and foundation; the width of the beam is its `thickness`.
+
+    Nobody knows beforehand where a beam touches as it bends and wears: its elements are equally
+    long, whatever ``mesh.grading`` says.
+
+    Attributes
+    ----------
+    length, height : float
+        Of the beam [m].
+    load_position, load_width : float
+        Middle, measured from the clamp, and width of the part of the top that is loaded [m].
+    gap : float
+        Between the unloaded beam and the foundation [m].
+    foundation_height : float [m]
+    """
+
+    name = "beam-on-foundation"
+    models = ("plane-strain", "plane-stress")
+    bodies = ("beam", "foundation")
+    surfaces = (
+        "beam_face",
+        "beam_clamp",
+        "beam_support",
+        "beam_load",
+        "beam_top",
+        "foundation_face",
+        "foundation_left",
+        "foundation_right",
+        "foundation_bottom",
+    )
+    contact = ("beam_face", "foundation_face")
+    held = "beam_clamp"
+    fixed = "foundation_bottom"
+
+    type: Literal["beam-on-foundation"]
+    length: Length
+    height: Length
+    load_position: Length
+    load_width: Length
+    gap: Distance
+    foundation_height: Length
+
+    @model_validator(mode="after")
+    def _fits(self):
+        start, end = self.load_span
+        if not (start > 0 and end < self.length):
+            raise KeyFault(
+                "load_position",
+                f"the load ranges from {start:g} m to {end:g} m; "
+                f"must lie between the ends of the beam, 0 and {self.length:g} m",
+            )
+        return self
+
+    @property
+    def rollers(self) -> tuple[str, ...]:
+        return ("beam_support",)
+
+    @property
+    def load_span(self) -> tuple[float, float]:
+        """X at the ends of the loaded part of the top [m]."""
+        return self.load_position - self.load_width / 2, self.load_position + self.load_width / 2
+
+    def build(self, mesh, zone=None) -> TaggedMesh:
+        top = self.gap + self.height
+        bodies = {
+            "beam": self._rectangle(self.gap, top, mesh.face("beam")[0], (2, 4)),
+            "foundation": self._rectangle(
+                -self.foundation_height, 0.0, mesh.face("foundation")[0], (1, 3)
+            ),
+        }
+        size = self.length
+        claims = {
+            "beam_face": lambda p: near(p[..., 1], self.gap, size),
+            "beam_clamp": lambda p: near(p[..., 0], 0.0, size),
+            "beam_support": lambda p: near(p[..., 0], self.length, size),
+            "beam_load": lambda p: near(p[..., 1], top, size) & within(p, self.load_span),
+            "beam_top": lambda p: near(p[..., 1], top, size),
+            "foundation_face": lambda p: near(p[..., 1], 0.0, size),
+            "foundation_left": lambda p: near(p[..., 0], 0.0, size),
+            "foundation_right": lambda p: near(p[..., 0], self.length, size),
+            "foundation_bottom": lambda p: near(p[..., 1], -self.foundation_height, size),
+        }
+        return tagged_bodies(bodies, claims)
+
+    def _rectangle(self, bottom: float, top: float, elements: int, rows: tuple[int, int]) -> Body:
+        """Cells over the whole length, with so many rows at least and at most."""
+        columns = self._columns(elements)
+        wanted = round((top - bottom) / np.diff(columns).max())
+        count = int(np.clip(wanted, *rows))
+        return mesh_body([Sheet(grid(columns, np.linspace(bottom, top, count + 1)), _as_is)], 1)
+
+    def _columns(self, elements: int) -> np.ndarray:
+        """X at the ends of elements of one size, as nearly as they can end at those of the load."""
+        places = [0.0, *self.load_span, self.length]
+        spans = np.diff(places)
+        counts = np.ones(3, dtype=int)
+        while counts.sum() < elements:
+            counts[np.argmax(spans / counts)] += 1
+        parts = [
+            np.linspace(a, b, n, endpoint=False)
+            for a, b, n in zip(places[:-1], places[1:], counts, strict=True)
+        ]
+        return np.concatenate([*parts, [self.length]])
+
+
+def _as_is(p: np.ndarray) -> np.ndarray:
+    return p

@@ -1,0 +1,145 @@
+"""A brake pad on a disk that turns, in space.
+
+The contact lies at z = 0; the pad is above, a sector centred at the x-axis. The disk turns about
+the z-axis; its upper half is meshed, all the way round, and fixed at its middle.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from ..meshing.blocks import SAME, Interval, graded_face, growing, smallest
+from ..meshing.hexes import Lattice, ends_of, level, mesh_lattice
+from ..meshing.quads import Body, tagged_bodies
+from .pads_on_disk import PadsOnDisk
+
+_WIDEST = math.radians(30)
+"""Of an element of the disk beside the pad."""
+_ORDER = 3
+"""Of the cells at most; never above the degree of the displacement, which has to rotate rigidly."""
+
+
+class DiskSector(PadsOnDisk):
+    """Sizes of pad and disk, see the base.
+
+    ``mesh.elements`` lie along the longer side of the pad, fewer along the shorter one.
+    """
+
+    name = "disk-sector"
+    models = ("3d",)
+    widest_pad = 300.0
+    surfaces = (
+        "pad_face",
+        "pad_back",
+        "pad_inside",
+        "pad_outside",
+        "pad_ends",
+        "disk_face",
+        "disk_rest",
+        "disk_middle",
+        "disk_inside",
+        "disk_outside",
+    )
+
+    type: Literal["disk-sector"]
+
+    @property
+    def press_direction(self) -> tuple[float, ...]:
+        return (0.0, 0.0, -1.0)
+
+    @property
+    def pivot_point(self) -> tuple[float, ...]:
+        """Centre of the pad's face."""
+        r, R, half = self.pad_inner_radius, self.pad_outer_radius, self.pad_angle / 2
+        return (2 / 3 * (R**3 - r**3) / (R**2 - r**2) * math.sin(half) / half, 0.0, 0.0)
+
+    @property
+    def rotation_center(self) -> tuple[float, float]:
+        return (0.0, 0.0)
+
+    @property
+    def duty(self) -> float:
+        return self.pad_angle / (2 * math.pi)
+
+    def build(self, mesh, zone=None):
+        order = min(mesh.degree, _ORDER)
+        pad, disk = self._pad(order, *mesh.face("pad")), self._disk(order, *mesh.face("disk"))
+        pad_radii = (self.pad_inner_radius, self.pad_outer_radius)
+        disk_radii = (self.disk_inner_radius, self.disk_outer_radius)
+        return tagged_bodies(
+            {"pad": pad, "disk": disk},
+            {
+                "pad_face": lambda p: level(p, 0.0),
+                "pad_back": lambda p: level(p, self.pad_thickness),
+                "pad_inside": lambda p: _round(p, pad_radii[0]),
+                "pad_outside": lambda p: _round(p, pad_radii[1]),
+                "pad_ends": lambda p: np.ones(len(p), dtype=bool),
+                "disk_face": lambda p: level(p, 0.0) & self._under_pad(p),
+                "disk_rest": lambda p: level(p, 0.0),
+                "disk_middle": lambda p: level(p, -self.disk_thickness / 2),
+                "disk_inside": lambda p: _round(p, disk_radii[0]),
+                "disk_outside": lambda p: _round(p, disk_radii[1]),
+            },
+        )
+
+    def _pad(self, order: int, elements: int, grading: float) -> Body:
+        radii, angles = self._face(elements, grading)
+        thin, largest = self._sizes(radii, angles, elements)
+        rows = growing(0.0, self.pad_thickness, thin, grading, largest)
+        ends = ends_of(radii), ends_of(angles), ends_of(rows)
+        return mesh_lattice(Lattice(ends, _turned), order)
+
+    def _disk(self, order: int, elements: int, grading: float) -> Body:
+        radii, angles = self._face(elements, grading)
+        thin, largest = self._sizes(radii, angles, elements)
+        inside = growing(self.pad_inner_radius, self.disk_inner_radius, thin, grading, largest)
+        outside = growing(self.pad_outer_radius, self.disk_outer_radius, thin, grading, largest)
+        first, half = thin / self._mean_radius, self.pad_angle / 2
+        before, after = (
+            growing(e, math.copysign(math.pi, e), first, grading, _WIDEST) for e in (-half, half)
+        )
+        rows = growing(0.0, -self.disk_thickness / 2, thin, grading, largest)
+        ends = ends_of(inside + radii + outside), ends_of(before + angles + after), ends_of(rows)
+        return mesh_lattice(Lattice(ends, _turned, closed=True), order)
+
+    def _face(self, elements: int, grading: float) -> tuple[list[Interval], list[Interval]]:
+        """Divisions of the contact along the radius [m] and round the axis [rad]."""
+        width, half = self.pad_outer_radius - self.pad_inner_radius, self.pad_angle / 2
+        sides = np.array([width, self.pad_angle * self._mean_radius])
+        across, along = (max(1, round(elements * side)) for side in sides / sides.max())
+        return (
+            graded_face(self.pad_inner_radius, self.pad_outer_radius, across, grading),
+            graded_face(-half, half, along, grading),
+        )
+
+    def _sizes(self, radii, angles, elements: int) -> tuple[float, float]:
+        """Sizes of elements next to the edges of the contact, and far away at most [m]."""
+        width = self.pad_outer_radius - self.pad_inner_radius
+        thin = min(smallest(radii), smallest(angles) * self._mean_radius)
+        return thin, 3.0 * max(width, self.pad_angle * self._mean_radius) / elements
+
+    @property
+    def _mean_radius(self) -> float:
+        return (self.pad_inner_radius + self.pad_outer_radius) / 2
+
+    def _under_pad(self, p: np.ndarray) -> np.ndarray:
+        """Which facets have all their nodes under the pad or at its edges."""
+        r, angle = np.hypot(p[..., 0], p[..., 1]), np.abs(np.arctan2(p[..., 1], p[..., 0]))
+        between = (r > (1 - SAME) * self.pad_inner_radius) & (
+            r < (1 + SAME) * self.pad_outer_radius
+        )
+        return np.all(between & (angle < (1 + SAME) * self.pad_angle / 2), axis=1)
+
+
+def _turned(p: np.ndarray) -> np.ndarray:
+    """From radius, angle and z to x, y and z."""
+    r, angle, z = np.moveaxis(p, -1, 0)
+    return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=-1)
+
+
+def _round(p: np.ndarray, radius: float) -> np.ndarray:
+    """Which facets have all their nodes at a radius."""
+    return np.all(np.abs(np.hypot(p[..., 0], p[..., 1]) - radius) < 1e-9 * radius, axis=1)

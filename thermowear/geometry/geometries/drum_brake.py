@@ -1,0 +1,123 @@
+"""A brake shoe with its lining that turns about a pivot and presses on the inside of a drum.
+
+The drum's centre is the origin (section across its axis).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Literal
+
+from pydantic import model_validator
+
+from ...case.values.section import KeyFault
+from ...case.values.units import Coordinate, Length
+from ..meshing.polar import Division
+from ..meshing.quads import Sheet
+from .arc_contact import degrees
+from .inside_ring import InsideRing
+
+_LONGEST = math.radians(170.0)
+_ON_THE_LINE = 1e-9
+"""Part of the pivot's distance: an arm as short as that is zero but for rounding."""
+
+
+class DrumBrake(InsideRing):
+    """Sizes of shoe and drum.
+
+    Attributes
+    ----------
+    drum_radius, drum_thickness : float
+        Radius of the drum inside, where the lining touches, and its radial thickness [m].
+    lining_thickness, shoe_thickness : float
+        Radial [m].
+    pivot : tuple of float
+        Point about which the shoe turns; an end of the lining may lie on the line through it and
+        the centre, where turning does not press [m].
+    """
+
+    name = "drum-brake"
+    bodies = ("shoe", "drum")
+    held = "shoe_inside"
+    fixed = "drum_rim"
+    rest = "drum_inside"
+
+    type: Literal["drum-brake"]
+    drum_radius: Length
+    drum_thickness: Length
+    lining_thickness: Length
+    shoe_thickness: Length
+    pivot: tuple[Coordinate, Coordinate]
+
+    @model_validator(mode="after")
+    def _fits(self):
+        if not self.arc_end - self.arc_start <= _LONGEST:
+            raise KeyFault(
+                "arc_end",
+                f"the lining takes {degrees(self.arc_end - self.arc_start)} of the drum; must be "
+                f"at most {degrees(_LONGEST)}",
+            )
+        if not self.held_radius > 0:
+            raise KeyFault(
+                "shoe_thickness",
+                f"{self.shoe_thickness:g} m and the lining must be thinner together than "
+                f"drum_radius {self.drum_radius:g} m",
+            )
+        self._check_pivot()
+        return self
+
+    def _check_pivot(self) -> None:
+        if not math.hypot(*self.pivot) < self.drum_radius:
+            raise KeyFault(
+                "pivot",
+                f"lies {math.hypot(*self.pivot):g} m from the centre; must be less than "
+                f"drum_radius {self.drum_radius:g} m",
+            )
+        ends = [self.normal_arm(angle) for angle in self.arc]
+        rounding = _ON_THE_LINE * math.hypot(*self.pivot)
+        outwards = min(ends) >= -rounding and max(ends) > rounding
+        inwards = max(ends) <= rounding and min(ends) < -rounding
+        if not outwards and not inwards:
+            raise KeyFault(
+                "pivot",
+                f"lies at {degrees(math.atan2(*self.pivot))} clockwise from 12 o'clock (+y); must "
+                f"lie neither within the lining, {degrees(self.arc_start)} to "
+                f"{degrees(self.arc_end)}, nor opposite to it, its ends excepted: turning would "
+                "press one part of the shoe and lift the other",
+            )
+
+    def normal_arm(self, angle: float) -> float:
+        """Outward motion of the shoe's face per anticlockwise turn about the pivot [m/rad]."""
+        x, y = self.pivot
+        return y * math.sin(angle) - x * math.cos(angle)
+
+    @property
+    def pivot_point(self) -> tuple[float, float]:
+        return self.pivot
+
+    @property
+    def press_direction(self) -> tuple[float, float]:
+        """Outwards in the middle of the lining."""
+        middle = (self.arc_start + self.arc_end) / 2
+        return math.sin(middle), math.cos(middle)
+
+    @property
+    def radius(self) -> float:
+        return self.drum_radius
+
+    @property
+    def far_radius(self) -> float:
+        return self.drum_radius + self.drum_thickness
+
+    @property
+    def zones(self) -> dict[str, str]:
+        return {"lining": "shoe"}
+
+    @property
+    def layers(self) -> tuple[float, ...]:
+        return self.lining_thickness, self.shoe_thickness
+
+    def upper_sheets(self, division: Division) -> list[Sheet]:
+        lining, shoe = super().upper_sheets(division)
+        return [replace(lining, zone="lining"), shoe]

@@ -1,0 +1,194 @@
+"""Bodies that were meshed elsewhere and are read from a file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, PrivateAttr, model_serializer, model_validator
+
+from ...case.tables.geometry import keyed
+from ...case.tables.plane_geometry import HalvableGeometry
+from ...case.values.paths import UserFile
+from ...case.values.section import KeyFault
+from ...case.values.units import Area, Length
+from ..reading.assembly import Named, assemble
+from ..reading.cell_sets import Union, divided, joined
+from ..reading.file_contents import read_contents
+from ..reading.mesh_checks import check_mesh
+from ..reading.pair_checks import check_pair
+
+_KEYS = {
+    "body_names": "bodies",
+    "contact_names": "contact",
+    "held_name": "held",
+    "fixed_name": "fixed",
+    "symmetry_names": "symmetry",
+    "surface_names": "surfaces",
+}
+"""Attributes whose keys have the names of what every geometry answers."""
+
+
+def _cell_sets(value: Any) -> Any:
+    names = [value] if isinstance(value, str) else value
+    if isinstance(names, list | tuple) and names and all(isinstance(name, str) for name in names):
+        return value if isinstance(value, str) else tuple(names)
+    raise ValueError(f"found {value!r}; must be text in quotation marks, or a list of such names")
+
+
+CellSets = Annotated[str | tuple[str, ...], BeforeValidator(_cell_sets)]
+
+
+class MeshFile(HalvableGeometry):
+    """Which file, and what is what in it.
+
+    The file names bodies and surfaces by physical groups (gmsh), sets (Abaqus), families (MED) or
+    the numbers of integer cell data (VTK, XDMF). A surface that has no name under ``surfaces``
+    goes by its name in the file.
+
+    Attributes
+    ----------
+    path : str
+        ``.msh``, ``.inp``, ``.vtu``, ``.xdmf`` or ``.med``.
+    length_unit : float
+        What 1 in the file stands for [m].
+    body_names : dict of str to str or tuple of str
+        Key ``bodies``: name in the file of body 1 (held and loaded) and body 2, by their names
+        in the case; several names: the body is all of their cells together.
+    contact_names : tuple of str
+        Key ``contact``: contact faces of body 1 and body 2.
+    held_name, fixed_name : str
+        Keys ``held`` and ``fixed``: surface of body 1 on the holder, fixed surface of body 2.
+    symmetry_names : tuple of str
+        Key ``symmetry``: surfaces on a plane of symmetry x = const.
+    surface_names : dict of str to str
+        Key ``surfaces``: names in the file of further surfaces, or of those above, by their names
+        in the case.
+    contact_area_given : float or None
+        Key ``contact_area``: for a mean pressure [m²].
+    """
+
+    name = "file"
+    models = ("axisymmetric", "plane-strain", "plane-stress")
+    from_file = True
+
+    type: Literal["file"]
+    path: UserFile
+    length_unit: Length = 1.0
+    body_names: dict[str, CellSets] = Field(alias="bodies")
+    contact_names: tuple[str, str] = Field(alias="contact")
+    held_name: str = Field(alias="held")
+    fixed_name: str = Field(alias="fixed")
+    symmetry_names: tuple[str, ...] = Field(alias="symmetry", default=())
+    surface_names: dict[str, str] = Field(alias="surfaces", default={})
+    contact_area_given: Area | None = Field(alias="contact_area", default=None)
+    _with_material: dict[str, tuple[str, ...]] = PrivateAttr(default={})
+
+    @model_validator(mode="after")
+    def _complete(self):
+        if len(self.body_names) != 2:
+            raise KeyFault("bodies", f"needs two, the held one first; found {len(self.body_names)}")
+        if self.half and not self.symmetry:
+            raise KeyFault("half", "needs the surfaces on the plane of symmetry: symmetry = [...]")
+        if self.symmetry and not self.half:
+            raise KeyFault("symmetry", "is for half models; add half = true")
+        roles = {"contact": self.contact, "held": (self.held,), "fixed": (self.fixed,)}
+        seen: set[str] = set()
+        for key, names in roles.items():
+            for name in names:
+                if name in seen:
+                    raise KeyFault(key, f"{name!r} is there twice; each surface has one purpose")
+                seen.add(name)
+        return self
+
+    @model_serializer(mode="wrap")
+    def _by_keys(self, handler) -> dict[str, Any]:
+        keys = _KEYS | {"contact_area_given": "contact_area"}
+        return {keys.get(name, name): value for name, value in handler(self).items()}
+
+    @keyed
+    def bodies(self) -> tuple[str, ...]:
+        return tuple(self.body_names)
+
+    @keyed
+    def contact(self) -> tuple[str, str]:
+        return self.contact_names
+
+    @keyed
+    def held(self) -> str:
+        return self.held_name
+
+    @keyed
+    def fixed(self) -> str:
+        return self.fixed_name
+
+    @property
+    def symmetry(self) -> tuple[str, ...]:
+        return self.symmetry_names
+
+    @keyed
+    def surfaces(self) -> tuple[str, ...]:
+        return tuple(self._purposes())
+
+    def contact_area(self) -> float | None:
+        return self.contact_area_given
+
+    @property
+    def set_of(self) -> dict[str, str]:
+        return {
+            f"{body}.{name}": name for body, names in self._with_material.items() for name in names
+        }
+
+    @property
+    def zones(self) -> dict[str, str]:
+        return {
+            f"{body}.{name}": body for body, sets in self._with_material.items() for name in sets
+        }
+
+    @property
+    def facing(self) -> tuple[str | None, str | None]:
+        first, second = (None if name in self._with_material else name for name in self.bodies)
+        return first, second
+
+    def sets_of(self, body: str) -> tuple[str, ...]:
+        names = self.body_names[body]
+        return (names,) if isinstance(names, str) else names
+
+    def with_cell_sets(self, sets: dict[str, tuple[str, ...]]) -> MeshFile:
+        result = self.model_copy()
+        result._with_material = {body: sets[body] for body in self.bodies if body in sets}
+        return result
+
+    def build(self, mesh, zone):
+        contents = read_contents(Path(self.path))
+        unions = [
+            Union(name, self.sets_of(name), f"geometry.bodies.{name}") for name in self.bodies
+        ]
+        contents = replace(contents, points=contents.points * self.length_unit)
+        contents, bodies = joined(contents, unions)
+        tagged = assemble(contents, bodies, list(self._purposes().values()))
+        owners = [self.bodies.index(body) for body in self.zones.values()]
+        sets = [
+            Named(zone, name, f"bodies.{zone.removesuffix(name)}materials.{name}", owner)
+            for (zone, name), owner in zip(self.set_of.items(), owners, strict=True)
+        ]
+        return divided(tagged, contents, bodies, sets)
+
+    def check(self, mesh, case):
+        check_mesh(mesh, self, case.model)
+        check_pair(mesh, case)
+
+    def _purposes(self) -> dict[str, Named]:
+        """All surfaces by their names in the case."""
+        (upper, lower) = self.contact_names
+        uses: list[tuple[str, str, int | None]] = [("contact", upper, 0), ("contact", lower, 1)]
+        uses += [("held", self.held_name, 0), ("fixed", self.fixed_name, 1)]
+        uses += [("symmetry", name, None) for name in self.symmetry_names]
+        uses += [("surfaces", name, None) for name in self.surface_names]
+        result: dict[str, Named] = {}
+        for use, name, body in uses:
+            renamed = name in self.surface_names
+            key = f"geometry.surfaces.{name}" if renamed else f"geometry.{use}"
+            result.setdefault(name, Named(name, self.surface_names.get(name, name), key, body))
+        return result

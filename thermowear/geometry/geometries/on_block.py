@@ -1,0 +1,194 @@
+"""What geometries share whose body 1 is pressed on a rectangular block at the origin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar
+
+import numpy as np
+
+from ...case.tables.geometry import Geometry, keyed
+from ...case.tables.plane_geometry import HalvableGeometry
+from ...case.values.units import Length
+from ...errors import CaseError
+from ..meshing.face_ends import face_ends, growth, row_ratio
+from ..meshing.outlines import Block, ringed_body
+from ..meshing.quads import Body, mesh_body, tagged_bodies
+
+ORDER = 3
+"""Of the cells; nodes lie on an arc, points between them within 3e-4 h⁴/R³ of it."""
+
+_THINNEST = 1e-6
+"""Width of a contact at least, as a part of the block's half width: 10 000 times the tolerance for
+places in the mesh, and finer than any element."""
+
+Claim = Callable[[np.ndarray], np.ndarray]
+"""Which edges, given by the places of their nodes, lie on a surface."""
+
+
+class OnBlock(Geometry):
+    """Base: a block below y = 0, with the contact in the middle of its top.
+
+    Attributes
+    ----------
+    block_height : float [m]
+    block_key : str
+        Key of the block's size along the contact.
+    """
+
+    name: ClassVar[str] = ""
+    block_key: ClassVar[str]
+
+    block_height: Length
+
+    @keyed
+    def contact(self) -> tuple[str, str]:
+        upper, block = self.bodies
+        return f"{upper}_face", f"{block}_face"
+
+    @keyed
+    def held(self) -> str:
+        return f"{self.bodies[0]}_top"
+
+    @keyed
+    def fixed(self) -> str:
+        return f"{self.bodies[1]}_bottom"
+
+    @keyed
+    def surfaces(self) -> tuple[str, ...]:
+        upper, block = self.bodies
+        return (
+            *(f"{upper}_{part}" for part in ("face", "side", "top")),
+            *(f"{block}_{part}" for part in ("face", "top", "side", "bottom")),
+            *self.symmetry,
+        )
+
+    @property
+    def right_only(self) -> bool:
+        """Whether only x >= 0 is meshed."""
+        return True
+
+    @property
+    def block_reach(self) -> float:
+        """Distance of the block's side from x = 0 [m]."""
+        raise NotImplementedError
+
+    def upper_limits(self) -> dict[str, float]:
+        """Keys of body 1 that bound the contact, and how far from x = 0 it can reach [m]."""
+        raise NotImplementedError
+
+    def upper_body(self, mesh, zone: tuple[float, float]) -> tuple[Body, dict[str, Claim]]:
+        """Mesh body 1 for a zone of contact.
+
+        Returns
+        -------
+        Body
+        claims : dict of str to callable
+            Of its surfaces by the last word of their names, see `tagged_bodies`.
+        """
+        raise NotImplementedError
+
+    def block_ends(self, mesh, zone: tuple[float, float]) -> tuple[np.ndarray, float, float]:
+        """How the block is divided at the contact.
+
+        Returns
+        -------
+        ends : ndarray
+            Of elements on the contact face and beside it, see `face_ends`.
+        first, ratio : float
+            Size of the first row below it [m], and of each row to the one before.
+        """
+        elements, grading = mesh.face(self.bodies[1])
+        limit = 0.9 * self.block_reach
+        ends, largest = face_ends(zone, elements, grading, self.right_only, (-limit, limit))
+        return ends, largest, row_ratio(elements)
+
+    def block_span(self, ends: np.ndarray) -> tuple[float, float]:
+        """Range of x of the block's contact face."""
+        return float(ends[0]), float(ends[-1])
+
+    def build(self, mesh, zone):
+        self.check_zone(zone)
+        upper, block = self.bodies
+        upper_body, upper_claims = self.upper_body(mesh, zone)
+        ends, *rows = self.block_ends(mesh, zone)
+        outline = Block(self.block_reach, self.block_height, self.right_only)
+        sheets = ringed_body(outline, ends, rows, growth(mesh.face(block)[0]))
+        claims = {f"{upper}_{part}": claim for part, claim in upper_claims.items()}
+        claims |= {f"{block}_{part}": c for part, c in self._claims(self.block_span(ends)).items()}
+        for axis in self.symmetry:
+            claims[axis] = lambda p: near(p[..., 0], 0.0, self.block_reach)
+        bodies = {upper: upper_body, block: mesh_body(sheets, ORDER)}
+        return tagged_bodies(bodies, {surface: claims[surface] for surface in self.surfaces})
+
+    def check_zone(self, zone: tuple[float, float]) -> None:
+        outer = zone[1] if self.right_only else max(-zone[0], zone[1])
+        if not outer > max(zone[0], 0.0):
+            raise CaseError(
+                f"geometry: a contact from x = {zone[0]:.3g} to {zone[1]:.3g} m is none"
+            )
+        least = _THINNEST * self.block_reach
+        if not zone[1] - zone[0] >= least:
+            raise CaseError(
+                f"geometry: the contact is expected to be {zone[1] - zone[0]:.3g} m wide; beside "
+                f"this {self.block_key} it can be meshed from {least:.3g} m on"
+            )
+        limits = self.upper_limits() | {self.block_key: 0.75 * self.block_reach}
+        for key, limit in limits.items():
+            if not outer <= limit:
+                raise CaseError(
+                    f"geometry.{key}: too small for the contact, which is expected up to "
+                    f"x = {outer:.3g} m; it can be meshed up to {limit:.3g} m"
+                )
+
+    def _claims(self, span: tuple[float, float]) -> dict[str, Claim]:
+        """Of the block's surfaces."""
+        reach = self.block_reach
+
+        def on_top(p):
+            return near(p[..., 1], 0.0, reach)
+
+        return {
+            "face": lambda p: on_top(p) & within(p, span),
+            "top": on_top,
+            "side": lambda p: near(np.abs(p[..., 0]), reach, reach),
+            "bottom": lambda p: near(p[..., 1], -self.block_height, reach),
+        }
+
+
+class PlaneOnBlock(OnBlock, HalvableGeometry):
+    """Base of those for plane models.
+
+    Attributes
+    ----------
+    block_width : float
+        The block ranges over |x| <= block_width / 2 [m].
+    """
+
+    name: ClassVar[str] = ""
+    models = ("plane-strain", "plane-stress")
+    block_key = "block_width"
+
+    block_width: Length
+
+    @property
+    def symmetry(self) -> tuple[str, ...]:
+        return tuple(f"{body}_axis" for body in self.bodies) if self.half else ()
+
+    @property
+    def right_only(self) -> bool:
+        return self.half
+
+    @property
+    def block_reach(self) -> float:
+        return self.block_width / 2
+
+
+def near(values: np.ndarray, target: float, size: float) -> np.ndarray:
+    """Which edges have all their nodes at a value, for a body of a size."""
+    return np.all(np.abs(values - target) < 1e-9 * size, axis=1)
+
+
+def within(p: np.ndarray, span: tuple[float, float]) -> np.ndarray:
+    """Which edges have their middle in a range of x."""
+    return np.array([span[0] < x < span[1] for x in p[..., 0].mean(axis=1)], dtype=bool)

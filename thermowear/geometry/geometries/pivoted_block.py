@@ -1,0 +1,56 @@
+"""A block that turns about a pivot beside it and rubs on a strip that moves along x.
+
+The pivot lies at x = 0, above the contact at y = 0. The block hangs on it by a rigid arm that holds
+the whole of its top.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import model_validator
+
+from ...case.values.section import KeyFault
+from ...case.values.units import Distance, Length
+from .on_strip import OnStrip
+from .stacked import Section
+
+
+class PivotedBlock(OnStrip):
+    """Sizes of block and strip.
+
+    Attributes
+    ----------
+    face_start, face_end : float
+        x at the ends of the block's face, measured from the pivot [m].
+    block_height : float [m]
+    pivot_height : float
+        Of the pivot above the face [m].
+    """
+
+    name = "pivoted-block"
+    bodies = ("block", "strip")
+
+    type: Literal["pivoted-block"]
+    face_start: Length
+    face_end: Length
+    block_height: Length
+    pivot_height: Distance
+
+    @model_validator(mode="after")
+    def _fits(self):
+        if not self.face_start < self.face_end:
+            raise KeyFault(
+                "face_start",
+                f"{self.face_start:g} m must be less than face_end {self.face_end:g} m",
+            )
+        self.check_strip()
+        return self
+
+    @property
+    def pivot_point(self) -> tuple[float, float]:
+        return 0.0, self.pivot_height
+
+    @property
+    def upper(self) -> Section:
+        return Section(self.face_start, self.face_end, self.block_height)

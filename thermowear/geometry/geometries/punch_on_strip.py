@@ -1,0 +1,57 @@
+"""A flat punch with sharp edges on a strip that moves along x under it, or that it rubs to and fro.
+
+The contact lies at y = 0 and is centred at x = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+from pydantic import model_validator
+
+from ...case.values.units import Distance, Length
+from ..meshing.blocks import Interval
+from .on_strip import OnStrip
+from .stacked import Section
+
+
+class PunchOnStrip(OnStrip):
+    """Sizes of punch and strip.
+
+    Attributes
+    ----------
+    width, height : float
+        Of the punch [m].
+    stroke : float
+        How far to each side the punch slides along a strip that stays where it is: the strip is
+        meshed for contact there too [m].
+    """
+
+    name = "punch-on-strip"
+    bodies = ("punch", "strip")
+
+    type: Literal["punch-on-strip"]
+    width: Length
+    height: Length
+    stroke: Distance = 0.0
+
+    @model_validator(mode="after")
+    def _fits(self):
+        self.check_strip()
+        return self
+
+    @property
+    def upper(self) -> Section:
+        return Section(-self.width / 2, self.width / 2, self.height)
+
+    @property
+    def lower_face(self) -> tuple[float, float]:
+        reach = self.width / 2 + self.stroke
+        return -reach, reach
+
+    def _lower_face(self, elements, grading, zone):
+        if self.stroke == 0.0:
+            return super()._lower_face(elements, grading, zone)
+        start, end = self.lower_face  # the edges of the contact are everywhere: nothing to grade
+        return [Interval(start, end, math.ceil(elements * (end - start) / self.width - 1e-9))]

@@ -1,0 +1,72 @@
+"""A segment of a ring that is pressed upwards on the inside of a turning, ring-shaped disk.
+
+The centre of both is the origin (section across the axis).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+from pydantic import model_validator
+
+from ...case.values.section import KeyFault
+from ...case.values.units import Length
+from .inside_ring import InsideRing
+
+_STEEPEST = math.radians(85.0)
+
+
+class RingSegmentOnDisk(InsideRing):
+    """Sizes of segment and disk.
+
+    Attributes
+    ----------
+    disk_radius, disk_outer_radius : float
+        Radii of the disk inside, where they touch, and outside [m].
+    segment_thickness : float
+        Radial [m].
+    """
+
+    name = "ring-segment-on-disk"
+    bodies = ("segment", "disk")
+    held = "segment_inside"
+    fixed = "disk_rim"
+    rest = "disk_inside"
+
+    type: Literal["ring-segment-on-disk"]
+    disk_radius: Length
+    disk_outer_radius: Length
+    segment_thickness: Length
+
+    @model_validator(mode="after")
+    def _fits(self):
+        self.check_arc(_STEEPEST)
+        radius = self.disk_radius
+        if not self.disk_outer_radius > radius:
+            raise KeyFault(
+                "disk_outer_radius",
+                f"{self.disk_outer_radius:g} m must be greater than disk_radius {radius:g} m",
+            )
+        if not self.segment_thickness < radius:
+            raise KeyFault(
+                "segment_thickness",
+                f"{self.segment_thickness:g} m must be less than disk_radius {radius:g} m",
+            )
+        return self
+
+    @property
+    def press_direction(self) -> tuple[float, float]:
+        return (0.0, 1.0)
+
+    @property
+    def radius(self) -> float:
+        return self.disk_radius
+
+    @property
+    def far_radius(self) -> float:
+        return self.disk_outer_radius
+
+    @property
+    def layers(self) -> tuple[float, ...]:
+        return (self.segment_thickness,)

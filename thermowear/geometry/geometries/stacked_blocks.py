@@ -1,0 +1,92 @@
+"""Two blocks of one width, one on the other, between planes of symmetry.
+
+A column cut out of bodies that are wide and alike everywhere, or half a wave of a state that
+repeats itself along x. The contact lies at y = 0, from x = 0 to the width. Sliding is across the
+section: friction heats and wears the blocks, but drags nothing within it.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from ...case.tables.plane_geometry import PlaneGeometry
+from ...case.values.units import Length
+from ..meshing.blocks import growing, sizes
+from ..meshing.quads import Body, Sheet, grid, mesh_body, tagged_bodies
+from .on_block import Claim, near
+
+_THIN_ROWS = 3
+"""Rows at the contact that shrink by the grading: what heat reaches first, and waves along it."""
+
+
+class StackedBlocks(PlaneGeometry):
+    """Sizes of both blocks.
+
+    Nothing is singular where the face meets a plane of symmetry: its elements are equal. There are
+    about as many rows as elements along the face, and some thin ones at the contact.
+
+    Attributes
+    ----------
+    width : float [m]
+    upper_height, lower_height : float [m]
+    """
+
+    name = "stacked-blocks"
+    models = ("plane-strain", "plane-stress")
+    bodies = ("upper", "lower")
+    surfaces = (
+        "upper_face",
+        "upper_top",
+        "upper_side",
+        "lower_face",
+        "lower_bottom",
+        "lower_side",
+    )
+    contact = ("upper_face", "lower_face")
+    held = "upper_top"
+    fixed = "lower_bottom"
+    slides_across: ClassVar[bool] = True
+
+    type: Literal["stacked-blocks"]
+    width: Length
+    upper_height: Length
+    lower_height: Length
+
+    @property
+    def symmetry(self) -> tuple[str, ...]:
+        return "upper_side", "lower_side"
+
+    def contact_area(self) -> float:
+        return self.width * self.thickness
+
+    def build(self, mesh, zone=None):
+        ends = {"upper": self.upper_height, "lower": -self.lower_height}
+        claims = {}
+        for body, end in ends.items():
+            far = "top" if end > 0 else "bottom"
+            claims[f"{body}_face"] = _level(0.0, self.width)
+            claims[f"{body}_{far}"] = _level(end, abs(end))
+            claims[f"{body}_side"] = self._on_sides
+        blocks = {body: self._block(end, *mesh.face(body)) for body, end in ends.items()}
+        return tagged_bodies(blocks, claims)
+
+    def _block(self, end: float, elements: int, grading: float) -> Body:
+        """A block from the contact to y = `end`."""
+        largest = abs(end) / elements
+        first = largest * grading**_THIN_ROWS
+        steps = sizes(growing(0.0, abs(end), first, grading, largest))
+        rows = np.concatenate([[0.0], np.cumsum(steps)])
+        rows *= end / rows[-1]
+        columns = np.linspace(0.0, self.width, elements + 1)
+        return mesh_body([Sheet(grid(columns, rows), lambda p: p)], order=1)
+
+    def _on_sides(self, places: np.ndarray) -> np.ndarray:
+        x = places[..., 0]
+        return near(x, 0.0, self.width) | near(x, self.width, self.width)
+
+
+def _level(y: float, size: float) -> Claim:
+    """Of a level surface."""
+    return lambda places: near(places[..., 1], y, size)

@@ -1,0 +1,142 @@
+"""A tube that rests in the wider hole of a support (section across the tube).
+
+They touch at the origin, at the bottom of both; the tube is pressed down.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from ...case.tables.geometry import Pressing
+from ...case.tables.plane_geometry import PlaneGeometry
+from ...case.values.section import KeyFault
+from ...case.values.units import Length
+from ...errors import CaseError
+from ..meshing.polar import Polar, incomplete
+from ..meshing.quads import mesh_body, tagged_bodies
+from .on_block import ORDER
+
+_THINNEST = 1e-6
+"""Width of a contact at least, as a part of the tube's radius."""
+
+_EXPECTED, _LARGEST, _FACE = map(math.radians, (60.0, 75.0, 80.0))
+"""Angles from the bottom: of an expected contact at most, of one that can be meshed, of a face."""
+
+
+class TubeInSupport(PlaneGeometry):
+    """Sizes of tube and support.
+
+    Attributes
+    ----------
+    tube_radius, tube_wall : float
+        Radius outside and thickness of the tube [m].
+    support_clearance : float
+        What the radius of the hole is larger than that of the tube [m].
+    support_thickness : float
+        Of the support round its hole [m].
+    zone : float or None
+        Half-width of the contact that the mesh is made for, by default the expected one of the
+        unworn bodies: more where it moves, or grows by wear [m].
+    """
+
+    name = "tube-in-support"
+    models = ("plane-strain", "plane-stress")
+    bodies = ("tube", "support")
+    surfaces = (
+        "tube_face",
+        "tube_outside",
+        "tube_bore",
+        "support_face",
+        "support_hole",
+        "support_rim",
+    )
+    contact = ("tube_face", "support_face")
+    held = "tube_bore"
+    fixed = "support_rim"
+
+    type: Literal["tube-in-support"]
+    tube_radius: Length
+    tube_wall: Length
+    support_clearance: Length
+    support_thickness: Length
+    zone: Length | None = None
+
+    @model_validator(mode="after")
+    def _fits(self):
+        if not self.tube_wall < self.tube_radius:
+            raise KeyFault(
+                "tube_wall",
+                f"{self.tube_wall:g} m must be less than tube_radius {self.tube_radius:g} m",
+            )
+        return self
+
+    @property
+    def hole_radius(self) -> float:
+        return self.tube_radius + self.support_clearance
+
+    def expected_zone(self, pressing: Pressing) -> tuple[float, float]:
+        """Hertz's half-width laid round the tube; contacts that conform are shorter than that."""
+        if self.zone is not None:
+            return -self.zone, self.zone
+        radius = self.tube_radius * self.hole_radius / self.support_clearance
+        if pressing.force is not None:
+            line_load = pressing.force / self.thickness
+            a = math.sqrt(4 * line_load * radius / (math.pi * pressing.modulus))
+        else:
+            assert pressing.approach is not None
+            a = 0.7 * math.sqrt(radius * pressing.approach)
+        x = self.tube_radius * math.sin(min(a / self.tube_radius, _EXPECTED))
+        return -x, x
+
+    def check_zone(self, zone):
+        self._angles(zone)
+
+    def build(self, mesh, zone):
+        radius, hole = self.tube_radius, self.hole_radius
+        angles = self._angles(zone)
+        tube_face, hole_face = (
+            incomplete(angles, radius, mesh.face(body), _FACE) for body in self.bodies
+        )
+        hole_face = replace(hole_face, angles=self._opposite(hole_face.angles))
+        tube, support = Polar(radius, downwards=True), Polar(hole, downwards=True)
+        bore, rim = radius - self.tube_wall, hole + self.support_thickness
+        bodies = {
+            "tube": [tube.sheet(tube_face.all_round(), tube_face.rows(radius, bore))],
+            "support": [support.sheet(hole_face.all_round(), hole_face.rows(hole, rim))],
+        }
+        claims = {
+            "tube_face": lambda p: tube.on_arc(p, radius, tube_face.span),
+            "tube_outside": lambda p: tube.on_circle(p, radius),
+            "tube_bore": lambda p: tube.on_circle(p, bore),
+            "support_face": lambda p: support.on_arc(p, hole, hole_face.span),
+            "support_hole": lambda p: support.on_circle(p, hole),
+            "support_rim": lambda p: support.on_circle(p, rim),
+        }
+        return tagged_bodies({name: mesh_body(s, ORDER) for name, s in bodies.items()}, claims)
+
+    def _angles(self, zone: tuple[float, float]) -> tuple[float, float]:
+        """A zone of contact as angles of the tube."""
+        outer, limit = max(map(abs, zone)), self.tube_radius * math.sin(_LARGEST)
+        if not zone[1] - zone[0] > _THINNEST * self.tube_radius:
+            raise CaseError(
+                f"geometry: a contact from x = {zone[0]:.3g} to {zone[1]:.3g} m is none"
+            )
+        if not outer <= limit:
+            raise CaseError(
+                f"geometry.{'support_clearance' if self.zone is None else 'zone'}: too "
+                f"{'small' if self.zone is None else 'large'} for the contact, which is expected "
+                f"up to x = {outer:.3g} m; it can be meshed up to {limit:.3g} m"
+            )
+        first, last = (math.asin(x / self.tube_radius) for x in zone)
+        return first, last
+
+    def _opposite(self, angles: np.ndarray) -> np.ndarray:
+        """Angles about the centre of the hole where the tube's normals meet it."""
+        apart, across, up = self.support_clearance, np.sin(angles), np.cos(angles)
+        length = np.sqrt(self.hole_radius**2 - (apart * across) ** 2) - apart * up
+        return np.arctan2(length * across, apart + length * up)

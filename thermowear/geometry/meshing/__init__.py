@@ -1,0 +1,1 @@
+"""Structured meshing: blocks, rings, outlines, graded ends."""

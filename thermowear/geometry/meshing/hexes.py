@@ -1,0 +1,73 @@
+"""Hexahedra on a lattice of three parameters that a map places in space.
+
+Nodes of cells of any order are the images of equally spaced parameters, so nodes of a curved
+boundary lie on it exactly and the inner ones follow the map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..mesh.limits import MOST_HEXAHEDRA, check_count
+from ..mesh.nodes import reference_nodes
+from ..mesh.orders import boundary
+from .blocks import Interval, sizes
+from .quads import Body
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Cells in the space of three parameters.
+
+    Attributes
+    ----------
+    ends : tuple of ndarray
+        Ends of elements along each parameter, increasing.
+    place : callable
+        From parameters to coordinates, both of shape (..., 3) [m]; it keeps the sense of
+        orientation.
+    closed : bool
+        Whether the second parameter, an angle, ends where it starts.
+    """
+
+    ends: tuple[np.ndarray, np.ndarray, np.ndarray]
+    place: Callable[[np.ndarray], np.ndarray]
+    closed: bool = False
+
+
+def mesh_lattice(lattice: Lattice, order: int) -> Body:
+    """Cells of an order on a lattice."""
+    check_count(*(len(ends) - 1 for ends in lattice.ends), most=MOST_HEXAHEDRA)
+    u, v, w = (_nodes(ends, order) for ends in lattice.ends)
+    if lattice.closed:
+        v = v[:-1]
+    shape = (len(u), len(v), len(w))
+    points = lattice.place(np.stack(np.meshgrid(u, v, w, indexing="ij"), axis=-1).reshape(-1, 3))
+    first = np.indices([len(ends) - 1 for ends in lattice.ends]).reshape(3, -1, 1) * order
+    within = np.rint(order * reference_nodes("hexahedron", order)).astype(np.int64)
+    place = first + within.T[:, None]
+    place[1] %= len(v)
+    cells = np.ravel_multi_index(tuple(place), shape)
+    return Body(points, cells, boundary("hexahedron", order, cells))
+
+
+def ends_of(intervals: list[Interval]) -> np.ndarray:
+    """Ends of the elements of consecutive intervals."""
+    ends = intervals[0].start + np.concatenate([[0.0], np.cumsum(sizes(intervals))])
+    ends[-1] = intervals[-1].end
+    return ends
+
+
+def level(places: np.ndarray, z: float) -> np.ndarray:
+    """Which facets, by the places of their nodes (n, nodes, 3), lie at a height."""
+    return np.all(np.abs(places[..., 2] - z) < 1e-9 * np.ptp(places[..., :2]), axis=1)
+
+
+def _nodes(ends: np.ndarray, order: int) -> np.ndarray:
+    """Parameters of the nodes of a row of elements."""
+    within = np.arange(order) / order
+    inner = ends[:-1, None] + np.diff(ends)[:, None] * within
+    return np.append(inner.ravel(), ends[-1])

@@ -1,0 +1,177 @@
+"""Curved quadrilaterals made without a mesh generator: corners on a sheet of paper, then bent.
+
+A sheet holds cells by their corners in two plane parameters and the map that places them in the
+section. Nodes of cells of any order are the images of equally spaced points, so nodes of a curved
+boundary lie on it exactly and the inner ones follow the map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..mesh.limits import check_count
+from ..mesh.nodes import reference_nodes
+from ..mesh.orders import boundary
+from ..mesh.tagged import TaggedMesh
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Cells in the plane of two parameters.
+
+    Attributes
+    ----------
+    corners : ndarray, shape (n_cells, 4, 2)
+        In order round each cell, either way round.
+    place : callable
+        From parameters to coordinates, both of shape (..., 2) [m].
+    zone : str
+        Part of the body with a material of its own; empty for the body itself.
+    """
+
+    corners: np.ndarray
+    place: Callable[[np.ndarray], np.ndarray]
+    zone: str = ""
+
+
+@dataclass(frozen=True)
+class Body:
+    """A meshed body, of quadrilaterals in the plane or of hexahedra in space.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n_points, gdim) [m]
+    cells : ndarray of int64, shape (n_cells, (order + 1)**gdim)
+        In gmsh's order of nodes.
+    facets : ndarray of int64, shape (n_facets, (order + 1)**(gdim - 1))
+        Of the boundary, in gmsh's order of nodes.
+    zones : dict of str to ndarray of int
+        Cells of its zones.
+    """
+
+    points: np.ndarray
+    cells: np.ndarray
+    facets: np.ndarray
+    zones: dict[str, np.ndarray] = field(default_factory=dict)
+
+
+def grid(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Corners of the cells of a tensor grid, shape (n_columns * n_rows, 4, 2)."""
+    check_count(len(columns) - 1, len(rows) - 1)
+    x, y = np.meshgrid(columns, rows, indexing="ij")
+    p = np.stack([x, y], axis=-1)
+    corners = np.stack([p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]], axis=2)
+    return corners.reshape(-1, 4, 2)
+
+
+def ruled(
+    curve: Callable[[np.ndarray], np.ndarray], line: np.ndarray, along: np.ndarray, v: np.ndarray
+) -> Sheet:
+    """Cells between a curve and a straight line.
+
+    Their columns widen or narrow from the given ones on the curve to equal ones on the line.
+
+    Parameters
+    ----------
+    curve : callable
+        Point at a parameter.
+    line : ndarray, shape (2, 2)
+        Ends of the line, opposite to the first and last of `along` [m].
+    along : ndarray
+        Parameters of the curve at the ends of columns, increasing.
+    v : ndarray
+        Ends of rows, from 0 on the curve to 1 on the line.
+    """
+    extent = along[-1] - along[0]
+    t, count = (along - along[0]) / extent, len(along) - 1
+
+    def place(p):
+        across, down = p[..., 0, None], p[..., 1, None]
+        on_curve = curve(along[0] + across[..., 0] * extent)
+        return (1 - down) * on_curve + down * ((1 - across) * line[0] + across * line[1])
+
+    cells = grid(np.arange(count + 1.0), v)
+    column, row = cells[..., 0].astype(int), cells[..., 1]
+    cells[..., 0] = (1 - row) * t[column] + row * column / count
+    return Sheet(cells, place)
+
+
+def mesh_body(sheets: list[Sheet], order: int) -> Body:
+    """Cells of all sheets, joined where their nodes coincide."""
+    nodes = np.concatenate([_nodes(sheet, order) for sheet in sheets])
+    points, cells = _joined(nodes)
+    zone = np.repeat([sheet.zone for sheet in sheets], [len(sheet.corners) for sheet in sheets])
+    zones = {str(name): np.flatnonzero(zone == name) for name in np.unique(zone) if name}
+    return Body(points, cells, boundary("quadrilateral", order, cells), zones)
+
+
+def tagged_bodies(
+    bodies: dict[str, Body], surfaces: dict[str, Callable[[np.ndarray], np.ndarray]]
+) -> TaggedMesh:
+    """Put meshed bodies together and name their boundary.
+
+    Parameters
+    ----------
+    bodies : dict of str to Body
+        Body 1 first.
+    surfaces : dict of str to callable
+        Body and surface in one name, ``body_surface``. From the coordinates of the nodes of
+        boundary facets, shape (n_facets, nodes, gdim), to whether each facet lies on the surface;
+        a facet belongs to the first surface of its body that claims it.
+    """
+    names = [*bodies, *(zone for body in bodies.values() for zone in body.zones)]
+    shift, points, cells, cell_tags, facets, facet_tags = 0, [], [], [], [], []
+    for tag, (name, body) in enumerate(bodies.items(), start=1):
+        places = body.points[body.facets]
+        marks = np.zeros(len(body.facets), dtype=np.int32)
+        for mark, (surface, claims) in enumerate(surfaces.items(), start=1):
+            if surface.startswith(f"{name}_"):
+                marks[(marks == 0) & claims(places)] = mark
+        points.append(body.points)
+        cells.append(body.cells + shift)
+        cell_tags.append(np.full(len(body.cells), tag, dtype=np.int32))
+        for zone, members in body.zones.items():
+            cell_tags[-1][members] = names.index(zone) + 1
+        facets.append(body.facets[marks > 0] + shift)
+        facet_tags.append(marks[marks > 0])
+        shift += len(body.points)
+    return TaggedMesh(
+        points=np.concatenate(points),
+        cell_type="quadrilateral" if points[0].shape[1] == 2 else "hexahedron",
+        cells=np.concatenate(cells),
+        cell_tags=np.concatenate(cell_tags),
+        facets=np.concatenate(facets),
+        facet_tags=np.concatenate(facet_tags),
+        bodies=tuple(names),
+        surfaces=tuple(surfaces),
+    )
+
+
+def _nodes(sheet: Sheet, order: int) -> np.ndarray:
+    """Nodes of all cells of a sheet, shape (n_cells, (order + 1)², 2) [m]."""
+    placed = sheet.place(sheet.corners)
+    diagonals = placed[:, 2] - placed[:, 0], placed[:, 3] - placed[:, 1]
+    inverted = diagonals[0][:, 0] * diagonals[1][:, 1] < diagonals[0][:, 1] * diagonals[1][:, 0]
+    corners = sheet.corners.copy()
+    corners[inverted] = corners[inverted][:, ::-1]
+    x, y = reference_nodes("quadrilateral", order).T
+    weights = np.stack([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y], axis=1)
+    return sheet.place(np.einsum("kc,nci->nki", weights, corners))
+
+
+def _joined(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """One point for coinciding nodes: coordinates, and the points of each cell."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    sides = np.linalg.norm(nodes[:, [1, 2, 3, 0]] - nodes[:, :4], axis=2)
+    flat = nodes.reshape(-1, 2)
+    pairs = cKDTree(flat).query_pairs(1e-3 * sides.min(), output_type="ndarray")
+    links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(flat), len(flat)))
+    _, label = connected_components(links, directed=False)
+    _, first = np.unique(label, return_index=True)
+    return flat[first], label.reshape(nodes.shape[:2]).astype(np.int64)

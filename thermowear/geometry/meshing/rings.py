@@ -1,0 +1,206 @@
+"""A structured mesh of a body round its contact: a fine patch, then rings that grow outwards.
+
+The patch below the contact face is a tensor grid. Each ring adds a block under the patch and one
+beside it (on both sides, or on the right only where a plane of symmetry bounds the body on the
+left). Blocks meet on the diagonal. Where cells would become too slender, three of them are joined
+into one across a ring.
+
+Lengths along the face are measured along its curve ("along"), depths from the face into the body.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..mesh.limits import check_count
+from .quads import Sheet, ruled
+
+_SLENDER = 2.9
+"""Ratio of a ring's width to its cells' size from which three cells are joined."""
+
+_TALL = 5.4
+"""Ratio from which they are joined in a narrower ring of their own."""
+
+_IN_RING = 500
+"""Cells that a ring may have, for an estimate of how many there will be."""
+
+
+class Outline(Protocol):
+    """A body's shape, seen from its contact face.
+
+    Attributes
+    ----------
+    reach : tuple of float
+        `along` at the left and the right end of the body [m].
+    depth : float
+        Of the side opposite to the face [m].
+    """
+
+    @property
+    def reach(self) -> tuple[float, float]: ...
+
+    @property
+    def depth(self) -> float: ...
+
+    def face(self, along: np.ndarray) -> np.ndarray:
+        """Points on the face, shape (..., 2) [m]."""
+
+    def inside(self, along: np.ndarray, depth: np.ndarray) -> np.ndarray:
+        """Corners of rings; at `reach` and `depth` on the body's boundary, shape (..., 2) [m]."""
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Where rings begin and end: `along` on the left and on the right, depth; shape (n + 1,)."""
+
+    left: np.ndarray
+    right: np.ndarray
+    depth: np.ndarray
+
+
+def ring_levels(outline: Outline, face: tuple[float, float], depth: float, growth: float) -> Levels:
+    """Rings from a patch to the end of a body, each about `growth` times the one before it.
+
+    The patch ranges over `face` and to `depth`. A left end at `reach` itself is a plane of
+    symmetry.
+    """
+    middle = face[0] if face[0] == outline.reach[0] else (face[0] + face[1]) / 2
+    starts = np.array([middle - face[0], face[1] - middle, depth])
+    ends = np.array([middle - outline.reach[0], outline.reach[1] - middle, outline.depth])
+    largest = (growth - 1) * ends[ends > 0].min()
+    steps = [_growing(a, b, growth, largest) for a, b in zip(starts, ends, strict=True)]
+    count = max(map(len, steps))
+    left, right, down = (np.pad(s, (0, count - len(s)), mode="edge") for s in steps)
+    return Levels(middle - left, middle + right, down)
+
+
+def _growing(start: float, end: float, growth: float, largest: float) -> np.ndarray:
+    """Distances from start to end that grow geometrically, by steps up to `largest`."""
+    if start == end:
+        return np.array([start])
+    check_count((end - start) / largest, _IN_RING)
+    found = [start]
+    while found[-1] < end:
+        found.append(found[-1] + min((growth - 1) * found[-1], largest))
+    if len(found) > 2 and end / found[-2] < found[-1] / end:
+        found.pop()
+    result = start + (np.array(found) - start) * (end - start) / (found[-1] - start)
+    result[-1] = end
+    return result
+
+
+def ringed(outline: Outline, face: np.ndarray, rows: np.ndarray, levels: Levels) -> list[Sheet]:
+    """The cells of a body.
+
+    Parameters
+    ----------
+    outline : Outline
+    face : ndarray
+        `along` at the ends of the elements of the patch, increasing.
+    rows : ndarray
+        Depths at the ends of its rows, from 0 to the depth of the first level.
+    levels : Levels
+    """
+    inner = outline.inside(face[[0, -1]], rows[[-1, -1]])
+    sheets = [ruled(outline.face, inner, face, rows / rows[-1])]
+    parts = [np.linspace(0.0, 1.0, len(face)), rows / rows[-1], rows / rows[-1]]
+    stack = np.array([levels.left, levels.right, levels.depth])
+    k = 0
+    while k < stack.shape[1] - 1:
+        left, right, depth = stack[:, k : k + 2]
+        widths = _widths(left, right, depth)
+        slenderness = [w * (len(t) - 1) for w, t in zip(widths, parts, strict=True)]
+        tall = [q for q, t in zip(slenderness, parts, strict=True) if q > _TALL and len(t) > 3]
+        if tall:
+            between = stack[:, k] + 3 / max(tall) * (stack[:, k + 1] - stack[:, k])
+            stack = np.insert(stack, k + 1, between, axis=1)
+            continue
+        places = (
+            _below(outline, left, right, depth),
+            _beside(outline, left, depth),
+            _beside(outline, right, depth),
+        )
+        for i, (q, place) in enumerate(zip(slenderness, places, strict=True)):
+            if q > 0:
+                parts[i], cells = _ring_block(parts[i], q >= _SLENDER)
+                sheets.append(Sheet(cells, place))
+        k += 1
+    return sheets
+
+
+def _widths(left: np.ndarray, right: np.ndarray, depth: np.ndarray) -> list[float]:
+    """Widths of the blocks below, on the left and on the right, relative to their lengths."""
+    down, across = depth.mean(), (right - left).mean()
+    return [np.ptp(depth) / across, np.ptp(left) / down, np.ptp(right) / down]
+
+
+def _below(outline: Outline, left, right, depth):
+    """Block of a ring below the patch; parameters (s, t): outwards, from left to right."""
+
+    def place(p):
+        s, t = p[..., 0], p[..., 1, None]
+        down = _linear(depth, s)
+        first, last = (outline.inside(_linear(end, s), down) for end in (left, right))
+        return (1 - t) * first + t * last
+
+    return place
+
+
+def _beside(outline: Outline, end, depth):
+    """Block of a ring beside the patch; parameters (s, t): outwards, from the face inwards."""
+
+    def place(p):
+        s, t = p[..., 0], p[..., 1, None]
+        along = _linear(end, s)
+        return (1 - t) * outline.face(along) + t * outline.inside(along, _linear(depth, s))
+
+    return place
+
+
+def _linear(ends, s):
+    return (1 - s) * ends[0] + s * ends[1]
+
+
+def _ring_block(inner: np.ndarray, join: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Cells of a block of a ring in (s, t), and t at the ends of its elements on the outside.
+
+    Parameters
+    ----------
+    inner : ndarray
+        t at the ends of the elements on the inside.
+    join : bool
+        Whether three elements become one.
+    """
+    n = len(inner) - 1
+    triples = n // 3 if join else 0
+    if n % 3 and triples % 2:
+        triples -= 1  # the rest stays in the middle, for the sake of symmetry
+    before = (triples + 1) // 2
+    rest = n - 3 * triples
+    starts = [3 * i for i in range(before)]
+    singles = list(range(3 * before, 3 * before + rest))
+    starts += [3 * before + rest + 3 * i for i in range(triples - before)]
+    kept = np.array(sorted([*starts, *singles, n]))
+    outer = 0.5 * (inner[kept] + np.linspace(0.0, 1.0, len(kept)))
+    at = {int(i): float(t) for i, t in zip(kept, outer, strict=True)}
+    cells = [_through(inner[i : i + 2], at[i], at[i + 1]) for i in singles]
+    for i in starts:
+        cells += _three_to_one(inner[i : i + 4], at[i], at[i + 3])
+    return outer, np.array(cells)
+
+
+def _through(inner, first: float, last: float) -> list:
+    return [(0, inner[0]), (0, inner[1]), (1, last), (1, first)]
+
+
+def _three_to_one(inner, first: float, last: float) -> list[list]:
+    """Four cells between three elements on the inside and one on the outside."""
+    ends = (inner[[0, -1]] + [first, last]) / 2
+    parts = ((inner[1:3] - inner[0]) / (inner[3] - inner[0]) + np.array([1, 2]) / 3) / 2
+    a, b = ((0.5, ends[0] + part * (ends[1] - ends[0])) for part in parts)
+    p = [(0, t) for t in inner]
+    low, high = (1, first), (1, last)
+    return [[p[0], p[1], a, low], [p[1], p[2], b, a], [p[2], p[3], high, b], [a, b, high, low]]

@@ -1,0 +1,1 @@
+"""Mesh motion and remeshing of worn bodies."""

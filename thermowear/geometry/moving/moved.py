@@ -1,0 +1,257 @@
+"""A mesh that follows a face that has moved into its body.
+
+Sides that end at the face slide along themselves up to their next corner, all other outlines stay,
+and the inner nodes follow harmonically.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.polynomial.polynomial import polyder
+
+from ..mesh.nodes import edge_nodes
+from ..mesh.shapes import stiffness
+from ..mesh.tagged import TaggedMesh
+
+_CORNER = np.cos(np.radians(20.0))
+"""Edges that meet at a sharper turn make a corner."""
+_SYMMETRIC = {
+    "permc_spec": "MMD_AT_PLUS_A",
+    "diag_pivot_thresh": 0.0,
+    "options": {"SymmetricMode": True},
+}
+"""SuperLU's settings for symmetric positive matrices."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """What of a body's outline begins at an end of its worn face.
+
+    Attributes
+    ----------
+    nodes : ndarray of int, shape (n,)
+        From the end of the face to the next corner.
+    inward : ndarray, shape (2,)
+        Unit vector from the end of the face along the side.
+    is_corner : bool
+        Whether face and side meet at an angle; where not, the side is but more of the face.
+    """
+
+    nodes: np.ndarray
+    inward: np.ndarray
+    is_corner: bool
+
+
+class MovableBody:
+    """One body of a plane mesh, whose worn face can be moved.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    parts : tuple of str
+        Names of the body's parts.
+    face : ndarray, shape (n, 2)
+        Coordinates of the nodes of its face, in order along it [m].
+    """
+
+    def __init__(self, mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray):
+        tags = [mesh.bodies.index(part) + 1 for part in parts]
+        self._mesh = mesh
+        self.parts = parts
+        self._cells = np.isin(mesh.cell_tags, tags)
+        own = np.unique(mesh.cells[self._cells])
+        self.face = own[scipy.spatial.cKDTree(mesh.points[own]).query(face)[1]]
+        self._edges = _outline(mesh, mesh.cells[self._cells])
+        self.sides = tuple(self._side(ends) for ends in (self.face[:2], self.face[-2:][::-1]))
+
+    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Directions out of the body that the nodes of the face go along, and which of them stay.
+
+        Its ends go along the sides, or stay where the outline goes on smoothly. From the normals
+        the others lean as much less as they are nearer to the other end, and do not cross.
+
+        Parameters
+        ----------
+        normals : ndarray, shape (n, 2)
+            Outward, at the nodes of the face.
+
+        Returns
+        -------
+        directions : ndarray, shape (n, 2)
+        held : ndarray of bool, shape (n,)
+        """
+        held, turn = np.zeros(len(normals), dtype=bool), np.zeros(2)
+        for k, side in enumerate(self.sides):
+            held[-k] = not side.is_corner
+            if side.is_corner:
+                turn[k] = _angle(normals[-k], -side.inward)
+        steps = np.linalg.norm(np.diff(self._mesh.points[self.face], axis=0), axis=1)
+        part = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+        return _turned(normals, (1 - part) * turn[0] + part * turn[1]), held
+
+    def displaced(self, displacement: np.ndarray) -> np.ndarray:
+        """Coordinates of all nodes of the mesh after the face has moved, shape (n_points, 2) [m].
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (n, 2)
+            Of the nodes of the face; at its ends along the sides [m].
+        """
+        return self.followed(self.outlined(displacement))
+
+    def outlined(self, displacement: np.ndarray) -> np.ndarray:
+        """Displacement of the outline when the face moves, zero within; shape (n_points, 2) [m].
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (n, 2)
+            Of the nodes of the face; at its ends along the sides [m].
+        """
+        given = np.zeros_like(self._mesh.points)
+        for side, end in zip(self.sides, (displacement[0], displacement[-1]), strict=True):
+            given[side.nodes] = self._slid(side, float(end @ side.inward))
+        given[self.face] = displacement
+        return given
+
+    def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
+        """Volume that the body loses by a displacement of its outline [m³].
+
+        By Gauss's theorem on the edges that move alone, as it may be tiny against that of the body.
+
+        Parameters
+        ----------
+        outlined : ndarray, shape (n_points, 2)
+            From `outlined` [m].
+        factor : callable
+            From area to volume at points of shape (n, 2); linear in x.
+        """
+        edges = self._edges[np.any(outlined[self._edges] != 0.0, axis=(1, 2))]
+        points = self._mesh.points[edges]
+        return enclosed(points, factor) - enclosed(points + outlined[edges], factor)
+
+    def followed(self, outlined: np.ndarray) -> np.ndarray:
+        """Coordinates of all nodes of the mesh when the outline has moved, (n_points, 2) [m]."""
+        known = np.unique(self._edges)
+        return self._mesh.points + extended(self._mesh, self._cells, known, outlined)
+
+    def _slid(self, side: Side, way: float) -> np.ndarray:
+        """How far the nodes of a side go along it when its first one goes so far [m]."""
+        points = self._mesh.points[side.nodes]
+        if not side.is_corner:
+            return np.zeros_like(points)
+        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+        to = length + way * (1 - length / length[-1])
+        where = np.column_stack([np.interp(to, length, x) for x in points.T])
+        before = np.minimum(to, 0.0)[:, None] * side.inward  # a face that has grown
+        return where + before - points
+
+    def _side(self, ends: np.ndarray) -> Side:
+        """The side that begins at the first of the two end nodes of the face."""
+        points, at = self._mesh.points, defaultdict(list)
+        on_face = set(self.face.tolist())
+        for edge in self._edges:
+            if not (edge[0] in on_face and edge[-1] in on_face):
+                at[edge[0]].append(edge)
+                at[edge[-1]].append(edge[::-1])
+        nodes, direction = [np.array([ends[0]])], None
+        while True:
+            last = nodes[-1][-1]
+            onward = [edge for edge in at[last] if edge[1] not in set(np.concatenate(nodes))]
+            if len(onward) != 1:
+                break
+            heading = _unit(points[onward[0][1]] - points[last])
+            if direction is not None and heading @ direction < _CORNER:
+                break
+            nodes.append(onward[0][1:])
+            direction = _unit(points[onward[0][-1]] - points[onward[0][-2]])
+        along = np.concatenate(nodes)
+        if len(along) == 1:
+            return Side(along, np.zeros(2), False)
+        inward = _unit(points[along[1]] - points[along[0]])
+        from_face = _unit(points[ends[0]] - points[ends[1]])
+        return Side(along, inward, bool(inward @ from_face < _CORNER))
+
+
+def extended(
+    mesh: TaggedMesh, cells: np.ndarray, known: np.ndarray, given: np.ndarray
+) -> np.ndarray:
+    """A displacement of the nodes of some cells that is harmonic between known ones.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    cells : ndarray of bool, shape (n_cells,)
+    known : ndarray of int
+        Nodes whose displacement is given.
+    given : ndarray, shape (n_points, 2)
+        It, zero elsewhere [m].
+
+    Returns
+    -------
+    ndarray, shape (n_points, 2) [m]
+    """
+    result = given.copy()
+    matrices, nodes = stiffness(mesh, cells)
+    count, size = len(mesh.points), nodes.shape[1]
+    rows, columns = np.repeat(nodes, size, axis=1).ravel(), np.tile(nodes, size).ravel()
+    whole = scipy.sparse.coo_matrix(
+        (matrices.ravel(), (rows, columns)), shape=(count, count)
+    ).tocsr()
+    inner = np.setdiff1d(np.unique(nodes), known)
+    if len(inner):
+        of_inner = whole[inner]
+        factor = scipy.sparse.linalg.splu(of_inner[:, inner].tocsc(), **_SYMMETRIC)
+        result[inner] = factor.solve(-(of_inner @ given))
+    return result
+
+
+def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
+    """Edges that only one cell has, their nodes in order with the cell on their left."""
+    local = edge_nodes(mesh.cell_type, mesh.order)
+    every = cells[:, local].reshape(-1, local.shape[1])
+    ends = np.sort(every[:, :2], axis=1)
+    _, index, count = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
+    single = count[index.ravel()] == 1
+    edges = np.concatenate([every[:, :1], every[:, 2:], every[:, 1:2]], axis=1)[single]
+    middle = np.repeat(mesh.points[cells].mean(axis=1), len(local), axis=0)[single]
+    along = mesh.points[edges[:, -1]] - mesh.points[edges[:, 0]]
+    inward = middle - mesh.points[edges].mean(axis=1)
+    right = along[:, 0] * inward[:, 1] < along[:, 1] * inward[:, 0]
+    edges[right] = edges[right, ::-1]
+    return edges
+
+
+def enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
+    """What edges (n, n_nodes, 2) add to ``∮ G dy``, G the integral of a factor along x."""
+    order = edges.shape[1] - 1
+    t, w = np.polynomial.legendre.leggauss(2 * order + 1)
+    knots = np.linspace(-1.0, 1.0, order + 1)
+    powers = np.linalg.inv(np.vander(knots, increasing=True))
+    values = np.vander(t, order + 1, increasing=True) @ powers
+    slopes = polyder(np.eye(order + 1)).T
+    slopes = np.vander(t, max(order, 1), increasing=True) @ slopes.T @ powers
+    points = np.einsum("qk,nki->nqi", values, edges)
+    x, rise = points[..., 0].ravel(), np.einsum("qk,nk->nq", slopes, edges[..., 1]).ravel()
+    halfway = np.column_stack([x / 2, points[..., 1].ravel()])
+    return float(np.tile(w, len(edges)) @ (factor(halfway) * x * rise))
+
+
+def _angle(first: np.ndarray, second: np.ndarray) -> float:
+    """From one plane vector to another, anticlockwise."""
+    return float(np.arctan2(first[0] * second[1] - first[1] * second[0], first @ second))
+
+
+def _turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Plane vectors (n, 2) turned anticlockwise."""
+    cos, sin = np.cos(angles), np.sin(angles)
+    x, y = vectors.T
+    return np.column_stack([cos * x - sin * y, sin * x + cos * y])
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return vector / np.linalg.norm(vector)

@@ -1,0 +1,225 @@
+"""A body of a plane mesh that is meshed anew within its worn outline.
+
+The worn face is divided anew on a B-spline through its nodes; all other lines of the body stay, so
+its sides, names and zones do. Cells are of the kind and order that they were.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import ComputationError
+from ..mesh.gmsh_session import gmsh_model
+from ..mesh.orders import compact
+from ..mesh.shapes import scaled_jacobians
+from ..mesh.tagged import TaggedMesh
+from .even_lines import even
+from .moved import extended
+from .new_face import NewFace, divided
+from .skeleton import Line, skeleton
+
+_ALGORITHMS = (6, 8, 5)
+"""Of gmsh: advancing fronts, the same for right angles, Delaunay's. None is always the best."""
+_FULL_QUADS = 2
+"""Of gmsh: cells within half as many edges are joined in pairs, then all of them divided."""
+_SMOOTHING = 10
+
+
+def meshed_anew(
+    mesh: TaggedMesh,
+    parts: tuple[str, ...],
+    face: np.ndarray,
+    sizes: np.ndarray,
+    factor: Callable[[np.ndarray], np.ndarray],
+) -> tuple[TaggedMesh, NewFace]:
+    """Mesh a body anew; only its outline matters, its cells may be folded.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Of both bodies.
+    parts : tuple of str
+        Names of the body's parts.
+    face : ndarray of int, shape (n_nodes,)
+        Nodes of its worn face in order along it.
+    sizes : ndarray, shape (n_edges,)
+        Lengths that the edges of the face should have [m].
+    factor : callable
+        From area to volume at points of shape (n, 2); the volume stays.
+
+    Raises
+    ------
+    ComputationError
+        If gmsh cannot mesh it.
+    """
+    new = divided(mesh.points[face], mesh.order, sizes, factor)
+    lines = skeleton(mesh, parts, face)
+    (k,) = (number for number, line in enumerate(lines) if line.is_face)
+    if lines[k].ends[0] != face[0]:
+        lines[k] = lines[k].backwards()
+    lines[k] = replace(lines[k], edges=new.edges)
+    if mesh.cell_type == "quadrilateral":
+        ends = even(lines)
+        lines = [line.cut(at) for line, at in zip(lines, ends, strict=True)]
+        new = new.cut(lines[k].edges, ends[k])
+    if _cross(lines):  # gmsh would look for a mesh for ever
+        raise ComputationError("the worn face passes through other sides of its body")
+    found, trouble = [], None
+    for algorithm in _ALGORITHMS:
+        try:
+            found.append(_meshed(mesh, parts, lines, algorithm))
+        except Exception as error:  # what gmsh raises
+            trouble = error
+    if not found:
+        raise ComputationError(f"gmsh could not mesh the worn body anew: {trouble}")
+    best = max(found, key=lambda body: float(scaled_jacobians(body).min()))
+    return _replaced(mesh, parts, best), new
+
+
+def _meshed(
+    mesh: TaggedMesh, parts: tuple[str, ...], lines: list[Line], algorithm: int
+) -> TaggedMesh:
+    """A body within its lines."""
+    every = np.concatenate([line.edges.reshape(-1, 2) for line in lines])
+    middle, size = every.mean(axis=0), np.ptp(every, axis=0).max()
+    scaled = [replace(line, edges=(line.edges - middle) / size) for line in lines]
+    tags = [mesh.bodies.index(part) + 1 for part in parts]
+    tags = [tag for tag in tags if np.any(mesh.cell_tags == tag)]
+    with gmsh_model("worn body") as gmsh:
+        gmsh.option.setNumber("Mesh.Algorithm", algorithm)
+        gmsh.option.setNumber("Mesh.RecombinationAlgorithm", _FULL_QUADS)
+        gmsh.option.setNumber("Mesh.Smoothing", _SMOOTHING)
+        gmsh.option.setNumber("Mesh.Renumber", 0)
+        model = gmsh.model
+        corners = _draw(model, scaled)
+        for tag in tags:
+            model.geo.addPlaneSurface(_loops(model, lines, tag), tag)
+        model.geo.synchronize()
+        if mesh.cell_type == "quadrilateral":
+            for tag in tags:
+                model.mesh.setRecombine(2, tag)
+        model.mesh.generate(2)
+        model.mesh.setOrder(mesh.order)
+        return _read(model, mesh, tags, lines, corners, (middle, size))
+
+
+def _cross(lines: list[Line]) -> bool:
+    """Whether chords of edges cross each other."""
+    starts = np.concatenate([line.edges[:, 0] for line in lines])
+    ends = np.concatenate([line.edges[:, -1] for line in lines])
+    from_start, from_end = (_left(starts, ends, points) for points in (starts, ends))
+    parted = from_start * from_end < 0.0  # the ends of one by the line through another
+    return bool(np.any(parted & parted.T))
+
+
+def _left(starts: np.ndarray, ends: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Twice the areas of triangles of segments and points, shape (n_segments, n_points) [m²]."""
+    way, to = (ends - starts)[:, None], points - starts[:, None]
+    return way[..., 0] * to[..., 1] - way[..., 1] * to[..., 0]
+
+
+def _draw(model, lines: list[Line]) -> list[np.ndarray]:
+    """Add lines and their edges to a gmsh model; the numbers of their corners, line by line."""
+    points = {
+        end: line.edges[i, i] for line in lines for i, end in zip((0, -1), line.ends, strict=True)
+    }
+    number = {point: k for k, point in enumerate(points, start=1)}
+    for point, place in points.items():
+        tag = number[point]
+        model.addDiscreteEntity(0, tag)
+        model.mesh.addNodes(0, tag, [tag], [*place, 0.0])
+        model.mesh.addElementsByType(tag, 15, [], [tag])
+    result, count = [], len(points)
+    for tag, line in enumerate(lines, start=1):
+        ends = [number[end] for end in line.ends]
+        model.addDiscreteEntity(1, tag, ends)
+        inner = count + 1 + np.arange(len(line.edges) - 1)
+        count += len(inner)
+        places = np.pad(line.edges[1:, 0], ((0, 0), (0, 1)))
+        model.mesh.addNodes(1, tag, inner, places.ravel())
+        along = np.concatenate([ends[:1], inner, ends[1:]])
+        model.mesh.addElementsByType(tag, 1, [], np.column_stack([along[:-1], along[1:]]).ravel())
+        result.append(along)
+    return result
+
+
+def _loops(model, lines: list[Line], tag: int) -> list[int]:
+    """The loops of lines round a part, the outer one first."""
+    following = {}
+    for number, line in enumerate(lines, start=1):
+        if tag in line.parts:
+            start, end = line.ends if line.parts[tag] else line.ends[::-1]
+            following[start] = (number if line.parts[tag] else -number), end
+    found = []
+    while following:
+        start = next(iter(following))
+        number, point = following.pop(start)
+        loop = [number]
+        while point != start:
+            number, point = following.pop(point)
+            loop.append(number)
+        reach = max(np.ptp(lines[abs(k) - 1].edges.reshape(-1, 2), axis=0).max() for k in loop)
+        found.append((reach, loop))
+    return [model.geo.addCurveLoop(loop) for _, loop in sorted(found, reverse=True)]
+
+
+def _read(
+    model, mesh: TaggedMesh, tags: list[int], lines: list[Line], corners, scale
+) -> TaggedMesh:
+    """The body as gmsh has meshed it, the nodes of its lines where they were."""
+    numbers, places, _ = model.mesh.getNodes()
+    position = np.full(int(numbers.max()) + 1, -1)
+    position[numbers.astype(int)] = np.arange(len(numbers))
+    points = scale[0] + scale[1] * places.reshape(-1, 3)[:, :2]
+    given, known = np.zeros_like(points), np.zeros(len(points), dtype=bool)
+    facets, facet_tags = [], []
+    for number, (line, along) in enumerate(zip(lines, corners, strict=True), start=1):
+        drawn = _elements(model, 1, number)
+        if not np.array_equal(drawn[:, :2], np.column_stack([along[:-1], along[1:]])):
+            raise ValueError("its outline was divided otherwise")
+        drawn = position[drawn]
+        given[drawn] = line.edges[:, [0, -1, *range(1, mesh.order)]] - points[drawn]
+        known[drawn] = True
+        if line.surface:
+            facets.append(drawn)
+            facet_tags.append(np.full(len(drawn), line.surface, dtype=np.int32))
+    cells = [position[_elements(model, 2, tag)] for tag in tags]
+    body = replace(
+        mesh,
+        points=points,
+        cells=np.concatenate(cells),
+        cell_tags=np.repeat(tags, [len(of_part) for of_part in cells]).astype(np.int32),
+        facets=np.concatenate(facets),
+        facet_tags=np.concatenate(facet_tags),
+    )
+    every = np.ones(len(body.cells), dtype=bool)
+    return replace(body, points=points + extended(body, every, np.flatnonzero(known), given))
+
+
+def _elements(model, dim: int, tag: int) -> np.ndarray:
+    """Nodes of the elements of an entity, which are of one kind."""
+    _, elements, nodes = model.mesh.getElements(dim, tag)
+    if len(elements) != 1:
+        raise ValueError("its cells are of several kinds")
+    return nodes[0].reshape(len(elements[0]), -1).astype(np.int64)
+
+
+def _replaced(mesh: TaggedMesh, parts: tuple[str, ...], body: TaggedMesh) -> TaggedMesh:
+    """The mesh with a body in place of that which had these parts."""
+    stays = ~np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])
+    other = np.zeros(len(mesh.points), dtype=bool)
+    other[mesh.cells[stays]] = True
+    facets, shift = other[mesh.facets].all(axis=1), len(mesh.points)
+    return compact(
+        replace(
+            mesh,
+            points=np.concatenate([mesh.points, body.points]),
+            cells=np.concatenate([mesh.cells[stays], body.cells + shift]),
+            cell_tags=np.concatenate([mesh.cell_tags[stays], body.cell_tags]),
+            facets=np.concatenate([mesh.facets[facets], body.facets + shift]),
+            facet_tags=np.concatenate([mesh.facet_tags[facets], body.facet_tags]),
+        )
+    )

@@ -1,0 +1,147 @@
+"""Cells of a body as they are listed in a file: put the right way round, or refused.
+
+A mesh is sound where no edge has more than two cells, cells that share an edge lie on both sides of
+it, and the map from the unit cell to each cell keeps its orientation everywhere (det J > 0).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy
+
+from ...errors import CaseError
+from ..mesh.nodes import CORNERS
+from ..mesh.orders import boundary, slopes, turned
+
+_FLAT = 1e-8
+"""Sine of the angle between grid lines below which a cell counts as flat."""
+_SAME = 1e-7
+"""Of the size of a body: nodes that near to each other lie at one place."""
+_AT_ONCE = 2000
+"""Cells whose maps are looked at together."""
+
+
+def oriented(points: np.ndarray, cells: np.ndarray, kind: str, order: int, body: str) -> np.ndarray:
+    """The cells of a body with their nodes counter-clockwise.
+
+    Cells may be listed either way round: that changes nothing, and which way is found from the
+    edges that they share, not from their areas, which a tangled mesh has of both signs.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2) [m]
+    cells : ndarray of int, shape (n_cells, nodes_per_cell)
+    kind, order : str, int
+    body : str
+        Name in the case, for messages.
+
+    Raises
+    ------
+    CaseError
+        If the mesh is not sound.
+    """
+    reversed_, piece = _sides(points, cells[:, : CORNERS[kind]], body)
+    signs = np.where(reversed_, -1.0, 1.0)
+    least, most, areas = _jacobians(points, cells, kind, order)
+    least, most = np.where(reversed_, -most, least), np.where(reversed_, -least, most)
+    mirrored = (np.bincount(piece, signs * areas) < 0)[piece]
+    worst = np.where(mirrored, -most, least)
+    tangled = ~(worst > _FLAT)
+    if tangled.any():
+        raise CaseError(
+            f"geometry.path: {tangled.sum()} of {len(cells)} cells of {body!r} are tangled or flat "
+            f"(det J <= 0), one {_at(points[cells[np.argmax(tangled)]])}"
+        )
+    turn = reversed_ ^ mirrored
+    cells = cells.copy()
+    cells[turn] = cells[turn][:, turned(kind, order)]
+    _no_cracks(points, boundary(kind, order, cells), body)
+    return cells
+
+
+def _sides(points: np.ndarray, corners: np.ndarray, body: str) -> tuple[np.ndarray, np.ndarray]:
+    """Which cells run the other way round than those they are joined to, and pieces of the body.
+
+    Two cells that share an edge run along it in opposite directions. Each cell has two nodes in a
+    graph, one for each way round; a component of it holds cells that agree.
+    """
+    count, sides = corners.shape
+    ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
+    cell = np.repeat(np.arange(count), sides)
+    ascending = ends[:, 0] < ends[:, 1]
+    _, edge, number = np.unique(
+        np.sort(ends, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    edge = edge.ravel()
+    if number.max() > 2:
+        wrong = number[edge] > 2
+        raise CaseError(
+            f"geometry.path: {np.count_nonzero(number > 2)} edges of {body!r} have three or more "
+            f"cells, one {_at(points[ends[np.argmax(wrong)]])}"
+        )
+    shared = np.argsort(edge, kind="stable")
+    shared = shared[number[edge[shared]] == 2].reshape(-1, 2)
+    (one, other), same = cell[shared].T, ascending[shared[:, 0]] == ascending[shared[:, 1]]
+    rows = np.concatenate([one, one + count])
+    columns = np.concatenate([other + count * same, other + count * ~same])
+    links = scipy.sparse.coo_matrix(
+        (np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count)
+    )
+    _, label = scipy.sparse.csgraph.connected_components(links, directed=False)
+    as_listed, turned_round = label.reshape(2, count)
+    if np.any(as_listed == turned_round):
+        raise CaseError(f"geometry.path: the cells of {body!r} cannot lie in a plane side by side")
+    _, piece = np.unique(np.minimum(as_listed, turned_round), return_inverse=True)
+    return as_listed > turned_round, piece.ravel()
+
+
+def _jacobians(
+    points: np.ndarray, cells: np.ndarray, kind: str, order: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Smallest and largest sine of the angle between the grid lines of each cell, and its area.
+
+    At so many places that the polynomial det J is caught between them; at the corners of straight
+    cells it is at its ends.
+    """
+    along = np.linspace(0.0, 1.0, 4 * order - 2)
+    places = np.stack(np.meshgrid(along, along), axis=-1).reshape(-1, 2)
+    if kind == "triangle":
+        places = places[places.sum(axis=1) <= 1.0 + 1e-12]
+    derivatives = slopes(kind, order, places)
+    result = np.empty((3, len(cells)))
+    for first in range(0, len(cells), _AT_ONCE):
+        some = slice(first, first + _AT_ONCE)
+        tangents = np.einsum("qdk,cki->cqdi", derivatives, points[cells[some]])
+        lengths = np.linalg.norm(tangents, axis=3).prod(axis=2)
+        determinants = np.linalg.det(tangents)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            sines = np.nan_to_num(determinants / lengths, nan=0.0)
+        result[:, some] = sines.min(axis=1), sines.max(axis=1), determinants.mean(axis=1)
+    return result[0], result[1], result[2]
+
+
+def _no_cracks(points: np.ndarray, edges: np.ndarray, body: str) -> None:
+    """Refuse cells that lie side by side without sharing the nodes, or share but a corner."""
+    ends = points[edges[:, :2]]
+    near = _SAME * np.ptp(ends.reshape(-1, 2), axis=0).max()
+    pairs = scipy.spatial.cKDTree(ends.mean(axis=1)).query_pairs(near, output_type="ndarray")
+    one, other = ends[pairs[:, 0]], ends[pairs[:, 1]]
+    apart = np.minimum(np.abs(one - other).max((1, 2)), np.abs(one - other[:, ::-1]).max((1, 2)))
+    cracks = pairs[apart < 2 * near]
+    if len(cracks):
+        raise CaseError(
+            f"geometry.path: cells of {body!r} are not joined along {len(cracks)} edges, where "
+            f"nodes are there twice, one {_at(ends[cracks[0, 0]])}; merge such nodes"
+        )
+    nodes, count = np.unique(edges[:, :2], return_counts=True)
+    if count.max() > 2:
+        node = nodes[np.argmax(count)]
+        raise CaseError(
+            f"geometry.path: cells of {body!r} hang together by a single node "
+            f"{_at(points[node][None])}; join them along an edge, or part them"
+        )
+
+
+def _at(nodes: np.ndarray) -> str:
+    x, y = nodes.mean(axis=0)
+    return f"at x = {x:.6g} m, y = {y:.6g} m"

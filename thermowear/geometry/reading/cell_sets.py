@@ -1,0 +1,115 @@
+"""Bodies of a mesh file that are made of several cell sets, or have parts by cell sets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...errors import CaseError
+from ..mesh.tagged import TaggedMesh
+from .assembly import Named
+from .contents import Block, Contents
+
+
+@dataclass(frozen=True)
+class Union:
+    """A body made of one or more cell sets: its name, their names, and the key that says so."""
+
+    name: str
+    in_file: tuple[str, ...]
+    key: str
+
+
+def joined(contents: Contents, bodies: list[Union]) -> tuple[Contents, list[Named]]:
+    """The contents with one cell set for each body, and the names of those.
+
+    Raises
+    ------
+    CaseError
+        If the file has none of the cells of a set.
+    """
+    blocks, named = list(contents.blocks), []
+    for body in bodies:
+        for name in body.in_file:
+            if _count(blocks, name) == 0:
+                known = ", ".join(contents.names(2)) or "none"
+                raise CaseError(
+                    f"{body.key}: the file has no cells named {name!r}; one of: {known}"
+                )
+        union = " + ".join(body.in_file)
+        if len(body.in_file) > 1:
+            blocks = [_with_union(block, body.in_file, union) for block in blocks]
+        named.append(Named(body.name, union, body.key))
+    return replace(contents, blocks=blocks), named
+
+
+def divided(
+    mesh: TaggedMesh, contents: Contents, bodies: list[Named], sets: list[Named]
+) -> TaggedMesh:
+    """The mesh with cell sets of its bodies as parts of their own, behind the bodies.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Of the bodies.
+    contents : Contents
+        Its file.
+    bodies, sets : list of Named
+        `Named.body` of a set is the body that it must lie in.
+
+    Raises
+    ------
+    CaseError
+        If a set is unknown, does not lie in its body, or shares cells with another one.
+    """
+    tags, taken = mesh.cell_tags.copy(), np.zeros(len(mesh.cell_tags), dtype=np.int64)
+    starts = np.searchsorted(mesh.cell_tags, [1, 2])
+    for number, part in enumerate(sets, start=1):
+        assert part.body is not None
+        every = _count(contents.blocks, part.in_file)
+        if every == 0:
+            known = ", ".join(contents.names(2))
+            raise CaseError(
+                f"{part.key}: the file has no cells named {part.in_file!r}; one of: {known}"
+            )
+        body = bodies[part.body]
+        cells = starts[part.body] + np.flatnonzero(_members(contents, body.in_file, part.in_file))
+        if len(cells) < every:
+            raise CaseError(
+                f"{part.key}: {every - len(cells)} of {every} cells of {part.in_file!r} do not lie "
+                f"in the body {body.name!r} ({body.in_file})"
+            )
+        if taken[cells].any():
+            other = sets[taken[cells].max() - 1]
+            raise CaseError(
+                f"{part.key}: {np.count_nonzero(taken[cells])} cells are in {part.in_file!r} and "
+                f"{other.in_file!r} both; each cell has one material"
+            )
+        taken[cells] = number
+        tags[cells] = len(mesh.bodies) + number
+    names = (*mesh.bodies, *(part.name for part in sets))
+    return replace(mesh, cell_tags=tags, bodies=names)
+
+
+def _count(blocks: list[Block], name: str) -> int:
+    """Number of plane cells in a set."""
+    return sum(len(block.sets.get(name, ())) for block in blocks if block.dim == 2)
+
+
+def _with_union(block: Block, names: tuple[str, ...], union: str) -> Block:
+    found = [block.sets[name] for name in names if name in block.sets]
+    if not found:
+        return block
+    return replace(block, sets=block.sets | {union: np.unique(np.concatenate(found))})
+
+
+def _members(contents: Contents, body: str, name: str) -> np.ndarray:
+    """Which cells of a body, in the order of `assemble`, are in a set."""
+    return np.concatenate(
+        [
+            np.isin(block.sets[body], block.sets.get(name, ()))
+            for block in contents.blocks
+            if block.dim == 2 and len(block.sets.get(body, ()))
+        ]
+    )

@@ -1,0 +1,111 @@
+"""Writing a tagged mesh for other programs; the format follows the file's ending."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import CaseError
+from ..mesh.nodes import FACETS
+from ..mesh.orders import compact, quadratic
+from ..mesh.tagged import TaggedMesh
+
+_MESHIO_CELLS = {
+    ("quadrilateral", 4): "quad",
+    ("quadrilateral", 9): "quad9",
+    ("quadrilateral", 16): "quad16",
+    ("triangle", 3): "triangle",
+    ("triangle", 6): "triangle6",
+    ("triangle", 10): "triangle10",
+    ("hexahedron", 8): "hexahedron",
+    ("hexahedron", 20): "hexahedron20",
+    ("hexahedron", 27): "hexahedron27",
+    ("hexahedron", 64): "hexahedron64",
+    ("interval", 2): "line",
+    ("interval", 3): "line3",
+    ("interval", 4): "line4",
+    ("quadrilateral", 8): "quad8",
+}
+_QUADRATIC_HEXAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
+_QUADRATIC_HEXAHEDRON += [22, 23, 21, 24, 20, 25, 26]
+"""Where gmsh lists the nodes that meshio, as VTK, wants in this order."""
+_FORMATS = {".msh": "gmsh22", ".vtu": "vtu", ".xdmf": "xdmf", ".inp": "abaqus"}
+
+
+def check_ending(path: Path) -> None:
+    """Raise a `CaseError` if a file's ending names no known format."""
+    if path.suffix not in _FORMATS:
+        raise CaseError(f"-o {path}: unknown ending; one of: {', '.join(_FORMATS)}")
+
+
+def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None = None) -> None:
+    """Write bodies and named surfaces as physical groups (.msh), sets (.inp) or tags (.vtu, .xdmf).
+
+    Cells of the third order are known to .msh only; elsewhere the second stands for it.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    path : Path
+    told : dict of str to ndarray, optional
+        Numbers or vectors at the points, of a mesh that the format knows as it is.
+
+    Raises
+    ------
+    CaseError
+        If the ending is not known, or the file cannot be written.
+    """
+    import meshio
+
+    check_ending(path)
+    if path.suffix != ".msh" and mesh.order > 2:
+        mesh = quadratic(mesh)
+    if mesh.cells.shape[1] == len(_QUADRATIC_HEXAHEDRON):
+        mesh = replace(mesh, cells=mesh.cells[:, _QUADRATIC_HEXAHEDRON])
+        if path.suffix == ".inp":  # knows no nodes within facets
+            mesh = compact(replace(mesh, cells=mesh.cells[:, :20], facets=mesh.facets[:, :8]))
+    kinds = mesh.cell_type, FACETS[mesh.cell_type]
+    cells = [
+        (_MESHIO_CELLS[kind, nodes.shape[1]], nodes)
+        for kind, nodes in zip(kinds, (mesh.cells, mesh.facets), strict=True)
+    ]
+    n = len(mesh.bodies)
+    # one numbering for both dimensions, so that a tag names one thing in every format
+    tags = [mesh.cell_tags, mesh.facet_tags + n]
+    points = np.pad(mesh.points, ((0, 0), (0, 3 - mesh.points.shape[1])))
+    result = meshio.Mesh(points, cells, point_data=told)
+    if path.suffix == ".inp":
+        result.cell_sets = _sets(mesh)
+    elif path.suffix == ".msh":
+        result.cell_data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
+        dim = mesh.points.shape[1]
+        dims = [dim] * n + [dim - 1] * len(mesh.surfaces)
+        names = (*mesh.bodies, *mesh.surfaces)
+        result.field_data = {
+            name: np.array([tag, dim])
+            for tag, (name, dim) in enumerate(zip(names, dims, strict=True), start=1)
+        }
+    else:
+        result.cell_data = {"tag": tags}
+    try:
+        # text, and in one file: nothing beside it can be overwritten
+        keywords = {".msh": {"binary": False}, ".xdmf": {"data_format": "XML"}}.get(path.suffix, {})
+        meshio.write(path, result, file_format=_FORMATS[path.suffix], **keywords)
+    except OSError as error:
+        raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
+
+
+def _sets(mesh: TaggedMesh) -> dict[str, list[np.ndarray]]:
+    """Elements of each name, per block of cells."""
+    none = np.array([], dtype=np.int64)
+    bodies = {
+        name: [np.flatnonzero(mesh.cell_tags == tag), none]
+        for tag, name in enumerate(mesh.bodies, start=1)
+    }
+    surfaces = {
+        name: [none, np.flatnonzero(mesh.facet_tags == tag)]
+        for tag, name in enumerate(mesh.surfaces, start=1)
+    }
+    return bodies | surfaces

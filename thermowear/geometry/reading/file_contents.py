@@ -1,0 +1,98 @@
+"""Reading a mesh file, of which nothing is believed: neither its ending nor what it says.
+
+Only meshes are read. A file is looked at before any reader gets it, and no reader carries out
+commands, opens other files or writes any.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...errors import CaseError
+from .abaqus import read_abaqus
+from .contents import Contents, shown
+from .gmsh_file import read_gmsh
+from .isolated import read_isolated
+
+_LARGEST = 32 * 2**20
+"""Bytes: half a million nodes as text, more than can be solved in a section; read in seconds."""
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """A format: its name, how its files begin, and its reader."""
+
+    name: str
+    heads: tuple[bytes, ...]
+    read: Callable[[Path], Contents]
+
+
+def read_contents(path: Path) -> Contents:
+    """Read a mesh file; its ending tells the format.
+
+    Raises
+    ------
+    CaseError
+        One line, charged to ``geometry.path``.
+    """
+    kind = _KINDS.get(path.suffix.lower())
+    if kind is None:
+        raise CaseError(f"geometry.path: {path}: unknown ending; one of: {', '.join(_KINDS)}")
+    try:
+        _look_at(path, kind)
+        contents = kind.read(path).checked()
+    except OSError as error:
+        raise CaseError(f"geometry.path: {path} cannot be read: {error.strerror}") from None
+    except Exception as error:  # readers raise whatever a broken file leads them to
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise CaseError(f"geometry.path: {path} cannot be read: {reason}") from None
+    if not any(block.dim == 2 for block in contents.blocks):
+        raise CaseError(f"geometry.path: {path} has no plane cells")
+    return contents
+
+
+def _look_at(path: Path, kind: _Kind) -> None:
+    """Refuse what is no file, too large, or begins as no file of a format does."""
+    about = os.stat(path)
+    if stat.S_ISDIR(about.st_mode):
+        raise ValueError("Is a directory")
+    if not stat.S_ISREG(about.st_mode):
+        raise ValueError("it is no file but a pipe or a device")
+    if about.st_size > _LARGEST:
+        raise ValueError(
+            f"it has {about.st_size / 2**20:.0f} MB; a mesh may have {_LARGEST / 2**20:.0f} MB"
+        )
+    with path.open("rb") as file:
+        head = file.read(4096).removeprefix(b"\xef\xbb\xbf").lstrip()
+    if not head:
+        raise ValueError("it is empty")
+    if not head.startswith(kind.heads):
+        raise ValueError(
+            f"it is no {kind.name}, as it begins with {shown(head.splitlines()[0])}; only meshes "
+            "are read, commands are never carried out"
+        )
+
+
+def _read_abaqus(path: Path) -> Contents:
+    return read_abaqus(path.read_text(encoding="utf-8-sig", errors="replace"))
+
+
+def _read_gmsh(path: Path) -> Contents:
+    return read_gmsh(path.read_bytes().removeprefix(b"\xef\xbb\xbf"))
+
+
+def _by_libraries(path: Path) -> Contents:
+    return read_isolated(path, path.suffix.lower())
+
+
+_KINDS = {
+    ".msh": _Kind("mesh of gmsh", (b"$MeshFormat", b"$Comments"), _read_gmsh),
+    ".inp": _Kind("input file of Abaqus", (b"*",), _read_abaqus),
+    ".vtu": _Kind("unstructured grid of VTK", (b"<?xml", b"<VTKFile", b"<!--"), _by_libraries),
+    ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), _by_libraries),
+    ".med": _Kind("MED file", (b"\x89HDF\r\n\x1a\n",), _by_libraries),
+}

@@ -1,0 +1,201 @@
+"""Two bodies of a mesh file: whether they lie so that their load can press them together.
+
+Only what no elastic contact can be is refused: bodies that overlap or are squeezed by a good part
+of their own size, that lie on the wrong side of each other, or too far apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...errors import CaseError, note
+from ..mesh.orders import shape_functions
+from ..mesh.tagged import TaggedMesh
+from .mesh_checks import length, whole_bodies
+
+if TYPE_CHECKING:
+    from ...case.tables.schema import Case
+
+_PIECES = 4
+"""Straight pieces that stand for a curved edge, times its order."""
+_FACING = 0.05
+"""Cosine between a normal and the press from which on a piece counts as facing the other body."""
+_SQUEEZED = 0.2
+"""Of the height of a body: so far, elasticity of small strains says nothing any more."""
+_MUCH = 0.02
+"""Of the height of a body: so far, it is said."""
+_AT_ONCE = 2000
+"""Places at which faces are compared together."""
+
+
+@dataclass(frozen=True)
+class Faces:
+    """Contact faces compared along the press.
+
+    Attributes
+    ----------
+    gap : float
+        Smallest distance, negative where the bodies overlap [m].
+    width : float
+        Of the range of x in which both faces are [m].
+    span : tuple of float
+        That range [m].
+    height : float
+        Of the lower one of both bodies [m].
+    body : str
+        Its name.
+    """
+
+    gap: float
+    span: tuple[float, float]
+    height: float
+    body: str
+
+    @property
+    def width(self) -> float:
+        return self.span[1] - self.span[0]
+
+
+def check_pair(mesh: TaggedMesh, case: Case) -> None:
+    """Check how the bodies of a section lie to each other, and how far the load squeezes them.
+
+    Raises
+    ------
+    CaseError
+        If they overlap, lie apart or are squeezed by a good part of their size.
+    """
+    faces = compared(whole_bodies(mesh, case.geometry), case)
+    height, overlap = faces.height, -faces.gap
+    of_body = f"of {faces.body!r}, which is {length(height)} high"
+    if overlap > _SQUEEZED * height:
+        raise CaseError(
+            f"geometry.path: the bodies overlap by {length(overlap)}, {overlap / height:.0%} "
+            f"{of_body}; place the faces where they begin to touch"
+        )
+    if faces.gap > height:
+        raise CaseError(
+            f"geometry.path: the bodies lie {length(faces.gap)} apart, more than the height "
+            f"{of_body}; place the faces where they begin to touch"
+        )
+    approach = case.approach()
+    if approach is not None:
+        _check_approach(case, faces, approach, of_body)
+    _check_pressure(case, faces)
+    if overlap > _MUCH * height:
+        note(
+            f"geometry.path: the bodies overlap by {length(overlap)} before they are pressed, "
+            f"{overlap / height:.1%} {of_body}"
+        )
+
+
+def _check_approach(case: Case, faces: Faces, approach: float, of_body: str) -> None:
+    """A given approach must close the gap, and not squeeze a body flat."""
+    key = "load.history.approach" if case.load.approach is None else "load.approach"
+    if approach - faces.gap > _SQUEEZED * faces.height:
+        raise CaseError(
+            f"{key}: {length(approach)} squeezes the bodies by "
+            f"{(approach - faces.gap) / faces.height:.0%} {of_body} "
+            "(is geometry.length_unit right?)"
+        )
+    alone = case.heat is None and not case.load.surfaces and case.geometry.initial_shape is None
+    if alone and approach < faces.gap:
+        raise CaseError(
+            f"{key}: {length(approach)} does not close the gap of {length(faces.gap)} between "
+            "the contact faces; nothing would touch"
+        )
+
+
+def _check_pressure(case: Case, faces: Faces) -> None:
+    """The mean pressure of a given force must be small against the moduli."""
+    force, area = case.force(), _area(case, faces)
+    if force is None or area == 0.0:
+        return
+    moduli = {
+        part: case.material(part).young_modulus or np.inf
+        for body in case.geometry.bodies
+        for part in case.geometry.parts_of(body)
+    }
+    softer = min(moduli, key=moduli.__getitem__)
+    strain = force / area / moduli[softer]
+    if strain > _SQUEEZED:
+        raise CaseError(
+            f"load: a mean pressure of {force / area / 1e6:.4g} MPa, if the faces touched along "
+            f"all of their {length(faces.width)}, is {strain:.2g} times the modulus of {softer!r} "
+            "(is geometry.length_unit right?)"
+        )
+
+
+def _area(case: Case, faces: Faces) -> float:
+    """Area that both faces have in common, seen along the press [m²]."""
+    if case.model == "axisymmetric":
+        return np.pi * (faces.span[1] ** 2 - faces.span[0] ** 2)
+    return faces.width * (case.geometry.thickness_factor or 0.0)
+
+
+def compared(mesh: TaggedMesh, case: Case) -> Faces:
+    """Compare the contact faces along the press, which is -y in a section.
+
+    Raises
+    ------
+    CaseError
+        If they do not face each other.
+    """
+    geometry = case.geometry
+    upper, lower = (_pieces(mesh, name) for name in geometry.contact)
+    down, up = upper[_normals(upper)[:, 1] < -_FACING], lower[_normals(lower)[:, 1] > _FACING]
+    for facing, name, way in ((down, geometry.contact[0], "down"), (up, geometry.contact[1], "up")):
+        if not len(facing):
+            raise CaseError(
+                f"geometry.contact: {name!r} does not look {way}; body {geometry.bodies[0]!r} is "
+                f"pressed along -y, so it must lie above {geometry.bodies[1]!r}"
+            )
+    first = max(down[..., 0].min(), up[..., 0].min())
+    last = min(down[..., 0].max(), up[..., 0].max())
+    if first >= last:
+        raise CaseError(
+            "geometry: the contact faces do not lie opposite each other; they range from x = "
+            f"{down[..., 0].min():.6g} to {down[..., 0].max():.6g} m and from "
+            f"{up[..., 0].min():.6g} to {up[..., 0].max():.6g} m"
+        )
+    ends = np.concatenate([down[..., 0].ravel(), up[..., 0].ravel()])
+    x = np.unique(ends[(ends >= first) & (ends <= last)])
+    gap = -_highest(-down[..., 1], down[..., 0], x) - _highest(up[..., 1], up[..., 0], x)
+    heights = {
+        name: float(np.ptp(mesh.points[np.unique(mesh.cells[mesh.cell_tags == tag]), 1]))
+        for tag, name in enumerate(mesh.bodies, start=1)
+    }
+    body = min(heights, key=heights.__getitem__)
+    return Faces(float(np.nanmin(gap)), (float(first), float(last)), heights[body], body)
+
+
+def _pieces(mesh: TaggedMesh, surface: str) -> np.ndarray:
+    """Straight pieces of a surface, their body on the left, shape (n, 2 ends, 2) [m]."""
+    facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index(surface) + 1]
+    t = np.linspace(0.0, 1.0, 1 + (_PIECES * mesh.order if mesh.order > 1 else 1))
+    values = shape_functions("interval", mesh.order, t[:, None])
+    points = np.einsum("qk,fki->fqi", values, mesh.points[facets])
+    return np.stack([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2, 2)
+
+
+def _normals(pieces: np.ndarray) -> np.ndarray:
+    """Outward unit normals, shape (n, 2)."""
+    x, y = (pieces[:, 1] - pieces[:, 0]).T
+    return np.column_stack([y, -x]) / np.hypot(x, y)[:, None]
+
+
+def _highest(height: np.ndarray, across: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Largest height of pieces (n, 2 ends) over places x; NaN where there is none, shape of x."""
+    order = np.argsort(across, axis=1)
+    left, right = np.take_along_axis(across, order, axis=1).T
+    low, high = np.take_along_axis(height, order, axis=1).T
+    result = np.empty(len(x))
+    for start in range(0, len(x), _AT_ONCE):
+        at = x[start : start + _AT_ONCE, None]
+        share = np.clip((at - left) / (right - left), 0.0, 1.0)
+        inside = (at >= left) & (at <= right)
+        values = np.where(inside, low + share * (high - low), -np.inf)
+        result[start : start + _AT_ONCE] = values.max(axis=1)
+    return np.where(np.isfinite(result), result, np.nan)

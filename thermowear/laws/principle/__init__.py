@@ -1,0 +1,1 @@
+"""Principle of minimum wear dissipation power: steady pressure, solvability, functionals."""

@@ -1,0 +1,108 @@
+"""The three functionals that a steady pressure might minimise, for any q.
+
+With ``w'_i = Z_i p^b_i`` the normal wear rates and ``c = 1 + mu e_1·e_R/(n·e_R)`` (written
+``1 ∓ mu tan χ`` by Páczelt and Mróz) the part of friction in ``p·w'_i = c p w'_i``::
+
+    W^(q)   = Σ_i (∫ (Z_i p^b_i)^q dS)^(1/q)            generalised wear volume rate
+    D_F^(q) = (∫ (mu p v)^q dS)^(1/q)                   generalised friction dissipation power
+    D_w^(q) = Σ_i (∫ (c Z_i p^(b_i+1))^q dS)^(1/q)      generalised wear dissipation power
+
+Each is a sum of ``‖g_i p^m_i‖_q`` with degrees m = b, 1 and b + 1, that is of powers m of norms of
+p with exponent m q. Their minimum under equilibrium is
+
+* unique where ``m_i q > 1`` for each body, if there is one body, or both have the same m and
+  proportional g, or both have ``m_i >= 1``: always so for D_w with ``q > 1/(b + 1)``, for D_F with
+  ``q > 1``, and for W of one body with ``q > 1/b``;
+* for W of two bodies with b < 1 and different a, or different b, attained, but perhaps by more
+  pressures than one (`minimum.minimise` returns the lowest that it finds);
+* not there where ``m_i q <= 1``: a pressure that gathers in single points has the least, and for
+  ``m q = 1`` many may be equal (``D_F^(1)`` of a translation is mu v F, whatever the pressure).
+
+Only D_w with q = 1 has the steady state for its minimum whatever a and b are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..wear import WearLaw
+
+
+@dataclass(frozen=True)
+class PowerFunctional:
+    """``Σ_i (∫ (g_i p^m_i)^q dS)^(1/q)``.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n,) [m²]
+    factors : ndarray, shape (m, n)
+        g of each body, positive.
+    degrees : ndarray, shape (m,)
+        m of each body.
+    q : float
+        The control parameter, positive.
+    """
+
+    weights: np.ndarray
+    factors: np.ndarray
+    degrees: np.ndarray
+    q: float
+
+    @property
+    def defined(self) -> bool:
+        """Whether there is a minimum: ``m q > 1``."""
+        return bool(np.all(self.degrees * self.q > 1))
+
+    def parts(self, pressure: np.ndarray) -> np.ndarray:
+        """The summand of each body, shape (..., m), for pressures of shape (..., n)."""
+        density = self.factors * pressure[..., None, :] ** self.degrees[:, None]
+        largest = density.max(axis=-1, keepdims=True)
+        largest = np.where(largest > 0, largest, 1.0)  # the powers of large q stay in range
+        total = (density / largest) ** self.q @ self.weights
+        return largest[..., 0] * total ** (1 / self.q)
+
+    def __call__(self, pressure: np.ndarray) -> np.ndarray:
+        """Values at pressures of shape (..., n) [Pa]."""
+        return self.parts(pressure).sum(axis=-1)
+
+    def gradient(self, pressure: np.ndarray) -> np.ndarray:
+        """Derivative by the pressure, per area: ``Σ m_i J_i^(1-q) (g_i p^m_i)^q / p``.
+
+        Shape (n,), at positive pressures.
+        """
+        density = self.factors * pressure ** self.degrees[:, None]
+        parts = self.parts(pressure)[:, None]
+        terms = self.degrees[:, None] * density * (density / parts) ** (self.q - 1)
+        return terms.sum(axis=0) / pressure
+
+
+def wear_dissipation(
+    weights: np.ndarray,
+    laws: Sequence[WearLaw],
+    speed: np.ndarray,
+    q: float = 1.0,
+    inclination_factor: np.ndarray | float = 1.0,
+) -> PowerFunctional:
+    """``D_w^(q)``, with ``inclination_factor`` the c of given directions of the wear velocity."""
+    factors = np.array([inclination_factor * law.factor(speed) for law in laws])
+    degrees = np.array([law.pressure_exponent + 1 for law in laws])
+    return PowerFunctional(weights, factors, degrees, q)
+
+
+def friction_dissipation(
+    weights: np.ndarray, friction: float, speed: np.ndarray, q: float
+) -> PowerFunctional:
+    """``D_F^(q)``."""
+    return PowerFunctional(weights, (friction * speed)[None, :], np.ones(1), q)
+
+
+def wear_volume_rate(
+    weights: np.ndarray, laws: Sequence[WearLaw], speed: np.ndarray, q: float
+) -> PowerFunctional:
+    """``W^(q)``; for q = 1 the volume worn per time [m³/s]."""
+    factors = np.array([law.factor(speed) for law in laws])
+    degrees = np.array([law.pressure_exponent for law in laws])
+    return PowerFunctional(weights, factors, degrees, q)

@@ -1,0 +1,192 @@
+"""The pressures in equilibrium that minimise a functional.
+
+Stationarity of ``Σ_i (∫ (g_i p^m_i)^q dS)^(1/q)`` under ``Tᵀ w p = F`` reads::
+
+    Σ_i m_i κ_i g_i^q p^(m_i q - 1) = T Λ,        κ_i = (∫ (g_i p^m_i)^q dS)^(1/q - 1)
+
+which for ``D_w^(q)`` is the pressure of Páczelt and Mróz,
+``p = [TΛ c^-q / Σ Z_i^q C_i^((1-q)/q)]^(1/((b+1)q-1))``, multiples of κ and Λ left aside. For given
+κ it is a convex problem, of the same form as the steady state; with one body κ is a common factor,
+with two their ratio is one number to be found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import brentq, root
+
+from ...errors import ComputationError
+from ..wear import WearLaw
+from .functionals import PowerFunctional, wear_dissipation
+from .interior_point import PowerSum, solve
+from .solvability import not_carried
+from .steady import steady_pressure
+
+_SEARCH = 16  # intervals in which the ratio of κ is looked for
+_SETTLED = 1e-13
+_ENOUGH = 1e-9
+_TURNS = 120  # of the direction, each a minimisation
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where a functional is least.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (n,) [Pa]
+    multipliers : ndarray, shape (k,)
+        Λ: the derivative of the least value by the load.
+    value : float
+    """
+
+    pressure: np.ndarray
+    multipliers: np.ndarray
+    value: float
+
+
+def minimise(functional: PowerFunctional, force_modes: np.ndarray, load: np.ndarray) -> Minimum:
+    """Minimise a functional among pressures ``p >= 0`` with ``Tᵀ w p = F``.
+
+    Parameters
+    ----------
+    functional : PowerFunctional
+    force_modes : ndarray, shape (n, k)
+        T.
+    load : ndarray, shape (k,)
+        F.
+
+    Raises
+    ------
+    NotCarried
+        If no pressure carries the load.
+    ComputationError
+        If the functional has no minimum for its q.
+    """
+    if not functional.defined:
+        raise ComputationError(
+            f"no minimum: q = {functional.q:g} must exceed "
+            f"{1 / functional.degrees.min():g} for this functional"
+        )
+    scale = np.abs(force_modes).max(axis=0)
+    unit = np.linalg.norm(load / scale) / functional.weights.sum()
+    scaled = _in_units(functional, unit)
+    parts = [
+        _at_ratio(scaled, force_modes, load / unit, ratio)
+        for ratio in _stationary_ratios(scaled, force_modes, load / unit)
+    ]
+    pressure = unit * min(parts, key=lambda p: float(scaled(p)))
+    return Minimum(
+        pressure, _multipliers(functional, force_modes, pressure), float(functional(pressure))
+    )
+
+
+def least_wear_dissipation(
+    weights: np.ndarray,
+    normal_modes: np.ndarray,
+    force_modes: np.ndarray,
+    load: np.ndarray,
+    laws: Sequence[WearLaw],
+    speed: np.ndarray,
+    q: float = 1.0,
+) -> Minimum:
+    """Minimise ``D_w^(q)``, χ being the inclination of the wear velocity of the minimum itself.
+
+    The multipliers are the rigid-body wear velocity up to a factor, so that ``c = TΛ/RΛ``; points
+    where that is not positive bear nothing. With one motion c is given, ``T/R``, without friction
+    it is 1; else the direction of Λ is looked for, from that of the steady state on, that its own
+    minimum has. For q = 1 and the same b of both bodies it is the steady state itself.
+
+    Parameters
+    ----------
+    weights, normal_modes, force_modes, load, laws, speed
+        As of `steady.steady_pressure`.
+    q : float
+
+    Raises
+    ------
+    ComputationError
+        As of `steady.steady_pressure` and `minimise`, or if no direction is found.
+    """
+    scale = np.abs(normal_modes).max(axis=0)
+
+    def least(direction: np.ndarray) -> Minimum:
+        opposed, approach = force_modes @ (direction / scale), normal_modes @ (direction / scale)
+        pressed = (opposed > 0) & (approach > 0)
+        factor = opposed[pressed] / approach[pressed]
+        there = wear_dissipation(weights[pressed], laws, speed[pressed], q, factor)
+        found = minimise(there, force_modes[pressed], load)
+        pressure = np.zeros(len(weights))
+        pressure[pressed] = found.pressure
+        return replace(found, pressure=pressure)
+
+    def turned(direction: np.ndarray) -> np.ndarray:
+        length = np.linalg.norm(direction)
+        own = scale * least(direction).multipliers
+        return own / np.linalg.norm(own) - direction / length + (length - 1) * direction
+
+    steady = steady_pressure(weights, normal_modes, force_modes, load, laws, speed)
+    start = scale * steady.velocity
+    direction = root(
+        turned, start / np.linalg.norm(start), options={"xtol": _SETTLED, "maxfev": _TURNS}
+    ).x
+    if not np.linalg.norm(turned(direction)) < _ENOUGH:
+        raise ComputationError(
+            "no minimum found: the direction of the rigid-body wear velocity does not settle"
+        )
+    return least(direction)
+
+
+def _in_units(functional: PowerFunctional, pressure: float) -> PowerFunctional:
+    """The functional of pressures in a unit, with factors up to 1."""
+    factors = functional.factors * pressure ** functional.degrees[:, None]
+    return replace(functional, factors=factors / factors.max())
+
+
+def _at_ratio(functional: PowerFunctional, force_modes, load, ratio: float) -> np.ndarray:
+    """The stationary pressure for a given logarithm of the ratio of the parts of both bodies."""
+    q, degrees = functional.q, functional.degrees
+    κ = np.exp((1 - q) * ratio * np.arange(len(degrees)))
+    stress = PowerSum((degrees * κ)[:, None] * functional.factors**q, degrees * q - 1)
+    found = solve(functional.weights, force_modes, force_modes, load, stress)
+    if found is None:
+        outside = not_carried(functional.weights, force_modes, load)
+        raise outside or ComputationError(f"no minimum found for q = {q:g}")
+    return found.pressure
+
+
+def _stationary_ratios(functional: PowerFunctional, force_modes, load) -> list[float]:
+    """Logarithms of the ratio of the parts that the pressure they lead to has indeed."""
+    if len(functional.degrees) == 1 or functional.q == 1:
+        return [0.0]
+
+    def excess(ratio: float) -> float:
+        first, second = functional.parts(_at_ratio(functional, force_modes, load, ratio))
+        return float(np.log(second / first)) - ratio
+
+    middle, half = excess(0.0), 1.0
+    while excess(middle - half) < 0 or excess(middle + half) > 0:
+        half *= 2
+    convex = functional.degrees.min() >= 1
+    places = np.linspace(middle - half, middle + half, 2 if convex else _SEARCH)
+    values = [excess(place) for place in places]
+    return [
+        brentq(excess, *ends, xtol=_SETTLED)
+        for ends, (low, high) in zip(pairwise(places), pairwise(values), strict=True)
+        if low >= 0 >= high or low <= 0 <= high
+    ]
+
+
+def _multipliers(functional: PowerFunctional, force_modes, pressure: np.ndarray) -> np.ndarray:
+    """Λ from ``dJ/dp = T Λ`` where there is pressure."""
+    pressed = pressure > 0
+    there = replace(
+        functional,
+        weights=functional.weights[pressed],
+        factors=functional.factors[:, pressed],
+    )
+    return np.linalg.lstsq(force_modes[pressed], there.gradient(pressure[pressed]), rcond=None)[0]

@@ -1,0 +1,148 @@
+"""A contact patch: all that the principle needs to know of a face, in three dimensions.
+
+Signs are those of `thermowear.contact.search.pairing`: ``n`` is the outward normal of body 1, and
+its traction is ``-p ñ`` with ``ñ = n + mu e_1 + mu_d e_2``. ``e_1`` is the direction in which body 1
+slides over body 2; ``e_2``, across it, is that in which the rigid-body wear velocity draws body 1
+along the face, so that ``mu_d`` resists it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..distribution import Spreading
+from ..motions import RigidMotion
+from ..wear import WearLaw
+from .steady import SteadyWear, steady_pressure
+
+
+@dataclass(frozen=True)
+class ContactPatch:
+    """Contact points with their directions, and the free motions of the holder of body 1.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 3) [m]
+    weights : ndarray, shape (n,)
+        Areas [m²]; a point without area is a probe.
+    normals : ndarray, shape (n, 3)
+        Outward unit normals of body 1.
+    traction : ndarray, shape (n, 3)
+        ``ñ``.
+    speed : ndarray, shape (n,)
+        Of sliding [m/s].
+    motions : tuple of RigidMotion
+    """
+
+    points: np.ndarray
+    weights: np.ndarray
+    normals: np.ndarray
+    traction: np.ndarray
+    speed: np.ndarray
+    motions: tuple[RigidMotion, ...]
+
+    @property
+    def normal_modes(self) -> np.ndarray:
+        """``R = m·n`` of each motion, shape (n, k)."""
+        return self._along(self.normals)
+
+    @property
+    def force_modes(self) -> np.ndarray:
+        """``T = m·ñ`` of each motion, shape (n, k)."""
+        return self._along(self.traction)
+
+    def _along(self, directions: np.ndarray) -> np.ndarray:
+        moved = [np.sum(m.at(self.points) * directions, axis=1) for m in self.motions]
+        return np.column_stack(moved)
+
+    def part(self, points: np.ndarray) -> ContactPatch:
+        """The patch of some of the points, by indices or a mask."""
+        return replace(
+            self,
+            points=self.points[points],
+            weights=self.weights[points],
+            normals=self.normals[points],
+            traction=self.traction[points],
+            speed=self.speed[points],
+        )
+
+    def velocity(self, amplitudes: np.ndarray) -> np.ndarray:
+        """Rigid-body velocity of the points at given rates of the motions, shape (n, 3) [m/s]."""
+        return np.einsum("k,kni->ni", amplitudes, [m.at(self.points) for m in self.motions])
+
+    def force(self, pressure: np.ndarray) -> np.ndarray:
+        """``∫ p ñ dS``: what the holder presses and drags body 1 with, shape (3,) [N]."""
+        return (self.weights * pressure) @ self.traction
+
+    def moment(self, pressure: np.ndarray, pivot) -> np.ndarray:
+        """The moment of that force about a point, shape (3,) [N m]."""
+        arms = self.points - np.asarray(pivot)
+        return (self.weights * pressure) @ np.cross(arms, self.traction)
+
+    def steady(
+        self, load, laws: Sequence[WearLaw], spread: Sequence[Spreading] | None = None
+    ) -> SteadyWear:
+        """The steady state under a load along each motion; see `steady_pressure`."""
+        return steady_pressure(
+            self.weights,
+            self.normal_modes,
+            self.force_modes,
+            np.asarray(load, dtype=float),
+            laws,
+            self.speed,
+            spread,
+        )
+
+
+def contact_patch(
+    points,
+    weights,
+    normals,
+    motions: Sequence[RigidMotion],
+    speed,
+    friction: float = 0.0,
+    sliding=(0.0, 0.0, 0.0),
+    transverse_friction: float = 0.0,
+    transverse=(0.0, 0.0, 0.0),
+) -> ContactPatch:
+    """Build a patch; what is the same at all points may be given once.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3) [m]
+        Of a plane or a spatial model.
+    weights : array_like, shape (n,) [m²]
+    normals : array_like, shape (2,), (3,), (n, 2) or (n, 3)
+        Outward normals of body 1, of any length.
+    motions : sequence of RigidMotion
+        Free motions of the holder.
+    speed : float or array_like, shape (n,) [m/s]
+    friction, transverse_friction : float
+        mu and mu_d.
+    sliding, transverse : array_like
+        Unit vectors ``e_1`` and ``e_2``, of the shapes of the normals; needed where the friction
+        that acts along them has a part in the section.
+    """
+    n = len(weights)
+    normal = _spatial(normals, n)
+    normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    along, across = _spatial(sliding, n), _spatial(transverse, n)
+    return ContactPatch(
+        points=_spatial(points, n),
+        weights=np.asarray(weights, dtype=float),
+        normals=normal,
+        traction=normal + friction * along + transverse_friction * across,
+        speed=np.broadcast_to(np.asarray(speed, dtype=float), n),
+        motions=tuple(motions),
+    )
+
+
+def _spatial(vectors, n: int) -> np.ndarray:
+    """Vectors at n points with three components."""
+    given = np.atleast_2d(np.asarray(vectors, dtype=float))
+    result = np.zeros((n, 3))
+    result[:, : given.shape[1]] = given
+    return result

@@ -1,0 +1,75 @@
+"""Why no pressure carries a load: friction locks the bodies, or the load lies outside the face."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import linprog, nnls
+
+from ...errors import ComputationError
+
+_NOTHING = 1e-9  # relative: below it a force or an approach is none
+
+
+class SelfLocking(ComputationError):
+    """Friction carries the load however large it is, and no pressure wears the faces steadily."""
+
+
+class NotCarried(ComputationError):
+    """The load lifts the body off, or tips it over the edge of its face."""
+
+
+def not_carried(weights: np.ndarray, modes: np.ndarray, load: np.ndarray) -> NotCarried | None:
+    """The error if no pressure ``p >= 0`` carries the load, ``modesᵀ w p = F``."""
+    scale = np.abs(modes).max(axis=0)
+    _, left = nnls((modes[weights > 0] / scale).T, load / scale)
+    if left < _NOTHING * np.linalg.norm(load / scale):
+        return None
+    return NotCarried(
+        "the load is outside of what pressure on this face can carry: it lifts the body off or "
+        "tips it over an edge"
+    )
+
+
+def why_no_steady_state(
+    weights: np.ndarray, normal_modes: np.ndarray, force_modes: np.ndarray, load: np.ndarray
+) -> ComputationError:
+    """The error to raise where the principle has no solution.
+
+    Friction can lock only where pressures and their friction may be in equilibrium by themselves,
+    at some coefficient of friction up to the given one. It cannot where the holder has a motion
+    against which every pressure of the face works, with its friction and without: ``R y > 0`` and
+    ``T y > 0`` at all points bound the pressures by ``F·y``.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (n,)
+    normal_modes, force_modes : ndarray, shape (n, k)
+        R and T.
+    load : ndarray, shape (k,)
+    """
+    outside = not_carried(weights, normal_modes, load)
+    if outside is None and not _bounded(normal_modes, force_modes):
+        return SelfLocking(
+            "self-locking: friction carries the load whatever the pressure, and nothing wears "
+            "steadily in this sense of sliding; lower the friction or turn the motion round"
+        )
+    return (
+        outside
+        or not_carried(weights, force_modes, load)
+        or ComputationError(
+            "no steady state: no rigid-body wear velocity was found that carries the load"
+        )
+    )
+
+
+def _bounded(R: np.ndarray, T: np.ndarray) -> bool:
+    """Whether a motion y exists with ``R y > 0`` and ``T y > 0`` at all points."""
+    rows = np.vstack([R, T])
+    rows = rows / np.abs(rows).max(axis=0)
+    least = linprog(  # the largest t with rows y >= t
+        c=np.append(np.zeros(R.shape[1]), -1.0),
+        A_ub=np.column_stack([-rows, np.ones(len(rows))]),
+        b_ub=np.zeros(len(rows)),
+        bounds=(-1.0, 1.0),
+    )
+    return bool(-least.fun > _NOTHING)

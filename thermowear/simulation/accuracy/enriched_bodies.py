@@ -1,0 +1,199 @@
+"""The bodies of a system, enriched by the next degree: what that changes of a state.
+
+The state's contact pressure and friction heat are kept; the bodies answer them a little more
+softly, and somewhat warmer, as their discretisation improves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from dolfinx import fem
+
+from ...bulk.field import owned
+from ...bulk.heat.heat_equation import conducting, transferring
+from ...bulk.kinematics import Model
+from ...bulk.mechanics.elasticity import fixed_values
+from ...bulk.mechanics.enriched import EnrichedProblem
+from ...bulk.mechanics.surface_load import pressure_work, surface_work
+from ...bulk.mechanics.surplus import surplus_space
+from ...contact.operators.heat import InterfaceHeat, Resting
+from ...contact.operators.tangential import tangents
+from ...contact.operators.traces import gap_trace, value_trace, vector_trace
+from ...parallel import sum_over_ranks
+from ..interface.body_state import BodyState, ContactState
+from ..model.elastic_system import supports
+from ..model.system import System
+from ..model.thermal_system import conducting_bodies
+
+
+@dataclass(frozen=True)
+class WarmerFaces:
+    """What the next degree changes of temperatures.
+
+    Attributes
+    ----------
+    faces : ndarray, shape (2, n)
+        Of both faces at the points [K].
+    problem : EnrichedProblem
+    field : ndarray
+        Of the bodies, a field of that problem [K].
+    """
+
+    faces: np.ndarray
+    problem: EnrichedProblem
+    field: np.ndarray
+
+
+class EnrichedBodies:
+    """The elastic bodies of a system with the surplus of the next degree. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    """
+
+    def __init__(self, system: System):
+        elastic, degree = system.elastic, system.case.mesh.degree
+        bodies = elastic.bodies
+        surplus = surplus_space(bodies.mesh, degree, bodies.mesh.geometry.dim)
+        clamped, symmetric, rollers = supports(system.case)
+        held = fixed_values(bodies, elastic.model, surplus, clamped, {0: symmetric, 1: rollers})
+        self._system = system
+        self._degree = degree + 1
+        self._problem = EnrichedProblem(
+            elastic.space,
+            surplus,
+            (lambda u, δu: elastic.virtual_work(u, δu, self._degree),),
+            elastic.solve,
+            (elastic.fixed, held),
+        )
+        self._trace = gap_trace(surplus, system.pairing)
+
+    def opening(self, contact: ContactState, state: BodyState, warmer: WarmerFaces | None):
+        """Gap at the points that the next degree opens in a state, shape (n,) [m]."""
+        system, problem = self._system, self._problem
+        loads = self._loads(contact)
+        if warmer is not None:
+            assert system.thermal is not None
+            space = system.thermal.conduction.space
+            before = warmer.problem.field(np.asarray(state.rise))
+            rise = warmer.problem.function(before + warmer.field)
+            loads = loads + problem.loads(
+                lambda δu: system.elastic.thermal_work(rise, δu, space.ufl_element().degree + 1)
+            )
+        elif state.rise is not None and system.thermal is not None:
+            loads[: owned(problem.space)] += system.thermal.forces(state.rise)
+        residual = problem.residual(problem.field(state.displacement), loads)
+        return self._gap(problem.correction(residual))
+
+    def answer(self, pressure: np.ndarray) -> np.ndarray:
+        """Gap at the points that a pressure opens, shape (n,) [m]; about."""
+        loads = self._system.weights * pressure
+        nodal = np.concatenate([self._system.trace @ loads, self._trace @ loads])
+        return self._gap(self._problem.approximate(nodal))
+
+    def _gap(self, field: np.ndarray) -> np.ndarray:
+        count = owned(self._problem.space)
+        opened = self._system.trace.T @ field[:count] + self._trace.T @ field[count:]
+        return sum_over_ranks(self._system.comm, opened)
+
+    def _loads(self, contact: ContactState) -> np.ndarray:
+        """Nodal loads of the contact and of loads on surfaces."""
+        system, problem = self._system, self._problem
+        pairing = system.pairing
+        pull = system.rubbing(contact.conditions.friction).pull
+        traction = contact.pressure[:, None] * pull
+        if contact.shear is not None:
+            traction = traction - contact.shear[:, None] * tangents(pairing.normals)[0]
+        loads = np.concatenate(
+            [
+                vector_trace(space, pairing, traction) @ system.weights
+                for space in (problem.space, problem.surplus)
+            ]
+        )
+        press = system.press
+        for surface, force in system.case.load.surfaces.items():
+            loads = loads + problem.loads(surface_work(system.elastic, surface, force * press))
+        for given in system.case.load.pressure.items():
+            loads = loads + problem.loads(pressure_work(system.elastic, *given))
+        return loads
+
+
+def warmer_faces(system: System, model: Model, contact: ContactState, state: BodyState):
+    """What the next degree changes of steady temperatures under a given friction heat.
+
+    Every rank calls.
+    """
+    thermal = system.thermal
+    assert thermal is not None
+    assert state.thermal is not None
+    conduction, face, pairing = thermal.conduction, thermal.face, system.pairing
+    problem = _conducting(system, model)
+    count = owned(conduction.space)
+    surplus = [value_trace(problem.surplus, side) for side in pairing.sides]
+    heat = sum(
+        trace @ (face.weights * flux)
+        for trace, flux in zip(surplus, state.thermal.flux, strict=True)
+    )
+    loads = np.concatenate([face.nodal_heat(state.thermal, bath=False), heat])
+    change = problem.correction(problem.residual(problem.field(np.asarray(state.rise)), loads))
+    alone = np.array(
+        [
+            sum_over_ranks(system.comm, trace.T @ change[:count] + more.T @ change[count:])
+            for trace, more in zip(face.traces, surplus, strict=True)
+        ]
+    )
+    # the nodes of the space alone could not answer a flux that levels what is between them
+    weighted = face.weights[:, None] * face.basis
+    seen = (
+        face.basis @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ alone.T, rcond=None)[0]
+    )
+    exchange = face.exchange(contact.conditions.conductance)
+    none = np.zeros(len(face.weights))
+    coupled = exchange.state(none, Resting((seen[:, 0], seen[:, 1])))
+    change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
+    details = _levelled(alone - seen.T, face, contact.conditions.conductance)
+    return WarmerFaces(np.array(coupled.rise) + details, problem, change)
+
+
+def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:
+    """Rises of both faces (2, n) that are too short for the nodes, after their exchange of heat.
+
+    As if each point had a resistance of its own in either body, that of its own heat [K].
+    """
+    own = np.abs([np.diag(response) for response in face.response])
+    with np.errstate(divide="ignore"):
+        flux = (rises[1] - rises[0]) / (own.sum(axis=0) + 1 / conductance)
+    return rises + own * flux * np.array([[1.0], [-1.0]])
+
+
+def _conducting(system: System, model: Model) -> EnrichedProblem:
+    """Conduction with its surplus; corrections give heat to a bath at both faces."""
+    assert system.thermal is not None
+    conduction, case, bodies = system.thermal.conduction, system.case, system.bodies
+    degree = case.mesh.degree
+    materials, times = conducting_bodies(case)
+    assert case.heat is not None
+    cooling = {surface: times[surface] * h for surface, h in case.heat.cooling.items()}
+    conductivities = {part: material.conductivity for part, material in materials.items()}
+    surplus = surplus_space(bodies.mesh, degree)
+    terms = [conducting(bodies, model, conductivities, degree + 1)]
+    terms += transferring(bodies, model, cooling)
+    shift = system.thermal.face.shift
+    bath = transferring(bodies, model, dict.fromkeys(case.geometry.contact, shift))
+    given = _on(bodies, surplus, list(case.heat.temperature))
+    return EnrichedProblem(
+        conduction.space, surplus, terms, conduction.respond, (conduction.fixed, given), bath
+    )
+
+
+def _on(bodies, space: fem.FunctionSpace, surfaces: list[str]) -> np.ndarray:
+    """Which owned values of a scalar space lie on surfaces."""
+    chosen = np.zeros(owned(space), dtype=bool)
+    for surface in surfaces:
+        facets = bodies.facets(surface)
+        dofs = fem.locate_dofs_topological(space, bodies.mesh.topology.dim - 1, facets)
+        chosen[dofs[dofs < len(chosen)]] = True
+    return chosen

@@ -1,0 +1,257 @@
+"""The discretisation error of a result, estimated from what the next degree would change.
+
+* Pressure: mean of ``|p - p⁺|`` over the contact by the mean of ``p``. That exists for any
+  pressure, even where it is singular at an edge and no largest value converges. The change of the
+  largest value is a number of its own.
+* Shape: largest change of the gap that the bodies open where they press, but for a motion of the
+  holder, by the range of the shape.
+* Temperature: largest change at the faces by the largest rise at them.
+
+The next degree finds most of the error, and a part is left to those that follow: where each degree
+makes an error three times smaller, one and a half times the change in all.
+
+Where wear goes on up to an edge, as in contacts that grow, the pressure ends with a jump, which the
+contact points place no nearer than half their distance. That is the least error of the pressure.
+
+The meshes' approximation of curved faces and errors of steps in time are not in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...bulk.kinematics import section_model
+from ...contact.operators.holder import hold
+from ...contact.search.pairing import pair
+from ...contact.search.surface import Surface
+from ...contact.solvers.enriched_pressure import enriched_pressure
+from ...errors import CaseError, ComputationError
+from ...laws import steady_pressure
+from ..model.building import sliding_of
+from ..model.system import System
+from ..results.outcome import Outcome
+from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
+
+_FOLLOWING = 1.5
+"""All further degrees by the next one: 1 + 1/3 + 1/9 …"""
+WORTH_A_WARNING = 0.05
+_FLAT = 1e-9
+"""Of the bodies' deflection: a shape of that range is rounding."""
+
+
+@dataclass(frozen=True)
+class ErrorEstimates:
+    """Relative errors, see the module; None where there is no estimate.
+
+    Attributes
+    ----------
+    pressure, max_pressure, shape, temperature : float or None
+    missing : dict of str to str
+        Why, by the quantity.
+    """
+
+    pressure: float | None
+    max_pressure: float | None
+    shape: float | None
+    temperature: float | None
+    missing: dict[str, str]
+
+    def summary(self) -> dict:
+        """Keys of ``summary.json``."""
+        return {
+            "pressure_error_estimate_relative": self.pressure,
+            "max_pressure_error_estimate_relative": self.max_pressure,
+            "shape_error_estimate_relative": self.shape,
+            "temperature_error_estimate_relative": self.temperature,
+            "error_estimate_missing": self.missing,
+        }
+
+    def warning(self) -> str | None:
+        """What is wrong by more than can be left unsaid."""
+        named = {
+            "pressure": self.pressure,
+            "largest pressure": self.max_pressure,
+            "shape": self.shape,
+            "temperature": self.temperature,
+        }
+        large = [f"{q} {100 * e:.2g} %" for q, e in named.items() if e and e > WORTH_A_WARNING]
+        if not large:
+            return None
+        return (
+            f"estimated discretisation error above 5 %: {', '.join(large)}; use more mesh.elements "
+            "or a higher mesh.degree, and compare by `run --accuracy`"
+        )
+
+
+def estimate_errors(system: System, outcome: Outcome) -> ErrorEstimates:
+    """Estimate the errors at the end of an analysis. Every rank calls."""
+    missing: dict[str, str] = {}
+    warmer, why = _warmer(system, outcome)
+    temperature = None if warmer is None else _of_temperature(outcome, warmer)
+    if temperature is None:
+        missing["temperature"] = why or "no temperature differs from the ambient one"
+    bodies = EnrichedBodies(system)
+    opened = bodies.opening(outcome.contact, outcome.state, warmer)
+    shape = None
+    if system.thermal is not None and warmer is None:
+        missing["shape"] = f"temperature: {why}"
+    else:
+        shape = _of_shape(system, outcome, opened)
+        if shape is None:
+            missing["shape"] = "the faces have no shape by wear"
+    pressure = largest = None
+    if not outcome.contact.pressure.any():
+        missing["pressure"] = "nothing presses"
+    else:
+        try:
+            richer = _richer_pressure(system, outcome, bodies, opened)
+            pressure, largest = _of_pressure(system, outcome.contact.pressure, richer)
+            pressure = max(pressure, _of_edges(system, outcome))
+        except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
+            missing["pressure"] = str(error)
+    return ErrorEstimates(pressure, largest, shape, temperature, missing)
+
+
+def _warmer(system: System, outcome: Outcome) -> tuple[WarmerFaces | None, str | None]:
+    """What the next degree changes of temperatures, or why that is not known."""
+    thermal, heat = system.thermal, system.case.heat
+    if thermal is None or heat is None or outcome.state.thermal is None:
+        return None, "isothermal"
+    if heat.transient:
+        return None, "not estimated where temperatures are followed in time"
+    if heat.flux or heat.power:
+        return None, "not estimated where heat is given on surfaces"
+    if thermal.varies:
+        return None, "not estimated where conductivity or expansion change with temperature"
+    if heat.advection != "none":
+        return None, "not estimated where a body carries heat along"
+    geometry = system.case.geometry
+    model = section_model(system.case.model, geometry.thickness_factor, geometry.sector)
+    return warmer_faces(system, model, outcome.contact, outcome.state), None
+
+
+def _of_temperature(outcome: Outcome, warmer: WarmerFaces) -> float | None:
+    assert outcome.state.thermal is not None
+    largest = float(np.abs(outcome.state.thermal.rise).max())
+    return _FOLLOWING * float(np.abs(warmer.faces).max()) / largest if largest > 0 else None
+
+
+def _of_shape(system: System, outcome: Outcome, opened: np.ndarray) -> float | None:
+    interface = outcome.interface
+    worn = np.any([interface.wear_1, interface.wear_2]) or _is_steady(system)
+    pressing, scale = interface.pressure > 0, float(np.ptp(interface.shape))
+    flat = scale <= _FLAT * np.abs(outcome.state.opening).max(initial=0.0)
+    if not worn or flat or not pressing.any():
+        return None
+    modes, change = system.holder.modes[pressing], opened[pressing]
+    roots = np.sqrt(system.weights[pressing])
+    amounts = np.linalg.lstsq(modes * roots[:, None], change * roots, rcond=None)[0]
+    return _FOLLOWING * float(np.abs(change - modes @ amounts).max()) / scale
+
+
+def _of_edges(system: System, outcome: Outcome) -> float:
+    """Mean error of a worn pressure by where it ends: half a contact point beside each edge.
+
+    A higher degree does not see that error, as it would have the same worn gap.
+    """
+    interface, weights = outcome.interface, system.weights
+    side = system.pairing.sides[0]
+    if isinstance(side.face, Surface) or not np.any([interface.wear_1, interface.wear_2]):
+        return 0.0
+    pressure = outcome.contact.pressure
+    pressing = np.concatenate([[pressure[0] > 0.0], pressure > 0.0, [pressure[-1] > 0.0]])
+    last = (pressure > 0.0) & ~(pressing[:-2] & pressing[2:])
+    largest = np.zeros(side.facet.max() + 1)
+    np.maximum.at(largest, side.facet, weights)
+    return float(pressure[last] @ largest[side.facet[last]] / 2 / (weights @ pressure))
+
+
+def _of_pressure(system: System, pressure: np.ndarray, richer: np.ndarray) -> tuple[float, float]:
+    total, largest = float(system.weights @ pressure), float(pressure.max())
+    change = float(system.weights @ np.abs(richer - pressure))
+    peak = abs(float(richer.max()) - largest)
+    return _FOLLOWING * change / total, _FOLLOWING * peak / largest
+
+
+def _is_steady(system: System) -> bool:
+    return system.case.analysis.type == "steady"
+
+
+def _richer_pressure(
+    system: System, outcome: Outcome, bodies: EnrichedBodies, opened: np.ndarray
+) -> np.ndarray:
+    """The pressure of a richer discretisation at the contact points [Pa]."""
+    if _is_steady(system):
+        return _finer_principle(system, outcome.contact.pressure)
+    degree = system.case.contact.pressure_degree
+    if degree == "lobatto":
+        raise ComputationError('not estimated for contact.pressure_degree = "lobatto"')
+    interface, pressure = outcome.interface, outcome.contact.pressure
+    return enriched_pressure(
+        system.pairing,
+        system.influence,
+        degree or max(system.case.mesh.degree - 1, 1),
+        system.holder,
+        pressure,
+        interface.gap + opened,
+        system.softness + _wear_per_pressure(system, outcome),
+        bodies.answer,
+    )
+
+
+def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
+    """Least depth that the facet of each point has lost, by the mean pressure, shape (n,) [m/Pa].
+
+    A pressure that had been wrong for so long would have been answered by wear on the spot: what is
+    left of the gap between the functions of the pressure is the work of its error all the time.
+    Where a part of the facet has lost nothing, it is the depth at the point itself.
+    """
+    interface, pressing = outcome.interface, outcome.contact.pressure > 0
+    mean = np.average(outcome.contact.pressure[pressing], weights=system.weights[pressing])
+    facet = system.pairing.sides[0].facet
+    least = np.full(facet.max() + 1, np.inf)
+    depth = interface.wear_1 + interface.wear_2
+    np.minimum.at(least, facet, depth)
+    return np.where(least[facet] > 0.0, least[facet], np.maximum(depth, 0.0)) / mean
+
+
+def _finer_principle(system: System, pressure: np.ndarray) -> np.ndarray:
+    """The steady pressure by a finer quadrature: the only error that the principle makes."""
+    if system.worn is not None:
+        raise ComputationError("not estimated on moved meshes")
+    coarse, fine = (_principle(part) for part in (system, _finer(system)))
+    velocity = system.holder.modes @ coarse.velocity
+    change = system.holder.modes @ fine.velocity - velocity
+    exponent = min(law.pressure_exponent for law in system.laws.values())
+    moving = np.where(pressure > 0, velocity, 1.0)
+    return pressure * (1 + change / (exponent * moving))
+
+
+def _finer(system: System) -> System:
+    """A system with more contact points, of which only the principle is asked."""
+    case, model = system.case, system.elastic.model
+    face_1, face_2 = (side.face for side in system.pairing.sides)
+    lobatto = case.contact.pressure_degree == "lobatto"
+    order = case.mesh.degree + (2 if lobatto else 3)
+    pairing = pair(face_1, face_2, model, order, refine=not lobatto)
+    slides = sliding_of(case, model, pairing)
+    assert slides is not None
+    pull = slides.pull(pairing.normals, case.contact.friction, case.contact.transverse_friction)
+    holder = hold(pairing, pull, system.holder.drives)
+    return replace(
+        system, pairing=pairing, slides=slides, pull=pull, speed=slides.speed, holder=holder
+    )
+
+
+def _principle(system: System):
+    return steady_pressure(
+        system.weights,
+        system.holder.modes,
+        system.holder.force_modes,
+        system.holder.load,
+        list(system.laws.values()),
+        system.speed,
+        list(system.spreads.values()),
+    )

@@ -1,0 +1,1 @@
+"""Analyses that a case can ask for."""

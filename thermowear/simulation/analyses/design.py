@@ -1,0 +1,85 @@
+"""The steady worn shape of a contact face, as a design."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...contact.search.face import Face
+from ...geometry.cad.design import Design
+from ..interface.body_state import body_state
+from ..interface.steady import least_worn, steady_state
+from ..model.system import System
+from ..results.recording import along_press
+
+_SAME = 1e-9  # of the size of the face: nearer points are one
+
+
+def steady_design(system: System, body: int) -> Design:
+    """The unloaded, unheated shape that makes a face carry the steady pressure at once.
+
+    Only the distance of both faces counts: one takes all of the shape, worn or not, the other one
+    stays as it is drawn. With the least material off: ``W = R d - B u - g0``, nowhere negative,
+    where ``R d`` is a motion of the holder.
+
+    Parameters
+    ----------
+    system : System
+    body : int
+        Which face takes it: 1 or 2.
+
+    Raises
+    ------
+    ComputationError
+        If there is no steady state.
+    """
+    found = steady_state(system)
+    state, pairing = body_state(system, found.contact), system.pairing
+    state.require_balance()
+    pressure = found.wear.pressure
+    open_by = state.opening + system.softness * pressure + pairing.gap
+    modes = system.holder.modes
+    amounts = least_worn(modes, open_by, system.weights, pressure > 0)
+    depth = np.maximum(modes @ amounts - open_by, 0.0)
+    side = pairing.sides[body - 1]
+    points, normals = side.face.points(side.facet, side.t), pairing.normals
+    s = pairing.position
+    if body == 2:
+        normals = side.face.normals(side.facet, side.t)
+        s = side.face.position(side.facet, side.t)
+    lost = pairing.gap + depth
+    lost_along = lost / along_press(system)
+    design = Design(
+        body=body,
+        points=points,
+        s=s,
+        normals=normals,
+        shape=lost.max() - lost,
+        shape_along_press=np.nanmax(lost_along) - lost_along,
+        depth=depth,
+    )
+    return _from_end_to_end(design, side.face) if isinstance(side.face, Face) else design
+
+
+def _from_end_to_end(design: Design, face: Face) -> Design:
+    """A design in order along its plane face, all of it: beyond the contact as at its edge."""
+    same = _SAME * face.extent
+    order = face.nodes.shape[1] - 1
+    facet, t = np.divmod(np.arange(len(face.nodes) * order + 1), order)
+    facet[-1], t[-1] = facet[-1] - 1, order
+    nodes = face.position(facet, t / order)
+    beyond = (nodes < design.s.min() - same) | (nodes > design.s.max() + same)
+    facet, t, nodes = facet[beyond], t[beyond] / order, nodes[beyond]
+    edge = np.where(nodes < design.s.min(), design.s.argmin(), design.s.argmax())
+    s = np.concatenate([design.s, nodes])
+    rows = np.argsort(s, kind="stable")
+    rows = rows[np.diff(s[rows], prepend=-np.inf) > same]
+    whole = np.concatenate([np.arange(len(design.s)), edge])[rows]
+    return Design(
+        body=design.body,
+        points=np.concatenate([design.points, face.points(facet, t)])[rows],
+        s=s[rows],
+        normals=np.concatenate([design.normals, face.normals(facet, t)])[rows],
+        shape=design.shape[whole],
+        shape_along_press=design.shape_along_press[whole],
+        depth=design.depth[whole],
+    )

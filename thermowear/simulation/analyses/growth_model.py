@@ -1,0 +1,189 @@
+"""Disturbances of a hot contact in time, by a small model of both conducting bodies.
+
+What heat at the contact does to the bodies at a rate s is ``(K + s M)⁻¹`` times it. A small space
+of temperatures, made of such answers at some rates (a rational Krylov space; A. Ruhe, Linear
+Algebra Appl. 58 (1984) 391), holds all that matters between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from petsc4py import PETSc
+
+import numpy as np
+
+from ...bulk.heat.conduction import Conduction
+from ...contact.operators.heat import InterfaceHeat
+from ...contact.operators.heat_condensation import condense_heat
+from ...laws.stability import Disturbances, LoadFree, Rate
+from ...parallel import sum_over_ranks
+from ..heat.friction_heat import FrictionHeat
+from ..model.conditions import Conditions
+from ..model.system import System
+
+_NEW = 1e-12
+"""Squared size of the part of a unit field that a space must lack to take it up."""
+_SPREAD = (1.0, 30.0, 1e3, 3e4)
+"""Rates that a model begins with, over that of heat going across the contact."""
+_SAME, _SETTLED, _TURNS = 1e-3, 1e-6, 6
+
+
+@dataclass(frozen=True)
+class Growing:
+    """A disturbance and the speed at which it grows so.
+
+    Attributes
+    ----------
+    factor : float
+        Of the given speed.
+    rate : Rate
+    """
+
+    factor: float
+    rate: Rate
+
+    def near(self, other: Growing) -> bool:
+        """Whether both are the same, but for what a model of temperatures may lack."""
+        change = abs(self.rate.value - other.rate.value) <= _SETTLED * abs(other.rate.value)
+        return change and abs(self.factor - other.factor) <= _SETTLED * other.factor
+
+
+class GrowthModel:
+    """Conduction projected on the answers to disturbances.
+
+    Parameters
+    ----------
+    system : System
+        With its heat, whose capacity is known.
+    heat : FrictionHeat
+    conditions : Conditions
+        Of the state that is disturbed.
+    elastic : ndarray, shape (m, m)
+        A, see `laws.stability`.
+    space : LoadFree
+        The disturbances, coefficients of all of the pressure space.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        heat: FrictionHeat,
+        conditions: Conditions,
+        elastic: np.ndarray,
+        space: LoadFree,
+    ):
+        assert system.thermal is not None
+        self._system, self._thermal = system, system.thermal
+        self._heat, self._conditions = heat, conditions
+        self._elastic, self._space = elastic, space
+        self._friction = conditions.heating[:, None] * (system.basis @ space.pressures)
+        self._fields: np.ndarray | None = None
+        self._crossing: np.ndarray | None = None
+        self._rates: list[float] = []
+
+    def begin(self) -> None:
+        """Take up answers over the whole range of rates; every rank calls."""
+        slowest = self._thermal.diffusivity / self._system.pairing.extent**2
+        for rate in (0.0, *(part * slowest for part in _SPREAD)):
+            self.add(rate)
+
+    def settled(self, find: Callable[[Disturbances], Growing | None]) -> Growing | None:
+        """What is found in the model when it knows the rate well; every rank calls.
+
+        The rate that is found is taken up, until it does not change any more.
+        """
+        found = find(self.disturbances())
+        for _ in range(_TURNS):
+            if found is None or self._knows(abs(found.rate.value)):
+                break
+            self.add(abs(found.rate.value))
+            before, found = found, find(self.disturbances())
+            if found is not None and found.near(before):
+                break
+        return found
+
+    def _knows(self, rate: float) -> bool:
+        return any(abs(rate - known) <= _SAME * rate for known in self._rates)
+
+    def add(self, rate: float) -> None:
+        """Take up what friction heat that grows at a rate does to the bodies; every rank calls.
+
+        Parameters
+        ----------
+        rate : float
+            Zero: steady [1/s].
+        """
+        conduction, face = self._conducting(rate)
+        exchange = face.exchange(self._conditions.conductance)
+        nodal = sum(
+            trace @ (face.weights[:, None] * (share @ self._friction))
+            for trace, share in zip(face.traces, exchange.per_friction_heat, strict=True)
+        )
+        crossing = exchange.crossing_per_friction_heat @ self._friction
+        self._extend(conduction.respond(np.asarray(nodal)), crossing)
+        self._rates.append(rate)
+
+    def _conducting(self, rate: float) -> tuple[Conduction, InterfaceHeat]:
+        """The bodies whose heat grows at a rate, and their faces."""
+        steady, face = self._thermal.conduction, self._thermal.face
+        if rate == 0.0:
+            return steady, face
+        with self._system.phases("condense conduction"):
+            growing = steady.storing(1 / rate)
+            basis, traces = face.basis, face.traces
+            alike = condense_heat(growing, face.weights, basis, traces, face.shift, face.partition)
+        return growing, alike
+
+    def disturbances(self) -> Disturbances:
+        """The model as it is; every rank calls."""
+        system, heat, space = self._system, self._heat, self._space
+        conduction, X = self._thermal.conduction, self._fields
+        assert X is not None
+        assert conduction.capacity is not None
+        at = heat.at_rest(X)
+        T1, T2 = at.rise
+        weights = system.weights[:, None]
+        f = np.reshape(self._thermal.face.partition, (-1, 1))
+        exchanged = weights * self._crossing  # the law of the contact holds in each field
+        carried = np.zeros((X.shape[1],) * 2)
+        if conduction.carried is not None:
+            carried = self._product(conduction.carried, X)
+        return Disturbances(
+            elastic=space(self._elastic),
+            opening=space.gaps.T @ at.opening,
+            heated=(f * T1 + (1 - f) * T2).T @ (weights * self._friction),
+            conducted=self._product(conduction.conductivity, X) - carried + (T2 - T1).T @ exchanged,
+            carried=carried,
+            stored=self._product(conduction.capacity, X),
+        )
+
+    def _extend(self, fields: np.ndarray, crossing: np.ndarray) -> None:
+        """Take up what is new of some fields (n_owned, q), and the heat that crosses (n, q)."""
+        if self._fields is None or self._crossing is None:
+            self._fields, self._crossing = fields[:, :0], crossing[:, :0]
+        for least in (_NEW, 0.0):  # twice: what is left of a small difference is not orthogonal
+            scale = 1 / np.sqrt(np.diag(self._gram(fields, fields)))
+            known = self._gram(self._fields, fields * scale)
+            fields = fields * scale - self._fields @ known
+            crossing = crossing * scale - self._crossing @ known
+            sizes, mixing = np.linalg.eigh(self._gram(fields, fields))
+            kept = sizes > least
+            combined = mixing[:, kept] / np.sqrt(sizes[kept])
+            fields, crossing = fields @ combined, crossing @ combined
+        self._fields = np.hstack([self._fields, fields])
+        self._crossing = np.hstack([self._crossing, crossing])
+
+    def _gram(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+        return sum_over_ranks(self._system.comm, left.T @ right)
+
+    def _product(self, matrix: PETSc.Mat, fields: np.ndarray) -> np.ndarray:
+        """``Xᵀ matrix X``, shape (r, r)."""
+        rows, _ = matrix.getSizes()
+        right = PETSc.Mat().createDense(
+            (rows, fields.shape[1]), array=np.asfortranarray(fields), comm=matrix.comm
+        )
+        right.assemble()
+        image = matrix.matMult(right)
+        return self._gram(fields, image.getDenseArray())

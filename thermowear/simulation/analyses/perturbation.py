@@ -1,0 +1,195 @@
+"""Disturbances of one contact with friction heat: which stay, and which grow.
+
+The conductance is that of the contact; its own heat does not matter, as all is linear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ...laws.stability import (
+    Disturbances,
+    LoadFree,
+    StaticModes,
+    leading,
+    load_free,
+    static_modes,
+)
+from ..heat.friction_heat import FrictionHeat
+from ..model.building import build
+from ..model.conditions import Conditions
+from ..model.system import System
+from .growth_model import Growing, GrowthModel
+
+_KINDS = 24
+"""Disturbances that heat acts on most: a growing one is made up of them, see `leading`."""
+_PRESSING = 1e-9
+_SLOW, _NEAR = 0.02, 0.3
+"""Parts of a speed that is known roughly, or well, from which on it is looked for what grows."""
+_SAME, _TURNS = 1e-4, 10
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """A disturbance of the pressure.
+
+    Attributes
+    ----------
+    factor : float
+        Of the given speed, at which it is found.
+    rate : complex
+        At which it grows and swings [1/s].
+    shape : ndarray, shape (m,)
+        Coefficients of the pressure.
+    """
+
+    factor: float
+    rate: complex
+    shape: np.ndarray
+
+
+class DisturbedContact:
+    """Disturbances of a contact whose touching points are known. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+        With its heat.
+    pressure : ndarray, shape (n,)
+        [Pa]
+    conditions : Conditions
+    """
+
+    def __init__(self, system: System, pressure: np.ndarray, conditions: Conditions):
+        assert system.thermal is not None  # the case has been checked
+        self._system, self._pressure, self._conditions = system, pressure, conditions
+        self._bodies = system.thermal
+        self._heat = FrictionHeat(system, system.thermal)
+
+    @property
+    def stores(self) -> bool:
+        """Whether the heat capacity of the bodies is known, and with it rates."""
+        return self._bodies.conduction.capacity is not None
+
+    @property
+    def carries(self) -> bool:
+        """Whether a body carries heat along: disturbances then move with it, and none stays."""
+        return self._bodies.conduction.carried is not None
+
+    @cached_property
+    def static(self) -> StaticModes:
+        """Disturbances that stay, each at its own speed."""
+        return static_modes(self._elastic, self._thermal, self._space)
+
+    def fastest(self, wears: bool) -> Disturbance:
+        """What grows fastest at the given speed, or dies out most slowly."""
+        wear = self._wear(1.0) if wears else None
+        found = self._model.settled(lambda small: Growing(1.0, small.fastest(1.0, wear)))
+        assert found is not None
+        return self._whole(found)
+
+    def onset(self, wears: bool) -> Disturbance | None:
+        """What begins to grow as the speed rises; None where nothing does."""
+        if not self.carries:
+            return self._onset(wears, _SLOW * float(np.append(self.static.factors, 1.0)[0]))
+        # upwind test functions, and the answers that the model is made of, change with the speed
+        found, factor, tried = self._onset(wears, _SLOW), 1.0, []
+        for _ in range(_TURNS):
+            if found is None or abs(found.factor - 1.0) <= _SAME:
+                break
+            tried.append((np.log(factor), np.log(found.factor)))
+            factor = float(np.exp(_secant(tried)))
+            found = self._at(factor)._onset(wears, _NEAR)
+        return None if found is None else replace(found, factor=factor * found.factor)
+
+    def _onset(self, wears: bool, start: float) -> Disturbance | None:
+        wear = self._wear if wears else None
+
+        def find(small: Disturbances) -> Growing | None:
+            nonlocal start
+            factor = small.onset(start, wear)
+            if factor is None:
+                return None
+            start = 0.95 * factor
+            return Growing(factor, small.fastest(factor, wear and wear(factor)))
+
+        found = self._model.settled(find)
+        return None if found is None else self._whole(found)
+
+    def _at(self, factor: float) -> DisturbedContact:
+        """The same contact at another speed."""
+        system, motion = self._system, self._system.case.motion
+        assert motion is not None  # the case has been checked
+        speeds = {"velocity": motion.velocity, "angular_velocity": motion.angular_velocity}
+        faster = {key: factor * v for key, v in speeds.items() if v is not None}
+        case = system.case.model_copy(update={"motion": motion.model_copy(update=faster)})
+        system = build(case, system.comm, system.phases, parts=system.parts)
+        conditions = replace(self._conditions, speed=factor * self._conditions.speed)
+        return DisturbedContact(system, self._pressure, conditions)
+
+    def _whole(self, found: Growing) -> Disturbance:
+        shape = self._kinds.pressures @ found.rate.shape
+        return Disturbance(found.factor, found.rate.value, shape)
+
+    @cached_property
+    def _model(self) -> GrowthModel:
+        model = GrowthModel(self._system, self._heat, self._conditions, self._elastic, self._kinds)
+        model.begin()
+        return model
+
+    @cached_property
+    def _elastic(self) -> np.ndarray:
+        """A, of the bodies and of the soft layer between the faces."""
+        contact = self._system.contact
+        return contact.compliance + self._system.softness * contact.weighted.T @ contact.basis
+
+    @cached_property
+    def _thermal(self) -> np.ndarray:
+        """H at the given speed."""
+        conduction, face = self._bodies.conduction, self._bodies.face
+        per_heat = self._heat.condensed(conduction, face).per_friction_heat(
+            face.exchange(self._conditions.conductance)
+        )
+        return per_heat @ (self._conditions.heating[:, None] * self._system.basis)
+
+    @cached_property
+    def _space(self) -> LoadFree:
+        """All disturbances of what touches."""
+        contact = self._system.contact
+        coefficients = np.linalg.lstsq(contact.basis, self._pressure, rcond=None)[0]
+        touching = coefficients > _PRESSING * coefficients.max()
+        if (self._pressure > 0).all():
+            touching[:] = True
+        space = load_free(contact.modes[touching], contact.force_modes[touching])
+        identity = np.eye(len(touching))[:, touching]
+        return LoadFree(identity @ space.pressures, identity @ space.gaps)
+
+    @cached_property
+    def _kinds(self) -> LoadFree:
+        """Those that a growing one is made up of."""
+        contact = self._system.contact
+        depths = contact.weighted.T @ contact.basis
+        return leading(self._elastic, self._thermal, depths, self._space, _KINDS)
+
+    def _wear(self, factor: float) -> np.ndarray:
+        """How fast disturbances wear at a factor of the speed, in their own space."""
+        system, conditions, space = self._system, self._conditions, self._kinds
+        pressed = system.basis @ space.pressures
+        worn = np.zeros_like(pressed)
+        laws = zip(conditions.wear, system.laws.values(), system.spreads.values(), strict=True)
+        for part, law, spread in laws:
+            slope = part * law.slope(self._pressure, factor * conditions.speed)
+            worn += spread.operator(len(slope)) @ (slope[:, None] * pressed)
+        return space.gaps.T @ (system.contact.weighted.T @ worn)
+
+
+def _secant(tried: list[tuple[float, float]]) -> float:
+    """Where a function vanishes that falls about as fast as its argument rises."""
+    (x, y), before = tried[-1], tried[:-1]
+    if not before:
+        return x + y
+    slope = (y - before[-1][1]) / (x - before[-1][0])
+    return x - y / min(slope, -0.3)

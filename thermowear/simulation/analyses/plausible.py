@@ -1,0 +1,54 @@
+"""Results that cannot be meant: holders that go back under load, and faces too steep to touch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...errors import ComputationError
+from ..model.rigid_modes import applied
+from ..model.system import System
+from ..results.outcome import Outcome
+
+_ANALYSES = ("initial", "transient", "fretting", "reciprocating")
+"""Those that say where the holder is; a steady state has no history that would lead there."""
+_BACK = 1e-9
+"""Of the size of the face: further back is no rounding."""
+_STEEP = -0.75
+"""Cosine between the outward normals of both faces where they press; up to -0.5 they are paired."""
+
+
+def went_back(system: System, outcome: Outcome) -> ComputationError | None:
+    """The error of a pressed holder that ends behind where it began; None where all is well.
+
+    Without heat and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do positive work
+    on the holder unless the faces overlap as they are drawn.
+    """
+    case, pairing = system.case, system.pairing
+    if case.analysis.type not in _ANALYSES or case.heat is not None or case.load.surfaces:
+        return None
+    force = case.force()
+    if force is None or system.worn is not None:
+        return None
+    back = -applied(case, outcome.motion) / force
+    if back <= _BACK * pairing.extent:
+        return None
+    pressing = outcome.contact.pressure > 0
+    overlap = -float(pairing.gap[pressing].min(initial=0.0))
+    return ComputationError(
+        f"contact: the holder ends {back:.3g} m behind where it was drawn, though it is pressed "
+        f"on: the contact faces overlap by up to {overlap:.3g} m before any load. Draw the bodies "
+        "apart, so that they just touch; or name only the part of each face that is to touch"
+    )
+
+
+def too_steep(system: System, pressure: np.ndarray) -> str | None:
+    """What to say where curved faces press that are far from parallel, None where none do."""
+    first, second = (side.face.normals(side.facet, side.t) for side in system.pairing.sides)
+    cosine = np.einsum("ni,ni->n", first, second)[pressure > 0].max(initial=-1.0)
+    if cosine <= _STEEP:
+        return None
+    angle = 180 - np.degrees(np.arccos(cosine))
+    return (
+        f"the contact reaches points where the unloaded faces are inclined by {angle:.0f} degrees "
+        "to each other; strains are taken to be small, and from 60 degrees on faces are not paired"
+    )

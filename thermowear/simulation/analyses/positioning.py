@@ -1,0 +1,84 @@
+"""System of a case, its mesh fitted to the edges of the contact where the case asks for it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...case.tables.schema import Case
+from ...contact.search.zones import contact_zones
+from ...errors import ComputationError
+from ...timer import Phases
+from ..interface.factory import interface_problem
+from ..model.building import build
+from ..model.system import System
+
+_PASSES = 12
+_SETTLED = 0.1  # of the element at the edge
+_STEEPEST = 4.0
+_LONGEST = 0.4  # of the zone: its edges never change places
+
+
+def prepare(case: Case, comm, phases: Phases) -> System:
+    """Build the system of a case, positioned where the case asks for it. Every rank calls.
+
+    Raises
+    ------
+    CaseError, ComputationError
+        If it cannot be meshed, or the edges of the contact do not settle.
+    """
+    if not case.contact.positioning:
+        return build(case, comm, phases)
+    expected = case.geometry.expected_zone(case.pressing())
+    zone = np.array(touching(build(case, comm, phases)) if expected is None else expected)
+    before: tuple[np.ndarray, np.ndarray] | None = None
+    for _ in range(_PASSES):
+        system = build(case, comm, phases, (float(zone[0]), float(zone[1])))
+        with phases("contact"):
+            missed = np.array(touching(system)) - zone
+        # half models have no left edge
+        off = np.abs(missed[1:] if case.geometry.symmetry else missed).max()
+        if off < _SETTLED * _smallest(system):
+            return system
+        zone, before = zone + _step(zone, missed, before), (zone, missed)
+    raise ComputationError(
+        f"contact.positioning: the edges of the contact did not settle in {_PASSES} meshes; "
+        "use more elements (mesh.elements), or contact.positioning = false"
+    )
+
+
+def touching(system: System) -> tuple[float, float]:
+    """Range of x in which the unworn faces touch [m].
+
+    Raises
+    ------
+    ComputationError
+        If the faces touch in several places, or nowhere.
+    """
+    contact = interface_problem(system).unworn().contact
+    zones = contact_zones(system.pairing, contact.pressure)
+    if len(zones) != 1:
+        raise ComputationError(
+            f"contact.positioning: the faces touch in {len(zones)} places; "
+            "positioning is for one contact zone"
+        )
+    first, last = system.pairing.locate(list(zones[0]))[:, 0]
+    return float(first), float(last)
+
+
+def _step(zone: np.ndarray, missed: np.ndarray, before) -> np.ndarray:
+    """How far to move each edge that was missed by so much: by a secant where there is one.
+
+    Where an edge is found depends a little on where the mesh has it.
+    """
+    if before is None:
+        return missed
+    moved, changed = zone - before[0], missed - before[1]
+    slope = np.divide(changed, moved, out=np.full(2, -1.0), where=moved != 0.0)
+    longest = _LONGEST * (zone[1] - zone[0])
+    return np.clip(missed / -np.clip(slope, -_STEEPEST, -1 / _STEEPEST), -longest, longest)
+
+
+def _smallest(system: System) -> float:
+    """Size of the smallest element of the contact face [m]."""
+    nodes = system.pairing.sides[0].face.nodes
+    return float(np.linalg.norm(nodes[:, -1] - nodes[:, 0], axis=1).min())

@@ -1,0 +1,176 @@
+"""From a case to a result: the analyses, told as a story."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from numpy.linalg import LinAlgError
+
+from ...balances import judged
+from ...case.tables.schema import Case
+from ...errors import CaseError, ComputationError
+from ...timer import Phases
+from ..accuracy.error_estimate import estimate_errors
+from ..cycles.fretting import fretting
+from ..cycles.reciprocating import reciprocating
+from ..geometry_update.face_limits import outgrown
+from ..interface.condensed_method import CondensedMethod
+from ..interface.interface_problem import InterfaceProblem
+from ..model.system import System
+from ..results.fields import sample
+from ..results.outcome import Outcome
+from ..results.recording import profile
+from ..results.result import BodyFields, Result
+from ..results.summary import summarise
+from ..runtime.checkpoint_data import Saved, mesh_checksum
+from ..runtime.observer import Observer
+from .plausible import too_steep, went_back
+from .positioning import prepare
+from .small_wear_check import not_small
+from .stability import stability
+from .static import initial, steady, unworn
+from .transient import running_in
+from .untouched_contact import touching
+
+_UNPAIRED = 1e-6
+
+
+def run(
+    case: Case,
+    comm=None,
+    observer: Observer | None = None,
+    phases: Phases | None = None,
+    saved: Saved | None = None,
+) -> Result:
+    """Compute a case. Every rank calls.
+
+    Parameters
+    ----------
+    case : Case
+    comm : mpi4py.MPI.Comm, optional
+        All ranks by default.
+    observer : Observer, optional
+    phases : Phases, optional
+        Clock that has been running already.
+    saved : Saved, optional
+        What `Observer.checkpoint` was told on this rank by an earlier run, to go on with; the
+        result has the whole history, and the outputs from there on.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ComputationError
+        If there is no answer at all; a transient run that stops on its way is returned, with what
+        stopped it, and a run whose balances do not hold likewise.
+    """
+    if comm is None:
+        from mpi4py import MPI
+
+        comm = MPI.COMM_WORLD
+    observer = observer or Observer()
+    phases = phases or Phases(observer.phase)
+    system = prepare(case, comm, phases)
+    outcome = analyse(system, observer, saved)
+    with phases("error estimate"):
+        outcome = estimated(system, outcome, observer)
+    with phases("fields"):
+        fields = sample(outcome.system or system, outcome.state, outcome.motion)
+    return conclude(system, outcome, fields)
+
+
+def analyse(system: System, observer: Observer, saved: Saved | None = None) -> Outcome:
+    """The analysis that the case of a system asks for; what is odd about it is said.
+
+    It begins, or goes on with what was saved of an analysis of the same system.
+
+    Every rank calls.
+    """
+    if system.pairing.unpaired > _UNPAIRED:
+        percent = 100 * system.pairing.unpaired
+        observer.note(
+            f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
+            "stays out of the contact"
+        )
+    before = () if saved is None else (saved.of(system),)
+    outcome = _ANALYSES[system.case.analysis.type](system, observer, *before)
+    if outgrown(outcome.system or system, outcome.contact.pressure):
+        observer.note(
+            "the contact reaches the end of the contact face, which was meshed for a smaller one; "
+            "use contact.positioning = true, or a wider geometry.zone"
+        )
+    outcome, apart = touching(system, outcome)
+    if apart is not None:
+        observer.note(apart)
+    steep = too_steep(outcome.system or system, outcome.contact.pressure)
+    if steep is not None:
+        observer.note(steep)
+    if outcome.stopped is None:
+        outcome = replace(outcome, stopped=went_back(system, outcome))
+    large = not_small(system, outcome.interface)
+    if large is not None:
+        observer.note(large)
+    mesh = mesh_checksum(system)
+    return (
+        outcome if mesh is None else replace(outcome, extra=outcome.extra | {"mesh_sha256": mesh})
+    )
+
+
+def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
+    """The outcome with estimates of its discretisation error in the summary; warns of large ones.
+
+    Every rank calls.
+    """
+    if outcome.stopped is not None:
+        return outcome
+    try:
+        estimates = estimate_errors(outcome.system or system, outcome)
+    except (CaseError, ComputationError, LinAlgError) as error:  # the result stands without
+        return replace(
+            outcome, extra=outcome.extra | {"error_estimate_missing": {"all": str(error)}}
+        )
+    warning = estimates.warning()
+    if warning is not None:
+        observer.note(warning)
+    return replace(outcome, extra=outcome.extra | estimates.summary())
+
+
+def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:
+    """What a run returns. One whose balances do not hold has failed, and keeps its results."""
+    system = outcome.system or system
+    summary = summarise(system, outcome)
+    return Result(
+        outcome.interface,
+        profile(system, outcome.interface),
+        summary,
+        outcome.history,
+        outcome.outputs,
+        fields,
+        outcome.friction,
+        outcome.track,
+        outcome.stopped or judged(summary),
+        outcome.heat,
+        outcome.modes,
+    )
+
+
+def _stability(system: System, observer: Observer) -> Outcome:
+    """Disturbances of the steady state, or of the cold unworn contact where there is none."""
+    free = system.holder.free
+    if system.laws and len(free) and free.all():
+        return stability(system, steady(system, observer), observer)
+    cold = InterfaceProblem(system, CondensedMethod(system), None)
+    return stability(system, unworn(system, cold), observer)
+
+
+_ANALYSES: dict[str, Callable[..., Outcome]] = {
+    "initial": initial,
+    "steady": steady,
+    "transient": running_in,
+    "fretting": fretting,
+    "reciprocating": reciprocating,
+    "stability": _stability,
+}

@@ -1,0 +1,117 @@
+"""Thermoelastic stability: the critical speed of a contact, what grows, and what wear does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import ComputationError
+from ..model.system import System
+from ..results.outcome import Outcome
+from ..results.result import Modes
+from ..runtime.observer import Observer
+from .perturbation import Disturbance, DisturbedContact
+
+_SHOWN = 4
+"""Static modes that are kept."""
+
+
+def stability(system: System, base: Outcome, observer: Observer) -> Outcome:
+    """What becomes of disturbances of a contact. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+        With its heat.
+    base : Outcome
+        Of the contact that is disturbed.
+    observer : Observer
+
+    Raises
+    ------
+    ComputationError
+        If a body carries heat along and the heat capacity of a body is not known.
+    """
+    contact = DisturbedContact(system, base.contact.pressure, base.contact.conditions)
+    if not contact.stores:
+        if contact.carries:
+            raise ComputationError(
+                "stability: a body carries heat along, so disturbances move; that needs density "
+                "and specific_heat of all bodies"
+            )
+        observer.note(
+            "without density and specific_heat of all bodies only disturbances that stay at "
+            "their critical speed are found, and no rates; others may swing, and grow before"
+        )
+    with system.phases("stability"):
+        static = [] if contact.carries else _static(contact)
+        if contact.stores:
+            extra, modes = _in_time(system, contact)
+        else:
+            extra, modes = _keys(system, static[0] if static else None, None, None, None), []
+    extra["static_speed_factors"] = [mode.factor for mode in static]
+    return replace(base, extra=base.extra | extra, modes=_table(system, modes + static))
+
+
+def _static(contact: DisturbedContact) -> list[Disturbance]:
+    """Disturbances that stay, the first few."""
+    found = contact.static
+    pairs = zip(found.factors[:_SHOWN], found.shapes.T, strict=False)
+    return [Disturbance(float(factor), 0j, shape) for factor, shape in pairs]
+
+
+def _in_time(system: System, contact: DisturbedContact) -> tuple[dict, list[Disturbance]]:
+    """Rates at the given speed and critical speeds, and the shapes that go with them."""
+    critical, unworn = contact.onset(False), contact.fastest(False)
+    onset, fastest, worn = critical, unworn, None
+    if system.laws:
+        onset = worn = contact.onset(True)
+        fastest = contact.fastest(True)
+    modes = [fastest] if fastest.rate.real > 0 else []
+    if onset is not None and onset.rate.imag > 0:
+        modes.append(onset)
+    return _keys(system, critical, worn, fastest, unworn), modes
+
+
+def _keys(
+    system: System,
+    critical: Disturbance | None,
+    with_wear: Disturbance | None,
+    fastest: Disturbance | None,
+    unworn: Disturbance | None,
+) -> dict:
+    """What a stability analysis adds to the summary."""
+    motion = system.case.motion
+    assert motion is not None  # the case has been checked
+    given = {
+        "critical_speed_factor": 1.0,
+        "critical_speed": motion.one_way.velocity,
+        "critical_angular_velocity": motion.one_way.angular_velocity,
+    }
+    units = ("", "_m_per_s", "_rad_per_s")
+    found: dict[str, float | None] = {}
+    for which, onset in (("", critical), ("_with_wear", with_wear)):
+        factor = onset.factor if onset else None
+        for (name, value), unit in zip(given.items(), units, strict=True):
+            known = None if factor is None or value is None else factor * abs(value)
+            found[f"{name}{which}{unit}"] = known
+        found[f"critical_frequency{which}_rad_per_s"] = onset.rate.imag if onset else None
+    for which, mode in (("", fastest), ("_without_wear", unworn)):
+        found[f"growth_rate{which}_per_s"] = mode.rate.real if mode else None
+        found[f"growth_frequency{which}_rad_per_s"] = mode.rate.imag if mode else None
+    return found
+
+
+def _table(system: System, modes: list[Disturbance]) -> Modes:
+    """Pressures of disturbances at the contact points, the largest value of each 1."""
+    points, s = system.pairing.points, system.pairing.position
+    places = [*np.pad(points, ((0, 0), (0, 3 - points.shape[1]))).T, s]
+    tables = [np.zeros((10, 0))]
+    for number, mode in enumerate(modes, 1):
+        p = system.basis @ mode.shape
+        p = p / p[np.argmax(np.abs(p))] + 0j
+        told = (number, mode.factor, mode.rate.real, mode.rate.imag)
+        constants = [np.full(len(p), value) for value in told]
+        tables.append(np.array([*constants, *places, p.real, p.imag]))
+    return Modes(*np.hstack(tables))

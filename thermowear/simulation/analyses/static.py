@@ -1,0 +1,81 @@
+"""Analyses without time: contact of the unworn faces, and the steady state of wear."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...laws.motions import combined
+from ..interface.body_state import body_state
+from ..interface.factory import interface_problem
+from ..interface.interface_problem import InterfaceProblem
+from ..interface.steady import least_worn, steady_state
+from ..model.system import System
+from ..results.outcome import Outcome
+from ..results.recording import interface_at, record
+from ..runtime.observer import Observer
+
+_VELOCITIES = {
+    "z": "rigid_wear_velocity_m_per_s",
+    "x": "rigid_wear_velocity_x_m_per_s",
+    "y": "rigid_wear_velocity_y_m_per_s",
+    "rotation": "rigid_wear_rotation_rad_per_s",
+    "rotation-x": "rigid_wear_rotation_x_rad_per_s",
+    "rotation-y": "rigid_wear_rotation_y_rad_per_s",
+}
+
+
+def initial(system: System, observer: Observer) -> Outcome:
+    """Contact of the unworn faces."""
+    return unworn(system, interface_problem(system, observer.note))
+
+
+def unworn(system: System, problem: InterfaceProblem) -> Outcome:
+    """Contact of the unworn faces, as a problem solves it."""
+    with system.phases("contact"):
+        found = problem.unworn()
+    with system.phases("bodies"):
+        contact = problem.contact_state(found, 0.0)
+        motion = combined(system.holder.motions, found.contact.motion)
+        still = np.zeros((2, len(contact.pressure)))
+        state, interface = interface_at(system, contact, motion, still)
+    return Outcome(contact, motion, state, interface, {"steps": 0}, [], {})
+
+
+def steady(system: System, observer: Observer) -> Outcome:
+    """The steady state; the faces are as if they had worn into each other."""
+    with system.phases("steady principle"):
+        found = steady_state(system)
+    with system.phases("bodies"):
+        contact = found.contact
+        state = body_state(system, contact)
+    wear = found.wear
+    pressing = wear.pressure > 0
+    # the holder stands where the unworn faces would lose just enough material to fit
+    opening = state.opening + system.softness * wear.pressure
+    amounts = least_worn(system.holder.modes, opening, system.weights, pressing)
+    lost = system.holder.modes @ amounts - opening
+    shape = lost[pressing].max() - lost
+    interface = record(
+        system,
+        contact,
+        state,
+        gap=np.where(pressing, 0.0, np.nan),
+        shape=shape,
+        worn=np.zeros((2, len(shape))),
+    )
+    extra = {
+        "steps": 0,
+        **wear_velocity(system, wear.velocity),
+        "wear_dissipation_W": wear.dissipation,
+    }
+    motion = combined(system.holder.motions, amounts)
+    return Outcome(contact, motion, state, interface, extra, [], {})
+
+
+def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:
+    """Rigid-body wear velocities by the motions of the holder [m/s, rad/s]."""
+    found: dict[str, float | None] = {_VELOCITIES["z"]: None}
+    if velocity is not None:
+        names = system.case.holder.free
+        found |= {_VELOCITIES[k]: float(v) for k, v in zip(names, velocity, strict=True)}
+    return found

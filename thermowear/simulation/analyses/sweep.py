@@ -1,0 +1,77 @@
+"""Many cases, one after the other: what a case shares with the one before is not made again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ...case.tables.schema import Case
+from ...timer import Phases
+from ..model.building import build
+from ..model.setup_cache import Parts, inputs
+from ..model.system import System
+from ..results.result import Result
+from ..runtime.observer import Observer
+from .positioning import prepare
+from .run import analyse, conclude
+
+
+class Series:
+    """Computes cases that share parts, see `groups`.
+
+    Parameters
+    ----------
+    comm : mpi4py.MPI.Comm, optional
+        All ranks by default.
+    """
+
+    def __init__(self, comm=None):
+        if comm is None:
+            from mpi4py import MPI
+
+            comm = MPI.COMM_WORLD
+        self.comm = comm
+        self._parts = Parts()
+
+    def run(
+        self, case: Case, observer: Observer | None = None, phases: Phases | None = None
+    ) -> Result:
+        """Compute the next case, as `run` does, without the fields in the bodies.
+
+        Every rank calls.
+
+        Raises
+        ------
+        CaseError, ComputationError
+        """
+        observer = observer or Observer()
+        system = self._prepared(case, phases or Phases(observer.phase))
+        return conclude(system, analyse(system, observer), None)
+
+    def _prepared(self, case: Case, phases: Phases) -> System:
+        if case.contact.positioning:  # its mesh is where this very case has its contact
+            return prepare(case, self.comm, phases)
+        return build(case, self.comm, phases, parts=self._parts)
+
+
+def groups(cases: Sequence[Case]) -> list[list[int]]:
+    """Numbers of the cases that share their elastic bodies, those that share more side by side.
+
+    Groups share nothing that costs, and may be computed at the same time.
+    """
+    shared: list[tuple[Any, list[tuple[Any, list[int]]]]] = []
+    for number, case in enumerate(cases):
+        made_from = inputs(case)
+        bodies = None if case.contact.positioning else made_from.elasticity
+        heated = _of(shared, bodies, bodies is None)
+        _of(heated, made_from.conduction).append(number)
+    return [[number for _, numbers in heated for number in numbers] for _, heated in shared]
+
+
+def _of(table: list[tuple[Any, list]], key: Any, new: bool = False) -> list:
+    """The list that belongs to a key, which need not be hashable."""
+    for known, found in () if new else table:
+        if known == key:
+            return found
+    table.append((key, []))
+    return table[-1][1]

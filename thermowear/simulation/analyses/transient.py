@@ -1,0 +1,71 @@
+"""Running-in: contact, wear and heat in time, to an end time or to the steady state."""
+
+from __future__ import annotations
+
+from ...case.tables.analyses import Transient
+from ...errors import ComputationError
+from ..geometry_update.face_limits import beyond
+from ..geometry_update.outer_loop import OuterLoop
+from ..interface.factory import interface_problem
+from ..interface.steady import SteadyState, steady_state
+from ..model.system import System
+from ..results.outcome import Outcome
+from ..runtime.guarded_loop import go_through
+from ..runtime.observer import Observer
+from ..time.step_sizes import AnySize, FewSizes
+from ..time.time_loop import times_to_hit
+from .static import wear_velocity
+from .transient_record import RunningIn, RunningInRecord
+
+
+def running_in(system: System, observer: Observer, before: RunningIn | None = None) -> Outcome:
+    """Follow contact in time, from the start or from where it has come to.
+
+    What was computed before an error or Ctrl-C is kept. What the steady state that it tends to adds
+    to the summary is there too.
+    """
+    settings = system.case.analysis
+    assert isinstance(settings, Transient)
+    problem = interface_problem(system, observer.note)
+    sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
+    loop = OuterLoop(system, problem, _principle, sizes, observer)
+    record = RunningInRecord(loop, observer)
+    begun = None if before is None else record.go_on(before)
+    passing = record.watched(loop.moments(begun))
+    last, stopped = go_through(system, "time stepping", passing, record, observer, begun)
+    with system.phases("bodies"):
+        contact, motion, state, interface = record.bodies(last)
+    velocity = None if loop.steady is None else loop.steady.wear.velocity
+    return Outcome(
+        contact=contact,
+        motion=motion,
+        state=state,
+        interface=interface,
+        extra=record.extra() | wear_velocity(system, velocity),
+        history=record.rows,
+        outputs=record.outputs,
+        heat=record.heat,
+        stopped=stopped,
+        system=loop.system,
+    )
+
+
+def _principle(system: System) -> SteadyState | None:
+    """The steady state that a running-in tends to; None where there is none.
+
+    There is none where nothing presses in the end, where the contact grows, where something is
+    given over time, or where the principle has no solution.
+    """
+    settings = system.case.analysis
+    assert isinstance(settings, Transient)
+    free, grows = system.holder.free, any(beyond(system))
+    if not (len(free) and free.all()) or (grows and settings.until is None):
+        return None
+    if system.case.histories or not system.laws:
+        return None
+    try:
+        return steady_state(system)
+    except ComputationError:
+        if settings.until == "steady":
+            raise
+        return None

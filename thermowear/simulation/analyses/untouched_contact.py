@@ -1,0 +1,35 @@
+"""Contacts in which nothing touches at the end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import ComputationError
+from ..model.system import System
+from ..results.outcome import Outcome
+
+
+def touching(system: System, outcome: Outcome) -> tuple[Outcome, str | None]:
+    """An outcome in which nothing touches: failed, or what should be known of it.
+
+    A constant pressing force has to be carried, or the computation has failed. A given approach, a
+    load on a surface or one that ends may leave the faces apart, and wear may take them apart: that
+    is an answer, and is said. Every rank calls.
+
+    Returns
+    -------
+    outcome : Outcome
+    note : str or None
+    """
+    if outcome.stopped is not None or outcome.contact.pressure.max() > 0.0:
+        return outcome, None
+    gap = np.nanmin(outcome.interface.gap, initial=np.inf)
+    apart = f"; the faces are {1e6 * gap:.4g} µm apart at least" if np.isfinite(gap) else ""
+    load = system.case.load
+    force = system.case.force() if load.history is None else None
+    if force is None:
+        return outcome, f"nothing touches at the end{apart}"
+    reason = ComputationError(f"nothing carries the pressing force of {force:.4g} N{apart}")
+    return replace(outcome, stopped=reason), None

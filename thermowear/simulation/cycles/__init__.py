@@ -1,0 +1,1 @@
+"""Oscillating contacts: fretting and reciprocating sliding."""

@@ -1,0 +1,189 @@
+"""What a fretting analysis keeps of the increments and cycles that it goes through."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...contact.friction.slip_wear import Profile
+from ...contact.friction.stick_slip_state import StickSlipState
+from ...laws.motions import translation
+from ...serialise import serialisable
+from ..interface.body_state import BodyState, ContactState, contact_state
+from ..model.system import System
+from ..results.recording import interface_at
+from ..results.result import FrictionHistory, FrictionInterface, Interface
+from ..results.rows import CycleRow, LoadRow
+from ..runtime.frames import Film, Shown
+from ..runtime.observer import Observer
+from .fretting_tables import FrettingTables
+from .increments import Instant, Jump
+
+
+@serialisable
+@dataclass(frozen=True)
+class Fretted:
+    """How far a fretting analysis has come: all that it needs to go on.
+
+    Attributes
+    ----------
+    last : Instant
+        From which it can go on.
+    per_cycle : ndarray, shape (2, n)
+        Depths that a cycle of it wears off both bodies [m].
+    rows : list of LoadRow
+    cycles : list of CycleRow
+    """
+
+    last: Instant
+    per_cycle: np.ndarray
+    rows: list[LoadRow]
+    cycles: list[CycleRow]
+
+    @property
+    def time(self) -> float:
+        return self.last.time
+
+
+class FrettingRecord:
+    """Increments, cycles and outputs so far.
+
+    Parameters
+    ----------
+    system : System
+    translations : ndarray, shape (k, 2)
+        Of the holder.
+    profiles : tuple of Profile
+        Of the wearing bodies.
+    observer : Observer
+        Told of each of them.
+    """
+
+    last: StickSlipState
+
+    def __init__(
+        self,
+        system: System,
+        translations: np.ndarray,
+        profiles: tuple[Profile, ...],
+        observer: Observer,
+    ):
+        self.outputs: dict[float, Interface] = {}
+        self._system = system
+        self._tables = FrettingTables(system)
+        self._translations = translations
+        self._profiles = profiles
+        self._observer = observer
+        self._film = Film(system.case, observer)
+        self._rows: list[LoadRow] = []
+        self._cycles: list[CycleRow] = []
+        self._frictions: dict[float, FrictionInterface] = {}
+        self._now: list[Instant] = []  # of the cycle that is computed
+        self._turn: Instant | None = None  # where the last jump ended
+        self._begin: tuple[Instant, int] | None = None  # to go on from, and its number of rows
+        self._per_cycle = np.zeros((2, len(system.weights)))
+
+    def go_on(self, before: Fretted) -> Instant:
+        """Take up what was kept before."""
+        last = before.last
+        self._turn = None if last.jump is None else last
+        self._now, self.last, self._begin = [last], last.state, (last, len(before.rows))
+        self._rows, self._cycles = before.rows, before.cycles
+        self._per_cycle = before.per_cycle
+        for rows in (self._rows, self._cycles):
+            self._observer.resumed(rows)
+        return last
+
+    def progress(self) -> Fretted | None:
+        """To where it can go on from: not the middle of a leg, or of a jump."""
+        if self._begin is None:
+            return None
+        last, count = self._begin
+        return Fretted(last, self._per_cycle, self._rows[:count], self._cycles)
+
+    def keep(self, instant: Instant) -> None:
+        """Take up the end of an increment."""
+        leg = instant.leg
+        self.last = instant.state
+        self._rows.append(self._tables.row(instant))
+        self._observer.load_step(self._rows[-1])
+        if self._now and self._now[-1].leg.cycle != leg.cycle:
+            self._now = self._now[-1:]  # where the cycle begins
+        self._now.append(instant)
+        if instant.behind is not None:
+            self._begin = instant, len(self._rows)
+        if instant.jump is not None:
+            self._cycles.append(self._cycle(instant.jump))
+            self._observer.cycle(self._cycles[-1])
+        if instant.is_output:
+            with self._system.phases("output"):
+                self._frictions[leg.end] = self._tables.friction(self.last)
+                _, bodies, self.outputs[leg.end] = self.interface()
+                bodies.require_balance()
+                self._observer.output(leg.end, self.outputs[leg.end], self._frictions[leg.end])
+        self._keep_frame(instant)
+
+    def _keep_frame(self, instant: Instant) -> None:
+        """Show ends of cycles, or of increments where there is but one cycle."""
+        one = (self._system.case.cycles or 1) == 1
+        if one or instant.jump is not None:
+            number = len(self._rows if one else self._cycles) - 1
+            self._film.take(self._system, number, instant.time, self._shown)
+
+    def _shown(self) -> Shown:
+        contact, bodies, interface = self.interface()
+        return contact, translation(self.last.motion @ self._translations), bodies, interface
+
+    def interface(self) -> tuple[ContactState, BodyState, Interface]:
+        """Contact, bodies and interface in the last state; wear rates are means of its cycle."""
+        system, state = self._system, self.last
+        pressure, shear = system.basis @ state.pressure, system.basis @ state.shear[:, 0]
+        moved = translation(state.motion @ self._translations)
+        history = system.case.load.history
+        assert history is not None  # the case has been checked
+        begin, end = history.cycle or (0.0, np.inf)
+        rates = self._per_cycle / (end - begin)
+        contact = contact_state(system, pressure, shear)
+        bodies, found = interface_at(system, contact, moved, self._tables.depths(state), rates)
+        return contact, bodies, replace(found, gap=found.gap + system.basis @ self._slid_along())
+
+    def _slid_along(self) -> np.ndarray:
+        """What the profiles open more than in place, as body 1 has slid, coefficients [m]."""
+        state, nothing = self.last, np.zeros(self._system.basis.shape[1])
+        if len(state.motion) < 2:
+            return nothing
+        pairs = zip(self._profiles, state.worn, strict=True)
+        return sum((own.seen(state.motion[1]) @ ω - ω for own, ω in pairs), start=nothing)
+
+    def history(self) -> FrictionHistory:
+        """All of it."""
+        return FrictionHistory(
+            self._rows, self._cycles, self._tables.friction(self.last), self._frictions
+        )
+
+    def extra(self) -> dict:
+        """What a fretting analysis adds to the summary."""
+        last, w = self._rows[-1], self._system.weights
+        per_cycle = self._per_cycle @ w if self._cycles else (None, None)
+        return {
+            "steps": len(self._rows),
+            "time_s": last.time,
+            "cycles": self._cycles[-1].cycle if self._cycles else 0,
+            "normal_force_N": last.normal_force,
+            "friction_force_N": abs(last.tangential_force),
+            "guide_force_N": None,
+            "tangential_force_N": last.tangential_force,
+            "tangential_displacement_m": last.tangential_displacement,
+            "stick_area_m2": last.stick_area,
+            "dissipated_energy_J": last.dissipated,
+            "wear_volume_per_cycle_1_m3": per_cycle[0],
+            "wear_volume_per_cycle_2_m3": per_cycle[1],
+        }
+
+    def _cycle(self, jump: Jump) -> CycleRow:
+        """The cycle that has ended just now, the last of a jump."""
+        turn, last = self._turn or self._now[0], self._now[-1]
+        start, end = (self._tables.depths(instant.state) for instant in (turn, last))
+        self._per_cycle, self._turn = (end - start) / jump.cycles, last
+        return self._tables.cycle(self._now, jump)

@@ -1,0 +1,251 @@
+"""Contact and wear of a body that slides to and fro, averaged over its cycles.
+
+A cycle wears little, so that depths stay the same during one of them. Body 1 loses W1 at its own
+points x, body 2 loses W2 at its points ξ. At each position X_j the contact is that of the gap
+
+    g0 + W1(x) + W2(x + X_j) + C_j p_j - R d_j,
+
+and the rates, means over the cycle with shares c_j, are those of the local speeds v_j::
+
+    W1'(x) = Σ_j c_j κ1 p_j(x)^b |v_j|^a,      W2'(ξ) = Σ_j c_j κ2 p_j(ξ - X_j)^b |v_j|^a
+
+W1 has coefficients in the basis of the pressure, like the wear of fretting; W2 see `contact.track`.
+
+What is known of the end. Pressures that last need ``W1'(x) + W2'(x + X) = V(X)`` wherever the faces
+touch, V being the rate of the approach of a holder that does not turn. Along x that says
+``W1''(x) = -W2''(x + X)`` for all X, so that both slopes are one constant and its negative: none,
+where one half of the stroke is like the other. Both rates are uniform then, whatever the pressures
+are, and for ``a = b = 1`` the load fixes them: with the mean speed v, the half-width h and the
+thickness t of body 1, and the amplitude A, ``W1' = κ1 F v / (2 h t)`` and
+``W2' = κ2 F v / (2 (h + A) t)``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...contact.solvers.coupled_positions import CoupledSolution, solve_coupled
+from ...contact.solvers.signorini import solve_contact
+from ...contact.wear.track import Track, track
+from ...errors import ComputationError
+from ..interface.contact_solver import Contact
+from ..interface.sdirk import WornContact
+from ..model.system import System
+from .stroke import Position, condensed, spreading
+
+_NEWTON_STEPS = 40
+_SETTLED = 1e-11  # of the largest local rate
+_INNER = 0.9  # of the faces: their ends are left out of the distance from the steady state
+
+
+@dataclass(frozen=True)
+class CycleContact:
+    """The contacts of a cycle, all positions together.
+
+    Attributes
+    ----------
+    max_pressure : float
+        Anywhere [Pa].
+    contact_area : float
+        Mean [m²].
+    motion : ndarray, shape (n_drives,)
+        Of the holder, mean [m or rad].
+    """
+
+    max_pressure: float
+    contact_area: float
+    motion: np.ndarray
+
+
+class ReciprocatingProblem:
+    """The bodies in all positions, and the depths that they lose.
+
+    Depths stand in one row, the coefficients of body 1 before the nodes of body 2, N together.
+    Pressures have a row a position, shape (J, m).
+
+    Parameters
+    ----------
+    system : System
+    stroke : list of Position
+
+    Attributes
+    ----------
+    track : Track
+        Grid of the depths of body 2.
+    areas : tuple of ndarray, shape (m,) and (n_nodes,)
+        That the depths of body 1 and of body 2 stand for [m²].
+    """
+
+    track: Track
+    areas: tuple[np.ndarray, np.ndarray]
+
+    def __init__(self, system: System, stroke: list[Position]):
+        factor = system.case.geometry.thickness_factor
+        assert factor is not None  # plane models have one
+        self._systems = [position.system for position in stroke]
+        self._holder = system.holder
+        self._laws = system.laws
+        self._speeds = np.array([[position.speed] for position in stroke])
+        pairings = [there.pairing for there in self._systems]
+        lengths = [position.length for position in stroke]
+        self._length = float(system.pairing.position[-1])
+        # no position feels what is finer than its part of the stroke, or than the pressure
+        spacing = max(float(np.mean(lengths)), self._length / system.basis.shape[1])
+        self.track = track(pairings, lengths, spacing, factor)
+        self._contacts = condensed(stroke, self.track)
+        self._shares = np.array([position.share for position in stroke])
+        weighted = system.contact.weighted
+        self.areas = weighted.sum(axis=0), self.track.areas
+        self._places = (system.pairing.position @ weighted) / self.areas[0], self.track.position
+        self._spread = spreading(self._contacts, self.track, self._shares)[list(system.laws)]
+
+    def split(self, depths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coefficients of body 1, shape (m,), and values at the nodes of body 2."""
+        m = self._contacts.gap.shape[1]
+        return depths[0, :m], depths[0, m:]
+
+    def start(self) -> WornContact:
+        """The unworn faces, in contact in all positions."""
+        all_of = self._contacts
+        each = zip(all_of.compliance, all_of.gap, all_of.modes, all_of.force_modes, strict=True)
+        found = [
+            solve_contact(compliance, gap, modes, all_of.load, force_modes=force_modes)
+            for compliance, gap, modes, force_modes in each
+        ]
+        λ, motion, active = (
+            np.array([getattr(solution, name) for solution in found])
+            for name in ("coefficients", "motion", "active")
+        )
+        nothing = np.zeros(all_of.seen.shape[2])
+        contact = self._contact(CoupledSolution(λ, motion, active, nothing))
+        return WornContact(np.zeros_like(self.rates(contact.pressure)), contact)
+
+    def rates(self, pressure: np.ndarray) -> np.ndarray:
+        """Wear rates of all depths, means over the cycle, shape (1, N) [m/s].
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (J, m)
+            Coefficients [Pa].
+        """
+        return np.einsum("bjnm,bjm->n", self._spread, self._local(pressure))[None]
+
+    def of_cycle(self, contact: Contact) -> CycleContact:
+        """What the contacts of a cycle are together."""
+        at_points = [
+            system.basis @ λ for system, λ in zip(self._systems, contact.pressure, strict=True)
+        ]
+        areas = [
+            system.weights[p > 0].sum() for system, p in zip(self._systems, at_points, strict=True)
+        ]
+        return CycleContact(
+            max_pressure=float(max(p.max() for p in at_points)),
+            contact_area=float(self._shares @ areas),
+            motion=self._shares @ contact.motion,
+        )
+
+    def corners(self, end: float) -> tuple[float, ...]:
+        """Nothing changes its course."""
+        return ()
+
+    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
+        """Largest difference of two pressures [Pa]."""
+        return float(np.abs(one.pressure - other.pressure).max())
+
+    def edge_steps(self, states, step: float, time: float) -> tuple[float, float]:
+        """Contact does not hold point by point."""
+        return 0.0, np.inf
+
+    def difference_inside(self, one: WornContact, other: WornContact) -> float:
+        """Nothing is warm."""
+        return 0.0
+
+    def first_step(self, state: WornContact) -> float:
+        """A step in which wear is small against the elastic deflection of the bodies [s]."""
+        opened = np.einsum("jmn,jn->jm", self._contacts.compliance, state.pressure)
+        fastest = float(self.rates(state.pressure).max())
+        return 1e-3 * float((opened / self.areas[0]).max()) / fastest if fastest > 0.0 else np.inf
+
+    def steady(self, steady) -> np.ndarray:
+        """Of pressures nothing is known: the ones of the principle do not move to and fro."""
+        return steady
+
+    def distance(self, state: WornContact, steady: np.ndarray | None) -> float:
+        """How uneven the wear rates are, which are uniform along both faces in the end.
+
+        Their largest deviation from their means, relative to these, but for the ends of the faces:
+        where the punch turns round its corner carries half the load, and no mesh resolves that.
+        """
+        parts = zip(self.split(self.rates(state.pressure)), self._places, strict=True)
+        return max(_unevenness(rate, place) for rate, place in parts if rate.any())
+
+    def begin(self, state: WornContact) -> WornContact:
+        """Nothing is chosen for a step."""
+        return state
+
+    def stage(
+        self, before: WornContact, step: float, time: float, guess: WornContact
+    ) -> WornContact:
+        """The end of an implicit Euler step of wear."""
+        contact = self._solve(before.worn[0], step, guess.contact)
+        return replace(
+            before, worn=before.worn + step * self.rates(contact.pressure), contact=contact
+        )
+
+    def _solve(self, worn: np.ndarray, step: float, guess: Contact) -> Contact:
+        """Contact at the end of a step, by Newton's method for the wear laws.
+
+        A step of it starts half way back where the last one went too far.
+
+        Parameters
+        ----------
+        worn : ndarray, shape (N,)
+            Depths before the step [m].
+        step : float
+            [s]
+        guess : Contact
+
+        Raises
+        ------
+        ComputationError
+        """
+        if worn.max() > self._length:
+            raise ComputationError(
+                "wear: more is worn off than the contact is long; where the steady state is asked "
+                "for, it needs more elements, or a larger analysis.steady_tolerance"
+            )
+        pressure, least = guess.pressure, np.inf
+        for _ in range(_NEWTON_STEPS):
+            rates, slopes = self._local(pressure), self._slopes(pressure)
+            before = np.einsum("bjnm,bjm->n", self._spread, rates - slopes * pressure)
+            gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slopes)
+            solution = solve_coupled(
+                self._contacts, worn + step * before, gains, guess.memory.active
+            )
+            guess = self._contact(solution)
+            exact = self._local(guess.pressure)
+            error = np.abs(exact - rates - slopes * (guess.pressure - pressure)).max()
+            if error <= _SETTLED * exact.max():
+                return guess
+            back = 0.0 if error < least else 0.5
+            pressure, least = back * pressure + (1 - back) * guess.pressure, min(error, least)
+        raise ComputationError("contact: Newton's method for the implicit step of wear failed")
+
+    def _contact(self, solution: CoupledSolution) -> Contact:
+        motion = np.array([self._holder.amounts(d) for d in solution.motion])
+        return Contact(np.maximum(solution.coefficients, 0.0), motion, solution)
+
+    def _local(self, pressure: np.ndarray) -> np.ndarray:
+        """Rates of the wearing bodies where they touch, shape (n_wearing, J, m) [m/s]."""
+        return np.array([law.rate(pressure, self._speeds) for law in self._laws.values()])
+
+    def _slopes(self, pressure: np.ndarray) -> np.ndarray:
+        """Their derivatives by the pressure [m/s/Pa]."""
+        return np.array([law.slope(pressure, self._speeds) for law in self._laws.values()])
+
+
+def _unevenness(rate: np.ndarray, place: np.ndarray) -> float:
+    inner = np.abs(place - (place[0] + place[-1]) / 2) <= _INNER * (place[-1] - place[0]) / 2
+    return float(np.abs(rate[inner] / rate[inner].mean() - 1).max())

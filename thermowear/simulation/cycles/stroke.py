@@ -1,0 +1,147 @@
+"""A body 1 that slides to and fro: where it is, how fast it slides there, and its contact there."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...bulk.kinematics import section_model
+from ...case.tables.analyses import Reciprocating
+from ...contact.operators.holder import hold
+from ...contact.operators.sliding import sliding
+from ...contact.operators.traces import gap_trace
+from ...contact.solvers.coupled_positions import CoupledContacts
+from ...contact.wear.track import Track
+from ...errors import CaseError
+from ..model.contact_points import contact_points
+from ..model.rigid_modes import drives
+from ..model.setup_cache import Parts
+from ..model.system import System
+
+_UNPAIRED = 1e-6
+
+
+@dataclass(frozen=True)
+class Position:
+    """Body 1 at a place of its stroke, sliding one way, for a part of the stroke around it.
+
+    Attributes
+    ----------
+    offset : float
+        Along x from the middle [m].
+    length : float
+        Of the part of the stroke [m].
+    speed : float
+        Mean in that part [m/s].
+    share : float
+        Of the cycle that it takes.
+    system : System
+        The bodies there.
+    """
+
+    offset: float
+    length: float
+    speed: float
+    share: float
+    system: System
+
+
+def positions(system: System) -> list[Position]:
+    """The middles of the parts of the stroke that take equal times, from one end to the other.
+
+    Shares and mean speeds make both the period and the length of the stroke exact. Without friction
+    in the section both ways are alike; otherwise they follow one another.
+    """
+    settings, motion = system.case.analysis, system.case.motion
+    assert isinstance(settings, Reciprocating)
+    assert motion is not None  # the case has been checked
+    assert motion.amplitude is not None
+    assert motion.frequency is not None
+    count = settings.positions
+    ends = motion.amplitude * np.sin(np.pi * (np.arange(count + 1) / count - 0.5))
+    ways = (1, -1) if system.traction is not system.trace else (1,)
+    return [
+        Position(
+            offset=float(start + end) / 2,
+            length=float(end - start),
+            speed=float(end - start) * 2 * count * motion.frequency,
+            share=1 / (count * len(ways)),
+            system=moved(system, float(start + end) / 2, way),
+        )
+        for way in ways
+        for start, end in itertools.pairwise(ends)
+    ]
+
+
+def moved(system: System, offset: float, way: int) -> System:
+    """The same bodies, body 1 moved along x and sliding along +x (way 1) or -x (way -1).
+
+    Raises
+    ------
+    CaseError
+        If it leaves the face of body 2.
+    """
+    case, elastic, geometry = system.case, system.elastic, system.case.geometry
+    face_1, face_2 = (side.face for side in system.pairing.sides)
+    face_1 = replace(face_1, nodes=face_1.nodes + np.array([offset, 0.0]))
+    model = section_model(case.model, geometry.thickness_factor)
+    with system.phases("pair"):
+        pairing, basis = contact_points(case, system.comm, model, face_1, face_2)
+    if pairing.unpaired > system.pairing.unpaired + _UNPAIRED:
+        raise CaseError(
+            f"motion.amplitude: {pairing.unpaired:.2%} of {geometry.contact[0]} leaves "
+            f"{geometry.contact[1]} where body 1 is moved by {offset:.4g} m; a longer face of "
+            "body 2 is needed (geometry.stroke)"
+        )
+    assert case.motion is not None  # the case has been checked
+    velocity = way * model.sliding(pairing.points, case.motion.one_way)
+    slides = sliding(velocity, pairing.normals, geometry.press_direction)
+    friction = case.contact.friction, case.contact.transverse_friction
+    pull = slides.pull(pairing.normals, *friction)
+    on_1, on_2 = pairing.sides
+    in_place = replace(pairing, sides=(replace(on_1, face=system.pairing.sides[0].face), on_2))
+    return replace(
+        system,
+        pairing=pairing,
+        trace=gap_trace(elastic.space, pairing),
+        basis=basis,
+        holder=hold(
+            in_place, pull, drives(case, in_place, lambda motion: system.dead_resultant(motion)[0])
+        ),
+        slides=slides,
+        pull=pull,
+        speed=slides.speed,
+        parts=Parts(),  # other points: nothing condensed to them is at hand
+    )
+
+
+def condensed(stroke: list[Position], grid: Track) -> CoupledContacts:
+    """The contacts in all positions. Every rank calls."""
+    systems = [position.system for position in stroke]
+    contacts = [system.contact for system in systems]
+    compliances, gaps, seen = [], [], []
+    for position, system, contact in zip(stroke, systems, contacts, strict=True):
+        mean = contact.weighted.T @ contact.basis
+        passed = contact.weighted.T @ grid.hats(system.pairing, position.length)
+        compliances.append(contact.compliance + system.softness * mean)
+        gaps.append(contact.weak(system.gap - system.holder.imposed))
+        seen.append(np.hstack([mean, passed]))
+    return CoupledContacts(
+        compliance=np.array(compliances),
+        gap=np.array(gaps),
+        seen=np.array(seen),
+        modes=np.array([contact.modes for contact in contacts]),
+        force_modes=np.array([contact.force_modes for contact in contacts]),
+        load=systems[0].holder.load + systems[0].holder.dead,
+    )
+
+
+def spreading(contacts: CoupledContacts, grid: Track, shares: np.ndarray) -> np.ndarray:
+    """Mean rates of the depths of either body per its local rates, shape (2, J, N, m)."""
+    count, m, total = contacts.seen.shape
+    result = np.zeros((2, count, total, m))
+    result[0, :, :m] = np.eye(m)
+    result[1, :, m:] = contacts.seen[:, :, m:].mT / grid.areas[:, None]
+    return shares[:, None, None] * result

@@ -1,0 +1,1 @@
+"""Outer loop over the worn geometry: mesh motion, remeshing, wear kept in the gap."""

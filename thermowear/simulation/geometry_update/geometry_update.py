@@ -1,0 +1,255 @@
+"""An update of the geometry: meshes moved to their worn faces, and everything carried over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...balances import relative, require
+from ...bulk.kinematics import section_model
+from ...bulk.transfer import transferred
+from ...contact.search.refinement import Rule
+from ...contact.search.surface import Surface
+from ...contact.wear.worn_face import WornFace
+from ...errors import CaseError, ComputationError
+from ...geometry.mesh.shapes import scaled_jacobians
+from ...geometry.mesh.tagged import TaggedMesh
+from ...geometry.moving.moved import MovableBody
+from ...geometry.moving.new_face import NewFace
+from ...laws.motions import combined
+from ...parallel import on_root
+from ..interface.factory import interface_problem
+from ..interface.interface_problem import InterfaceProblem
+from ..interface.sdirk import WornContact
+from ..model.building import build
+from ..model.setup_cache import Parts
+from ..model.system import System
+from ..model.worn_geometry import WornGeometry, along
+from .gap_wear import KeptWear, lacking_in_shape, movable_body
+from .remesh import FLOOR, carrying_error, improved, on_new_faces
+from .smooth_wear import worn_in
+
+_SETTLED = 1e-10
+"""Of a volume."""
+_PASSES = 20
+_FADED = 0.1
+"""Of the largest pressure so far: changes of lower ones are held against so much."""
+
+
+@dataclass(frozen=True)
+class Updated:
+    """What goes on after an update.
+
+    Attributes
+    ----------
+    system : System
+    problem : InterfaceProblem
+    state : WornContact
+    change : float
+        Of pressure and temperatures by the update, relative to their means.
+    """
+
+    system: System
+    problem: InterfaceProblem
+    state: WornContact
+    change: float
+
+
+def updated(
+    system: System, problem: InterfaceProblem, kept: KeptWear, state: WornContact, time: float
+) -> Updated:
+    """Move the meshes of a system by the wear that it keeps in the gap. Every rank calls.
+
+    Raises
+    ------
+    ComputationError
+        If cells would become too thin or too slanted, or the faces cannot meet any more.
+    """
+    with system.phases("move meshes"):
+        state = replace(state, worn=worn_in(system, problem, state, time))
+        worn, renewed = _moved(system, kept, state)
+    try:
+        following = build(
+            system.case, system.comm, system.phases, system.inputs.zone, Parts(), worn
+        )
+    except CaseError as fault:  # said of bodies as they are given; here they have been computed
+        raise ComputationError(
+            f"wear: at {time:.6g} s the worn faces do not fit each other any more ({fault})"
+        ) from None
+    rows, missed = _carried_wear(system, following, state.worn)
+    error = max(missed, carrying_error(worn, following.pairing)) if renewed else 0.0
+    worn = replace(worn, carrying_error=max(worn.carrying_error, error))
+    after = interface_problem(following)
+    rise = None
+    if state.stored is not None:
+        with system.phases("carry temperatures over"):
+            rise, error = _carried_rise(system, following, state.stored.rise)
+        largest = max(state.stored.largest, 1e-300)
+        worn = replace(worn, heat_error=max(worn.heat_error, error / largest))
+    with system.phases("contact"):
+        found = after.take_over(problem, state, rows, rise, time)
+    change = _change(following, state, found)
+    worn = replace(worn, change=max(worn.change, change))
+    return Updated(replace(following, worn=worn), after, found, change)
+
+
+def _change(after: System, state: WornContact, found: WornContact) -> float:
+    """How much an update has changed the pressure and, relative to their rise, temperatures.
+
+    In the mean over the area; pressures that vanish in the end count for no more than `_FADED`.
+    """
+    fields = [(state.pressure, found.pressure, _FADED * state.largest)]
+    if state.faces is not None and found.faces is not None:
+        rises = zip(state.faces.rise, found.faces.rise, strict=True)
+        fields += [(old, new, 0.0) for old, new in rises]
+    assert after.worn is not None
+    changes = [0.0]
+    for old, new, least in fields:
+        expected = after.worn.carried(old, after.pairing)
+        scale = float(after.weights @ np.maximum(np.abs(expected), least))
+        if scale > 0.0:
+            changes.append(float(after.weights @ np.abs(new - expected)) / scale)
+    return max(changes)
+
+
+def _carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.ndarray, float]:
+    """Depths worn off (n_wearing, n) at the points of the moved mesh, of the same volumes [m].
+
+    And what of these volumes has to be put right for that.
+    """
+    assert after.worn is not None
+    bodies = list(after.laws)
+    gone = after.worn.depth[bodies]
+    # what is left in the gap is little and matters most: errors of the rest are none of the gap
+    left = after.worn.carried(worn - gone, after.pairing)
+    rows = after.worn.carried(gone, after.pairing) + left
+    lost = np.zeros(2) if before.worn is None else before.worn.lost
+    error = 0.0
+    for row, body, depth in zip(rows, bodies, worn, strict=True):
+        had = (depth - before.moved[body]) @ before.weights + lost[body]
+        has = (row - after.moved[body]) @ after.weights + after.worn.lost[body]
+        if had > 0.0:
+            row *= 1.0 + (had - has) / (row @ after.weights)
+            error = max(error, abs(had - has) / had)
+    return rows, error
+
+
+def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeometry, bool]:
+    """Where the nodes go, and whether bodies have been meshed anew."""
+    before, faces, depth = kept.geometry, kept.faces, kept.due(kept.depth(state.worn))
+    amounts = {index: face.amounts(depth[index]) for index, face in faces.items()}
+    mesh, lost, quality, renewed = on_root(
+        system.comm,
+        lambda: _followed(system, before, faces, amounts, depth @ system.weights),
+    )
+    if not quality >= FLOOR:  # not a number where cells have vanished
+        raise ComputationError(
+            f"geometry update: cells of the worn bodies become too slanted (scaled Jacobian "
+            f"{quality:.2g}, at least {FLOOR:g}); use fewer or more even elements along the "
+            'contact (mesh.elements, mesh.grading), or wear.update = "never"'
+        )
+    taken = np.zeros_like(depth)
+    for index, face in faces.items():
+        taken[index] = face.depths(amounts[index])
+    motion = combined(system.holder.motions, state.contact.motion)
+    due = np.array([taken[index] @ system.weights for index in faces])
+    total = before.lost + lost
+    error = max(before.volume_error, _volume_error(lost[list(faces)] - due, total))
+    require(geometry_volume_error=error)
+    worn = replace(
+        before,
+        mesh=mesh,
+        pieces=_kept_points(system, state, renewed),
+        renewed={},
+        at=along(system.pairing),
+        depth=system.moved + taken,
+        lacking=_lacking(system, before, state),
+        holder=(motion.translation, motion.rotation),
+        lost=total,
+        updates=before.updates + 1,
+        quality=min(before.quality, quality),
+        volume_error=error,
+    )
+    return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
+
+
+def _lacking(system: System, before: WornGeometry, state: WornContact) -> np.ndarray:
+    """Depth that the initial shape lacks of the unworn face at the points, shape (n,) [m].
+
+    The first update goes over from gaps along the normals of the unworn faces, which turn away from
+    the ways that curved faces take, to gaps between faces where they lie. What that changes stays
+    out of the gap where wear has closed it already, and so does as much ahead of each edge of the
+    wear: it counts as far as it differs from that at the edge.
+    """
+    lacking, pairing = before.carried(before.lacking, system.pairing), system.pairing
+    reached = np.any(state.worn > 0.0, axis=0)
+    if before.updates > 0 or isinstance(pairing.sides[0].face, Surface) or not reached.any():
+        return lacking
+    in_shape, x = lacking_in_shape(pairing), pairing.position
+    return in_shape + np.interp(x, x[reached], (lacking - in_shape)[reached])
+
+
+def _kept_points(system: System, state: WornContact, renewed: dict[int, NewFace]) -> Rule | None:
+    """Contact points that stay where they are on the facets of body 1; None in a section.
+
+    Where contact holds point by point they stay in a section, too: no interpolation finds the gap
+    between points beside the edge of the wear so well that it closes at other ones.
+    """
+    on_surface = isinstance(system.pairing.sides[0].face, Surface)
+    pointwise = state.pointwise is not None and not renewed
+    return system.pairing.pieces if on_surface or pointwise else None
+
+
+def _volume_error(missing: np.ndarray, lost: np.ndarray) -> float:
+    """Volumes that an update takes off too little or too much, of what is lost so far."""
+    return relative(float(np.abs(missing).max()), float(np.abs(lost).max()))
+
+
+def _followed(
+    system: System,
+    worn: WornGeometry,
+    faces: dict[int, WornFace],
+    amounts: dict[int, np.ndarray],
+    volumes: np.ndarray,
+) -> tuple[TaggedMesh, np.ndarray, float, dict[int, NewFace]]:
+    """The mesh after its faces have moved, volumes lost (2,), its worst cell, and faces made anew.
+
+    Faces go a little further or less far than the depth worn off them, so that the meshes lose
+    the worn volumes: that of a curved layer is not quite its area times its depth.
+    """
+    case, mesh = system.case, worn.mesh
+    factor = section_model(
+        case.model, case.geometry.thickness_factor, case.geometry.sector
+    ).area_factor
+    lost = np.zeros(2)
+    renewed: dict[int, NewFace] = {}
+    for index, face in faces.items():
+        body, part = movable_body(system, mesh, index), 1.0
+        for _ in range(_PASSES):
+            outlined = body.outlined(part * face.displacement(amounts[index]))
+            lost[index] = body.lost(outlined, factor)
+            if abs(lost[index] - volumes[index]) <= _SETTLED * abs(volumes[index]):
+                break
+            part *= volumes[index] / lost[index]
+        mesh = replace(mesh, points=body.followed(outlined))
+        if isinstance(body, MovableBody):
+            wanted = worn.sizes[index], factor, worn.best[index]
+            mesh, new = improved(mesh, body.parts, body.face, *wanted)
+            renewed |= {} if new is None else {index: new}
+    return mesh, lost, float(scaled_jacobians(mesh).min()), renewed
+
+
+def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:
+    """The temperatures of the bodies at the nodes of the moved mesh [K], and their error."""
+    assert before.thermal is not None
+    assert after.thermal is not None
+    geometry = before.case.geometry
+    return transferred(
+        rise,
+        before.thermal.conduction.space,
+        after.thermal.conduction.space,
+        before.bodies,
+        after.bodies,
+        [geometry.parts_of(body) for body in geometry.bodies],
+    )

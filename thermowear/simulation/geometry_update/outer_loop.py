@@ -1,0 +1,267 @@
+"""The outer loop of a running-in: where much is worn off, the meshes are moved to the worn faces.
+
+Contact, heat and wear march in time on meshes that stay, with the wear since their last update kept
+in the gap. When that is too much, measured against the sizes of the bodies, the meshes are moved
+and time goes on from there. How much is too much follows from what the last update has changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ...case.tables.analyses import Transient
+from ...contact.search.refinement import Rule
+from ...errors import ComputationError
+from ...geometry.mesh.tagged import TaggedMesh
+from ...geometry.moving.new_face import NewFace
+from ...serialise import serialisable
+from ..interface.factory import interface_problem
+from ..interface.interface_problem import InterfaceProblem
+from ..interface.sdirk import advance_with_error
+from ..interface.steady import SteadyState
+from ..model.building import build
+from ..model.setup_cache import Parts
+from ..model.system import System
+from ..model.worn_geometry import WornGeometry
+from ..runtime.observer import Observer
+from ..time.step_sizes import Limited, StepSizes
+from ..time.time_loop import Moment, is_over, moments
+from .gap_wear import KeptWear
+from .geometry_update import updated
+from .update_counts import UpdateCounts
+from .wider_zone import meshed_wider, wider_zone
+
+_CHANGE = 5e-3
+"""Of pressure and temperatures by an update: aimed at where updates are automatic."""
+_OVER = 0.1
+"""Of the fraction that is allowed: so much more may be kept."""
+_ROOM = 5.0
+"""Times the automatic fraction: so much may be kept where that changes little."""
+
+Principle = Callable[[System], SteadyState | None]
+"""The steady state that a system tends to; None where there is none."""
+
+serialisable(WornGeometry)
+serialisable(TaggedMesh)
+serialisable(NewFace)
+serialisable(Rule)
+
+
+class OuterLoop:
+    """Goes through the moments of a running-in and moves the meshes between them.
+
+    Parameters
+    ----------
+    system : System
+        Of the unworn bodies.
+    problem : InterfaceProblem
+    principle : callable
+        The steady state that a system tends to; None where there is none.
+    sizes : StepSizes
+    observer : Observer
+
+    Attributes
+    ----------
+    system : System
+        Of the last moment.
+    problem : InterfaceProblem
+        Likewise.
+    steady : SteadyState or None
+        Likewise.
+    largest_kept : float
+        Largest fraction of the sizes of the bodies that was kept in the gap so far.
+    allowed : float
+        How much of them may be kept now.
+    earlier : UpdateCounts
+        Updates of meshes for narrower zones.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        problem: InterfaceProblem,
+        principle: Principle,
+        sizes: StepSizes,
+        observer: Observer,
+    ):
+        self.system, self.problem, self.steady = system, problem, principle(system)
+        self.largest_kept = 0.0
+        self.allowed = system.case.wear.largest_kept
+        self._principle = principle
+        self._sizes = Limited(sizes)
+        self._observer = observer
+        self._narrow = ""
+        self.earlier = UpdateCounts()
+
+    @property
+    def kept(self) -> tuple[float, float, float]:
+        """The largest fraction so far, what is allowed, and the largest step that may follow."""
+        return self.largest_kept, self.allowed, self._sizes.largest
+
+    def go_on(
+        self,
+        worn: WornGeometry | None,
+        kept: tuple[float, float, float],
+        zone: tuple[float, float] | None,
+        earlier: UpdateCounts,
+    ) -> None:
+        """Take up an earlier loop, after its last update or wider zone if there has been one."""
+        self.largest_kept, self.allowed, self._sizes.largest = kept
+        self.earlier = earlier
+        unworn = self.system
+        zone = unworn.inputs.zone if zone is None else zone
+        if worn is None and zone == unworn.inputs.zone:
+            return
+        self.system = build(unworn.case, unworn.comm, unworn.phases, zone, Parts(), worn)
+        self.problem, self.steady = interface_problem(self.system), self._principle(self.system)
+
+    def moments(self, last: Moment | None = None) -> Iterator[Moment]:
+        """The moments, see `transient.moments`."""
+        system, problem, steady = self.system, self.problem, self.steady
+        settings = system.case.analysis
+        assert isinstance(settings, Transient)
+        kept, fraction = self._kept_wear(system, last)
+        while True:
+            if last is not None and self._widens(system, last):
+                system, problem, last = self._widen(system, problem, last)
+                steady = self._principle(system)
+                kept, fraction = self._kept_wear(system, last)
+            if kept is not None and last is not None and self._is_due(kept, fraction, last):
+                system, problem, last = self._update(system, problem, kept, last)
+                steady = self._principle(system)
+                kept, fraction = KeptWear(system), 0.0
+            for moment in self._told(moments(problem, settings, steady, self._sizes, last)):
+                if kept is not None:
+                    before, fraction = fraction, kept.fraction(kept.depth(moment.state.worn))
+                    self._look_ahead(fraction, fraction - before, moment.step)
+                    if system.worn is not None and is_over(settings, problem, moment):
+                        assert last is not None
+                        system, problem, moment = self._end(system, problem, kept, last, moment)
+                        steady = self._principle(system)
+                self.system, self.problem, self.steady = system, problem, steady
+                yield moment
+                last = moment
+                if self._widens(system, last):
+                    break
+                if kept is not None and self._is_due(kept, fraction, last):
+                    break
+            else:
+                return
+
+    def summary(self) -> dict[str, float | int]:
+        """What the updates add to the summary; nothing where there are none."""
+        worn = self.system.worn
+        counts = self.earlier.counting(worn)
+        if counts.updates == 0:
+            return {}
+        lost = np.zeros(2) if worn is None else worn.lost
+        return {
+            "geometry_updates": counts.updates,
+            "geometry_largest_kept": self.largest_kept,
+            "geometry_smallest_scaled_jacobian": counts.quality,
+            "geometry_volume_1_m3": float(lost[0]),
+            "geometry_volume_2_m3": float(lost[1]),
+            "geometry_volume_error": counts.volume_error,
+            "geometry_change": counts.change,
+            "geometry_temperature_error": counts.heat_error,
+            "geometry_meshed_anew": counts.meshed_anew,
+            "geometry_remeshing_error": counts.carrying_error,
+        }
+
+    def _told(self, passing: Iterator[Moment]) -> Iterator[Moment]:
+        """The moments; a step that fails where the contact fills its face says so."""
+        try:
+            yield from passing
+        except ComputationError as reason:
+            if not self._narrow:
+                raise
+            raise ComputationError(
+                f"{reason}; the contact has grown beyond the zone that is meshed for it, which "
+                f"cannot be wider: {self._narrow}"
+            ) from None
+
+    def _kept_wear(self, system: System, last: Moment | None) -> tuple[KeptWear | None, float]:
+        """The wear kept in the gap, where meshes can be moved at all, and its fraction."""
+        kept = KeptWear(system) if self._moves else None
+        if kept is None or last is None:
+            return kept, 0.0
+        return kept, kept.fraction(kept.depth(last.state.worn))
+
+    def _widens(self, system: System, moment: Moment) -> bool:
+        """Whether a contact that wears has outgrown its zone, before the end of the run."""
+        settings = system.case.analysis
+        assert isinstance(settings, Transient)
+        if self._narrow or not moment.state.worn.any() or is_over(settings, self.problem, moment):
+            return False
+        return wider_zone(system, moment.state.pressure) is not None
+
+    def _widen(self, system: System, problem: InterfaceProblem, last: Moment):
+        """System and problem on meshes for a wider zone; the same ones where there are none."""
+        zone = wider_zone(system, last.state.pressure)
+        assert zone is not None
+        found = meshed_wider(system, problem, last.state, last.time, zone)
+        if isinstance(found, str):
+            self._narrow = found
+            return system, problem, last
+        self._observer.note(
+            f"at {last.time:.4g} s the contact has grown beyond the zone that was meshed for it; "
+            f"from there on the mesh is made for x = {zone[0]:.4g} to {zone[1]:.4g} m "
+            "(a larger geometry.zone avoids that)"
+        )
+        self.earlier = self.earlier.counting(system.worn)
+        return found[0], found[1], replace(last, state=found[2])
+
+    @property
+    def _moves(self) -> bool:
+        """Whether meshes can be moved at all."""
+        return bool(np.isfinite(self.allowed))
+
+    def _is_due(self, kept: KeptWear, fraction: float, moment: Moment) -> bool:
+        """Whether even what the nodes can take up of the wear is too much to be kept.
+
+        Not at the end of the run.
+        """
+        settings = self.system.case.analysis
+        assert isinstance(settings, Transient)
+        if fraction <= self.allowed or is_over(settings, self.problem, moment):
+            return False
+        return kept.fraction(kept.movable(kept.depth(moment.state.worn))) > self.allowed
+
+    def _look_ahead(self, fraction: float, grown: float, step: float) -> None:
+        """Choose steps so that little more is kept than is allowed."""
+        self.largest_kept = max(self.largest_kept, fraction)
+        self._sizes.largest = np.inf
+        if grown > 0.0:
+            left = self.allowed - fraction
+            left = self.allowed if left <= 0.0 else max(left, _OVER * self.allowed)
+            self._sizes.largest = step * left / grown
+
+    def _end(self, system, problem, kept, before: Moment, last: Moment):
+        """What `_update` gives at the end of a run: moved meshes leave it as they are worn then.
+
+        Where moving them has disturbed the pressure, the step that ends the run is taken again, in
+        which that wears in; not where temperatures are followed in time, known of its end alone.
+        """
+        pressure, grown = last.state.pressure, last.state.worn - before.state.worn
+        system, problem, last = self._update(system, problem, kept, last)
+        grown, expected = (system.worn.carried(v, system.pairing) for v in (grown, pressure))
+        disturbed = float(np.abs(last.state.pressure - expected).max())
+        allowed = system.case.analysis.tolerance * float(expected.max())
+        if last.state.stored is not None or disturbed <= allowed:
+            return system, problem, last
+        start = replace(last.state, worn=last.state.worn - grown)
+        again = advance_with_error(problem, start, before.time, last.step)
+        return system, problem, replace(last, state=again.state)
+
+    def _update(self, system, problem, kept, last: Moment):
+        """System and problem on meshes that are moved, and the same moment of them."""
+        new = updated(system, problem, kept, last.state, last.time)
+        change = new.change
+        automatic = system.case.wear.largest_kept
+        if system.case.wear.update == "auto" and change > 0.0:
+            wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
+            self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
+        return new.system, new.problem, replace(last, state=new.state)

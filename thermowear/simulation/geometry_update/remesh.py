@@ -1,0 +1,107 @@
+"""Bodies of a section that are meshed anew: when that is done, and what is carried over to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import Akima1DInterpolator
+
+from ...contact.search.face import Face
+from ...contact.search.pairing import Pairing, Side
+from ...errors import ComputationError
+from ...geometry.mesh.shapes import quality
+from ...geometry.mesh.tagged import TaggedMesh
+from ...geometry.moving.new_face import NewFace
+from ...geometry.moving.remeshed import meshed_anew
+from ..model.system import System
+from ..model.worn_geometry import WornGeometry, along
+
+FLOOR = 0.1
+"""Scaled Jacobian below which cells are no good any more."""
+_SOFT = 0.25
+"""The same, below which better ones are looked for,"""
+_WORSE = 0.75
+"""and of what it was when they were new."""
+
+
+def improved(
+    mesh: TaggedMesh,
+    parts: tuple[str, ...],
+    face: np.ndarray,
+    sizes: np.ndarray,
+    factor: Callable[[np.ndarray], np.ndarray],
+    best: float,
+) -> tuple[TaggedMesh, NewFace | None]:
+    """A mesh in which a body is meshed anew if its cells are slanted and that makes them better.
+
+    Parameters are those of `geometry.remeshed.meshed_anew`, and the smallest scaled Jacobian of the
+    body when it was new.
+
+    Raises
+    ------
+    ComputationError
+        If cells that are no good any more cannot be replaced.
+    """
+    worst = quality(mesh, parts)
+    if worst >= max(FLOOR, min(_SOFT, _WORSE * best)):
+        return mesh, None
+    try:
+        anew, divided = meshed_anew(mesh, parts, face, sizes, factor)
+    except ComputationError as reason:
+        if worst >= FLOOR:
+            return mesh, None
+        raise ComputationError(f"geometry update: {reason}") from None
+    return (anew, divided) if quality(anew, parts) > worst else (mesh, None)
+
+
+def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) -> WornGeometry:
+    """What is known of worn faces on those that have been divided anew, by index of the body.
+
+    Where they lie behind or before the former ones, that counts as depth which the mesh has or has
+    not lost: the gap stays.
+    """
+    directions, held, sizes = (list(pair) for pair in (worn.directions, worn.held, worn.sizes))
+    best = worn.best.copy()
+    depth, at, bodies = worn.depth.copy(), worn.at, system.case.geometry.bodies
+    for index, new in faces.items():
+        side = system.pairing.sides[index]
+        assert isinstance(side.face, Face)
+        depth[index] += _behind_former(side, new)
+        if index == 0:
+            at = new.at(along(system.pairing))
+        ways = new.carried(worn.directions[index])
+        directions[index] = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+        held[index] = np.zeros(len(ways), dtype=bool)
+        held[index][[0, -1]] = worn.held[index][[0, -1]]
+        sizes[index] = new.sizes
+        best[index] = quality(worn.mesh, system.case.geometry.parts_of(bodies[index]))
+    return replace(
+        worn,
+        directions=tuple(directions),
+        held=tuple(held),
+        sizes=tuple(sizes),
+        best=best,
+        at=at,
+        depth=depth,
+        renewed=faces,
+        meshed_anew=worn.meshed_anew + len(faces),
+    )
+
+
+def carrying_error(worn: WornGeometry, pairing: Pairing) -> float:
+    """Of depths carried over to a pairing: what they miss when carried back, of the largest."""
+    there = worn.carried(worn.depth, pairing)
+    back = Akima1DInterpolator(along(pairing), there, axis=-1, method="makima")
+    after = np.clip(worn.at, *along(pairing)[[0, -1]])
+    return float(np.abs(back(after) - worn.depth).max() / np.abs(worn.depth).max())
+
+
+def _behind_former(side: Side, new: NewFace) -> np.ndarray:
+    """How far the curve of a new face lies behind the former one at points of that, (n,) [m]."""
+    assert isinstance(side.face, Face)
+    former = replace(side.face, nodes=new.former)
+    out = former.normals(side.facet, side.t)
+    to = new.on_curve(new.at(side.facet + side.t)) - former.points(side.facet, side.t)
+    return -np.einsum("ni,ni->n", to, out)

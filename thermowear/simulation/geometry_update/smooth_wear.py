@@ -1,0 +1,43 @@
+"""Worn faces that fit at every point where they press."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...contact.wear.unresolved_gap import unseen
+from ...laws.distribution import InPlace
+from ...laws.motions import combined
+from ..interface.interface_problem import InterfaceProblem
+from ..interface.sdirk import WornContact
+from ..model.system import System
+from ..results.recording import interface_at
+
+
+def worn_in(
+    system: System, problem: InterfaceProblem, state: WornContact, time: float
+) -> np.ndarray:
+    """Depths worn off as they are where faces that press fit point by point. Every rank calls.
+
+    The means that the pressure sees, so pressure, forces and volumes, stay as they are. Each body
+    that wears where it is pressed takes the share of the difference that it has of the depth.
+
+    Returns
+    -------
+    ndarray, shape (n_wearing, n)
+        [m]; those of the state where they would be less than nothing otherwise.
+    """
+    both = np.zeros((2, state.worn.shape[1]))
+    both[list(system.laws)] = state.worn
+    contact = problem.contact_state(state, time)
+    motion = combined(system.holder.motions, state.contact.motion)
+    gap = interface_at(system, contact, motion, both)[1].gap
+    weak = state.pressure > 0
+    if state.pointwise is not None:
+        weak &= ~state.pointwise  # faces fit there already, and the pressure sees all of the gap
+    excess = unseen(gap, weak, system.pairing, system.basis)
+    in_place = np.array([isinstance(s, InPlace) for s in system.spreads.values()])
+    ours = np.where(in_place[:, None], state.worn, 0.0)
+    whole = ours.sum(axis=0)
+    shares = np.divide(ours, whole, out=np.zeros_like(ours), where=whole > 0.0)
+    found = state.worn - shares * excess
+    return found if np.all(found >= 0.0) else state.worn

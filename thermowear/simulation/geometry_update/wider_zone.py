@@ -1,0 +1,86 @@
+"""Contacts that grow beyond the zone that their faces were meshed for: meshed anew, further out."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import Akima1DInterpolator
+
+from ...contact.search.surface import Surface
+from ...errors import CaseError
+from ...laws.distribution import InPlace
+from ..interface.factory import interface_problem
+from ..interface.interface_problem import InterfaceProblem
+from ..interface.sdirk import WornContact
+from ..model.building import build
+from ..model.system import System
+from .face_limits import beyond
+
+Zone = tuple[float, float]
+
+_WIDER = 1.6
+"""Times the contact: the next zone. Elements grow with it, as many as before."""
+_ROUNDING = 1e-9
+"""Of the length of the face."""
+
+
+def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
+    """Zone to mesh for where the contact has come half way from its zone to an end of the face.
+
+    None where it has not, or where the mesh knows no zone.
+    """
+    zone, pairing = system.inputs.zone, system.pairing
+    if zone is None or isinstance(pairing.sides[0].face, Surface) or not np.any(pressure > 0):
+        return None
+    x = pairing.points[:, 0]
+    middle = 0.0 if system.case.geometry.symmetry else (zone[0] + zone[1]) / 2
+    pressing = x[pressure > 0]
+    found, wide = list(zone), False
+    each = zip(beyond(system), (pressing.min(), pressing.max()), x[[0, -1]], strict=True)
+    for side, (open_ended, edge, end) in enumerate(each):
+        if open_ended and abs(edge - zone[side]) >= abs(end - zone[side]) / 2 > 0.0:
+            wide |= abs(edge - middle) > abs(zone[side] - middle)
+            found[side] = middle + _WIDER * (edge - middle)
+    if system.case.geometry.symmetry:
+        found[0] = -found[1]
+    return (float(found[0]), float(found[1])) if wide else None
+
+
+def meshed_wider(
+    system: System, problem: InterfaceProblem, state: WornContact, time: float, zone: Zone
+) -> tuple[System, InterfaceProblem, WornContact] | str:
+    """Go on with unworn meshes for a wider zone, all wear in the gap. Every rank calls.
+
+    Returns
+    -------
+    system, problem, state
+        Or why there are none.
+    """
+    if state.stored is not None:
+        return "temperatures that are followed in time are not carried over to a wider zone"
+    try:
+        following = build(system.case, system.comm, system.phases, zone)
+    except CaseError as reason:
+        return str(reason)
+    after = interface_problem(following)
+    rows = _carried(system, following, state.worn)
+    with system.phases("contact"):
+        return following, after, after.take_over(problem, state, rows, None, time)
+
+
+def _carried(before: System, after: System, worn: np.ndarray) -> np.ndarray:
+    """Depths (n_wearing, n) at the points of another mesh of the same faces, of equal volumes [m].
+
+    Beyond the former face nothing was worn in place.
+    """
+    x, first = np.unique(before.pairing.points[:, 0], return_index=True)
+    to = after.pairing.points[:, 0]
+    rounding = _ROUNDING * (x[-1] - x[0])  # moved meshes end where new ones do but for that
+    inside = (to >= x[0] - rounding) & (to <= x[-1] + rounding)
+    curves = Akima1DInterpolator(x, worn[:, first], axis=-1, method="makima")
+    rows = np.maximum(curves(np.clip(to, x[0], x[-1])), 0.0)
+    for row, depth, spread in zip(rows, worn, before.spreads.values(), strict=True):
+        if isinstance(spread, InPlace):
+            row[~inside] = 0.0
+            had, has = depth @ before.weights, row @ after.weights
+            row *= had / has if has > 0.0 else 1.0
+    return rows

@@ -1,0 +1,1 @@
+"""Friction heat: steady, in time, and with properties that vary."""

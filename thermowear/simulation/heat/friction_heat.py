@@ -1,0 +1,242 @@
+"""Friction heat as part of the interface problem: it is proportional to the pressure."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...balances import relative
+from ...contact.operators.heat import Resting, ThermalState, at_rest
+from ...contact.operators.heat_condensation import condense_heat
+from ...parallel import sum_over_ranks
+from ..model.conditions import Conditions
+from ..model.system import System
+from ..model.thermal_system import ThermalSystem
+from .condensed_distortion import CondensedDistortion
+from .heat_stages import ConductedHeat, ConductingStage, FrozenHeat, HeatOperators
+from .heat_states import HeatBalance, StoredHeat, Warmth
+
+_MEMORY = 1e9
+"""Bytes that the operators of all sizes of steps may take on a rank."""
+_FEWEST = 3
+"""Sizes of steps whose operators are kept in any case: those of a step, its half and its double."""
+_FILL = {2: 100, 3: 1000}
+"""Entries of triangular factors per unknown, by dimension of the mesh."""
+_ROUNDING = 1e-3
+"""Of the heat that bodies have at the start: less than that is near to rounding of it."""
+_SHALLOW = 1e-3
+"""Of the contact's length: heat that has gone so deep has changed nothing yet."""
+_HARDLY = 0.1
+"""Rise of the faces that is not worth a smaller first step [K]."""
+
+
+class FrictionHeat:
+    """Couples pressure, temperature and distortion at the contact points.
+
+    Parameters
+    ----------
+    system : System
+    thermal : ThermalSystem
+    """
+
+    def __init__(self, system: System, thermal: ThermalSystem):
+        self._system = system
+        self._thermal = thermal
+        self._steps: OrderedDict[float, HeatOperators] = OrderedDict()
+        self._distorts = system.case.contact.method == "condensed"
+        self.condensed = CondensedDistortion(system, thermal)
+        heat = system.case.heat
+        self._driven = heat is not None and heat.driven
+
+    @cached_property
+    def steady(self) -> ConductingStage:
+        """Temperatures that do not change any more."""
+        thermal = self._thermal
+        operators = HeatOperators(thermal.conduction, thermal.face, self.condensed)
+        load = thermal.loads.at(0.0)
+        resting = self._system.parts.get(
+            "at rest",
+            (self._system.inputs.conduction, self._distorts),
+            lambda: self.at_rest(thermal.conduction.solve(load.heat)),
+        )
+        return ConductedHeat(operators, load, load.heat, resting)
+
+    def after(self, before: StoredHeat, step: float, time: float) -> ConductingStage:
+        """The end of an implicit Euler step, at a time [s]; every rank calls."""
+        if step not in self._steps:
+            self._steps[step] = self._operators(step)
+            if len(self._steps) > self._kept:
+                self._steps.popitem(last=False)
+        self._steps.move_to_end(step)
+        operators, load = self._steps[step], self._thermal.loads.at(time)
+        supplied = load.heat + before.content / step
+        alone = load.on(operators.conduction).solve(supplied)
+        return ConductedHeat(operators, load, supplied, self.at_rest(alone))
+
+    @cached_property
+    def frozen(self) -> FrozenHeat:
+        """The first moment; every rank calls."""
+        conduction = self._thermal.conduction
+        rise = np.where(conduction.fixed, conduction.given, self._thermal.initial)
+        resting = self.at_rest(rise)
+        largest = max(float(np.abs(resting.rise).max()), self._largest(rise))
+        return FrozenHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(3), largest), resting)
+
+    def at_moment(self, stored: StoredHeat) -> FrozenHeat:
+        """A later moment, of which the temperatures are known; every rank calls."""
+        return FrozenHeat(stored, self.at_rest(stored.rise))
+
+    def take_over(self, former: FrictionHeat, stored: StoredHeat, rise: np.ndarray) -> StoredHeat:
+        """Heat of bodies whose mesh was another one; every rank calls.
+
+        What they have lost with the worn material counts as lost.
+
+        Parameters
+        ----------
+        former : FrictionHeat
+            Of the former mesh.
+        stored : StoredHeat
+            On it.
+        rise : ndarray, shape (n_owned,)
+            The same temperatures on this mesh [K].
+        """
+        content = self._thermal.conduction.stored(rise)
+        same = replace(stored, rise=rise, content=content)
+        taken = former.balance(stored).stored - self.balance(same).stored
+        return replace(same, turnover=stored.turnover + np.array([0.0, taken, abs(taken)]))
+
+    def stored(
+        self,
+        before: StoredHeat,
+        step: float,
+        heat: ConductingStage,
+        faces: ThermalState,
+        friction_heat: np.ndarray,
+    ) -> StoredHeat:
+        """What the bodies have stored at the end of an implicit Euler step.
+
+        Parameters
+        ----------
+        before : StoredHeat
+        step : float
+            [s]
+        heat : ConductingStage
+            From `after`.
+        faces : ThermalState
+            At the end.
+        friction_heat : ndarray, shape (n,)
+            Likewise [W/m²].
+        """
+        conduction, face, load = self._thermal.conduction, self._thermal.face, heat.load
+        rise = heat.rise(faces)
+        content = conduction.stored(rise)
+        storage = (content - before.content) / step
+        nodal = face.nodal_heat(faces, bath=False) + load.heat
+        lost = sum(conduction.losses(rise, nodal, storage, load.ambient))
+        made = float(face.weights @ friction_heat)
+        outside = conduction.turnover(rise, nodal, storage, load.ambient)
+        exchanged = made + load.magnitude + outside
+        largest = max(before.largest, float(np.abs(faces.rise).max()), self._largest(rise))
+        turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])
+        return StoredHeat(rise, content, turnover, largest)
+
+    def memory(self) -> Any:
+        """What its answers depend on beside what it is asked; nothing where heat is linear."""
+        return None
+
+    def recall(self, memory: Any) -> None:
+        """Answer as another one did that had this memory."""
+
+    def lasting(self, conditions: Conditions, pressure: np.ndarray) -> Warmth:
+        """Temperatures that do not change any more, under a pressure (n,) [Pa]."""
+        conduction, face = self._thermal.conduction, self._thermal.face
+        faces = self.steady.faces(conditions, pressure)
+        rise = self.steady.rise(faces)
+        load = self.steady.load
+        heat = face.nodal_heat(faces, bath=False) + load.heat
+        made = float(face.weights @ (conditions.heating * pressure))
+        lost = sum(conduction.losses(rise, heat))
+        scale = max(made + load.magnitude, conduction.turnover(rise, heat))
+        if made + load.magnitude == 0.0:  # hardly anything may flow at all
+            scale = max(scale, conduction.rounding(rise))
+        return Warmth(faces, rise, relative(lost - made - load.prescribed, scale))
+
+    def momentary(self, stored: StoredHeat, faces: ThermalState) -> Warmth:
+        """Temperatures that are followed in time; the balance is that of all the heat so far."""
+        return Warmth(faces, stored.rise, self.balance(stored).error)
+
+    def balance(self, stored: StoredHeat) -> HeatBalance:
+        """Where all the heat so far has gone; every rank calls."""
+        made, lost, exchanged = (float(heat) for heat in stored.turnover)
+        before = self.frozen.stored.content
+        gained = stored.content - before
+        sums = np.array([gained.sum(), np.abs(gained).sum(), np.abs(before).sum()])
+        gain, shifted, had = (float(heat) for heat in sum_over_ranks(self._system.comm, sums))
+        return HeatBalance(made, gain, lost, max(exchanged, shifted, _ROUNDING * had))
+
+    def difference(self, one: StoredHeat, other: StoredHeat) -> float:
+        """Largest difference of the temperatures inside the bodies [K]; every rank calls.
+
+        Zero where friction alone heats them: their faces show the errors of a step then.
+        """
+        return self._largest(one.rise - other.rise)
+
+    def _largest(self, rise: np.ndarray) -> float:
+        """Largest rise inside of bodies that not friction alone heats [K]; every rank calls."""
+        if not self._driven:
+            return 0.0
+        return max(self._system.comm.allgather(float(np.abs(rise).max(initial=0.0))))
+
+    @property
+    def ambient(self) -> float:
+        """Temperature of the surroundings [K]."""
+        return self._thermal.ambient
+
+    def first_step(self, friction_heat: float) -> float:
+        """A step to begin with: heat goes not deep in it, or makes the faces hardly warmer [s].
+
+        Half-spaces under a constant flux q are warmer by ``2 q √(t/π)/√(k ρ c)``. Infinite where
+        there is no heat to begin with, neither by friction [W/m²] nor otherwise.
+        """
+        case, thermal = self._system.case, self._thermal
+        if self._driven:
+            return (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
+        if friction_heat == 0.0:
+            return np.inf
+        share = case.partition(self._system.facing)
+        first, second = self._system.facing.of(case.located_material, "effusivity")
+        steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
+        through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
+        return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
+
+    def at_rest(self, rise: np.ndarray) -> Resting:
+        """What a nodal rise (n_owned,) does to the interface; every rank calls."""
+        per_rise = self.condensed.per_rise if self._distorts else None
+        return at_rest(rise, self._thermal.face.traces, self._system.comm, per_rise)
+
+    @cached_property
+    def _kept(self) -> int:
+        """Number of sizes of steps whose operators are kept."""
+        conduction, points = self._thermal.conduction, len(self._thermal.face.weights)
+        dense, nodes = 12 * points**2, len(conduction.fixed)
+        numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes
+        least = min(self._system.comm.allgather(_MEMORY / (8 * numbers)))
+        return max(int(least), _FEWEST)
+
+    def _operators(self, step: float) -> HeatOperators:
+        steady = self._thermal.face
+        with self._system.phases("condense conduction"):
+            conduction = self._thermal.conduction.storing(step)
+            face = condense_heat(
+                conduction,
+                steady.weights,
+                steady.basis,
+                steady.traces,
+                steady.shift,
+                steady.partition,
+            )
+        return HeatOperators(conduction, face, self.condensed)

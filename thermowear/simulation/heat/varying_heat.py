@@ -1,0 +1,221 @@
+"""Friction heat in bodies whose conductivity or expansion change with temperature.
+
+Newton's method: contact sees linear bodies, those of small changes about the last temperatures.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+
+from ...bulk.heat.varying import VaryingConduction, VaryingExpansion
+from ...contact.operators.heat import Resting, ThermalState, at_rest
+from ...contact.operators.heat_condensation import condense_heat, gap_per_rise
+from ...errors import ComputationError
+from ...parallel import sum_over_ranks
+from ..model.conditions import Conditions
+from ..model.system import System
+from ..model.thermal_loads import ThermalLoad
+from ..model.thermal_system import ThermalSystem
+from .friction_heat import FrictionHeat
+from .heat_stages import ConductedHeat, Coupling
+from .heat_states import StoredHeat
+from .tangents import LastTangents, TangentOperators, Tangents
+
+_TURNS = 60
+_SETTLED = 1e-11
+"""Change of the temperatures, relative to the largest rise."""
+_SLOW = 0.3
+"""Changes that get smaller by less than that ask for new operators."""
+_LEAST_RISE = 1.0  # K
+
+
+def friction_heat(system: System) -> FrictionHeat | None:
+    """The friction heat of a system; None where there is none."""
+    thermal = system.thermal
+    if thermal is None:
+        return None
+    return (VaryingFrictionHeat if thermal.varies else FrictionHeat)(system, thermal)
+
+
+class VaryingFrictionHeat(FrictionHeat):
+    """Friction heat of bodies whose properties change; parameters as in `FrictionHeat`."""
+
+    def __init__(self, system: System, thermal: ThermalSystem):
+        super().__init__(system, thermal)
+        assert isinstance(thermal.conduction, VaryingConduction)
+        self._conduction = thermal.conduction
+        self._tangents: OrderedDict[float, Tangents] = OrderedDict()
+        self._lasting: VaryingHeat | None = None
+
+    @property
+    def steady(self) -> VaryingHeat:
+        if self._lasting is None:
+            load = self._thermal.loads.at(0.0)
+            start = self._conduction.given
+            self._lasting = VaryingHeat(self, Tangents(self, None), load, load.heat, start)
+        return self._lasting
+
+    def after(self, before: StoredHeat, step: float, time: float) -> VaryingHeat:
+        if step not in self._tangents:
+            self._tangents[step] = Tangents(self, step)
+            if len(self._tangents) > self._kept:
+                self._tangents.popitem(last=False)
+        self._tangents.move_to_end(step)
+        load = self._thermal.loads.at(time)
+        supplied = load.heat + before.content / step
+        return VaryingHeat(self, self._tangents[step], load, supplied, before.rise)
+
+    def memory(self) -> LastTangents:
+        steps = {step: tangents.reference for step, tangents in self._tangents.items()}
+        return LastTangents(steps, None if self._lasting is None else self._lasting.memory())
+
+    def recall(self, memory: LastTangents) -> None:
+        for step, reference in memory.steps.items():
+            self._tangents[step] = Tangents(self, step, reference)
+        if memory.steady is not None:
+            reference, rise, change = memory.steady
+            tangents, load = Tangents(self, None, reference), self._thermal.loads.at(0.0)
+            self._lasting = VaryingHeat(self, tangents, load, load.heat, rise, change)
+
+    def at_rest(self, rise: np.ndarray) -> Resting:
+        faces = at_rest(rise, self._thermal.face.traces, self._system.comm).rise
+        return Resting(faces, self._opening(rise))
+
+    def tangent(self, rise: np.ndarray, step: float | None) -> TangentOperators:
+        """Operators for small changes of a rise (n_owned,); every rank calls."""
+        face = self._thermal.face
+        with self._system.phases("condense conduction"):
+            conduction = self._conduction.tangent(rise, step)
+            face = condense_heat(
+                conduction, face.weights, face.basis, face.traces, face.shift, face.partition
+            )
+        return TangentOperators(conduction, face, self, rise)
+
+    def gap_per_rise(self, rise: np.ndarray) -> np.ndarray:
+        """Weak gap per small change of a nodal rise, shape (n_owned, m)."""
+        result = self.condensed.per_rise
+        for part, per_rise in self._per_excess:
+            result = result + part.slope(rise)[:, None] * per_rise
+        return result
+
+    def about(
+        self,
+        operators: TangentOperators,
+        load: ThermalLoad,
+        supplied: np.ndarray,
+        rise: np.ndarray,
+    ) -> ConductedHeat:
+        """Linear heat about a rise, by operators of a rise that is near; every rank calls."""
+        heat = self._conduction.remainder(rise, operators.reference) + supplied
+        alone = load.on(operators.conduction).solve(heat)
+        traces, comm = self._thermal.face.traces, self._system.comm
+        faces = at_rest(alone, traces, comm).rise
+        changed = sum_over_ranks(comm, operators.per_rise.T @ (alone - rise))
+        return ConductedHeat(operators, load, heat, Resting(faces, self._opening(rise) + changed))
+
+    def far(self, rise: np.ndarray, other: np.ndarray) -> float:
+        """How different two rises are, relative to the larger one; every rank calls."""
+        sizes = [float(np.abs(values).max(initial=0.0)) for values in (rise - other, rise)]
+        change, largest = np.max(self._system.comm.allgather(sizes), axis=0)
+        return change / max(largest, _LEAST_RISE)
+
+    def _opening(self, rise: np.ndarray) -> np.ndarray:
+        """Weak gap that a rise opens, shape (m,) [m³]."""
+        opening = self.condensed.per_rise.T @ rise
+        for part, per_rise in self._per_excess:
+            opening = opening + per_rise.T @ part.excess(rise)
+        return sum_over_ranks(self._system.comm, opening)
+
+    @cached_property
+    def _per_excess(self) -> list[tuple[VaryingExpansion, np.ndarray]]:
+        """Expansions that change, and the weak gap per nodal rise of their parts alone."""
+        contact = self._system.contact
+        return [(part, gap_per_rise(part.matrix, contact)) for part in self._thermal.expansions]
+
+
+class VaryingHeat:
+    """Heat at one moment, linear about the temperatures that were found last.
+
+    Parameters
+    ----------
+    heat : VaryingFrictionHeat
+    tangents : Tangents
+    load : ThermalLoad
+    supplied : ndarray, shape (n_owned,)
+        See `ConductedHeat` [W].
+    rise : ndarray, shape (n_owned,)
+        To start from [K].
+    change : float, optional
+        By how much it has changed, see `VaryingFrictionHeat.far`.
+    """
+
+    def __init__(
+        self,
+        heat: VaryingFrictionHeat,
+        tangents: Tangents,
+        load: ThermalLoad,
+        supplied: np.ndarray,
+        rise: np.ndarray,
+        change: float = np.inf,
+    ):
+        self._heat = heat
+        self._tangents = tangents
+        self.load = load
+        self._supplied = supplied
+        self._rise = rise
+        self._last = change
+        self._linear = heat.about(tangents.near(rise), load, supplied, rise)
+
+    def memory(self) -> tuple[np.ndarray | None, np.ndarray, float]:
+        """Where its tangents were made, its temperatures, and their last change."""
+        return self._tangents.reference, self._rise, self._last
+
+    @property
+    def unheated(self) -> ThermalState:
+        """The faces without any heat at the contact, about."""
+        return self._linear.unheated
+
+    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+        """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
+        return self._newton(lambda: self._linear.faces(conditions, pressure))
+
+    def rise(self, faces: ThermalState) -> np.ndarray:
+        """Temperature rise of the bodies, shape (n_owned,) [K]."""
+        self._newton(lambda: faces)
+        return self._rise
+
+    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+        """What heat does to the condensed interface, about the last temperatures."""
+        return self._linear.coupling(conditions, basis)
+
+    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+        """Whether the last coupling holds under a pressure; the next one is about its heat."""
+        return self._moved(self._linear.faces(conditions, pressure)) <= _SETTLED
+
+    def _newton(self, respond: Callable[[], ThermalState]) -> ThermalState:
+        """Go on to the temperatures that the faces' response to the present ones leads to."""
+        for _ in range(_TURNS):
+            faces = respond()
+            if self._moved(faces) <= _SETTLED:
+                return faces
+        raise ComputationError(
+            "heat: Newton's method for conductivity or expansion that change with temperature does "
+            "not settle; give smoother tables, or reduce the speed"
+        )
+
+    def _moved(self, faces: ThermalState) -> float:
+        """By how much the temperatures of some faces differ from the last ones; moves there."""
+        rise = self._linear.rise(faces)
+        change = self._heat.far(rise, self._rise)
+        if change <= _SETTLED:
+            self._last = np.inf
+            return change
+        slow = change > _SLOW * self._last
+        operators = self._tangents.at(rise) if slow else self._tangents.near(rise)
+        self._linear = self._heat.about(operators, self.load, self._supplied, rise)
+        self._rise, self._last = rise, np.inf if slow else change
+        return change

@@ -1,0 +1,1 @@
+"""Interface problem: contact with wear and heat at one time, and its fixed points."""

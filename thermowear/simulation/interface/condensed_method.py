@@ -1,0 +1,174 @@
+"""Contact solved on the condensed interface: small and dense."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...contact.operators.condensation import CondensedContact
+from ...contact.solvers.signorini import ContactSolution, NoEquilibrium, solve_contact
+from ...contact.wear.wear_edge import EdgeSpace, edge_space
+from ...errors import ComputationError
+from ..model.system import System
+from .contact_solver import Contact, Slope, WearRates, newton_with_wear
+
+_TURNS = 60
+_HOT = (
+    "with friction heat this happens beyond the critical sliding speed (thermoelastic "
+    "instability): reduce the speed, or the expansion, or the friction"
+)
+_LOCKED = (
+    "friction along the faces locks body 1 or tips it over an edge: lower contact.friction, turn "
+    "the motion round, or change the line of the load or the free motions of the holder"
+)
+_TIPPED = (
+    "the load lifts body 1 off or tips it over an edge: change the line of the load or the free "
+    "motions of the holder"
+)
+
+
+class CondensedMethod:
+    """The contact conditions in the pressure space, with gaps measured weakly.
+
+    Where the edge of the wear lies they hold point by point, see `contact.wear_edge`.
+
+    Parameters
+    ----------
+    system : System
+    """
+
+    def __init__(self, system: System):
+        self._system = system
+        self._contact = system.contact
+        nominal = np.full(len(system.weights), system.friction)
+        self._rubbing = (nominal.tobytes(), self._contact)
+        self._dead = system.gap - system.pairing.gap
+        self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
+        self._last_opening: tuple[CondensedContact | EdgeSpace, np.ndarray, np.ndarray] | None = (
+            None
+        )
+        self.note: str | None = None
+
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
+        try:
+            return self._balanced(gap, slope, guess, conditions, heat, pointwise)
+        except NoEquilibrium as error:
+            cold = _LOCKED if conditions.friction.any() else _TIPPED
+            raise ComputationError(f"{error}; {cold if heat is None else _HOT}") from None
+
+    def _balanced(self, gap, slope, guess: Contact | None, conditions, heat, pointwise) -> Contact:
+        bodies, load = self._rubbed(conditions.friction), conditions.load
+        edge = self._space(bodies, pointwise)
+        gap, compliance = gap + self._dead, bodies.compliance
+        if heat is None:
+            resting = np.zeros(len(compliance))
+            return self._solved(bodies, edge, compliance, resting, gap, slope, guess, load)
+        for _ in range(_TURNS):
+            hot = heat.coupling(conditions, bodies.basis)
+            both = compliance + hot.compliance
+            guess = self._solved(bodies, edge, both, hot.resting, gap, slope, guess, load)
+            if heat.holds(conditions, guess.pressure):
+                return guess
+        raise ComputationError(
+            "contact: pressure and temperatures do not settle where conductivity or expansion "
+            "change; reduce the speed"
+        )
+
+    def yielding(self, points) -> np.ndarray:
+        space = self._space(self._contact, points)
+        assert space is not None
+        return space.at_points(np.diag(space.compliance(self._contact.compliance)))
+
+    def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
+        """The principle in the pressure space.
+
+        The mean wear rates, weighted by the basis, are those of the rigid motion. That is the
+        implicit step of wear of bodies that do not yield.
+        """
+        contact, load = self._rubbed(conditions.friction), conditions.load
+        coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
+        active = np.ones(len(coefficients), dtype=bool)
+        still = np.zeros(contact.modes.shape[1])
+        start = Contact(pressure, still, ContactSolution(coefficients, still, active))
+        rigid, resting = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
+        return newton_with_wear(
+            lambda worn, slope, last: self._solved(
+                contact, None, rigid, resting, worn, slope, last, load
+            ),
+            rates,
+            1.0,
+            start,
+        ).pressure
+
+    def opening(self, contact: Contact) -> float:
+        return float(self._opened(contact).max())
+
+    def bending(self, contact: Contact) -> float:
+        opened = self._opened(contact)[contact.memory.active]
+        return float(np.ptp(opened)) if opened.size else 0.0
+
+    def _opened(self, contact: Contact) -> np.ndarray:
+        """Change of the gap by the bodies' deformation, means over the basis functions (m,) [m]."""
+        opened = self._contact.compliance @ contact.memory.coefficients
+        return opened / self._contact.weighted.sum(axis=0)
+
+    def _rubbed(self, friction: np.ndarray) -> CondensedContact:
+        """The condensed bodies under the present friction (n,); the last one is kept."""
+        key = friction.tobytes()
+        if self._rubbing[0] != key:
+            self._rubbing = (key, self._system.rubbing(friction).contact)
+        return self._rubbing[1]
+
+    def _space(self, bodies: CondensedContact, points: np.ndarray | None) -> EdgeSpace | None:
+        """Pressures with one for each of some points; None without any. The last one is kept."""
+        if points is None:
+            return None
+        last = self._last_space
+        if last is None or last[0] is not bodies or not np.array_equal(last[1], points):
+            space = edge_space(bodies, points, self._system.holder)
+            last = self._last_space = bodies, points, space
+        return last[2]
+
+    def _opening_on_the_spot(
+        self, space: CondensedContact | EdgeSpace, slope: np.ndarray
+    ) -> np.ndarray:
+        """Weak gaps (k, k) that pressures open on the spot [m/Pa]; the last ones are kept."""
+        last = self._last_opening
+        if last is None or last[0] is not space or not np.array_equal(last[1], slope):
+            opening = space.weighted.T @ (slope[:, None] * space.basis)
+            last = self._last_opening = space, slope, opening
+        return last[2]
+
+    def _solved(
+        self,
+        bodies: CondensedContact,
+        edge: EdgeSpace | None,
+        compliance: np.ndarray,
+        resting: np.ndarray,
+        gap: np.ndarray,
+        slope: Slope,
+        guess: Contact | None,
+        load: np.ndarray,
+    ) -> Contact:
+        """Contact of bodies with a compliance (m, m) and a weak gap at rest (m,)."""
+        space = bodies if edge is None else edge
+        start = None if guess is None else guess.memory.active
+        if edge is not None:
+            compliance, resting = edge.compliance(compliance), edge.seen.T @ resting
+            start = None if guess is None else edge.pressing(guess.pressure)
+        if slope.point.any():
+            compliance = compliance + self._opening_on_the_spot(space, slope.point)
+        if len(slope.rows):
+            reach = space.weighted.T @ slope.reach
+            compliance = compliance + reach @ (slope.rows @ space.basis)
+        weak = space.weighted.T @ gap + resting
+        solution = solve_contact(compliance, weak, space.modes, load, start, space.force_modes)
+        pressure = space.basis @ solution.coefficients
+        apart = None
+        if edge is not None:
+            left = weak + compliance @ solution.coefficients - space.modes @ solution.motion
+            apart = (pressure == 0.0) * edge.at_points(left)
+            seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
+            solution = replace(solution, coefficients=seen, active=active)
+        return Contact(pressure, self._system.holder.amounts(solution.motion), solution, apart)

@@ -1,0 +1,37 @@
+"""Choice of the contact solver and of the heat model of an interface problem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..heat.varying_heat import friction_heat
+from ..model.system import System
+from .condensed_method import CondensedMethod
+from .contact_solver import ContactMethod
+from .full_method import FullMethod
+from .interface_problem import InterfaceProblem
+
+
+def interface_problem(
+    system: System, note: Callable[[str], None] | None = None
+) -> InterfaceProblem:
+    """The interface of a system, solved by the method of the case. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    note : callable, optional
+        Told of settings that the answer may suffer from.
+    """
+    heat = friction_heat(system)
+    problem = InterfaceProblem(system, _solver(system), heat)
+    if note is not None and problem.note is not None:
+        note(problem.note)
+    return problem
+
+
+def _solver(system: System) -> ContactMethod:
+    if system.case.contact.method == "condensed":
+        return CondensedMethod(system)
+    with system.phases("contact operators"):
+        return FullMethod(system)

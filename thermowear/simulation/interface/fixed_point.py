@@ -1,0 +1,117 @@
+"""States of the interface that lead to the very conditions that they come from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+from ...contact.operators.heat import ThermalState
+from ...errors import ComputationError
+from ..model.conditions import Conditions, Surroundings
+from .anderson import Mixing
+
+_DAMPED = 0.5
+_NEAR = 0.05
+"""Relative miss below which turns are mixed; farther off, that may lead to another state."""
+_TURNS = 100
+_LEAST_RISE = 1.0  # K
+
+
+class State(Protocol):
+    """What conditions depend on."""
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """At the points, shape (n,) [Pa]."""
+
+    @property
+    def faces(self) -> ThermalState | None:
+        """Temperatures of the faces; None without heat."""
+
+
+Found = TypeVar("Found", bound=State)
+
+
+@dataclass(frozen=True)
+class Supposed:
+    """A state that is tried."""
+
+    pressure: np.ndarray
+    faces: ThermalState | None
+
+
+def self_consistent(
+    surroundings: Surroundings,
+    time: float,
+    start: State,
+    respond: Callable[[Conditions], Found],
+    complaint: str,
+    closed: np.ndarray | None = None,
+) -> tuple[Conditions, Found]:
+    """Find a state whose conditions lead to itself.
+
+    Half of the way is gone in each turn at first: where there are several states, that ends in the
+    one that slow heating would reach, as states that heating would leave repel it. Close to it the
+    last turns are mixed.
+
+    Parameters
+    ----------
+    surroundings : Surroundings
+    time : float
+        [s]
+    start : State
+    respond : callable
+        The state that given conditions lead to.
+    complaint : str
+        What to say where there is none.
+    closed : ndarray of bool, shape (n,), optional
+        Points that exchange heat by contact; by default those of the state that press.
+
+    Raises
+    ------
+    ComputationError
+    """
+
+    def conditions_of(state: State) -> Conditions:
+        touching = state.pressure > 0 if closed is None else closed
+        return surroundings.at(time, state.pressure, state.faces, touching)
+
+    tried, mixing = start, None
+    for _ in range(_TURNS):
+        conditions = conditions_of(tried)
+        found = respond(conditions)
+        if conditions_of(found).settled(conditions):
+            return conditions, found
+        before, after = _stacked(tried, found), _stacked(found, found)
+        missed = after - before
+        if mixing is None and np.abs(missed).max() <= _NEAR:
+            mixing = Mixing()
+        following = before + _DAMPED * missed if mixing is None else mixing.next(before, missed)
+        tried = _unstacked(following, found)
+    raise ComputationError(complaint)
+
+
+def _scales(found: State) -> tuple[float, float]:
+    rise = 0.0 if found.faces is None else float(np.max(np.abs(found.faces.rise)))
+    return float(found.pressure.max()) or 1.0, max(rise, _LEAST_RISE)
+
+
+def _stacked(state: State, found: State) -> np.ndarray:
+    """A state as one vector without dimension, by the scales of what was found."""
+    pascal, kelvin = _scales(found)
+    rises = () if state.faces is None else state.faces.rise
+    return np.concatenate([state.pressure / pascal, *(rise / kelvin for rise in rises)])
+
+
+def _unstacked(vector: np.ndarray, found: State) -> Supposed:
+    """The inverse; it presses where what was found does."""
+    pascal, kelvin = _scales(found)
+    pressure, *rises = np.split(vector, 1 if found.faces is None else 3)
+    pressing = np.where(found.pressure > 0, np.maximum(pressure, 1e-9), 0.0) * pascal
+    if found.faces is None:
+        return Supposed(pressing, None)
+    rise = (rises[0] * kelvin, rises[1] * kelvin)
+    return Supposed(pressing, ThermalState(rise, found.faces.flux))

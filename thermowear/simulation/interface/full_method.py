@@ -1,0 +1,150 @@
+"""Contact solved on the full system, by penalty or by Nitsche's method."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from ...contact.full.full_system import FullContact, FullSolution
+from ...contact.full.stabilisation import (
+    default_penalty,
+    nitsche_stiffness,
+    nitsche_warning,
+    stability_limit,
+)
+from ...contact.operators.traction import normal_traction, thermal_traction
+from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
+from ...errors import ComputationError
+from ...parallel import sum_over_ranks
+from ..model.contact_points import pressure_degree
+from ..model.system import System
+from .anderson import Mixing
+from .contact_solver import Contact, WearRates
+
+_PASSES = 60
+_SETTLED = 1e-9  # of the largest pressure
+
+
+class FullMethod:
+    """The contact conditions point by point, on all nodal displacements.
+
+    Where the edge of the wear lies the points yield by themselves, see `contact.edge_deflection`.
+
+    Heat and contact are solved in turn: the bodies conduct the friction heat of a pressure, their
+    distortion changes the pressure. The turns are accelerated, as one after the other they converge
+    no faster than the speed is below the critical one.
+
+    Parameters
+    ----------
+    system : System
+    """
+
+    def __init__(self, system: System):
+        self._system = system
+        self._contact, self.note = _full_contact(system)
+        still = np.zeros(len(system.elastic.fixed))
+        self._dead = still if system.dead_load is None else system.dead_load
+        heated = system.thermal is not None
+        self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
+        self._last_deflection: tuple[np.ndarray, EdgeDeflection] | None = None
+
+    def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
+        start, load = None if guess is None else guess.memory, conditions.load
+        slope = slope.point  # means are of turning disks in space, which is for condensed contact
+        edge = self._deflection(pointwise)
+        if heat is None:
+            return self._result(self._solved(gap, slope, start, load, self._dead, None, edge))
+        pressure = np.zeros(len(gap)) if guess is None else guess.pressure
+        mixing = Mixing()
+        for _ in range(_PASSES):
+            start = self._warm(gap, slope, start, conditions, heat, pressure, edge)
+            missed = start.pressure - pressure
+            if np.abs(missed).max() <= _SETTLED * np.abs(start.pressure).max():
+                return self._result(start)
+            pressure = mixing.next(pressure, missed)
+        raise ComputationError(
+            f"contact: heat and pressure do not settle in {_PASSES} turns; reduce the speed, "
+            'or use contact.method = "condensed", which solves both at once'
+        )
+
+    def yielding(self, points) -> np.ndarray:
+        return np.where(points, self._edge_compliance, np.nan)
+
+    def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
+        """The principle point by point: the full system has no pressure space of its own."""
+        return pressure
+
+    def opening(self, contact: Contact) -> float:
+        return float(np.abs(self._opened(contact)).max())
+
+    def bending(self, contact: Contact) -> float:
+        opened = self._opened(contact)[contact.pressure > 0.0]
+        return float(np.ptp(opened)) if opened.size else 0.0
+
+    def _opened(self, contact: Contact) -> np.ndarray:
+        """Change of the gap by the bodies' deformation at the points, shape (n,) [m]."""
+        system = self._system
+        return sum_over_ranks(system.comm, system.trace.T @ contact.memory.displacement)
+
+    @cached_property
+    def _edge_compliance(self) -> np.ndarray:
+        """ε of the points at the edge of the wear, shape (n,) [m/Pa]."""
+        system = self._system
+        degree = pressure_degree(system.case)
+        return wave_compliance(system.elastic, system.pairing, degree)
+
+    def _deflection(self, points: np.ndarray | None) -> EdgeDeflection | None:
+        """What the bodies do not see of some points; None without any. The last one is kept."""
+        if points is None:
+            return None
+        last, system = self._last_deflection, self._system
+        if last is None or not np.array_equal(last[0], points):
+            own = edge_deflection(system.basis, system.weights, points, self._edge_compliance)
+            last = self._last_deflection = points, own
+        return last[1]
+
+    def _warm(self, gap, slope, start, conditions, heat, pressure, edge) -> FullSolution:
+        """Contact of bodies that the friction heat of a pressure has distorted."""
+        assert self._system.thermal is not None
+        faces = heat.faces(conditions, pressure)
+        forces = self._system.thermal.forces(heat.rise(faces))
+        traction = -np.asarray(self._softening) * faces.rise[0]
+        nodal_loads = self._dead + forces
+        return self._solved(gap, slope, start, conditions.load, nodal_loads, traction, edge)
+
+    def _solved(self, gap, slope, start, load, nodal_loads, traction, edge) -> FullSolution:
+        return self._contact.solve(gap, load, slope, nodal_loads, traction, start, edge)
+
+    def _result(self, solution: FullSolution) -> Contact:
+        motion = self._system.holder.amounts(solution.motion)
+        return Contact(solution.pressure, motion, solution)
+
+
+def _full_contact(system: System) -> tuple[FullContact, str | None]:
+    """The equations that the case asks for, and a warning where its numbers are out of range."""
+    settings, holder = system.case.contact, system.holder
+    elastic, pairing = system.elastic, system.pairing
+    stress, note = None, None
+    theta = 1 if settings.theta is None else settings.theta
+    if settings.method == "nitsche":
+        stress = normal_traction(elastic, pairing)
+        gamma = () if settings.gamma is None else (settings.gamma,)
+        stiffness = nitsche_stiffness(elastic, pairing, *gamma)
+        note = nitsche_warning(stiffness, stability_limit(elastic, pairing), theta)
+    elif settings.penalty is not None:
+        stiffness = np.full(len(pairing.weights), settings.penalty)
+    else:
+        stiffness = default_penalty(elastic, pairing)
+    contact = FullContact(
+        elastic,
+        pairing,
+        system.trace,
+        system.traction,
+        holder.modes,
+        holder.force_modes,
+        stiffness,
+        stress,
+        theta,
+    )
+    return contact, note

@@ -1,0 +1,126 @@
+"""The steady state, directly from the principle of minimum wear dissipation power."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linprog
+
+from ...contact.operators.heat import ThermalState
+from ...laws import SteadyWear, steady_pressure
+from ..heat.varying_heat import friction_heat
+from ..model.conditions import Conditions, Surroundings
+from ..model.system import System
+from .body_state import ContactState
+from .fixed_point import Supposed, self_consistent
+
+_NONE = (
+    "no steady state found: each turn of the principle changes friction, wear or conductance, so "
+    "that it leads to another one; reduce the speed or the load, or follow the running-in in time"
+)
+
+
+@dataclass(frozen=True)
+class SteadyState:
+    """The steady state of a system.
+
+    Attributes
+    ----------
+    wear : SteadyWear
+    contact : ContactState
+    """
+
+    wear: SteadyWear
+    contact: ContactState
+
+    @property
+    def conditions(self) -> Conditions:
+        """What holds at the interface in it."""
+        return self.contact.conditions
+
+
+def steady_state(system: System) -> SteadyState:
+    """Pressure, wear rates and rigid-body wear velocity of a system. Every rank calls.
+
+    Where friction, wear or conductance depend on the state that they lead to, it is a fixed point.
+
+    Raises
+    ------
+    ComputationError
+        If there is no steady state, or no fixed point is found.
+    """
+    heat = friction_heat(system)
+    area = float(system.weights.sum())
+    even = np.full(len(system.weights), (system.case.force() or area) / area)
+    start = Supposed(even, None if heat is None else heat.steady.unheated)
+
+    def respond(conditions: Conditions) -> _Worn:
+        wear = _principle(system, conditions)
+        faces = None if heat is None else heat.steady.faces(conditions, wear.pressure)
+        return _Worn(wear, faces)
+
+    conditions, found = self_consistent(Surroundings(system), 0.0, start, respond, _NONE)
+    warmth = None if heat is None else heat.lasting(conditions, found.pressure)
+    return SteadyState(found.wear, ContactState(found.pressure, conditions, warmth))
+
+
+@dataclass(frozen=True)
+class _Worn:
+    """The principle's answer to some conditions."""
+
+    wear: SteadyWear
+    faces: ThermalState | None
+
+    @property
+    def pressure(self) -> np.ndarray:
+        return self.wear.pressure
+
+
+def _principle(system: System, conditions: Conditions) -> SteadyWear:
+    """The steady state under given conditions."""
+    holder = system.rubbing(conditions.friction).holder
+    return steady_pressure(
+        weights=system.weights,
+        normal_modes=holder.modes,
+        force_modes=holder.force_modes,
+        load=conditions.load,
+        laws=list(system.laws.values()),
+        speed=conditions.speed,
+        spread=list(system.spreads.values()),
+        factors=conditions.wear,
+    )
+
+
+def least_worn(
+    modes: np.ndarray, opening: np.ndarray, weights: np.ndarray, pressing: np.ndarray
+) -> np.ndarray:
+    """Motion of the holder at which the faces fit with the least material worn off.
+
+    The depth worn off is ``R d - B u``, nowhere negative where the faces press. With one
+    translation of a flat face that is where the highest point is just not worn.
+
+    Parameters
+    ----------
+    modes : ndarray, shape (n, k)
+        R of the free motions.
+    opening : ndarray, shape (n,)
+        ``B u``, gap that load and heat open [m].
+    weights : ndarray, shape (n,) [m²]
+    pressing : ndarray of bool, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (k,)
+    """
+    R, size = modes[pressing], np.abs(opening).max() or 1.0
+    stretch = np.abs(R).max(axis=0)
+    volume = weights[pressing] @ (R / stretch)
+    found = linprog(
+        volume / np.abs(volume).max(),
+        A_ub=-R / stretch,
+        b_ub=-opening[pressing] / size,
+        bounds=(None, None),
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    return found.x / stretch * size

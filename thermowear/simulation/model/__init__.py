@@ -1,0 +1,1 @@
+"""System of bodies and interface that an analysis works on."""

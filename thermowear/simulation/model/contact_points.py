@@ -1,0 +1,130 @@
+"""Where the faces of a case are integrated: contact points, pressure space, parts that touch."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...bulk.bodies import Bodies
+from ...bulk.kinematics import Model
+from ...case.tables.facing import Facing
+from ...case.tables.schema import Case
+from ...contact.operators.pressure import pressure_basis
+from ...contact.search.face import Face
+from ...contact.search.pairing import Pairing, pair, paired
+from ...contact.search.projection import ahead
+from ...contact.search.refinement import BESIDE, SLIVER
+from ...contact.search.surface import Surface
+from ...contact.wear.worn_face import ways_between
+from ...laws.motions import RigidMotion
+from .initial_shape import initial_gap
+from .wear_shares import LEAST
+from .worn_geometry import WornGeometry
+
+_SLIVER = 1e-3
+"""Of a facet: so near to its ends, facets that matched when they were new meet worn ones."""
+_ALONG = 0.05
+"""Of a face: so far a holder may take it along the other one, past its end."""
+
+
+def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pairing, np.ndarray]:
+    """Contact points, with the shape that body 1 starts from, and pressure space Ψ."""
+    pairing, basis = _points(case, model, face_1, face_2)
+    if case.geometry.initial_shape is not None:
+        gap = initial_gap(comm, case.geometry.initial_shape, pairing)
+        pairing = replace(pairing, gap=gap)
+    return pairing, basis
+
+
+def worn_contact_points(
+    case: Case, model: Model, worn: WornGeometry, face_1: Face | Surface, face_2: Face | Surface
+) -> tuple[Pairing, np.ndarray]:
+    """The same of worn faces, paired where body 1 has got to; the gap is that of unworn faces.
+
+    It is measured between points that lie opposite along the ways on which the nodes have gone:
+    meshes that move open it by just the depths that they lose, even where the faces are slanted
+    against each other. They are where a mesh cannot follow the edge of its wear: they overlap by
+    what is kept of it. Closest points or those along the normals would change the gap there.
+    """
+    face_1, face_2 = _by_walls(worn, (face_1, face_2))
+    moved, turned = worn.holder
+    motion = RigidMotion(moved, turned, np.zeros(3))
+    closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
+    if worn.pieces is None:
+        pairing, basis = _points(case, model, closer, face_2, _SLIVER, _beside(worn, face_1))
+    else:
+        pairing = paired(closer, face_2, model, worn.pieces)
+        basis = _basis(case, pairing)
+    first, second = pairing.sides
+    on_face = face_1.points(first.facet, first.t)
+    to = motion.at(on_face)
+    ways = ways_between(pairing.sides, worn.directions, np.abs(worn.depth).max(axis=1))
+    facet, t, way = ahead(face_2, on_face + to, ways)
+    between, apart = (np.einsum("ni,ni->n", pairing.normals, v) for v in (way[:, None] * ways, to))
+    points = on_face + (pairing.share * between)[:, None] * pairing.normals
+    sides = replace(first, face=face_1), replace(second, facet=facet, t=t)
+    worn_pairing = replace(pairing, points=points, sides=sides)
+    unworn = worn.carried(worn.lacking, pairing) - worn.moved(worn_pairing).sum(axis=0)
+    return replace(worn_pairing, gap=between + apart + unworn), basis
+
+
+def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
+    """The same faces; where only one has walls of a groove, the common face is that of the other.
+
+    Walls are what is left of a mesh beside its wear, and no face that touches.
+    """
+    walled = np.array([held.any() for held in worn.held]) & np.any(worn.depth != 0.0, axis=1)
+    if walled[0] == walled[1]:
+        return faces
+    pairs = zip(faces, walled, strict=True)
+    return tuple(replace(face, softness=1.0 if wall else LEAST) for face, wall in pairs)
+
+
+def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:
+    """How far a face may get beside the other one, of its size.
+
+    Not at all where it has reached beyond it from the beginning. Where it has not, it is its holder
+    that has taken it along, over a body that goes on.
+    """
+    opposite = worn.at[0] == 0.0 and worn.at[-1] == len(face_1.nodes)
+    return _ALONG if opposite else BESIDE
+
+
+def _points(
+    case: Case, model: Model, face_1, face_2, sliver: float = SLIVER, beside: float = BESIDE
+) -> tuple[Pairing, np.ndarray]:
+    """Contact points of two faces, and pressure space Ψ."""
+    degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree
+    if pressure_degree == "lobatto":  # point by point, at the nodes of body 1's facets
+        pairing = pair(face_1, face_2, model, degree + 1, refine=False)
+        return pairing, np.eye(len(pairing.weights))
+    pairing = pair(face_1, face_2, model, degree + 2, sliver=sliver, beside=beside)
+    return pairing, _basis(case, pairing)
+
+
+def _basis(case: Case, pairing: Pairing) -> np.ndarray:
+    """Pressure space Ψ."""
+    return pressure_basis(pairing, pressure_degree(case))
+
+
+def pressure_degree(case: Case) -> int:
+    """Degree of the pressure space, by default one below that of the displacement."""
+    degree = case.contact.pressure_degree
+    if degree == "lobatto":  # as many functions as the displacement has on a facet
+        return case.mesh.degree
+    return degree or max(case.mesh.degree - 1, 1)
+
+
+def facing_parts(bodies: Bodies, pairing: Pairing) -> Facing:
+    """The parts of both bodies that touch at the contact points. Every rank calls."""
+    first, second = (_parts_of_facets(bodies, side.face)[side.facet] for side in pairing.sides)
+    return Facing(bodies.names, (first, second))
+
+
+def _parts_of_facets(bodies: Bodies, face: Face | Surface) -> np.ndarray:
+    """Position in ``bodies.names`` of the part that bears each facet of a face, (n_facets,)."""
+    mine = face.rank == bodies.mesh.comm.rank
+    parts = np.zeros(len(face.rank), dtype=np.int64)
+    parts[mine] = bodies.parts_of_cells(face.cell[mine])
+    return bodies.mesh.comm.allreduce(parts)

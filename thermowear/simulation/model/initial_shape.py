@@ -1,0 +1,118 @@
+"""A worn shape to start from: a design of either face, or that of an earlier run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import Akima1DInterpolator
+
+from ...contact.search.pairing import Pairing
+from ...errors import CaseError
+from ...geometry.cad.design import CARRIERS, from_table, read_table
+from ...parallel import on_root
+from ...user_files import read_text
+
+_KEY = "geometry.initial_shape"
+_BEYOND = 1e-6  # of the length of the face
+_UNIT = 300.0  # times it: a table may be of a longer face, but not in millimetres
+_LARGEST_FILE = 100_000_000  # bytes
+_LARGEST_NUMBER = 1e100  # differences of larger ones overflow in interpolation
+
+
+def initial_gap(comm, path: str, pairing: Pairing) -> np.ndarray:
+    """Gap of faces one of which has a worn shape, unloaded. Every rank calls.
+
+    Parameters
+    ----------
+    comm : mpi4py.MPI.Comm
+    path : str
+        A design of either face, in any format (see `geometry.design`): its depth is added to the
+        gap of the faces as they are drawn. Or a ``profile.csv`` (``interface.csv``)
+        of an earlier run, or any table with its columns ``s_m`` and ``shape_m``: that shape is all
+        of the gap.
+    pairing : Pairing
+        Of the faces as they are drawn.
+
+    Returns
+    -------
+    ndarray, shape (n,) [m]
+
+    Raises
+    ------
+    CaseError
+        If the file holds no shape, or that of another face.
+    """
+    table = on_root(comm, lambda: _checked(path, lambda: read_table(Path(path))))
+    gdim = pairing.points.shape[1]
+    if table is not None:
+        design = _checked(path, lambda: from_table(table, gdim))
+        side = pairing.sides[design.body - 1]
+        points = side.face.points(side.facet, side.t)
+        return pairing.gap + _checked(path, lambda: design.depth_at(points))
+    if gdim == 3 or Path(path).suffix in CARRIERS:
+        raise CaseError(f"{_KEY}: {path} carries no design (the command shape writes them)")
+    return _gap_along(path, on_root(comm, lambda: _read(path)), pairing.position)
+
+
+def _gap_along(path: str, table: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Gap that a shape given along the face leaves [m]."""
+    s, shape = _curve(path, table)
+    length = position[-1]
+    if max(s[-1], -s[0]) > _UNIT * length:
+        raise CaseError(
+            f"{_KEY}: {path} ranges from s_m = {s[0]:.6g} to {s[-1]:.6g}, more than {_UNIT:g} "
+            f"times the length of the contact face, {length:.6g} m; is it in metres?"
+        )
+    beyond = _BEYOND * length
+    if s[0] > position[0] + beyond or s[-1] < position[-1] - beyond:
+        raise CaseError(
+            f"{_KEY}: {path} ranges from s = {s[0]:.6g} to {s[-1]:.6g} m, the contact face from "
+            f"{position[0]:.6g} to {position[-1]:.6g} m"
+        )
+    height = Akima1DInterpolator(s, shape, method="makima")(np.clip(position, s[0], s[-1]))
+    if not np.ptp(height) < length:
+        raise CaseError(
+            f"{_KEY}: {path} has shapes that rise by {np.ptp(height):.3g} m on a contact face of "
+            f"{length:.6g} m; are they in metres?"
+        )
+    return height.max() - height
+
+
+def _curve(path: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    names = table.dtype.names or ()
+    if not {"s_m", "shape_m"} <= set(names) or table.size < 2:
+        raise CaseError(f"{_KEY}: {path} has no columns s_m and shape_m with numbers")
+    points = np.unique(np.column_stack([table["s_m"], table["shape_m"]]), axis=0)
+    if not np.all(np.abs(points) < _LARGEST_NUMBER):
+        raise CaseError(f"{_KEY}: {path} has entries that are no numbers, or beyond 1e100 m")
+    s, shape = points.T
+    twice = s[1:][np.diff(s) == 0.0]
+    if len(twice):
+        raise CaseError(f"{_KEY}: {path} has different shapes at s_m = {twice[0]:.6g}")
+    if len(s) < 2:
+        raise CaseError(f"{_KEY}: {path} has one place only; a shape needs two")
+    return s, shape
+
+
+def _read(path: str) -> np.ndarray:
+    lines = _checked(path, lambda: read_text(Path(path), _LARGEST_FILE)).splitlines()
+    if not any(line.strip() for line in lines):
+        raise CaseError(f"{_KEY}: {path} is empty")
+    try:
+        return np.genfromtxt(lines, delimiter=",", names=True)
+    except ValueError as error:
+        reason = " ".join(str(error).split())[:200]
+        raise CaseError(
+            f"{_KEY}: {path} cannot be read as columns between commas, with points in numbers: "
+            f"{reason}"
+        ) from None
+
+
+def _checked(path: str, action):
+    """What an action returns; an error of the file is one of the case."""
+    try:
+        return action()
+    except (OSError, ValueError) as error:
+        reason = f"cannot be read: {error.strerror}" if isinstance(error, OSError) else error
+        raise CaseError(f"{_KEY}: {path} {reason}") from None

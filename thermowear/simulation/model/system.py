@@ -1,0 +1,199 @@
+"""A case made computable: meshed, paired, assembled; condensed when first asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+
+from ...bulk.bodies import Bodies
+from ...bulk.mechanics.elasticity import Elasticity
+from ...case.tables.facing import Facing
+from ...case.tables.schema import Case
+from ...contact.operators.condensation import CondensedContact, Influence, influence
+from ...contact.operators.holder import Holder, hold
+from ...contact.operators.sliding import Sliding
+from ...contact.operators.traces import vector_trace
+from ...contact.search.pairing import Pairing
+from ...laws import WearLaw
+from ...laws.distribution import InPlace, Share, Spreading, Track, rings
+from ...laws.motions import RigidMotion
+from ...parallel import sum_over_ranks
+from ...timer import Phases
+from .contact_points import facing_parts
+from .elastic_system import dead_resultant
+from .setup_cache import Inputs, Parts
+from .thermal_system import ThermalSystem
+from .wear_laws import wear_laws
+from .worn_geometry import WornGeometry
+
+
+@dataclass(frozen=True)
+class System:
+    """Everything an analysis needs.
+
+    Attributes
+    ----------
+    case : Case
+    bodies : Bodies
+    pairing : Pairing
+    elastic : Elasticity
+    trace : csr_matrix, shape (n_owned, n)
+        Bᵀ, see `contact.pairing`.
+    basis : ndarray, shape (n, m)
+        Ψ.
+    holder : Holder
+    slides : Sliding or None
+        How body 1 slides; None where nothing does.
+    pull : ndarray, shape (n, gdim)
+        ``n + mu e``: the traction on body 1 is minus the pressure times it.
+    speed : ndarray, shape (n,)
+        Sliding speed at the contact points [m/s].
+    dead_load : ndarray or None, shape (n_owned,)
+        Nodal forces of forces and pressures on surfaces [N].
+    thermal : ThermalSystem or None
+    phases : Phases
+    parts : Parts
+        Those that it shares with the systems of other cases.
+    inputs : Inputs
+        What they are made from.
+    worn : WornGeometry or None
+        Where the meshes have been moved to the worn faces. The gap of the pairing is even then that
+        of the unworn bodies: that of the moved ones without the depths that they have lost.
+    """
+
+    case: Case
+    bodies: Bodies
+    pairing: Pairing
+    elastic: Elasticity
+    trace: sp.csr_matrix
+    basis: np.ndarray
+    holder: Holder
+    slides: Sliding | None
+    pull: np.ndarray
+    speed: np.ndarray
+    dead_load: np.ndarray | None
+    thermal: ThermalSystem | None
+    phases: Phases
+    parts: Parts
+    inputs: Inputs
+    worn: WornGeometry | None = None
+
+    @property
+    def comm(self):
+        return self.bodies.mesh.comm
+
+    @property
+    def weights(self) -> np.ndarray:
+        return self.pairing.weights
+
+    @cached_property
+    def gap(self) -> np.ndarray:
+        """Of the unworn bodies under their dead load alone, at the points, shape (n,) [m]."""
+        if self.dead_load is None:
+            return self.pairing.gap
+        opened = self.trace.T @ self.elastic.solve(self.dead_load)
+        return self.pairing.gap + sum_over_ranks(self.comm, opened)
+
+    def dead_resultant(self, motion: RigidMotion) -> np.ndarray:
+        """Generalised force of the dead load on a motion of either body, shape (2,) [N or N m]."""
+        return dead_resultant(self.case, self.elastic, self.dead_load, motion)
+
+    @cached_property
+    def facing(self) -> Facing:
+        """The parts that touch at the contact points."""
+        return facing_parts(self.bodies, self.pairing)
+
+    @property
+    def press(self) -> np.ndarray:
+        """Unit vector along which body 1 is pressed on, shape (gdim,)."""
+        return np.array(self.case.geometry.press_direction)
+
+    @property
+    def softness(self) -> float:
+        """Compliance of the layer between the faces [m/Pa]."""
+        return self.case.contact.compliance or 0.0
+
+    @property
+    def friction(self) -> float:
+        return self.case.contact.friction
+
+    @cached_property
+    def laws(self) -> dict[int, WearLaw]:
+        """Wear laws by index of the body (0 is body 1); bodies that do not wear are left out."""
+        return wear_laws(self.case)
+
+    @cached_property
+    def spreads(self) -> dict[int, Spreading]:
+        """Where the wear of each wearing body goes, by its index."""
+        return {index: self._spread(index) for index in self.laws}
+
+    def _spread(self, index: int) -> Spreading:
+        geometry = self.case.geometry
+        if self.case.wear[geometry.bodies[index]].spread == "in-place":
+            return InPlace()
+        if geometry.duty is not None:
+            arms = self.pairing.points[:, :2] - np.array(geometry.rotation_center)
+            return rings(np.linalg.norm(arms, axis=1), self.weights, geometry.duty)
+        if geometry.track is None:
+            return Share(geometry.sector)
+        assert geometry.thickness_factor is not None  # tracks are those of plane models
+        return Track(self.weights / geometry.thickness_factor / geometry.track)
+
+    def worn_volumes(self, worn: np.ndarray) -> np.ndarray:
+        """Volumes lost by the bodies, all of their tracks, from depths (2, n), shape (2,) [m³]."""
+        volumes = (worn - self.moved) @ self.weights
+        if self.worn is not None:
+            volumes = volumes + self.worn.lost
+        for index, spread in self.spreads.items():
+            volumes[index] /= spread.coverage
+        return volumes
+
+    @cached_property
+    def moved(self) -> np.ndarray:
+        """Depths off both bodies that the meshes have lost at the points, shape (2, n) [m]."""
+        if self.worn is None:
+            return np.zeros((2, len(self.weights)))
+        return self.worn.moved(self.pairing)
+
+    @property
+    def influence(self) -> Influence:
+        """How the bodies answer the functions of the pressure space. Every rank calls."""
+        bodies = self.elastic, self.pairing, self.trace, self.basis
+        hot = self.thermal is not None
+        return self.parts.get(
+            "influence", self.inputs.elasticity, lambda: influence(*bodies, keep_whole=hot)
+        )
+
+    @cached_property
+    def contact(self) -> CondensedContact:
+        """Elasticity condensed to the pressure space."""
+        with self.phases("condense elasticity"):
+            return self.influence.condensed(self.traction, self.holder)
+
+    def rubbing(self, friction: np.ndarray) -> System:
+        """The same bodies with coefficients of friction (n,) that are not the nominal one."""
+        if self.slides is None or np.all(friction == self.friction):
+            return self
+        transverse = self.case.contact.transverse_friction
+        pull = self.slides.pull(self.pairing.normals, friction[:, None], transverse)
+        return replace(self, holder=hold(self.pairing, pull, self.holder.drives), pull=pull)
+
+    @cached_property
+    def traction(self) -> sp.csr_matrix:
+        """B_tᵀ, shape (n_owned, n), see `contact.pairing`: that of the gap where nothing drags."""
+        if np.array_equal(self.pull, self.pairing.normals):
+            return self.trace
+        along = self.parts.get("traces", self.inputs.elasticity, self._along_coordinates)
+        first, *others = (
+            trace @ sp.diags(component) for trace, component in zip(along, self.pull.T, strict=True)
+        )
+        return sum(others, first)
+
+    def _along_coordinates(self) -> list[sp.csr_matrix]:
+        """Traces of the displacement along each coordinate, shape (n_owned, n) each."""
+        n, gdim = self.pull.shape
+        units = (np.tile(unit, (n, 1)) for unit in np.eye(gdim))
+        return [vector_trace(self.elastic.space, self.pairing, unit) for unit in units]

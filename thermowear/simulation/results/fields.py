@@ -1,0 +1,119 @@
+"""Sampling the bodies on a fine grid in every cell, gathered on rank 0."""
+
+from __future__ import annotations
+
+import numpy as np
+import ufl
+from dolfinx import fem
+
+from ...bulk.field import as_function
+from ...bulk.heat.varying import straining_rise
+from ...compat import evaluate
+from ...laws.motions import RigidMotion
+from ..interface.body_state import BodyState
+from ..model.system import System
+from .result import BodyFields
+
+_INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
+
+
+def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields | None:
+    """Displacement (holder's motion included), temperature and von Mises stress.
+
+    Body 1 is where it was when its mesh was last moved to the worn face: a body that has become
+    lower stands on the other one.
+
+    Every rank calls; ranks other than 0 get None. Cells come in the order of the mesh file.
+    """
+    mesh, elastic = system.bodies.mesh, system.elastic
+    n = max(system.case.mesh.degree, 2)
+    grid, pieces = _GRIDS[mesh.topology.cell_name()](n)
+    centre = grid.mean(axis=0)
+    inside = centre + (grid - centre) * (1 - _INSET)
+    cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
+    u = as_function(elastic.space, _with_holder(system, state.displacement, motion), "u")
+    du = as_function(elastic.space, state.displacement, "u")
+    rise, straining, ambient, thermal = None, None, 0.0, system.thermal
+    if state.rise is not None and thermal is not None:
+        space = thermal.conduction.space
+        rise = as_function(space, state.rise, "rise")
+        straining = straining_rise(space, state.rise, system.bodies, thermal.expansions)
+        ambient = thermal.ambient
+    σ = elastic.stress(du, straining)
+    wanted = [u, _von_mises(σ)] + ([] if rise is None else [rise])
+    values = [evaluate(fem.Expression(ufl.SpatialCoordinate(mesh), grid), mesh, cells)]
+    values += [evaluate(fem.Expression(w, inside), mesh, cells) for w in wanted]
+    body = np.zeros(len(cells), dtype=np.int64)
+    tags = system.bodies.cell_tags
+    local = tags.indices < len(cells)
+    body[tags.indices[local]] = _body_of_tag(system)[tags.values[local]]
+    original = mesh.topology.original_cell_index[: len(cells)]
+    parts = mesh.comm.gather((original, body, *values), root=0)
+    if parts is None:
+        return None
+    order = np.argsort(np.concatenate([part[0] for part in parts]))
+    body, points, displacement, mises, *temperature = (
+        np.concatenate([part[k] for part in parts])[order] for k in range(1, len(parts[0]))
+    )
+    if system.worn is not None:
+        placed = RigidMotion(*system.worn.holder, np.zeros(3)).at(points[body == 1])
+        points[body == 1] += placed
+        displacement[body == 1] -= placed
+    absolute = temperature[0][..., 0] + ambient if temperature else None
+    return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
+
+
+def _body_of_tag(system: System) -> np.ndarray:
+    """Number of the body, from 1, by the tag of its cells and of those of its zones."""
+    geometry = system.case.geometry
+    owners = [geometry.zones.get(part, part) for part in system.bodies.names]
+    return np.array([0, *(geometry.bodies.index(owner) + 1 for owner in owners)])
+
+
+def _with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -> np.ndarray:
+    """Add the rigid motion of the holder to the nodes of body 1."""
+    geometry = system.case.geometry
+    upper = system.elastic.owned_by(*geometry.parts_of(geometry.bodies[0]))
+    nodes = system.elastic.nodes()
+    moved = displacement.reshape(nodes.shape).copy()
+    moved[upper] += motion.at(nodes[upper])
+    return moved.ravel()
+
+
+def _von_mises(σ):
+    s = σ - ufl.tr(σ) / 3 * ufl.Identity(3)
+    return ufl.sqrt(1.5 * ufl.inner(s, s))
+
+
+def _square(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of an (n + 1)² grid on the reference square, and its small quadrilaterals."""
+    x = np.linspace(0.0, 1.0, n + 1)
+    points = np.array([(a, b) for b in x for a in x])
+    corner = np.array([j * (n + 1) + i for j in range(n) for i in range(n)])
+    return points, corner[:, None] + np.array([0, 1, n + 2, n + 1])
+
+
+def _cube(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of an (n + 1)³ grid on the reference cube, and its small hexahedra."""
+    square, pieces = _square(n)
+    points = np.array([(x, y, z) for z in np.linspace(0.0, 1.0, n + 1) for x, y in square])
+    layer = len(square)
+    layers = [pieces + k * layer for k in range(n)]
+    return points, np.concatenate([np.hstack([low, low + layer]) for low in layers])
+
+
+def _triangle(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of a regular grid on the reference triangle, and its small triangles."""
+    x = np.linspace(0.0, 1.0, n + 1)
+    points = np.array([(x[i], x[j]) for j in range(n + 1) for i in range(n + 1 - j)])
+    start = np.cumsum([0, *(n + 1 - j for j in range(n + 1))])
+    upright = [(start[j] + i, start[j] + i + 1, start[j + 1] + i) for j, i in _below(n)]
+    turned = [(start[j] + i + 1, start[j + 1] + i + 1, start[j + 1] + i) for j, i in _below(n - 1)]
+    return points, np.array(upright + turned)
+
+
+def _below(n: int) -> list[tuple[int, int]]:
+    return [(j, i) for j in range(n) for i in range(n - j)]
+
+
+_GRIDS = {"quadrilateral": _square, "triangle": _triangle, "hexahedron": _cube}

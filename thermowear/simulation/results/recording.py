@@ -1,0 +1,119 @@
+"""Bodies and interface at a contact state, as results keep them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...laws.motions import RigidMotion
+from ..interface.body_state import BodyState, ContactState, body_state
+from ..model.system import System
+from .result import Interface, Profile
+
+_STEEPEST = 0.05
+"""Least cosine between face and press where a shape along the press is given."""
+
+
+def interface_at(
+    system: System,
+    contact: ContactState,
+    motion: RigidMotion,
+    worn: np.ndarray,
+    rates: np.ndarray | None = None,
+) -> tuple[BodyState, Interface]:
+    """Solve the bodies and record the interface. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    contact : ContactState
+    motion : RigidMotion
+        Of the holder.
+    worn : ndarray, shape (2, n)
+        Depth worn off each body [m].
+    rates : ndarray, shape (2, n), optional
+        See `record` [m/s].
+    """
+    state = body_state(system, contact)
+    lost = system.pairing.gap + worn.sum(axis=0)
+    moved = motion.at(system.pairing.on_body_1)
+    gap = (
+        lost
+        + system.softness * contact.pressure
+        + state.opening
+        - np.einsum("ni,ni->n", system.pairing.normals, moved)
+    )
+    return state, record(system, contact, state, gap, lost.max() - lost, worn, rates)
+
+
+def record(
+    system: System, contact: ContactState, state: BodyState, gap, shape, worn, rates=None
+) -> Interface:
+    """The interface as it is written out; arrays of shape (n,), `worn` of (2, n).
+
+    Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
+    """
+    pressure = contact.pressure
+    points = system.pairing.on_body_1
+    nothing = np.full(len(pressure), np.nan)
+    rates = _local_rates(system, contact) if rates is None else rates
+    temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
+    fluxes = temperatures
+    if state.thermal is not None and system.thermal is not None:
+        T1, T2 = state.thermal.rise
+        temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
+        fluxes = state.thermal.flux
+    return Interface(
+        x=points[:, 0],
+        y=points[:, 1],
+        z=points[:, 2] if points.shape[1] == 3 else np.zeros(len(pressure)),
+        s=system.pairing.position,
+        weight=system.weights,
+        pressure=pressure,
+        gap=gap,
+        shape=shape,
+        wear_1=worn[0],
+        wear_2=worn[1],
+        wear_rate_1=rates[0],
+        wear_rate_2=rates[1],
+        temperature_1=temperatures[0],
+        temperature_2=temperatures[1],
+        heat_flux_1=fluxes[0],
+        heat_flux_2=fluxes[1],
+    )
+
+
+def _local_rates(system: System, contact: ContactState) -> np.ndarray:
+    rates = np.zeros((2, len(contact.pressure)))
+    for row, (index, law) in enumerate(system.laws.items()):
+        local = law.rate(contact.pressure, contact.conditions.speed)
+        rates[index] = system.spreads[index].rate(contact.conditions.wear[row] * local)
+    return rates
+
+
+def profile(system: System, interface: Interface) -> Profile:
+    """The worn shape of an interface, along its normals and along the press."""
+    normals = np.zeros((len(interface.s), 3))
+    normals[:, : len(system.press)] = system.pairing.normals
+    along = along_press(system)
+    lost = system.pairing.gap + interface.wear_1 + interface.wear_2
+    lost = (interface.shape.max() - interface.shape + lost.min()) / along
+    rate = interface.wear_rate_1 + interface.wear_rate_2
+    return Profile(
+        x=interface.x,
+        y=interface.y,
+        z=interface.z,
+        s=interface.s,
+        normal_x=normals[:, 0],
+        normal_y=normals[:, 1],
+        normal_z=normals[:, 2],
+        shape=interface.shape,
+        shape_along_press=np.nanmax(lost) - lost,
+        wear_rate=rate,
+        wear_rate_along_press=rate / along,
+    )
+
+
+def along_press(system: System) -> np.ndarray:
+    """Cosines between normals and press, shape (n,); NaN where the face is too steep for one."""
+    along = system.pairing.normals @ system.press
+    return np.where(along > _STEEPEST, along, np.nan)

@@ -1,0 +1,170 @@
+"""The summary of a run: SI numbers, the unit in each key."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...bulk.field import total
+from ...contact.search.zones import contact_zones
+from ..model.rigid_modes import applied, guides, reference_point
+from ..model.system import System
+from ..model.thermal_loads import ThermalLoad
+from ..model.thermal_system import ThermalSystem
+from .outcome import Outcome
+
+_GUIDES = {
+    "x": "guide_force_N",
+    "y": "guide_force_y_N",
+    "z": "guide_force_z_N",
+    "rotation": "guide_moment_Nm",
+    "rotation-x": "guide_moment_x_Nm",
+    "rotation-y": "guide_moment_y_Nm",
+}
+"""What a guide holds, by the motion that the holder does not make."""
+
+_ROTATIONS = {
+    "rotation-x": "holder_rotation_x_rad",
+    "rotation-y": "holder_rotation_y_rad",
+    "rotation": "holder_rotation_rad",
+}
+"""By the axis of a rotation vector."""
+
+
+def summarise(system: System, outcome: Outcome) -> dict:
+    """All numbers of ``summary.json`` but the seconds. Quantities that do not exist are None."""
+    case, w = system.case, system.weights
+    contact, interface = outcome.contact, outcome.interface
+    p, sliding = contact.pressure, system.slides is not None
+    friction = sliding * contact.conditions.friction * p  # at rest there is none
+    system = system.rubbing(contact.conditions.friction)
+    rates = interface.wear_rate_1 + interface.wear_rate_2
+    worn = interface.pressure > 0
+    volumes = system.worn_volumes(np.array([interface.wear_1, interface.wear_2]))
+    summary = {
+        "title": case.title,
+        "analysis": case.analysis.type,
+        "model": case.model,
+        "method": case.contact.method,
+        "dofs_displacement": total(system.elastic.space),
+        "dofs_temperature": _thermal_dofs(system),
+        "contact_points": len(w),
+        "friction": system.friction,
+        "normal_force_N": normal_force(system, p),
+        "friction_force_N": float(w @ friction),
+        "friction_torque_Nm": _torque(system, friction),
+        "guide_force_N": None,
+        "max_pressure_Pa": float(p.max()),
+        "mean_pressure_Pa": float(w @ p / w[worn].sum()) if worn.any() else 0.0,
+        "min_pressure_Pa": float(p.min()),
+        "contact_area_m2": float(w[worn].sum()),
+        "contact_zones_m": contact_zones(system.pairing, p),
+        "shape_range_m": float(np.ptp(interface.shape)),
+        "approach_m": float(outcome.motion.at(reference_point(case)) @ system.press),
+        "max_temperature_K": _number(outcome.state.hottest),
+        "friction_power_W": float(w @ (contact.conditions.heating * p)),
+        **_conducted(system, outcome),
+        "heat_balance_relative_error": _number(outcome.state.heat_error),
+        "equilibrium_relative_error": outcome.state.force_error,
+        "rigid_wear_velocity_m_per_s": None,
+        "wear_dissipation_W": float(w @ (p * rates)),
+        "wear_volume_1_m3": float(volumes[0]),
+        "wear_volume_2_m3": float(volumes[1]),
+        "wear_coefficient_per": {name: law.per for name, law in case.wear.items()},
+    }
+    about = _passing(system, outcome) | _guide_reactions(system, p) | _rotations(system, outcome)
+    return summary | about | _friction(system, outcome) | outcome.extra
+
+
+def _friction(system: System, outcome: Outcome) -> dict[str, float]:
+    """The coefficients where it presses, and their mean by force, where they are not constant."""
+    pressure = outcome.contact.pressure
+    if not system.case.friction_varies or not pressure.any():
+        return {}
+    friction, carries = outcome.contact.conditions.friction, pressure > 0
+    return {
+        "friction_mean": float(np.average(friction, weights=system.weights * pressure)),
+        "friction_min": float(friction[carries].min()),
+        "friction_max": float(friction[carries].max()),
+    }
+
+
+def _conducted(system: System, outcome: Outcome) -> dict[str, float]:
+    """Heat into both bodies: at the contact, and through surfaces with a given flux or power."""
+    thermal, faces = system.thermal, outcome.state.thermal
+    if thermal is None or faces is None:
+        return {}
+    into = (float(system.weights @ flux) for flux in faces.flux)
+    found = {f"contact_heat_{body}_W": heat for body, heat in enumerate(into, 1)}
+    load = _thermal_load(thermal, outcome)
+    return found | ({"prescribed_heat_W": load.prescribed} if load.magnitude > 0.0 else {})
+
+
+def _thermal_load(thermal: ThermalSystem, outcome: Outcome) -> ThermalLoad:
+    """The thermal loads at the end."""
+    return thermal.loads.at(outcome.history[-1].time if outcome.history else 0.0)
+
+
+def _passing(system: System, outcome: Outcome) -> dict:
+    """What a body 2 that passes under body 1 does with heat, and where heat leaves the bodies."""
+    thermal, rise, heat = system.thermal, outcome.state.rise, system.case.heat
+    if thermal is None or rise is None or heat is None or not system.case.geometry.passes:
+        return {}
+    advection = thermal.conduction.advection
+    stabilised = advection is not None and advection.stabilised
+    ambient = _thermal_load(thermal, outcome).ambient
+    still = np.zeros(len(rise))
+    cooled, _, carried = thermal.conduction.losses(rise, still, ambient=ambient)
+    leaves = advection is not None and system.case.geometry.rotation_center is None
+    return {
+        "heat_advection": "stabilised" if stabilised else heat.advection,
+        "max_cell_peclet_number": None if advection is None else advection.peclet,
+        "heat_cooled_W": float(cooled),
+        "heat_carried_out_W": float(carried) if leaves else None,
+    }
+
+
+def normal_force(system: System, pressure: np.ndarray) -> float:
+    """Force along the press that the pressure and its friction carry [N]."""
+    return float(system.weights @ (pressure * (system.pull @ system.press)))
+
+
+def _torque(system: System, friction: np.ndarray) -> float | None:
+    """Friction moment about the axis that body 1 or 2 turns about [N m]; None without one."""
+    case, motion = system.case, system.case.motion
+    if case.model == "axisymmetric" and (motion is None or motion.velocity is None):
+        return float(system.weights @ (friction * system.pairing.points[:, 0]))
+    center = case.geometry.rotation_center
+    if center is None:
+        return None
+    arms = system.pairing.points[:, :2] - np.array(center)
+    return float(system.weights @ (friction * np.linalg.norm(arms, axis=1)))
+
+
+def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
+    """What guides hold along motions that the holder does not make, on body 1 [N, N m].
+
+    Of the whole: what the halves of a symmetric section push apart is in balance.
+    """
+    case, points = system.case, system.pairing.on_body_1
+    reactions = {}
+    for name, motion in guides(case).items():
+        if name not in case.holder.free:
+            work = np.einsum("ni,ni->n", motion.at(points), system.pull)
+            given = applied(case, motion) + float(system.dead_resultant(motion)[0])
+            reaction = float(system.weights @ (pressure * work)) - given
+            reactions[_GUIDES[name]] = 0.0 if case.geometry.symmetry else reaction
+    return reactions
+
+
+def _rotations(system: System, outcome: Outcome) -> dict[str, float]:
+    """How far the holder has turned about each axis that it can turn about."""
+    turned = zip(_ROTATIONS.items(), outcome.motion.rotation, strict=True)
+    return {key: float(angle) for (name, key), angle in turned if name in system.case.holder.free}
+
+
+def _thermal_dofs(system: System) -> int:
+    return 0 if system.thermal is None else total(system.thermal.conduction.space)
+
+
+def _number(value: float) -> float | None:
+    return None if np.isnan(value) else float(value)

@@ -1,0 +1,1 @@
+"""Observers, checkpoints, frames and requests to stop of a run."""

@@ -1,0 +1,182 @@
+"""Running-in: contact, heat and wear in time, to an end time or to the steady state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from ...case.tables.analyses import Timed
+from ...errors import ComputationError
+from ...serialise import serialisable
+from ..interface.sdirk import Trial, WearProblem, WornContact, advance_with_error, next_step
+from .step_sizes import AnySize, StepSizes, ends
+
+_FAR_SMALLER = 1e-3
+"""Of a step: errors of time fall at least by its square root."""
+_SMALLEST = 1e-12  # of the time that has passed, at first of 1e-12 s
+
+
+@serialisable
+@dataclass(frozen=True)
+class Moment:
+    """A state of the running-in, and all that its time loop needs to go on from it.
+
+    Attributes
+    ----------
+    time, step : float
+        End and size of the step that led here [s].
+    state : WornContact
+    error : float
+        Error estimate of the step.
+    is_output : bool
+        Whether this is one of the output times.
+    distance : float
+        From the steady state, see `WearProblem`; NaN without one.
+    number : int
+        Of the step.
+    begin : float
+        Last time that was hit exactly [s].
+    wanted : float
+        Size of the next step, as far as its error allows [s].
+    """
+
+    time: float
+    step: float
+    state: WornContact
+    error: float
+    is_output: bool
+    distance: float
+    number: int
+    begin: float
+    wanted: float
+
+
+def moments(
+    problem: WearProblem,
+    settings: Timed,
+    steady,
+    sizes: StepSizes | None = None,
+    last: Moment | None = None,
+) -> Iterator[Moment]:
+    """The moments of a running-in, from the unworn contact on.
+
+    Parameters
+    ----------
+    problem : WearProblem
+    settings : Transient
+    steady : object
+        The steady state that the problem tends to, as it takes it; None without one.
+    sizes : StepSizes, optional
+        Any by default.
+    last : Moment, optional
+        Go on from this one; it is not passed again.
+
+    Raises
+    ------
+    ComputationError
+        If the step has become too small or the steps too many. What was yielded stays valid.
+    """
+    sizes = sizes or AnySize()
+    steady = None if steady is None else problem.steady(steady)
+    if last is None:
+        last = _first(problem, steady)
+        yield last
+    targets = [time for time in times_to_hit(settings, problem) if time > last.time]
+    while not is_over(settings, problem, last):
+        if last.number == settings.max_steps:
+            raise ComputationError(
+                f"{settings.type}: {settings.max_steps} steps were not enough "
+                f"(analysis.max_steps), the run stands at {last.time:g} s"
+            )
+        last = _next(problem, settings, steady, sizes, targets[0], last)
+        if last.time == targets[0]:
+            targets.pop(0)
+        yield last
+
+
+def is_over(settings: Timed, problem: WearProblem, last: Moment) -> bool:
+    """Whether a running-in ends with this moment."""
+    end = times_to_hit(settings, problem)[-1]
+    return last.time >= end or _is_steady(settings, last.distance)
+
+
+def _first(problem: WearProblem, steady: np.ndarray | None) -> Moment:
+    """The unworn contact."""
+    state = problem.start()
+    distance, wanted = problem.distance(state, steady), problem.first_step(state)
+    return Moment(0.0, 0.0, state, 0.0, False, distance, 0, 0.0, wanted)
+
+
+def _next(
+    problem: WearProblem, settings: Timed, steady, sizes: StepSizes, target: float, last: Moment
+) -> Moment:
+    """The end of a step towards a time that must be hit [s]."""
+    way = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
+    smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
+    trial, step, following = _accept(problem, last, way, sizes.rounding, smallest, settings)
+    hits = ends(step, target - last.time)
+    time = target if hits else last.time + step
+    return Moment(
+        time=time,
+        step=step,
+        state=trial.state,
+        error=trial.error,
+        is_output=hits and target in settings.output_times,
+        distance=problem.distance(trial.state, steady),
+        number=last.number + 1,
+        begin=target if hits else last.begin,
+        wanted=max(following, last.wanted) if hits else following,
+    )
+
+
+def _accept(
+    problem, last: Moment, way, rounding: float, smallest: float, settings
+) -> tuple[Trial, float, float]:
+    """Repeat a step with smaller sizes until its error is within the tolerance.
+
+    Steps that are to end behind the time of an event must do so once they are rounded, too.
+
+    Where contact holds point by point, what is no smaller in a step that is far smaller is a jump:
+    a point begins to press at once. That step, which ends right behind it, is taken.
+
+    Returns
+    -------
+    trial : Trial
+    step, following : float
+        Its size, and that of the next one, as far as errors allow [s].
+    """
+    trouble, step = "", way(last.wanted)
+    # what fades after a point has begun to press makes ever smaller errors
+    former = None if last.state.pointwise is None else (last.step, last.error)
+    tried: list[tuple[float, float]] = []
+    while step > smallest:
+        try:
+            trial = advance_with_error(problem, last.state, last.time, step)
+        except ComputationError as failure:
+            step, trouble = way(step / 4), f" ({failure})"
+            continue
+        error = trial.error
+        proposed = next_step(step, error, settings.tolerance, former)
+        if error <= settings.tolerance:
+            return trial, step, min(proposed, rounding * trial.following)
+        jumps = any(step <= _FAR_SMALLER * size and error > e / 2 for size, e in tried)
+        if jumps and trial.state.pointwise is not None:
+            return trial, step, step / _FAR_SMALLER
+        tried.append((step, error))
+        located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
+        step = way(min(max(proposed, located), 0.9 * step))
+    raise ComputationError(f"{settings.type}: no step is small enough at {last.time:g} s{trouble}")
+
+
+def times_to_hit(settings: Timed, problem: WearProblem) -> list[float]:
+    """Times that must be hit exactly, in order; the last one ends the run."""
+    end = np.inf if settings.end_time is None else settings.end_time
+    corners = () if settings.end_time is None else problem.corners(end)
+    return sorted({*settings.output_times, *corners, end})
+
+
+def _is_steady(settings: Timed, distance: float) -> bool:
+    return settings.until == "steady" and distance <= settings.steady_tolerance

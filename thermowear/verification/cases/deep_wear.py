@@ -1,0 +1,133 @@
+"""An annular punch of which a fifth of the height is worn off, hot and cooled on its top.
+
+Meshes are moved to the worn face on the way. The run must end like a punch that is meshed as low as
+the worn one, and what it finds must not depend on how often the meshes are moved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import log2, pi
+
+import numpy as np
+
+from ...simulation import Result
+from ..check import Check, along, compare
+from ..starter import run_starter
+
+ID = "deep-wear"
+STARTER = "annular-punch"
+RADII = (0.022, 0.025, 0.04, 0.07, 0.1, 0.115, 0.118)
+AREA = pi * (0.12**2 - 0.02**2)
+HEIGHT, WORN, LAST = 0.05, 0.01, 0.001
+FINE = ("mesh.degree=8", "mesh.elements=12")
+COARSE = ("mesh.degree=6", "mesh.elements=4")
+SIZES = (0.04, 0.02, 0.01, 0.005)
+AMBIENT = 293.15
+LOW = "a punch meshed as low as the worn mesh, by the principle"
+LATE = "a punch as low in the end that has lost its last millimetre only"
+FACE = "the wear integrated over the face"
+SMALL = "the same with updates at each 0.25 % of the height"
+ORDER = "four runs, each with updates twice as often as the one before"
+_SCATTER = 1e-2
+"""Of an order in the mean of four runs: none is made up of equal intervals alone, so that the order
+of three of them scatters by 0.05."""
+
+
+def checks() -> Iterator[Check]:
+    """Volumes, shapes and temperatures at the end; how much the updates count for."""
+    worn = deep("wear.update=0.007", *FINE)
+    summary = worn.summary
+    error = 1 + summary["geometry_volume_error"]
+    yield compare(ID, "worst update: volume lost by the mesh [1]", error, 1.0, 1e-6, FACE)
+    slanted = 1.0 / summary["geometry_smallest_scaled_jacobian"]
+    yield Check(ID, "1 / smallest scaled Jacobian [1]", slanted, 1.0, slanted, 10.0, "a rectangle")
+    lost = summary["geometry_volume_1_m3"]
+    volume = float(worn.interface.weight @ worn.interface.wear_1)
+    whole = summary["wear_volume_1_m3"]
+    yield compare(ID, "volume lost by the mesh and kept in the gap [m³]", whole, volume, 1e-6, FACE)
+    # the last step is taken again on the moved mesh: the difference of both stays in the gap
+    yield compare(
+        ID,
+        "volume lost by the mesh in the end, but for the last step [m³]",
+        lost,
+        whole,
+        1e-5,
+        FACE,
+    )
+    yield compare(ID, "height worn off [m]", lost / AREA, WORN, 1e-3, "the steady wear rate")
+    height = HEIGHT - lost / AREA
+    yield from _like_low(worn, height)
+    late = deep("wear.update=0.0035", *FINE, height=height + LAST, worn=LAST)
+    yield from _shapes(worn, late, LATE, "its lowest point")
+    yield from _updates()
+
+
+def deep(*overrides: str, height: float = HEIGHT, worn: float = WORN) -> Result:
+    """Until so much of a height is worn off at the wear rate of the steady state [m]."""
+    end = worn / run_starter(STARTER, *COARSE).summary["rigid_wear_velocity_m_per_s"]
+    transient = f'analysis={{type="transient", end_time="{end!r} s", tolerance=1e-3}}'
+    return run_starter(STARTER, transient, f"geometry.punch_height={height!r} m", *overrides)
+
+
+def _like_low(worn: Result, height: float) -> Iterator[Check]:
+    """Shape and temperatures against the steady state of a punch of a height [m].
+
+    That one has a flat face. Bodies that grow hot along a worn face, which slopes, close its gap a
+    little, too: the slope times their relative displacement along it, 0.8e-3 of the range.
+    """
+    low = run_starter(STARTER, *FINE, f"geometry.punch_height={height!r} m")
+    yield from _shapes(worn, low, LOW, "its mean")
+    for body in (1, 2):
+        found, known = (
+            along(result.interface, RADII, getattr(result.interface, f"temperature_{body}"))
+            for result in (worn, low)
+        )
+        for r, T, exact in zip(RADII, found, known, strict=True):
+            name = f"temperature of body {body} at r = {1e3 * r:g} mm [K], of its rise"
+            yield compare(ID, name, T, exact, 1e-3, LOW, exact - AMBIENT)
+
+
+def _shapes(worn: Result, known: Result, source: str, origin: str) -> Iterator[Check]:
+    """Heights of the face, from its mean or from its lowest point."""
+    profiles = []
+    for face in (worn.interface, known.interface):
+        mean = float(face.weight @ face.shape / face.weight.sum()) if origin == "its mean" else 0.0
+        profiles.append(along(face, RADII, face.shape - mean))
+    for r, found, exact in zip(RADII, *profiles, strict=True):
+        name = f"shape at r = {1e3 * r:g} mm from {origin} [m], of its range"
+        yield compare(ID, name, found, exact, 1e-3, source, known.summary["shape_range_m"])
+
+
+def _updates() -> Iterator[Check]:
+    """The order of the outer loop, and updates as they are chosen against frequent ones.
+
+    Between updates heat goes through a punch that is too high by what is kept in the gap: in the
+    mean over the run. In the end nothing is kept.
+    """
+    hottest = [_mean_of_hottest(deep(f"wear.update={size}", *COARSE)) for size in SIZES]
+    changes = np.diff(hottest)
+    order = log2(changes[0] / changes[-1]) / (len(changes) - 1)
+    sizes = ", ".join(f"{100 * size:g} %" for size in SIZES)
+    name = f"order, updates at {sizes}: hottest point in the mean over the run [1]"
+    yield Check(ID, name, order, 1.0, max(1.0 - order, 0.0), _SCATTER, ORDER)
+    chosen, fine = deep(*COARSE), deep("wear.update=0.0025", *COARSE)
+    means = _mean_of_hottest(chosen), _mean_of_hottest(fine)
+    rows = [("hottest point in the mean over the run [K], of its rise", means)]
+    for key, name in (
+        ("max_temperature_K", "hottest point [K], of its rise"),
+        ("max_pressure_Pa", "largest pressure [Pa]"),
+        ("wear_volume_1_m3", "volume worn off [m³]"),
+        ("shape_range_m", "range of the shape [m]"),
+    ):
+        rows.append((name, (chosen.summary[key], fine.summary[key])))
+    for name, (found, known) in rows:
+        scale = known - AMBIENT if "rise" in name else None
+        label = f"{name}, updates as they are chosen"
+        yield compare(ID, label, found, known, 5e-3, SMALL, scale)
+
+
+def _mean_of_hottest(result: Result) -> float:
+    """Highest temperature of the faces, in the mean over time [K]."""
+    steps = result.history[1:]
+    return sum(row.max_temperature * row.step for row in steps) / steps[-1].time

@@ -1,0 +1,130 @@
+"""Special cases by finite elements: pressures of the closed form, and a running-in that ends there.
+
+A steady state needs no finite elements for its pressure, only for the worn shape. So the check is
+the running-in: contact of the bodies, worn step by step from unworn faces, must end in both.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+
+import numpy as np
+
+from ... import geometry  # noqa: F401  (makes the geometries known)
+from ...case import load
+from ...case.starters import starter_text
+from ...case.tables.schema import Case
+from ...laws.motions import RigidMotion, rotation, translation
+from ...simulation import Result
+from ...simulation.model.rigid_modes import reference_point
+from ..check import Check, compare
+from ..computed import computed
+
+PRINCIPLE = "the steady state, directly from the principle of minimum wear dissipation power"
+EDGE = 2e-3
+"""Corners have singular stresses: nearer to an end of a face nothing is compared [m]."""
+
+_UNWORN = "wear.update=never"
+"""The steady state is that of bodies as they are drawn, so the running-in must not thin them."""
+_TRANSIENT = "analysis={type='transient', until='steady', steady_tolerance=1e-3, tolerance=1e-3}"
+
+
+def running_in(
+    id: str, label: str, starter: str, *overrides: str, without: tuple[str, ...] = ()
+) -> Iterator[Check]:
+    """Pressure and worn shape at the end of a running-in from unworn faces.
+
+    Parameters
+    ----------
+    id : str
+        Of the verification case.
+    label : str
+        What is said of the run.
+    starter : str
+    *overrides : str
+        ``KEY=VALUE`` each.
+    without : tuple of str
+        Tables to leave out.
+    """
+    case = variant(starter, *overrides, without=without)
+    direct = computed(case)
+    reached = computed(variant(starter, *overrides, _TRANSIENT, _UNWORN, without=without))
+    name = f"{starter}, {label}" if label else starter
+    inner = away_from_ends(case, direct)
+    yield compare(
+        id,
+        f"{name}: pressure after running-in less the steady one, root mean square [Pa]",
+        _mean_square(direct, reached.interface.pressure - direct.interface.pressure, inner),
+        0.0,
+        0.01,
+        PRINCIPLE,
+        scale=_mean_square(direct, direct.interface.pressure, inner),
+    )
+    off = _without_motion(case, direct, reached.interface.shape - direct.interface.shape, inner)
+    size = float(np.ptp(direct.interface.shape[inner]))
+    measures = {
+        "root mean square": (_mean_square(direct, off, inner), 0.01),
+        "largest": (float(np.abs(off[inner]).max()), 0.02),
+    }
+    for measure, (found, allowed) in measures.items():
+        quantity = f"{name}: worn shape after running-in less the steady one, {measure} [m]"
+        yield compare(id, quantity, found, 0.0, allowed, PRINCIPLE, scale=size)
+
+
+def variant(starter: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
+    """A starter case with keys changed and tables left out."""
+    tables = tomllib.loads(starter_text(starter))
+    for table in without:
+        tables.pop(table, None)
+    return load(tables, overrides)
+
+
+def away_from_ends(case: Case, result: Result) -> np.ndarray:
+    """Points that are not at an end of the face, shape (n,); faces in space have four sides."""
+    i, center = result.interface, case.geometry.rotation_center
+    lengths = [i.s] if case.model != "3d" else [i.x, i.y]
+    if case.model == "3d" and center is not None:
+        radius = np.hypot(i.x - center[0], i.y - center[1])
+        lengths = [radius, radius * np.arctan2(i.y - center[1], i.x - center[0])]
+    inside = [(x > x.min() + EDGE) & (x < x.max() - EDGE) for x in lengths]
+    return np.all(inside, axis=0)
+
+
+def _mean_square(result: Result, values: np.ndarray, inner: np.ndarray) -> float:
+    """Root of the mean square over the area of points."""
+    return float(np.sqrt(np.average(values[inner] ** 2, weights=result.interface.weight[inner])))
+
+
+def _without_motion(
+    case: Case, result: Result, heights: np.ndarray, inner: np.ndarray
+) -> np.ndarray:
+    """Heights less what a constant and rigid motions of the holder make up.
+
+    Shapes are given up to these.
+    """
+    profile = result.profile
+    points = np.column_stack([profile.x, profile.y, profile.z])
+    normals = np.column_stack([profile.normal_x, profile.normal_y, profile.normal_z])
+    motions = [_motion(case, name) for name in case.holder.free]
+    closing = [(motion.at(points) * normals).sum(axis=1) for motion in motions]
+    modes = np.column_stack([np.ones(len(points)), *closing])
+    amounts = np.linalg.lstsq(modes[inner], heights[inner], rcond=None)[0]
+    return heights - modes @ amounts
+
+
+def _motion(case: Case, name: str) -> RigidMotion:
+    """A motion of the holder, whatever its sense."""
+    if name in _AXES:
+        return translation(_AXES[name])
+    if name in _TURNS:
+        return rotation(_TURNS[name], reference_point(case))
+    return translation(case.geometry.press_direction)
+
+
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
+_TURNS = {
+    "rotation": (0.0, 0.0, 1.0),
+    "rotation-x": (1.0, 0.0, 0.0),
+    "rotation-y": (0.0, 1.0, 0.0),
+}

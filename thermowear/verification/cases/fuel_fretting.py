@@ -1,0 +1,136 @@
+"""A tube that frets in its support (special case 10), held against closed forms.
+
+A tube whose centre moves sideways by d rolls in the wider hole: by their radii R1 and R2 and the
+clearance c, the contact travels by ``d R2/c`` along the support, while the tube slips by d. Every
+place that it passes wears alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...reference.hertz import contact_modulus
+from ...reference.mindlin import MindlinLine
+from ...simulation import Result
+from ..check import Check, along, compare
+from ..starter import run_starter
+
+ID = "fuel-fretting"
+STARTER = "tube-in-support"
+TUBE, CLEARANCE, THICKNESS = 4.75e-3, 0.05e-3, 10e-3
+FORCE, FRICTION, AMPLITUDE, COEFFICIENT = 20.0, 0.5, 5e-6, 5e-14
+HOLE = TUBE + CLEARANCE
+HERTZ = MindlinLine(
+    FORCE / THICKNESS,
+    TUBE * HOLE / CLEARANCE,
+    contact_modulus((99e9, 0.37), (99e9, 0.37)),
+    FRICTION,
+)
+ENERGY = "k/mu times the energy dissipated"
+SLIDING = "rigid tube that slides and rolls, less what sticks by the compliance of the contact"
+ROLLING = "rolling in the hole"
+MINDLIN = "Cattaneo and Mindlin (Johnson, Contact Mechanics, 1985, section 7.2)"
+
+
+def checks() -> Iterator[Check]:
+    """Energy, volume a cycle, depth and width of the worn zone; stick and slip before it slides."""
+    result = run_starter(STARTER, "analysis.cycles=20000", "analysis.output_times=[]")
+    yield from _energy(result)
+    yield from _volumes(result)
+    yield from _zone()
+    yield from _sticking()
+
+
+def _energy(result: Result) -> Iterator[Check]:
+    for body in (1, 2):
+        found = result.summary[f"wear_volume_{body}_m3"]
+        known = COEFFICIENT / FRICTION * result.summary["dissipated_energy_J"]
+        yield compare(ID, f"worn volume, body {body} [m³]", found, known, 1e-9, ENERGY)
+
+
+def _volumes(result: Result) -> Iterator[Check]:
+    """What sticks at the turning points does not slide: that much less is worn."""
+    push = 0.1
+    history = f'time=["0 s", "1 s"], tangential_force=["0 N", "{push} N"]'
+    stuck = run_starter(
+        STARTER,
+        f"load.history={{{history}}}",
+        "analysis={type='fretting', increments=1}",
+        without=("wear",),
+    )
+    compliance = stuck.summary["tangential_displacement_m"] / push
+    slid = _rolled() - 4 * compliance * FRICTION * FORCE
+    for body in (1, 2):
+        found = result.summary[f"wear_volume_per_cycle_{body}_m3"]
+        known = COEFFICIENT * FORCE * slid
+        quantity = f"worn volume of a cycle, body {body} [m³]"
+        yield compare(ID, quantity, found, known, 1e-3, SLIDING)
+
+
+def _rolled() -> float:
+    """Slip of a cycle, weighted with the normal over the vertical force; four times d or so [m].
+
+    With the tube's centre at an angle α about that of the hole, ``sin α = d/c``, it slips by
+    ``c dα`` under ``N = F/(cos α - mu sin α)`` on its way to larger α. With ``mu = tan φ`` the
+    integral of that is ``cos φ artanh(sin(α + φ))``.
+    """
+    α, φ = np.arcsin(AMPLITUDE / CLEARANCE), np.arctan(FRICTION)
+    ends = np.arctanh(np.sin(φ + np.array([-α, α])))
+    return float(2 * CLEARANCE * np.cos(φ) * (ends[1] - ends[0]))
+
+
+def _zone() -> Iterator[Check]:
+    """The first cycles: the contact passes each place twice a cycle, and wears a little of it."""
+    count = 400
+    result = run_starter(
+        STARTER,
+        f"analysis={{type='fretting', increments=16, cycles={count}, jump={count}}}",
+        "mesh.elements=96",
+    )
+    i, travel = result.interface, AMPLITUDE * HOLE / CLEARANCE
+    inside = np.linspace(-0.6, 0.6, 61) * travel
+    for body, path in ((1, TUBE), (2, HOLE)):
+        passed = 2 * COEFFICIENT * FORCE / THICKNESS * CLEARANCE / path * count
+        found = along(i, inside, i.wear_1 if body == 1 else i.wear_2).mean()
+        quantity = f"mean depth where the contact passes, body {body} [m]"
+        yield compare(ID, quantity, found, passed, 2e-2, ROLLING)
+    assert result.friction is not None
+    row = result.friction.cycles[-1]
+    reach = travel * TUBE / HOLE + HERTZ.normal.half_width
+    quantity = "half-width of the zone that is touched [m]"
+    yield compare(ID, quantity, row.contact_area / THICKNESS / 2, reach, 4e-2, ROLLING)
+
+
+def _sticking() -> Iterator[Check]:
+    """Less than friction carries: the middle sticks. A thick tube is as good as a half-space."""
+    push = 0.5 * FRICTION * FORCE
+    history = f'time=["0 s", "1 s"], tangential_force=["0 N", "{push} N"]'
+    result = run_starter(
+        STARTER,
+        f"load.history={{{history}}}",
+        "analysis={type='fretting', increments=10}",
+        "geometry={type='tube-in-support', tube_radius='4.75 mm', tube_wall='4 mm', "
+        "support_clearance='0.05 mm', support_thickness='6 mm', thickness='10 mm'}",
+        "mesh.elements=80",
+        without=("wear",),
+    )
+    assert result.friction is not None
+    found, line = result.friction.last, push / THICKNESS
+    c = HERTZ.stick_half_width(line)
+    yield compare(
+        ID,
+        "half-width that sticks [m]",
+        result.summary["stick_area_m2"] / THICKNESS / 2,
+        c,
+        3e-2,
+        MINDLIN,
+    )
+    for place in (0.0, 0.4):
+        x = place * HERTZ.normal.half_width
+        shear = np.interp([-x, x], found.x, -found.shear).mean()
+        quantity = f"shear at {place:g} of the half-width [Pa]"
+        limit = FRICTION * HERTZ.normal.peak
+        known = float(HERTZ.shear(x, line))
+        yield compare(ID, quantity, float(shear), known, 2e-2, MINDLIN, scale=limit)

@@ -1,0 +1,115 @@
+"""What the growing contacts share: runs to multiples of the first half-width, and their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...reference.growing_contact import GrowingContact
+from ...simulation import Result
+from ...simulation.results.result import Interface
+from ..check import Check, compare
+from ..starter import run_starter
+
+RIGID = "Argatov, Wear 271 (2011) 1147, rigid bodies"
+ELASTIC = (
+    "the same with the dent of a uniform pressure (Johnson, Contact Mechanics, 1985, ch. 2, 3)"
+)
+ARCHARD = "Archard's law"
+SPEED = 0.05
+FULL = ("penalty", "nitsche")
+"""Methods on the full system: slower, so on the coarsest mesh and not as far."""
+_SEEN = 0.9e-2
+"""Closed forms of rigid bodies are asked for where elasticity counts for less than that."""
+
+
+@dataclass(frozen=True)
+class Growth:
+    """A run of a contact that grows.
+
+    Attributes
+    ----------
+    id, note : str
+        Of the verification case, and what is special about the run.
+    law : GrowingContact
+        Closed form.
+    moment : int
+        ``a²`` over the mean ``x²`` of a parabola that falls to zero at a, weighted by its depth: 5
+        over a half-width, 3 over a radius.
+    states : dict of float to Interface
+        By sliding distance [m].
+    """
+
+    id: str
+    note: str
+    law: GrowingContact
+    moment: int
+    states: dict[float, Interface]
+
+    def checks(self) -> Iterator[Check]:
+        """Half-width and depth of the worn zone against the closed forms."""
+        for distance, state in self.states.items():
+            place = f"at {float(self.law.half_width(distance)) / self.law.start:.3g} a0{self.note}"
+            found = worn_half_width(state, self.moment), float((state.wear_1 + state.wear_2)[0])
+            rigid = self.law.half_width(distance), self.law.depth(distance)
+            elastic = self.law.elastic_half_width(distance), self.law.elastic_depth(distance)
+            names = f"half-width {place} [m]", f"depth {place} [m]"
+            for name, value, hard, soft in zip(names, found, rigid, elastic, strict=True):
+                yield compare(self.id, name, value, float(soft), 1e-2, ELASTIC)
+                if abs(soft / hard - 1) < _SEEN:
+                    yield compare(self.id, f"{name}, rigid", value, float(hard), 1e-2, RIGID)
+
+    def from_scar(self) -> Iterator[Check]:
+        """The same from the first state on, against the closed form of rigid bodies alone.
+
+        That scar is its a0. It is some times wider than Hertz's zone, and the dent of the bodies
+        counts for less the wider the contact has become.
+        """
+        (begun, scar), *later = self.states.items()
+        law = replace(self.law, start=worn_half_width(scar, self.moment))
+        for distance, state in later:
+            slid = distance - begun
+            place = f"at {float(law.half_width(slid)) / law.start:.3g} a0{self.note}"
+            found = worn_half_width(state, self.moment), float((state.wear_1 + state.wear_2)[0])
+            known = float(law.half_width(slid)), float(law.depth(slid))
+            for name, value, rigid in zip(("half-width", "depth"), found, known, strict=True):
+                yield compare(self.id, f"{name} {place}, rigid [m]", value, rigid, 1e-2, RIGID)
+
+    def peaks(self, load: float, power: int) -> Iterator[Check]:
+        """Largest pressure, wherever in an element the edge lies, against the uniform one.
+
+        That is the load over ``a^power``: half the load per length, or the force over π.
+        """
+        for distance, state in self.states.items():
+            a = float(self.law.elastic_half_width(distance))
+            place = f"at {float(self.law.half_width(distance)) / self.law.start:.3g} a0{self.note}"
+            found, uniform = float(state.pressure.max()), load / a**power
+            yield compare(self.id, f"largest pressure {place} [Pa]", found, uniform, 5e-2, ELASTIC)
+
+    def volumes(self, rate: float) -> Iterator[Check]:
+        """Worn volume against ``k F s``; `rate` is k F [m²]."""
+        for distance, state in self.states.items():
+            volume = state.weight @ (state.wear_1 + state.wear_2)
+            quantity = f"volume after {distance:.4g} m{self.note} [m³]"
+            yield compare(self.id, quantity, volume, rate * distance, 1e-3, ARCHARD)
+
+
+def grown(starter: str, distances, *overrides: str) -> dict[float, Interface]:
+    """Interfaces of a starter case after increasing sliding distances [m]."""
+    times = [float(s) / SPEED for s in distances]
+    outputs = ", ".join(f'"{t!r} s"' for t in times[:-1])
+    keys = f"analysis.end_time={times[-1]!r} s", f"analysis.output_times=[{outputs}]"
+    result: Result = run_starter(starter, *keys, *overrides)
+    states = [*(result.outputs[t] for t in times[:-1]), result.interface]
+    return {float(s): state for s, state in zip(distances, states, strict=True)}
+
+
+def worn_half_width(interface: Interface, moment: int) -> float:
+    """Half-width of the parabola whose depth is spread as far from the middle as the worn one [m].
+
+    Unlike the last point that touches it does not jump from element to element.
+    """
+    worn = interface.weight * (interface.wear_1 + interface.wear_2)
+    return float(np.sqrt(moment * (worn @ interface.x**2) / worn.sum()))

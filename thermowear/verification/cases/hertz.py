@@ -1,0 +1,19 @@
+"""What the Hertzian cases share: contact modulus, half-width, peak against the formula."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...reference.hertz import contact_modulus
+from ...simulation import Result
+
+STEEL = (210e9, 0.3)
+MODULUS = contact_modulus(STEEL, STEEL)
+
+
+def half_width(result: Result) -> float:
+    """Distance from the middle to the edge of the contact [m]."""
+    interface = result.interface
+    (zone,) = result.summary["contact_zones_m"]
+    ends = np.interp(zone, interface.s, interface.x)
+    return float(np.abs(ends).max())

@@ -1,0 +1,91 @@
+"""A steel block that slides on an insulator and takes all of the friction heat: its stability."""
+
+from __future__ import annotations
+
+from ... import geometry  # noqa: F401  (makes the geometries known)
+from ...case import load
+from ...simulation import Result
+from ..computed import computed
+
+YOUNG_MODULUS = 2.1e11  # Pa
+EXPANSION = 1.2e-5  # 1/K
+CONDUCTIVITY = 50.0  # W/(m K)
+CAPACITY = 3.7e6  # J/(m³ K)
+FRICTION = 0.3
+RIGID = 1e20  # Pa
+COLD = 1e5  # W/(m K): what hardly takes heat, and leads it off, stays cold
+
+
+def stability(
+    speed: float,
+    sizes: dict[str, float],
+    poisson_ratio: float,
+    pressing: dict[str, str],
+    wear: float = 0.0,
+    insulator: tuple[float, float] = (RIGID, 0.0),
+    conductance: float = 1e-4,
+    elements: int = 6,
+    degree: int = 6,
+) -> Result:
+    """Run the stability analysis of a block between planes of symmetry.
+
+    Parameters
+    ----------
+    speed : float
+        [m/s]
+    sizes : dict of str to float
+        Of the geometry ``stacked-blocks`` [m].
+    poisson_ratio : float
+        Of the steel.
+    pressing : dict of str to str
+        The table ``load``.
+    wear : float
+        Archard's k of the steel [1/Pa].
+    insulator : tuple of float
+        Young's modulus [Pa] and Poisson's ratio.
+    conductance : float
+        Of the contact; it hardly conducts [W/(m² K)].
+    elements, degree : int
+        Of the mesh.
+    """
+    lower_modulus, lower_ratio = insulator
+    storing = {"density": "1000 kg/m^3", "specific_heat": f"{CAPACITY / 1e3} J/(kg K)"}
+    tables = {
+        "title": "A block on an insulator",
+        "model": "plane-strain",
+        "geometry": {
+            "type": "stacked-blocks",
+            "thickness": "10 mm",
+            **{key: f"{size!r} m" for key, size in sizes.items()},
+        },
+        "mesh": {"degree": degree, "elements": elements, "grading": 0.5},
+        "bodies": {
+            "upper": {
+                "young_modulus": f"{YOUNG_MODULUS} Pa",
+                "poisson_ratio": poisson_ratio,
+                "conductivity": f"{CONDUCTIVITY} W/(m K)",
+                "expansion": f"{EXPANSION} 1/K",
+                **storing,
+            },
+            "lower": {
+                "young_modulus": f"{lower_modulus} Pa",
+                "poisson_ratio": lower_ratio,
+                "conductivity": f"{COLD} W/(m K)",
+                "expansion": "1e-12 1/K",
+                **storing,
+            },
+        },
+        "load": pressing,
+        "motion": {"velocity": f"{speed!r} m/s"},
+        "contact": {"friction": FRICTION},
+        "heat": {
+            "conductance": f"{conductance!r} W/(m^2 K)",
+            "partition": 1.0,
+            "ambient": "20 degC",
+            "temperature": {"upper_top": "20 degC", "lower_bottom": "20 degC"},
+        },
+        "analysis": {"type": "stability"},
+    }
+    if wear > 0:
+        tables["wear"] = {"upper": {"coefficient": f"{wear} 1/Pa", "per": "pressure"}}
+    return computed(load(tables))

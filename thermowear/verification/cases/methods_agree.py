@@ -1,0 +1,63 @@
+"""Condensed contact, Nitsche's method and penalty against one another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...simulation import Result
+from ..check import Check, compare
+from ..starter import run_starter
+
+ID = "methods-agree"
+CONDENSED = "condensed contact of the same case"
+THEORY = "a penalty's error goes with its inverse (Kikuchi and Oden, Contact Problems, 1988, ch. 3)"
+HALF_WIDTH = 0.496e-3
+RANGES = {"hertz": (0.0, 0.95 * HALF_WIDTH), "annular punch": (0.025, 0.115)}
+PENALTIES = {"hertz": (1e16, 1e17, 1e18), "annular punch": (1e14, 1e15, 1e16)}
+
+
+def checks() -> Iterator[Check]:
+    """Pressure away from edges; slope of the penalty's error."""
+    for case in RANGES:
+        condensed = solved(case, "condensed")
+        for theta in (1, 0, -1):
+            nitsche = solved(case, "nitsche", f"contact.theta={theta}")
+            yield _compared(case, nitsche, condensed, f"Nitsche, theta = {theta}")
+        penalties = PENALTIES[case]
+        stiff = [solved(case, "penalty", f"contact.penalty={p} Pa/m") for p in penalties]
+        yield _compared(case, stiff[-1], condensed, f"penalty {penalties[-1]:g} Pa/m")
+        errors = [result.summary["approach_m"] for result in stiff] - np.array(
+            condensed.summary["approach_m"]
+        )
+        for slope, p in zip(-np.diff(np.log10(errors)), penalties, strict=False):
+            quantity = f"slope of the approach, penalty from {p:g} Pa/m, {case} [1]"
+            yield compare(ID, quantity, slope, 1.0, 0.1, THEORY)
+
+
+def solved(case: str, method: str, *overrides: str) -> Result:
+    """The unworn contact of a starter case by a method."""
+    key = f"contact.method={method}"
+    if case == "hertz":
+        return run_starter("cylinder-on-block", 'load={force="2230 N"}', key, *HERTZ, *overrides)
+    return run_starter("annular-punch", key, *PUNCH, *overrides, without=("heat",))
+
+
+HERTZ = ("mesh.elements=16",)
+PUNCH = ("analysis.type=initial", "mesh.degree=6", "mesh.elements=16")
+
+
+def _compared(case: str, result: Result, condensed: Result, note: str) -> Check:
+    """Where the pressures differ most, relative to the largest there."""
+    x = np.linspace(*RANGES[case], 400)
+    found, known = (_along(r, x) for r in (result, condensed))
+    worst = int(np.abs(found - known).argmax())
+    quantity = f"pressure where it differs most, {note}, {case} [Pa]"
+    return compare(
+        ID, quantity, found[worst], known[worst], 1e-3, CONDENSED, scale=float(known.max())
+    )
+
+
+def _along(result: Result, x: np.ndarray) -> np.ndarray:
+    return np.interp(x, result.interface.x, result.interface.pressure)

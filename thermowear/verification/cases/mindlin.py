@@ -1,0 +1,88 @@
+"""Cattaneo and Mindlin: a cylinder on a block, pushed to and fro within the limit of friction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...reference.hertz import contact_modulus
+from ...reference.mindlin import MindlinLine
+from ...simulation import FrictionInterface, Result
+from ..check import Check, compare
+from ..starter import run_starter
+
+ID = "mindlin"
+JOHNSON = "Johnson, Contact Mechanics (1985), section 7.2"
+THICKNESS, FORCE, PUSH = 1e-3, 120e3, 36e3
+EXACT = MindlinLine(FORCE, 6e-3, contact_modulus((200e9, 0.3), (200e9, 0.3)), 0.6)
+AWAY = 0.05  # of the half-width: nearer to the edges of the sticking zones is not compared
+
+
+def checks() -> Iterator[Check]:
+    """Sticking width and shear on loading, half unloaded and reversed; energy of a cycle."""
+    result = pushed()
+    assert result.friction is not None
+    outputs = result.friction.outputs
+    yield from _state(outputs[1.0], PUSH, None)
+    for time, push in ((2.0, 0.0), (3.0, -PUSH)):
+        yield from _state(outputs[time], push, outputs[1.0])
+    lost = {row.time: row.dissipated for row in result.friction.rows}
+    cycle = (lost[5.0] - lost[1.0]) / THICKNESS
+    yield compare(ID, "energy of a cycle [J/m]", cycle, EXACT.loss_per_cycle(PUSH), 2e-2, JOHNSON)
+
+
+def pushed(*overrides: str) -> Result:
+    """One cycle after loading, from the starter case."""
+    force = PUSH * THICKNESS
+    steps = ", ".join(f'"{f:g} N"' for f in (0, force, 0, -force, 0, force))
+    times = ", ".join(f'"{t} s"' for t in range(6))
+    return run_starter(
+        "cylinder-stick-slip",
+        f"load.history={{time=[{times}], tangential_force=[{steps}]}}",
+        f"analysis.output_times=[{times}]",
+        "mesh.elements=120",
+        "mesh.grading=1.0",
+        "mesh.degree=2",
+        *overrides,
+    )
+
+
+def _state(
+    found: FrictionInterface, push: float, turned: FrictionInterface | None
+) -> Iterator[Check]:
+    """Shear, and the width of the zone that has stuck since the load turned round, if it has."""
+    a = EXACT.normal.half_width
+    change = PUSH if turned is None else (PUSH - push) / 2
+    shear = EXACT.shear_after(found.x, PUSH, push)
+    stuck = [EXACT.stick_half_width(q) for q in (PUSH, change)]
+    edges = np.array([a, *stuck])
+    away = np.abs(np.abs(found.x)[:, None] - edges).min(axis=1) > AWAY * a
+    error = np.where(away, np.abs(-found.shear - shear), 0.0)
+    worst = int(error.argmax())
+    limit = EXACT.friction * EXACT.normal.peak
+    note = f"Q = {push / 1e3:g} N/mm"
+    yield compare(
+        ID,
+        f"shear where it differs most, {note} [Pa]",
+        -found.shear[worst],
+        shear[worst],
+        2e-2,
+        JOHNSON,
+        scale=limit,
+    )
+    since = found.shear if turned is None else (found.shear - turned.shear) / 2
+    width = _sticking_half_width(found, since)
+    exact = EXACT.stick_half_width(change)
+    yield compare(ID, f"half-width that sticks, {note} [m]", width, exact, 1e-2, JOHNSON)
+
+
+def _sticking_half_width(found: FrictionInterface, shear: np.ndarray) -> float:
+    """Where the shear reaches the limit of friction, with the root of the distance to that edge.
+
+    The square of what is missing to the limit is a parabola, fitted away from the edges.
+    """
+    missing = EXACT.friction * found.pressure - np.abs(shear)
+    inner = missing > 0.3 * missing.max()
+    parabola = np.polynomial.Polynomial.fit(found.x[inner], missing[inner] ** 2, 2)
+    return float(np.abs(np.diff(parabola.roots())[0])) / 2

@@ -1,0 +1,124 @@
+"""A band of friction heat on a half-space that moves by: Jaeger's moving source of heat.
+
+A punch in a guide presses evenly on a wide and high strip, and all of the friction heat goes into
+the strip, which carries it along.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...reference.moving_band import PEAKS, MovingBand
+from ...simulation import Result
+from ..check import Check, compare
+from ..starter import run_starter
+
+ID = "moving-band"
+JAEGER = "J. C. Jaeger, J. Proc. Roy. Soc. New South Wales 76 (1942) 203"
+BALANCE = "what goes in goes out"
+DOMAIN = "the same on a strip of half the length and height"
+SHOWN = (0.5, 1.0, 5.0, 10.0, 20.0)
+FAST = 100.0
+HALF_WIDTH, CONDUCTIVITY, DIFFUSIVITY = 1e-3, 50.0, 1e-5
+PRESSURE, FRICTION, AMBIENT = 10e6, 0.3, 293.15
+
+
+def checks() -> Iterator[Check]:
+    """Slow to fast, in terms of ``L = v b/(2 κ)``."""
+    for L in SHOWN:
+        result = passed(L)
+        yield from _rises(result, L)
+        yield from _balance(result, L)
+    large, small = (
+        passed(SHOWN[0], reach=size * _reach(SHOWN[0])).summary["max_temperature_K"] - AMBIENT
+        for size in (2, 1)
+    )
+    yield compare(
+        ID, f"largest rise, L = {SHOWN[0]:g}, large strip [K]", large, small, 1e-3, DOMAIN
+    )
+    result = passed(FAST)
+    yield from _rises(result, FAST)
+    yield from _balance(result, FAST)
+    yield from _smooth(result)
+
+
+def band(L: float) -> MovingBand:
+    """The source that the punch is."""
+    speed = 2 * DIFFUSIVITY * L / HALF_WIDTH
+    return MovingBand(FRICTION * PRESSURE * speed, HALF_WIDTH, speed, CONDUCTIVITY, DIFFUSIVITY)
+
+
+def _reach(L: float) -> float:
+    """Half-widths that the strip reaches to both sides: heat goes about ``b/L`` far ahead."""
+    return max(10.0, 10.0 / L)
+
+
+def passed(L: float, reach: float | None = None, *overrides: str) -> Result:
+    """The strip under the punch."""
+    reach = reach or _reach(L)
+    return run_starter(
+        "punch-on-strip",
+        f'geometry.width="{2 * HALF_WIDTH} m"',
+        f'geometry.height="{HALF_WIDTH} m"',
+        f'geometry.strip_length="{2 * reach * HALF_WIDTH} m"',
+        f'geometry.strip_height="{0.6 * reach * HALF_WIDTH} m"',
+        f'bodies.punch.conductivity="{CONDUCTIVITY} W/(m K)"',
+        'bodies.punch.density="5000 kg/m^3"',
+        f'bodies.punch.specific_heat="{CONDUCTIVITY / DIFFUSIVITY / 5000} J/(kg K)"',
+        f'load.force="{PRESSURE * 2 * HALF_WIDTH * 0.01} N"',
+        f'motion.velocity="{-band(L).speed} m/s"',  # of the punch: the strip moves along +x
+        f"contact.friction={FRICTION}",
+        'heat.conductance="1e-9 W/(m^2 K)"',
+        "heat.partition=0",
+        'heat.advection="resolved"',
+        *overrides,
+    )
+
+
+def surface(result: Result) -> tuple[np.ndarray, np.ndarray]:
+    """Places x along the strip's face [m], and its rise over the ambient there [K]."""
+    fields = result.fields
+    assert fields is not None
+    assert fields.temperature is not None
+    top = (fields.body == 2)[:, None] & (np.abs(fields.points[..., 1]) < 1e-9 * HALF_WIDTH)
+    x, rise = fields.points[..., 0][top], fields.temperature[top] - AMBIENT
+    order = np.argsort(x)
+    return x[order], rise[order]
+
+
+def _rises(result: Result, L: float) -> Iterator[Check]:
+    source = band(L)
+    peak = PEAKS[L] * source.scale
+    found = result.summary["max_temperature_K"] - AMBIENT
+    yield compare(ID, f"largest rise, L = {L:g} [K]", found, peak, 1e-3, JAEGER)
+    interface = result.interface
+    rise, exact = interface.temperature_2 - AMBIENT, source.rise(-interface.x)
+    worst = int(np.abs(rise - exact).argmax())
+    quantity = f"rise under the band where it differs most, L = {L:g}, of the largest [K]"
+    yield compare(ID, quantity, rise[worst], exact[worst], 1e-3, JAEGER, scale=peak)
+
+
+def _balance(result: Result, L: float) -> Iterator[Check]:
+    error = result.summary["heat_balance_relative_error"]
+    yield compare(ID, f"heat out but not in, L = {L:g}, of all", error, 0.0, 1e-9, BALANCE, 1.0)
+    summary = result.summary
+    lost = summary["heat_carried_out_W"] + summary["heat_cooled_W"]
+    quantity = f"heat carried out and cooled off, L = {L:g} [W]"
+    yield compare(ID, quantity, lost, summary["friction_power_W"], 1e-9, BALANCE)
+
+
+def _smooth(result: Result) -> Iterator[Check]:
+    """Nothing is colder than what comes in, and it becomes warmer all the way to the band."""
+    x, rise = surface(result)
+    peak, where = rise.max(), f"L = {FAST:g}, of the largest [K]"
+    fields = result.fields
+    assert fields is not None
+    assert fields.temperature is not None
+    coldest = min(0.0, float(fields.temperature[fields.body == 2].min()) - AMBIENT)
+    yield compare(ID, f"rise below zero, {where}", coldest, 0.0, 1e-3, JAEGER, scale=peak)
+    drop = np.diff(rise[x < -HALF_WIDTH]).min(initial=0.0)
+    yield compare(ID, f"rise that falls ahead of the band, {where}", drop, 0.0, 1e-3, JAEGER, peak)
+    behind = np.diff(rise[x > HALF_WIDTH]).max(initial=0.0)
+    yield compare(ID, f"rise that grows behind it, {where}", behind, 0.0, 1e-3, JAEGER, peak)

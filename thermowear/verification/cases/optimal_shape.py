@@ -1,0 +1,109 @@
+"""The optimal initial shape: a run that starts from the design of the steady state stays in it.
+
+Hot, from the files that ``shape`` writes, and long enough to wear off several times the shape.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from ...case.tables.schema import Case
+from ...geometry.cad.design import Design, write_table
+from ...simulation import Result
+from ...simulation.analyses.design import steady_design
+from ...simulation.analyses.positioning import prepare
+from ...timer import Phases
+from ..check import Check, compare
+from ..computed import computed
+from .finite_elements import away_from_ends, variant
+
+ID = "optimal-shape"
+PRINCIPLE = "the steady state, directly from the principle of minimum wear dissipation power"
+HOT_SHOE = (
+    "bodies.shoe.conductivity=180 W/(m K)",
+    "bodies.shoe.expansion=2.3e-5 1/K",
+    "bodies.lining.conductivity=1.5 W/(m K)",
+    "bodies.lining.expansion=1.5e-5 1/K",
+    "bodies.drum.conductivity=50 W/(m K)",
+    "bodies.drum.expansion=1.1e-5 1/K",
+    "heat={conductance='1e4 W/(m^2 K)', advection='spread', "
+    "cooling={drum_rim='300 W/(m^2 K)', shoe_inside='100 W/(m^2 K)'}}",
+)
+"""Heat in the drum brake, chosen by us: with less cooling its steady state would be unstable."""
+CASES = {
+    "block-on-disk": (),
+    "drum-brake": HOT_SHOE,
+    "annular-punch": (),
+}
+OTHER = ("mesh.elements=17", "mesh.degree=6", "mesh.grading=0.4")
+TIMES = (1e-6, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0)
+"""Of the run, as parts of its end."""
+_WORN = 5.0
+"""Depth that is worn off in a run, over the depth of the design."""
+
+
+def checks() -> Iterator[Check]:
+    """Largest difference to the steady pressure in the whole run, for special cases 3, 7 and 8."""
+    for starter, overrides in CASES.items():
+        for label, mesh in (("", ()), (", on another mesh", OTHER)):
+            steady, began = from_its_shape(starter, *overrides, mesh=mesh)
+            inner = away_from_ends(variant(starter), steady)
+            yield _worst(f"{starter}, hot, from its design{label}", steady, began, inner)
+            if not mesh:
+                every = np.full(len(inner), True)
+                yield _worst(f"{starter}, hot, from its design, edges too", steady, began, every)
+
+
+def _worst(label: str, steady: Result, began: Result, chosen: np.ndarray) -> Check:
+    times = {t: furthest(steady, state, chosen) for t, state in began.outputs.items()}
+    worst = max(times, key=lambda t: times[t])
+    quantity = (
+        f"{label}: pressure over the steady one where it differs most, at {worst:.3g} s "
+        f"of {max(times):.3g} s [1]"
+    )
+    return compare(ID, quantity, 1.0 + times[worst], 1.0, 0.01, PRINCIPLE)
+
+
+def from_its_shape(
+    starter: str, *overrides: str, body: int = 1, mesh: tuple[str, ...] = ()
+) -> tuple[Result, Result]:
+    """The steady state, and a running-in of a face that was made to its shape.
+
+    Parameters
+    ----------
+    starter : str
+    *overrides : str
+        ``KEY=VALUE`` each.
+    body : int
+        Whose face was made so: 1 or 2.
+    mesh : tuple of str
+        What is different of the mesh on which both are computed, but not the design.
+    """
+    steady = computed(variant(starter, *overrides, *mesh))
+    design = design_of(variant(starter, *overrides), body)
+    fastest = (steady.interface.wear_rate_1 + steady.interface.wear_rate_2).max()
+    end = _WORN * design.depth.max() / fastest
+    times = ", ".join(f"'{part * end:.12g} s'" for part in TIMES)
+    analysis = f"analysis={{type='transient', end_time='{end:.12g} s', output_times=[{times}]}}"
+    with tempfile.TemporaryDirectory() as place:
+        file = Path(place) / "design.csv"
+        write_table(design, file)
+        shaped = f"geometry.initial_shape={str(file)!r}"
+        return steady, computed(variant(starter, *overrides, *mesh, analysis, shaped))
+
+
+def design_of(case: Case, body: int) -> Design:
+    """The steady shape of a body's face."""
+    from mpi4py import MPI
+
+    return steady_design(prepare(case, MPI.COMM_WORLD, Phases(lambda _: None)), body)
+
+
+def furthest(steady: Result, state, chosen: np.ndarray) -> float:
+    """Largest difference to the steady pressure of the same point, over that."""
+    exact = steady.interface.pressure[chosen]
+    return float(np.abs(state.pressure[chosen] / exact - 1.0).max())

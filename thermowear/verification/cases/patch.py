@@ -1,0 +1,126 @@
+"""The contact patch test: two distorted blocks of one width carry a uniform pressure exactly."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...case import load
+from ...case.tables.plane_geometry import PlaneGeometry
+from ...geometry.mesh.gmsh_session import gmsh_model, tagged_mesh
+from ...geometry.meshing.blocks import Interval, add_grid
+from ...simulation import Result
+from ..check import Check, compare
+from ..computed import computed
+
+ID = "patch"
+SOURCE = "Taylor and Papadopoulos 1991, NAFEMS CGS-1: a uniform stress solves the problem exactly"
+WIDTH, HEIGHTS, PRESSURE = 0.04, (0.02, 0.03), 50e6
+MODULI = (200e9, 70e9)
+MATCHING, OTHER = (4, 4), (4, 7)
+METHODS = ("condensed", "nitsche", "penalty")
+
+
+class PatchGeometry(PlaneGeometry):
+    """Two blocks, one on the other; nothing pulls at their sides.
+
+    Attributes
+    ----------
+    columns : tuple of int
+        Elements along the contact of each body.
+    triangles : bool
+    """
+
+    bodies = ("upper", "lower")
+    surfaces = ("upper_face", "upper_end", "lower_face", "lower_end")
+    contact = ("upper_face", "lower_face")
+    models = ("plane-strain", "plane-stress")
+    held = "upper_end"
+    fixed = "lower_end"
+
+    type: str = "patch"
+    columns: tuple[int, int]
+    triangles: bool
+
+    def contact_area(self) -> float:
+        return WIDTH * self.thickness
+
+    def build(self, mesh, zone=None):
+        with gmsh_model("patch") as gmsh:
+            spans = ((0.0, HEIGHTS[0]), (-HEIGHTS[1], 0.0))
+            upper, lower = (
+                add_grid(gmsh.model, [Interval(0.0, WIDTH, n)], [Interval(*span, 3)])
+                for n, span in zip(self.columns, spans, strict=True)
+            )
+            gmsh.model.geo.synchronize()
+            for name, grid in (("upper", upper), ("lower", lower)):
+                gmsh.model.addPhysicalGroup(2, grid.surfaces, name=name)
+            curves = (upper.bottom, upper.top, lower.top, lower.bottom)
+            for name, curve in zip(self.surfaces, curves, strict=True):
+                gmsh.model.addPhysicalGroup(1, curve, name=name)
+            gmsh.model.mesh.generate(2)
+            if self.triangles:
+                gmsh.model.mesh.splitQuadrangles(1.0)
+            tagged = tagged_mesh(gmsh.model, self.bodies, self.surfaces)
+        tagged.points[:] = _distorted(tagged.points)
+        return tagged
+
+
+def _distorted(points: np.ndarray) -> np.ndarray:
+    """Points moved within the blocks, and along the faces."""
+    x, y = points.T
+    within = np.sin(np.pi * x / WIDTH)
+    rows = np.sin(np.pi * y / np.where(y > 0, HEIGHTS[0], HEIGHTS[1]))
+    moved = 0.06 * WIDTH * within * np.cos(7 * x / WIDTH + 150 * y)
+    raised = 0.1 * HEIGHTS[0] * rows * np.cos(9 * x / WIDTH + 3)
+    return points + np.column_stack([moved, raised])
+
+
+def checks() -> Iterator[Check]:
+    """Pressure at every point, and the approach."""
+    for method, triangles, degree in itertools.product(METHODS, (False, True), (1, 2, 3, 4)):
+        for columns, allowed in ((MATCHING, 1e-10), (OTHER, 1e-3)):
+            yield from _patch(method, triangles, degree, columns, allowed)
+
+
+def _patch(method, triangles: bool, degree: int, columns, allowed: float) -> Iterator[Check]:
+    result = patch(method, triangles, degree, columns)
+    cells = "triangles" if triangles else "quadrilaterals"
+    faces = "matching" if columns == MATCHING else "not matching"
+    note = f"{method}, {cells}, degree {degree}, {faces}"
+    pressure = result.interface.pressure
+    worst = pressure[np.abs(pressure / PRESSURE - 1).argmax()]
+    yield compare(
+        ID, f"pressure where it differs most, {note} [Pa]", worst, PRESSURE, allowed, SOURCE
+    )
+    shortened = PRESSURE * sum(h / E for h, E in zip(HEIGHTS, MODULI, strict=True))
+    if method == "penalty":
+        shortened += PRESSURE / PENALTY
+    approach = result.summary["approach_m"]
+    yield compare(ID, f"approach, {note} [m]", approach, shortened, allowed, SOURCE)
+
+
+PENALTY = 1e15
+
+
+def patch(method: str, triangles: bool, degree: int, columns: tuple[int, int]) -> Result:
+    """Contact of the two blocks under a mean pressure, without Poisson's effect."""
+    materials = zip(PatchGeometry.bodies, MODULI, strict=True)
+    contact: dict = {"method": method}
+    if method == "penalty":
+        contact["penalty"] = f"{PENALTY} Pa/m"
+    tables = {
+        "title": "contact patch test",
+        "model": "plane-strain",
+        "geometry": PatchGeometry(columns=columns, triangles=triangles),
+        "mesh": {"degree": degree},
+        "bodies": {
+            name: {"young_modulus": f"{E} Pa", "poisson_ratio": 0.0} for name, E in materials
+        },
+        "load": {"mean_pressure": f"{PRESSURE} Pa"},
+        "contact": contact,
+        "analysis": {"type": "initial"},
+    }
+    return computed(load(tables))

@@ -1,0 +1,108 @@
+"""A punch that slides to and fro on a strip, against what is known of its end and of its limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...simulation import Result
+from ..check import Check, compare
+from ..starter import run_starter
+
+ID = "reciprocating"
+STARTER = "punch-on-strip-reciprocating"
+HALF_WIDTH, AMPLITUDE, THICKNESS = 5e-3, 5e-3, 10e-3
+FORCE, COEFFICIENT, SPEED = 2e3, 1e-13, 4 * 5e-3 * 2.0
+SLIDING = "k F times the way: every position carries the load"
+END = "uniform wear of the punch and of the trough, see `reciprocating_problem`"
+IN_PLACE = "the program's running-in of both faces in place, at the same mean speed"
+LAW = '{coefficient="1e-7 1/MPa", per="pressure"}'
+PLACES = (0.0, 0.4, 0.8)
+
+
+def checks() -> Iterator[Check]:
+    """Volumes, rates in the end, one body that wears, and strokes that shrink to nothing."""
+    long = run_starter(STARTER, "analysis={type='reciprocating', cycles=50000}")
+    yield from _volumes(long)
+    yield from _rates(long)
+    yield from _one_body()
+    yield from _short_strokes()
+
+
+def _volumes(result: Result) -> Iterator[Check]:
+    slid = SPEED * result.summary["time_s"]
+    for body in (1, 2):
+        found = result.summary[f"wear_volume_{body}_m3"]
+        known = COEFFICIENT * FORCE * slid
+        yield compare(ID, f"worn volume, body {body} [m³]", found, known, 1e-9, SLIDING)
+
+
+def _rates(result: Result) -> Iterator[Check]:
+    assert result.track is not None
+    i, track = result.interface, result.track.last
+    sides = (
+        ("punch", i.x, i.wear_rate_1, HALF_WIDTH, 1e-2),
+        ("strip", track.x, track.wear_rate_2, HALF_WIDTH + AMPLITUDE, 2e-2),
+    )
+    for body, x, rate, half, allowed in sides:
+        known = COEFFICIENT * FORCE * SPEED / (2 * half * THICKNESS)
+        for place in PLACES:
+            found = float(np.interp(place * half, x, rate))
+            quantity = f"wear rate at {place:g} of the half-width, {body} [m/s]"
+            yield compare(ID, quantity, found, known, allowed, END)
+
+
+def _one_body() -> Iterator[Check]:
+    """On a long strip all positions are alike: a punch that alone wears fits it in all of them."""
+    alone = run_starter(
+        STARTER,
+        f"wear={{punch={LAW}}}",
+        "contact.friction=0",
+        "analysis={type='reciprocating', cycles=2000}",
+    )
+    i, known = alone.interface, FORCE / (2 * HALF_WIDTH * THICKNESS)
+    inside = np.abs(i.x) <= 0.8 * HALF_WIDTH
+    worst = i.pressure[inside][np.abs(i.pressure[inside] - known).argmax()]
+    quantity = "pressure where it differs most within 0.8 of the half-width, punch wears [Pa]"
+    yield compare(ID, quantity, float(worst), known, 1e-3, "a uniform pressure")
+    alone = run_starter(
+        STARTER, f"wear={{strip={LAW}}}", "analysis={type='reciprocating', cycles=20000}"
+    )
+    assert alone.track is not None
+    track, half = alone.track.last, HALF_WIDTH + AMPLITUDE
+    known = COEFFICIENT * FORCE * SPEED / (2 * half * THICKNESS)
+    inside = np.abs(track.x) <= 0.9 * half
+    rates = track.wear_rate_2[inside]
+    worst = rates[np.abs(rates - known).argmax()]
+    quantity = "wear rate where it differs most within 0.9 of the trough, strip wears [m/s]"
+    yield compare(ID, quantity, float(worst), known, 1e-2, END)
+
+
+def _short_strokes() -> Iterator[Check]:
+    """A stroke of a hundredth of the punch: both faces wear as if in place."""
+    mesh = (
+        "geometry.stroke=0.5 mm",
+        "contact.friction=0",
+        "mesh={degree=3, elements=24, grading=1.0}",
+    )
+    short = run_starter(
+        STARTER,
+        "analysis={type='reciprocating', end_time='20 s', tolerance=1e-4}",
+        "motion={amplitude='0.05 mm', frequency='200 Hz'}",
+        *mesh,
+    )
+    in_place = run_starter(
+        STARTER,
+        "analysis={type='transient', end_time='20 s'}",
+        "motion={velocity='40 mm/s'}",
+        *mesh,
+    )
+    for body in (1, 2):
+        for place in PLACES:
+            found, known = (
+                float(np.interp(place * HALF_WIDTH, i.x, getattr(i, f"wear_{body}")))
+                for i in (short.interface, in_place.interface)
+            )
+            quantity = f"depth at {place:g} of the half-width, short strokes, body {body} [m]"
+            yield compare(ID, quantity, found, known, 1e-2, IN_PLACE)

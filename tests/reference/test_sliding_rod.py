@@ -12,7 +12,7 @@ ROD = SlidingRod(0.05, 2.1e11, 1.2e-5, 50.0, 3.7e6, 0.3)
 
 
 def eigenvalues(rod, speed, degree=24):
-    """Of temperature and worn length: x = L (1 + t)/2, temperatures ``(1 + t) P_k(t)``, [1/s]."""
+    """Growth rates by a Galerkin method: x = L (1 + t)/2, temperatures ``(1 + t) P_k(t)`` [1/s]."""
     t, w = legendre.leggauss(degree + 3)
     P, ends = legendre.legvander(t, degree), legendre.legvander(np.array([1.0]), degree)[0]
     slopes = np.column_stack(

@@ -1,4 +1,4 @@
-"""Solutions that the program is verified against, each with its source."""
+"""Closed forms and reference solutions for verification, each with its source."""
 
 from . import annular_punch, cylinder, slabs
 

@@ -1,8 +1,8 @@
-"""An annular punch turning on a plate (special case 8 of Páczelt and Mróz).
+"""Annular punch rotating on a plate (special case 8 of Páczelt and Mróz).
 
 Closed forms of the flat face: Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, with the
-constants from equilibrium. The tables are converged numerical solutions for one set of data, found
-with other meshes and other pressure spaces; the data stands in `DATA`.
+constants from equilibrium. The tables are converged numerical solutions for the data set `DATA`,
+obtained with other meshes and other pressure spaces.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ DATA = {
     "cooling": 2000.0,
     "coefficient": 2e-13,
 }
-"""SI; both bodies of one material, cooled to ambient at the punch's top and the plate's bottom."""
+"""Data in SI; one material, cooling to ambient at the punch's top and the plate's bottom."""
 
 
 STEADY_PRESSURE = {
@@ -65,18 +65,18 @@ def conical_pressure(
 ) -> np.ndarray:
     """Steady pressure on a cone, ``(F/I) r^(-a/b) sin^(1/b) α`` [Pa].
 
-    ``I = 2 π ∫ r^(1 - a/b) sin^(1/b) α (sin α + mu_d cos α) ds``, ``dr = sin α ds``; friction round
-    the axis does not enter.
+    ``I = 2 π ∫ r^(1 - a/b) sin^(1/b) α (sin α + mu_d cos α) ds``, ``dr = sin α ds``;
+    circumferential friction has no influence.
 
     Parameters
     ----------
     r : array_like [m]
     force, inner, outer, b, a
-        As of `steady_pressure`.
+        See `steady_pressure`.
     α : float
-        Between the face's normal and the radius; π/2 is flat [rad].
+        Angle between the face's normal and the radius; π/2 is flat [rad].
     transverse : float
-        mu_d, friction against the wear velocity along the face.
+        mu_d, coefficient of friction against the wear velocity along the face.
     """
     flat = steady_pressure(r, force, inner, outer, b, a)
     return flat / (1 + transverse * cos(α) / sin(α))
@@ -93,7 +93,7 @@ def toroidal_pressure(
     b: float,
     a: float,
 ) -> np.ndarray:
-    """The same on a torus, ``r = r_c + ρ cos α``, ``ds = ρ dα`` [Pa].
+    """Steady pressure on a torus, ``r = r_c + ρ cos α``, ``ds = ρ dα`` [Pa].
 
     Parameters
     ----------
@@ -102,9 +102,9 @@ def toroidal_pressure(
     centre, rounding : float
         ``r_c`` and ρ [m].
     start, end : float
-        Of α on the face, within 0 and π/2.
+        Range of α on the face, within 0 and π/2.
     transverse, b, a
-        As of `conical_pressure`.
+        See `conical_pressure`.
     """
 
     def shape(α: float) -> float:
@@ -119,7 +119,7 @@ def toroidal_pressure(
 
 
 def torque(force: float, inner: float, outer: float, friction: float, b: float, a: float) -> float:
-    """``mu ∫ p r dS`` on a flat face [N m]."""
+    """Torque ``mu ∫ p r dS`` on a flat face [N m]."""
     arm, area = 3.0 - a / b, 2.0 - a / b
     mean = _power_integral(arm, inner, outer) / _power_integral(area, inner, outer)
     return friction * force * mean
@@ -133,12 +133,12 @@ def friction_power(
 
 
 def _power_integral(power: float, low: float, high: float) -> float:
-    """``∫ r^(power - 1) dr``."""
+    """Integral ``∫ r^(power - 1) dr``."""
     return log(high / low) if power == 0 else (high**power - low**power) / power
 
 
 RADII = np.array([20, 25, 40, 70, 100, 115, 120]) * 1e-3
-"""Where the steady tables are given [m]; the first and last are singular corners."""
+"""Radii of the steady tables [m]; the first and last are singular corners."""
 
 STEADY_SHAPE = {
     (1.0, 0.0): [0.02526, 0.025557, 0.015713, 0, -0.008500, -0.011858, -0.013585],
@@ -148,13 +148,13 @@ STEADY_SHAPE = {
     (0.5, 0.0): [0.08266, 0.076017, 0.038414, 0, -0.013803, -0.017520, -0.01890],
     (0.5, 0.1): [0.05894, 0.052151, 0.019573, 0, 0.014437, 0.031229, 0.03756],
 }
-"""Steady worn shape against r = 70 mm [mm], by (b, ω); ω = 0 means cold."""
+"""Steady worn shape relative to r = 70 mm [mm], by (b, ω); ω = 0: without heat."""
 
 TEMPERATURE_RISE = [72.38, 74.040, 75.149, 74.675, 72.181, 69.233, 66.70]
-"""Of the punch's face for b = 1 and ω = 0.1 rad/s [K]."""
+"""Temperature rise of the punch's face for b = 1 and ω = 0.1 rad/s [K]."""
 
 RUNNING_IN_RADII = np.array([21, 25, 40, 70, 100, 115, 119]) * 1e-3
-"""Where the pressures of the running-in are given [m]."""
+"""Radii of the running-in pressures [m]."""
 
 RUNNING_IN = {
     1: ([77.97, 58.79, 51.21, 48.86, 47.44, 52.69, 58.62], [0.7104, 1.6967, 3.0438], 90.12),
@@ -164,5 +164,5 @@ RUNNING_IN = {
     100: ([165.90, 139.42, 87.37, 50.05, 35.05, 30.47, 29.45], [152.59, 177.98, 189.83], 7909.4),
     200: ([166.66, 140.00, 87.50, 50.00, 35.00, 30.43, 29.41], [327.45, 353.01, 364.87], 15607.0),
 }
-"""Cold running-in of a flat face, ω = 10 rad/s, a = b = 1: by time [s], pressures [MPa], depths
-worn at r = 25, 70 and 115 mm [µm], worn volume [mm³]."""
+"""Running-in of a flat face without heat, ω = 10 rad/s, a = b = 1: by time [s], pressures [MPa],
+wear depths at r = 25, 70 and 115 mm [µm], worn volume [mm³]."""

@@ -1,13 +1,13 @@
-"""A beam that is bent on a foundation and wears until it touches no more.
+"""Beam that wears on a foundation until it loses contact (wear shakedown).
 
 Clamped at x = 0 and simply supported at x = L, a gap above a moving Winkler foundation. A force F
-bends it down; where it deflects by more than the gap it is pressed on and wears,
-``dw/dt = κ p``, until nothing presses: ``w = max(0, u_free - gap)``, whatever wears how fast (wear
+bends it down; where the deflection exceeds the gap it is in contact and wears, ``dw/dt = κ p``,
+until the pressure vanishes: ``w = max(0, u_free - gap)``, whatever the wear rates (wear
 shakedown; Páczelt and Mróz, Int. J. Numer. Meth. Eng. 63 (2005) 1310).
 
-Beam elements with the exact stiffness of a beam between its nodes: Hermite's cubic, or
-Timoshenko's with the shear flexibility ``Φ = 12 E I/(G A_s h²)`` (Przemieniecki, Theory of Matrix
-Structural Analysis, 1968, section 5.6). The foundation is one of springs under the nodes.
+Beam elements with the exact nodal stiffness: Hermite's cubic, or Timoshenko's with the shear
+flexibility ``Φ = 12 E I/(G A_s h²)`` (Przemieniecki, Theory of Matrix Structural Analysis, 1968,
+section 5.6). The foundation consists of springs under the nodes.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ import numpy as np
 _γ = 1 - 1 / math.sqrt(2)
 
 Advance = Callable[[np.ndarray, np.ndarray, float], tuple[np.ndarray, np.ndarray]]
-"""Depths and pressures after a step from those before it, and its size."""
+"""Time step: maps depths, pressures and step size to depths and pressures at its end."""
 
 
 @dataclass(frozen=True)
 class BeamState:
-    """What presses and what is worn at a time.
+    """Pressure and wear depth at a time.
 
     Attributes
     ----------
     time : float [s]
     pressure, worn : ndarray, shape (n,)
-        At the nodes between the supports [Pa, m].
+        Values at the nodes between the supports [Pa, m].
     """
 
     time: float
@@ -53,7 +53,7 @@ class WornBeam:
         Force and its distance from the clamp [N, m].
     gap : float [m]
     compliance : float
-        Of the foundation [m/Pa].
+        Compliance of the foundation [m/Pa].
     rate : float
         κ: wear rate per pressure [m/(s Pa)].
     shear_stiffness : float or None
@@ -75,7 +75,7 @@ class WornBeam:
 
     @property
     def bending_stiffness(self) -> float:
-        """``E I`` [N m²]."""
+        """Bending stiffness ``E I`` [N m²]."""
         return self.young_modulus * self.width * self.height**3 / 12
 
     @property
@@ -85,12 +85,12 @@ class WornBeam:
 
     @property
     def area(self) -> float:
-        """Face that each node stands for [m²]."""
+        """Area of the face per node [m²]."""
         return self.width * self.length / self.elements
 
     @cached_property
     def flexibility(self) -> np.ndarray:
-        """Deflections of the nodes per forces on them, shape (n, n) [m/N]."""
+        """Deflections of the nodes per nodal force, shape (n, n) [m/N]."""
         matrix = np.zeros((2 * self.elements + 2,) * 2)
         element = self._element()
         for k in range(0, 2 * self.elements, 2):
@@ -99,7 +99,7 @@ class WornBeam:
         return np.linalg.inv(matrix[np.ix_(free, free)])[:-1:2, :-1:2]
 
     def _element(self) -> np.ndarray:
-        """Stiffness for deflection and slope at both ends."""
+        """Element stiffness for deflection and slope at both ends."""
         h, shear = self.length / self.elements, self.shear_stiffness
         Φ = 0.0 if shear is None else 12 * self.bending_stiffness / (shear * h**2)
         near, far = (4 + Φ) * h**2, (2 - Φ) * h**2
@@ -113,26 +113,26 @@ class WornBeam:
 
     @cached_property
     def free_deflection(self) -> np.ndarray:
-        """Of the nodes without any foundation, shape (n,) [m]."""
+        """Deflection of the nodes without foundation, shape (n,) [m]."""
         hats = np.maximum(1 - np.abs(self.x - self.load_position) / (self.x[1] - self.x[0]), 0.0)
         return self.force * self.flexibility @ hats
 
     @property
     def shakedown(self) -> np.ndarray:
-        """Depth worn in the end, shape (n,) [m]."""
+        """Final wear depth, shape (n,) [m]."""
         return np.maximum(self.free_deflection - self.gap, 0.0)
 
     def states(
         self, times: Sequence[float], steps: int = 400, advance: Advance | None = None
     ) -> list[BeamState]:
-        """States at increasing times, by implicit steps each 2 % longer than the one before.
+        """States at increasing times, by implicit steps that grow by 2 % each.
 
         Parameters
         ----------
         times : sequence of float
             Increasing [s].
         steps : int
-            The longest step is the last time over this.
+            Number of longest steps up to the last time.
         advance : callable, optional
             `two_stage` (default) or `euler`.
         """
@@ -150,7 +150,7 @@ class WornBeam:
         return found
 
     def contact(self, worn: np.ndarray, step: float = 0.0, guess=None) -> np.ndarray:
-        """Pressure at the end of an implicit step of wear, shape (n,) [Pa]."""
+        """Pressure at the end of an implicit wear step, by an active set, shape (n,) [Pa]."""
         soft = self.compliance + self.rate * step
         matrix = self.area * self.flexibility + soft * np.eye(len(worn))
         closing = self.free_deflection - self.gap - worn
@@ -163,15 +163,15 @@ class WornBeam:
             if np.array_equal(following, pressing):
                 return pressure
             pressing = following
-        raise RuntimeError("beam: the touching nodes do not settle")
+        raise RuntimeError("beam: the active set did not converge")
 
     def euler(self, worn, pressure, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """An implicit step of first order."""
+        """Implicit Euler step."""
         pressure = self.contact(worn, step, pressure)
         return worn + step * self.rate * pressure, pressure
 
     def two_stage(self, worn, pressure, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """An implicit step of second order, L-stable.
+        """Implicit step of second order, L-stable (two-stage SDIRK).
 
         Alexander, SIAM J. Numer. Anal. 14 (1977) 1006.
         """
@@ -192,10 +192,10 @@ EXAMPLE = WornBeam(
     compliance=2e-16,
     rate=7.5e-10 * 0.05,
 )
-"""The example of Páczelt and Mróz, with the supports that give its pressure after 60 s."""
+"""Example of Páczelt and Mróz, with the supports that reproduce its pressure after 60 s."""
 
 PLACES = np.array([0.15, 0.1755])
-"""Where the depths of the table are given [m]."""
+"""Positions of the wear depths in the table [m]."""
 
 TABLE = {
     0.1: (9.135, 151.5, 9766.9, (90, 220.5), (0.047194, 0.036580)),
@@ -207,5 +207,5 @@ TABLE = {
     12.0: (0.1824, 174, 310.69, (24, 294), (0.828244, 0.840271)),
     60.0: (9.9e-8, 174, 1.7e-4, (24, 294), (0.850000, 0.862994)),
 }
-"""Other implicit steps of 200 Hermite elements without shear: by time [s], largest pressure [MPa]
-and its place [mm], reaction [N], ends of the zone [mm], depths worn [mm]."""
+"""Independent implicit steps with 200 Hermite elements without shear: by time [s], largest
+pressure [MPa] and its position [mm], reaction [N], ends of the zone [mm], wear depths [mm]."""

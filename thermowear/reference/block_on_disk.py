@@ -1,10 +1,10 @@
-"""A block on a disk, and a segment inside a ring, guided vertically (special cases 3 and 4).
+"""Block on a disk, and segment inside a ring, with vertical guidance (special cases 3 and 4).
 
-The block rests on the arc ``start < α < end``, α measured from the vertical; its face descends with
-one vertical rate, so that ``p = (F/I) cos^(1/b) α`` with ``I = ∫ cos^(1/b) α (cos α ± mu sin α) R t
-dα`` (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895). Plus is a disk under the block that
-turns towards falling α, or a ring round the segment that turns towards growing α: where ``α > 0``
-friction then helps to carry the block.
+The block rests on the arc ``start < α < end``, α measured from the vertical; its face descends
+at a uniform vertical rate, so that ``p = (F/I) cos^(1/b) α`` with ``I = ∫ cos^(1/b) α (cos α ± mu
+sin α) R t dα`` (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895). Plus is a disk under the
+block rotating towards decreasing α, or a ring around the segment rotating towards increasing α:
+for ``α > 0`` friction then supports part of the load.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ RADIUS, WIDTH, FORCE, FRICTION = 0.02, 0.01, 1000.0, 0.3
 """Data of the tables [m, m, N]."""
 
 SYMMETRIC = {0.5: "5.647245", 1.0: "5.430441", 2.0: "5.322369"}
-"""Largest pressure on the arc of ±0.5 rad, by b [MPa]; the same in both senses and for any mu."""
+"""Largest pressure on the arc of ±0.5 rad, by b [MPa]; equal in both senses and for any mu."""
 
 ASYMMETRIC = {1: "5.882013", -1: "6.780719"}
 """Largest pressure on -0.2 < α < 0.7 for b = 1, by sense [MPa]."""
@@ -27,7 +27,7 @@ ASYMMETRIC = {1: "5.882013", -1: "6.780719"}
 def bearing_integral(
     radius: float, width: float, start: float, end: float, friction: float, b: float
 ) -> float:
-    """``I`` [m²]; the sign of the friction is that of the sense."""
+    """Bearing integral ``I`` [m²]; the friction is negative in the sense of minus."""
 
     def integrand(α: float) -> float:
         return cos(α) ** (1 / b) * (cos(α) + friction * sin(α))
@@ -51,10 +51,10 @@ def steady_pressure(
     ----------
     α : array_like [rad]
     force : float
-        Vertical [N].
+        Vertical force [N].
     radius, width : float [m]
     start, end : float
-        Of the arc, within ±π/2 [rad].
+        Limits of the arc, within ±π/2 [rad].
     friction : float
         mu, negative in the sense of minus.
     b : float
@@ -64,7 +64,7 @@ def steady_pressure(
 
 
 def vertical_rate(force: float, integral: float, factor: float, b: float) -> float:
-    """``Z (F/I)^b``, the rate at which the block descends [m/s]; along the normal its cos α."""
+    """Rate of descent of the block ``Z (F/I)^b`` [m/s]; the normal rate is its cos α."""
     return factor * (force / integral) ** b
 
 

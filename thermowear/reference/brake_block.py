@@ -1,9 +1,9 @@
-"""A block on a lever, pressed against a moving strip (special case 5).
+"""Block on a lever, pressed against a moving strip (special case 5).
 
-The lever turns about the origin; the face stands at the offset ``l_x`` from it and reaches from
-``z_i`` to ``z_u``. Then ``p = (M/I) z^(1/b)`` with ``I = ∫ z^(1/b) (z ± mu l_x) t dz``, and the
-normal wear rate is ``λ z`` (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895). In the sense
-of minus friction helps to press, and locks the strip where I is no longer positive.
+The lever rotates about the origin; the face is offset by ``l_x`` from it and extends from ``z_i``
+to ``z_u``. Then ``p = (M/I) z^(1/b)`` with ``I = ∫ z^(1/b) (z ± mu l_x) t dz``, and the normal
+wear rate is ``λ z`` (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895). In the sense of minus
+friction increases the pressure; the block is self-locking where I is not positive.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ENDS = {
 def bearing_integral(
     inner: float, outer: float, offset: float, width: float, friction: float, b: float
 ) -> float:
-    """``I`` [m^(3 + 1/b)]; the sign of the friction is that of the sense."""
+    """Bearing integral ``I`` [m^(3 + 1/b)]; the friction is negative in the sense of minus."""
     m = 1 / b
     with_arm = (outer ** (m + 2) - inner ** (m + 2)) / (m + 2)
     with_offset = (outer ** (m + 1) - inner ** (m + 1)) / (m + 1)
@@ -47,7 +47,7 @@ def steady_pressure(
     ----------
     z : array_like [m]
     moment : float
-        Of the load about the pivot [N m].
+        Moment of the load about the pivot [N m].
     inner, outer : float
         ``z_i`` and ``z_u`` [m].
     offset, width : float
@@ -61,7 +61,7 @@ def steady_pressure(
 
 
 def locking_friction(inner: float, outer: float, offset: float, b: float) -> float:
-    """The mu from which on the sense of minus locks, where I vanishes."""
+    """Least mu of self-locking in the sense of minus, where I vanishes."""
     m = 1 / b
     with_arm = (outer ** (m + 2) - inner ** (m + 2)) / (m + 2)
     with_offset = (outer ** (m + 1) - inner ** (m + 1)) / (m + 1)

@@ -1,4 +1,4 @@
-"""Thick-walled cylinder under internal pressure, held between its ends (Lamé)."""
+"""Thick-walled cylinder under internal pressure in plane strain (Lamé)."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ def radial_displacement(
     ----------
     r : array_like [m]
     inner, outer : float
-        Radii [m].
+        Inner and outer radius [m].
     pressure : float
-        On the inner surface [Pa].
+        Pressure on the inner surface [Pa].
     young_modulus, poisson_ratio : float
     """
     E, ν = young_modulus, poisson_ratio

@@ -1,9 +1,9 @@
-"""A pad on a turning disk (special case 9).
+"""Pad on a rotating disk (special case 9).
 
-The pad covers ``ri < r < ro`` and an angle θ, symmetric about the x axis; the disk turns at ω, so
-that ``v = ω r``. Pressed straight, ``p = (F/I) r^(-a/b)`` with ``I = θ ∫ r^(1 - a/b) dr``; where it
-may tilt, ``p^b v^a`` is linear in x and y (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895).
-For a = b the straight pad has ``p = p_a ri/r``, the uniform wear of machine design.
+The pad covers ``ri < r < ro`` and an angle θ, symmetric about the x axis; the disk rotates at ω,
+so that ``v = ω r``. Without tilting, ``p = (F/I) r^(-a/b)`` with ``I = θ ∫ r^(1 - a/b) dr``; with
+free tilting, ``p^b v^a`` is linear in x and y (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007)
+895). For a = b the pad without tilting has ``p = p_a ri/r``, uniform wear in machine design.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 def steady_pressure(
     r, force: float, inner: float, outer: float, angle: float, b: float, a: float
 ) -> np.ndarray:
-    """Pressure of a pad that is pressed straight [Pa].
+    """Steady pressure of a pad that cannot tilt [Pa].
 
     Parameters
     ----------
@@ -32,12 +32,12 @@ def steady_pressure(
 
 
 def uniform_wear_force(largest: float, inner: float, outer: float, angle: float) -> float:
-    """For a = b: ``F = θ p_a ri (ro - ri)``, with p_a the pressure at the inner edge [N]."""
+    """Force for a = b: ``F = θ p_a ri (ro - ri)``, with p_a the pressure at the inner edge [N]."""
     return angle * largest * inner * (outer - inner)
 
 
 def uniform_wear_torque(force: float, friction: float, inner: float, outer: float) -> float:
-    """For a = b: ``mu F (ri + ro)/2`` [N m]."""
+    """Torque for a = b: ``mu F (ri + ro)/2`` [N m]."""
     return friction * force * (inner + outer) / 2
 
 
@@ -55,20 +55,20 @@ def tilted_pressure(
     """Pressure of a pad that may tilt, for b = 1 and full contact [Pa].
 
     ``p = (A + B x + C y) r^-a``, with A, B, C from the three equations of equilibrium, whose
-    integrals over r and over the angle are closed.
+    integrals over r and over the angle have closed forms.
 
     Parameters
     ----------
     x, y : array_like [m]
     force : float [N]
     centre : tuple of float
-        Where the load acts [m].
+        Point of application of the load [m].
     inner, outer, angle
-        Of the pad.
+        Dimensions of the pad.
     a : float
     lift : float
-        ``mu h``, friction times the height of the joint over the face, for a disk that turns
-        towards falling angles φ [m]: moments are ``∫ p (x + mu h sin φ) dS`` and
+        ``mu h``, friction times the height of the joint above the face, for a disk that rotates
+        towards decreasing angles φ [m]: moments are ``∫ p (x + mu h sin φ) dS`` and
         ``∫ p (y - mu h cos φ) dS``.
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
@@ -88,7 +88,7 @@ def tilted_pressure(
 
 
 def _power_integral(power: float, low: float, high: float) -> float:
-    """``∫ r^power dr``."""
+    """Integral ``∫ r^power dr``."""
     if power == -1:
         return log(high / low)
     return (high ** (power + 1) - low ** (power + 1)) / (power + 1)

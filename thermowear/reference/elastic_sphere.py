@@ -1,10 +1,10 @@
 """Contact of an elastic sphere of finite size with a half-space, without friction.
 
-Hertz takes both bodies for half-spaces. A sphere, held at its equator, yields otherwise: the peak
-pressure falls by about 0.02 a/R, more than a fine mesh errs. Its displacement under a pressure is
-a series of Legendre polynomials (Lur'e, Three-Dimensional Problems of the Theory of Elasticity,
-1964, ch. 6), that of the half-space a hypergeometric function of each power of ``1 - (r/a)²``
-(Sneddon, 1946; Johnson, Contact Mechanics, 1985, section 3.4).
+Hertz approximates both bodies by half-spaces. The compliance of a sphere held at its equator
+differs: the peak pressure is lower by about 0.02 a/R, more than the error of a fine mesh. Its
+displacement under a pressure is a series of Legendre polynomials (Lur'e, Three-Dimensional
+Problems of the Theory of Elasticity, 1964, ch. 6), that of the half-space a hypergeometric function
+for each power of ``1 - (r/a)²`` (Sneddon, 1946; Johnson, Contact Mechanics, 1985, section 3.4).
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from scipy.special import gamma, hyp2f1
 from .hertz import Hertz, contact_modulus, point_contact
 
 _NODES = 240
-"""Of the Gauss rule over the contact."""
+"""Number of Gauss points over the contact."""
 _WAVES = 240.0
-"""Largest order of the series times a/R: what that rule resolves."""
+"""Largest order of the series times a/R, as resolved by the Gauss rule."""
 _TERMS = 3
-"""Powers ``(1 - (r/a)²)^(j - 1/2)`` of the pressure."""
+"""Number of powers ``(1 - (r/a)²)^(j - 1/2)`` of the pressure."""
 
 
 def sphere_on_half_space(
     force: float, radius: float, sphere: tuple[float, float], half_space: tuple[float, float]
 ) -> Hertz:
-    """Radius of the contact and peak pressure.
+    """Contact radius and peak pressure.
 
     Parameters
     ----------
     force : float [N]
     radius : float [m]
-        Of the sphere.
+        Radius of the sphere.
     sphere, half_space : tuple of float
         Young's modulus [Pa] and Poisson's ratio.
     """
@@ -49,12 +49,12 @@ def sphere_on_half_space(
 
 
 def normal_compliance(orders: np.ndarray, poisson: float) -> np.ndarray:
-    """Radial displacement over radial stress, times 2G/R, of a sphere without shear on it.
+    """Radial displacement over radial stress, times 2G/R, of a sphere without surface shear.
 
     Parameters
     ----------
     orders : ndarray of int
-        n of the Legendre polynomials; n = 1, a resultant force, is zero here.
+        n of the Legendre polynomials; zero for n = 1, a resultant force.
     poisson : float
     """
     n, ν = orders.astype(float), poisson
@@ -70,7 +70,7 @@ def _pressure_terms(
 ) -> np.ndarray:
     """Coefficients of the powers that close the gap over a contact of radius a, (n,) [Pa].
 
-    The approach of the bodies is one more unknown of the least squares.
+    The approach of the bodies is an additional unknown of the least squares.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     angle = pi / 4 * (nodes + 1.0)
@@ -78,8 +78,8 @@ def _pressure_terms(
     cosine = np.sqrt(1.0 - (r / radius) ** 2)
     area = pi / 4 * weights * a * np.cos(angle) * r / (radius**2 * cosine)
     pressures = (1.0 - (r / a) ** 2)[:, None] ** _powers()
-    yielding = _of_sphere(pressures, area, cosine, a, radius, sphere)
-    yielding += _of_half_space(r, a, half_space)
+    yielding = _sphere_displacement(pressures, area, cosine, a, radius, sphere)
+    yielding += _half_space_displacement(r, a, half_space)
     columns = np.hstack([yielding, -np.ones((_NODES, 1))])
     scale = np.abs(columns).max(axis=0)
     gap = radius - radius * cosine
@@ -90,10 +90,10 @@ def _powers() -> np.ndarray:
     return np.arange(_TERMS) + 0.5
 
 
-def _of_sphere(pressures, area, cosine, a, radius, material) -> np.ndarray:
+def _sphere_displacement(pressures, area, cosine, a, radius, material) -> np.ndarray:
     """Displacement by each pressure and its mirror image at the other pole, (nodes, terms) [m/Pa].
 
-    Mirrored loads leave the equator plane: the lower half rests on a rigid, smooth flat.
+    Mirrored loads keep the equator plane: the lower half rests on a rigid, frictionless plane.
     """
     young, poisson = material
     orders = np.arange(0, int(_WAVES * radius / a), 2)
@@ -104,7 +104,7 @@ def _of_sphere(pressures, area, cosine, a, radius, material) -> np.ndarray:
     return legendre.T @ (compliance[:, None] * parts)
 
 
-def _of_half_space(r: np.ndarray, a: float, material: tuple[float, float]) -> np.ndarray:
+def _half_space_displacement(r: np.ndarray, a: float, material: tuple[float, float]) -> np.ndarray:
     """Displacement of a half-space by each power of the pressure, (nodes, terms) [m/Pa]."""
     young, poisson = material
     j = _powers() + 0.5

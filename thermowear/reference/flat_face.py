@@ -1,8 +1,8 @@
-"""A flat face that wears under a centred or an eccentric load (special cases 1, 2 and 6).
+"""Wear of a flat face under a centred or an eccentric load (special cases 1, 2 and 6).
 
-The steady pressure follows from ``p^b = V·n/Z``, which is constant where the body only descends and
-linear along the face where it also tilts (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895);
-the constants from equilibrium. The tables are closed forms evaluated with high precision.
+The steady pressure follows from ``p^b = V·n/Z``, which is constant for a translating body and
+linear along the face for one that also tilts (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007)
+895), with constants from equilibrium. The tables are closed forms evaluated with high precision.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ TILTING_PUNCH = {
 
 
 def centred_pressure(force: float, area: float) -> float:
-    """``p = F/S`` [Pa]."""
+    """Uniform pressure ``p = F/S`` [Pa]."""
     return force / area
 
 
 def volume_rate(force: float, area: float, factor: float, b: float) -> float:
-    """``Z F^b S^(1-b)``, worn per time under a centred load [m³/s].
+    """Wear volume per time under a centred load, ``Z F^b S^(1-b)`` [m³/s].
 
     Parameters
     ----------
@@ -40,47 +40,47 @@ def volume_rate(force: float, area: float, factor: float, b: float) -> float:
 def tilted_pressure(
     place, force: float, moment: float, length: float, width: float, b: float
 ) -> np.ndarray:
-    """Pressure ``A (1 + κ s)^(1/b)``, ``s = place/(length/2)``, with or without parting [Pa].
+    """Pressure ``A (1 + κ s)^(1/b)``, ``s = place/(length/2)``, with or without separation [Pa].
 
-    With ``m = 1/b``, the centre of pressure of the whole face follows from integrals of powers.
-    Where it lies nearer to an edge than ``length/(m + 2)``, the face parts; the pressure then grows
-    as ``t^m`` from the end of the contact, at a distance ``(m + 2)`` times that of the centre of
-    pressure from the loaded edge.
+    With ``m = 1/b``, the centre of pressure in full contact follows from integrals of powers. If
+    it is closer to an edge than ``length/(m + 2)``, the contact is partial; the pressure is then
+    proportional to ``t^m`` from the end of the contact, whose distance from the loaded edge is
+    ``(m + 2)`` times that of the centre of pressure.
 
     Parameters
     ----------
     place : array_like
-        From the middle of the face, along its length [m].
+        Position along the face, from its middle [m].
     force, moment : float
-        Of the pressure, about the middle [N, N m]; for case 6 the moment of friction is taken off,
+        Resultants of the pressure about the middle [N, N m]; minus friction's moment in case 6,
         ``M_c = M_0 - F (z_c - z_0) ∓ mu h F``.
     length, width : float [m]
     b : float
     """
     m, s = 1 / b, np.asarray(place, dtype=float) * 2 / length
-    arm = 2 * abs(moment) / (force * length)  # of the force, against half the length
+    arm = 2 * abs(moment) / (force * length)  # of the force, relative to half the length
     s = s if moment >= 0 else -s
     if (1 - arm) * (m + 2) >= 2:
         κ = brentq(lambda κ: _mean(κ, m, 1) / _mean(κ, m, 0) - arm, 0.0, 1.0, xtol=1e-15)
         return force / (length * width * _mean(κ, m, 0)) * (1 + κ * s) ** m
-    zone = (1 - arm) * (m + 2)  # against half the length
+    zone = (1 - arm) * (m + 2)  # relative to half the length
     peak = 2 * force * (m + 1) / (zone * length * width)
     return peak * np.maximum((s - 1) / zone + 1, 0.0) ** m
 
 
 def linear_pressure(place, force: float, moment: float, length: float, width: float) -> np.ndarray:
-    """For b = 1 while ``|M| < F L/6``: ``F/(t L) + 12 M ζ/(t L³)`` [Pa]."""
+    """Pressure for b = 1 while ``|M| < F L/6``: ``F/(t L) + 12 M ζ/(t L³)`` [Pa]."""
     return force / (width * length) + 12 * moment * np.asarray(place) / (width * length**3)
 
 
 def contact_length(force: float, moment: float, length: float, b: float) -> float:
-    """How much of the length bears pressure [m]."""
+    """Length of the contact [m]."""
     return min(length, (length / 2 - abs(moment) / force) * (1 / b + 2))
 
 
 def _mean(κ: float, m: float, power: int) -> float:
     """Mean of ``s^power (1 + κ s)^m`` over ``-1 < s < 1``, power 0 or 1."""
-    if κ < 1e-2:  # where the closed form loses digits to differences, the series has few terms
+    if κ < 1e-2:  # series, where the closed form suffers from cancellation
         total, term = 0.0, 1.0
         for i in range(12):
             total += term / (i + power + 1) if (i + power) % 2 == 0 else 0.0

@@ -1,22 +1,22 @@
 """Contacts that grow by wear: a cylinder and a sphere on a flat.
 
-Worn faces fit, and the pressure p is nearly uniform over the half-width (or radius) a. The depth
-worn off both bodies is the parabola ``(a² - x²)/(2 R)``; that its rate ``a a'/R`` is ``k p^b`` per
-sliding distance makes ``a^n = a0^n + n R k q^b s``, from Hertz's a0 on::
+Worn faces conform, and the pressure p is nearly uniform over the half-width (or radius) a. The
+wear depth of both bodies together is the parabola ``(a² - x²)/(2 R)``; equating its rate ``a a'/R``
+to ``k p^b`` per sliding distance gives ``a^n = a0^n + n R k q^b s``, starting at Hertz's a0::
 
     cylinder    q = P/2    n = b + 2
     sphere      q = F/π    n = 2 b + 2
 
-(for b = 1: Argatov, Wear 271 (2011) 1147). Bodies that yield fit otherwise: under a uniform
-pressure the middle is pressed in deeper than the edge, by ``c d a²/(2 R)``, ``c = (a0/a)^m``, so
-much less is worn there; and as a grows this dent widens, which slows the mean rate of wear down to
-``(1 - c e) a a'/R``. With the displacements of half-spaces under a uniform pressure (Johnson,
-Contact Mechanics, 1985, sections 2.5 and 3.4), to the first order in c::
+(for b = 1: Argatov, Wear 271 (2011) 1147). Elastic bodies conform differently: under a uniform
+pressure the displacement at the centre exceeds that at the edge by ``c d a²/(2 R)``,
+``c = (a0/a)^m``, so that the wear depth there is smaller; as a grows, this dent widens, which
+reduces the mean wear rate to ``(1 - c e) a a'/R``. With the displacements of half-spaces under a
+uniform pressure (Johnson, Contact Mechanics, 1985, sections 2.5 and 3.4), to first order in c::
 
     cylinder    m = 2    d = ln 2                    e = 1/4
     sphere      m = 3    d = 8/(3 π) (2 - 4/π)       e = 16/(9 π²)
 
-Only a/a0 counts: no choice of load, material or wear makes these terms smaller at a given a/a0.
+The corrections depend on a/a0 only, not on load, material or wear coefficient.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .hertz import line_contact, point_contact
 
 @dataclass(frozen=True)
 class GrowingContact:
-    """A contact that grows by wear; the symbols are those of the module's docstring.
+    """Contact that grows by wear; symbols as in the module's docstring.
 
     Attributes
     ----------
@@ -43,9 +43,9 @@ class GrowingContact:
     rate : float
         ``k q^b R``: growth of ``a^n/n`` per sliding distance [m^(n-1)].
     power, reach : float
-        n and m.
+        Exponents n and m.
     dent, slowing : float
-        d and e.
+        Coefficients d and e.
     """
 
     start: float
@@ -57,24 +57,24 @@ class GrowingContact:
     slowing: float
 
     def half_width(self, distance) -> np.ndarray:
-        """Of rigid bodies after a sliding distance [m]."""
+        """Half-width for rigid bodies after a sliding distance [m]."""
         grown = self.power * self.rate * np.asarray(distance)
         return (self.start**self.power + grown) ** (1 / self.power)
 
     def depth(self, distance) -> np.ndarray:
-        """Worn in the middle of rigid bodies, ``a²/(2 R)`` [m]."""
+        """Wear depth at the centre for rigid bodies, ``a²/(2 R)`` [m]."""
         return self.half_width(distance) ** 2 / (2 * self.radius)
 
     def distance(self, half_width) -> np.ndarray:
-        """Sliding distance of rigid bodies up to a half-width [m]."""
+        """Sliding distance for rigid bodies up to a half-width [m]."""
         grown = np.asarray(half_width) ** self.power - self.start**self.power
         return grown / (self.power * self.rate)
 
     def elastic_half_width(self, distance) -> np.ndarray:
-        """Of elastic bodies, within 1 % from about twice the start on [m].
+        """Half-width for elastic bodies, within 1 % from about twice the start on [m].
 
-        ``a^n/n - e a0^m a^(n-m)/(n-m) = k q^b R s``; for b = 1 that is the volume worn off, and
-        there is no constant in it for nothing is worn at s = 0. A sphere needs b > 1/2.
+        ``a^n/n - e a0^m a^(n-m)/(n-m) = k q^b R s``; for b = 1 this is the wear volume, without an
+        integration constant, as the volume is zero at s = 0. A sphere needs b > 1/2.
         """
         n, m, e = self.power, self.reach, self.slowing
 
@@ -87,7 +87,7 @@ class GrowingContact:
         return self.start * np.reshape(found, np.shape(distance))
 
     def elastic_depth(self, distance) -> np.ndarray:
-        """Worn in the middle of elastic bodies [m]."""
+        """Wear depth at the centre for elastic bodies [m]."""
         a = self.elastic_half_width(distance)
         return a**2 / (2 * self.radius) * (1 - self.dent * (self.start / a) ** self.reach)
 
@@ -95,7 +95,7 @@ class GrowingContact:
 def growing_line(
     force: float, radius: float, modulus: float, coefficient: float, exponent: float = 1.0
 ) -> GrowingContact:
-    """A cylinder on a flat under a force per length P [N/m].
+    """Cylinder on a flat under a force per length P [N/m].
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def growing_line(
 def growing_point(
     force: float, radius: float, modulus: float, coefficient: float, exponent: float = 1.0
 ) -> GrowingContact:
-    """A sphere on a flat under a force F [N]; the parameters are those of `growing_line`."""
+    """Sphere on a flat under a force F [N]; parameters as in `growing_line`."""
     start = point_contact(force, radius, modulus).half_width
     rate = coefficient * (force / pi) ** exponent * radius
     dent, slowing = 8 / (3 * pi) * (2 - 4 / pi), 16 / (9 * pi**2)

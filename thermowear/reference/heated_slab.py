@@ -1,4 +1,4 @@
-"""A slab whose surface is heated from a moment on, while its other side is insulated.
+"""Slab heated at one surface from t = 0 on, insulated at the other.
 
 By separation of variables (Carslaw and Jaeger, Conduction of Heat in Solids, 1959, sections 3.4,
 3.5 and 3.8), with the depth z below the heated surface and ``β_n = (n + 1/2) π``.
@@ -15,7 +15,7 @@ _TERMS = 400
 
 @dataclass(frozen=True)
 class HeatedSlab:
-    """A slab that is insulated on one side.
+    """Slab that is insulated on one side.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class HeatedSlab:
     capacity: float
 
     def ramp(self, rate: float, time: float, depth: np.ndarray | float) -> np.ndarray:
-        """Rise where the surface gets warmer evenly [K].
+        """Temperature rise for a surface temperature that increases linearly [K].
 
         ::
 
@@ -41,7 +41,7 @@ class HeatedSlab:
         rate : float
             b [K/s].
         time : float
-            Since it began [s].
+            Time since the start [s].
         depth : ndarray or float
             z [m].
         """
@@ -51,14 +51,14 @@ class HeatedSlab:
         return rate * (time - square * (ξ - ξ**2 / 2 - 2 * late))
 
     def ramp_heat(self, rate: float, time: float) -> float:
-        """Heat per area that it has stored meanwhile: the integral of `ramp` over z [J/m²]."""
+        """Heat per area stored up to then: the integral of ``ρ c`` times `ramp` over z [J/m²]."""
         _, τ, β = self._scaled(time, 0.0)
         late = (np.exp(-(β**2) * τ) / β**4).sum()
         square = self.thickness**2 * self.capacity / self.conductivity
         return rate * self.capacity * self.thickness * (time - square * (1 / 3 - 2 * late))
 
     def step(self, rise: float, time: float, depth: np.ndarray | float) -> np.ndarray:
-        """Rise where the surface is suddenly warmer [K]: ``1 - 2 Σ sin(β_n ξ) exp(…)/β_n``."""
+        """Rise for a step of the surface temperature [K]: ``1 - 2 Σ sin(β_n ξ) exp(…)/β_n``."""
         ξ, τ, β = self._scaled(time, depth)
         return rise * (1 - 2 * (np.sin(β * ξ[..., None]) * np.exp(-(β**2) * τ) / β).sum(axis=-1))
 
@@ -78,7 +78,7 @@ class HeatedSlab:
         return flux * (even + self.thickness / self.conductivity * shape)
 
     def _scaled(self, time: float, depth) -> tuple[np.ndarray, float, np.ndarray]:
-        """ξ, dimensionless time, and β_n."""
+        """Dimensionless depth ξ, dimensionless time, and β_n."""
         diffusivity = self.conductivity / self.capacity
         β = (np.arange(_TERMS) + 0.5) * np.pi
         return np.asarray(depth) / self.thickness, diffusivity * time / self.thickness**2, β

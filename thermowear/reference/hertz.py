@@ -10,12 +10,12 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Hertz:
-    """A Hertzian contact.
+    """Hertzian contact.
 
     Attributes
     ----------
     half_width : float
-        Or radius of the contact [m].
+        Half-width, or radius, of the contact [m].
     peak : float
         Largest pressure [Pa].
     """
@@ -24,12 +24,12 @@ class Hertz:
     peak: float
 
     def pressure(self, x: np.ndarray) -> np.ndarray:
-        """``p0 √(1 - (x/a)²)`` at distances from the middle [Pa]."""
+        """Pressure ``p0 √(1 - (x/a)²)`` at distances from the middle [Pa]."""
         return self.peak * np.sqrt(np.maximum(1 - (x / self.half_width) ** 2, 0.0))
 
 
 def contact_modulus(*materials: tuple[float, float]) -> float:
-    """``1/E* = Σ (1 - ν²)/E`` of pairs (E, ν) [Pa]."""
+    """Contact modulus ``1/E* = Σ (1 - ν²)/E`` of pairs (E, ν) [Pa]."""
     return 1 / sum((1 - ν**2) / E for E, ν in materials)
 
 

@@ -1,9 +1,9 @@
-"""Tangential loading of a Hertz contact that sticks and slips (Cattaneo, Mindlin).
+"""Tangential loading of a Hertzian contact with partial slip (Cattaneo, Mindlin).
 
-Johnson, Contact Mechanics (1985), ch. 7. Both bodies are elastically similar, so that shear leaves
-the pressure as it is. P is the normal force, Q the tangential one, ``|Q| <= mu P``; of a line
-contact both are per length. Under Q it sticks in ``|x| < c`` and slips outside. On unloading, the
-shear of the change of Q is superposed, with the bound ``2 mu p`` (Masing's rule).
+Johnson, Contact Mechanics (1985), ch. 7. Both bodies are elastically similar, so that shear does
+not affect the pressure. P is the normal force, Q the tangential one, ``|Q| <= mu P``; per length in
+line contacts. Under Q the contact sticks in ``|x| < c`` and slips outside. On unloading, the shear
+due to the change of Q is superposed, with the bound ``2 mu p`` (Masing's rule).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .hertz import Hertz, line_contact
 
 @dataclass(frozen=True)
 class MindlinLine:
-    """A cylinder on a half-plane, or two parallel cylinders; forces per length.
+    """Cylinder on a half-plane, or two parallel cylinders; forces per length.
 
     Attributes
     ----------
@@ -39,20 +39,20 @@ class MindlinLine:
 
     @property
     def normal(self) -> Hertz:
-        """Half-width and pressure, which the tangential force leaves as they are."""
+        """Half-width and pressure, which do not depend on the tangential force."""
         return line_contact(self.force, self.radius, self.modulus)
 
     @property
     def limit(self) -> float:
-        """Tangential force of full sliding ``mu P`` [N/m]."""
+        """Tangential force of gross slip ``mu P`` [N/m]."""
         return self.friction * self.force
 
     def stick_half_width(self, tangential: float) -> float:
-        """``c = a sqrt(1 - |Q|/(mu P))`` on first loading [m]."""
+        """Half-width of the stick zone on first loading, ``c = a sqrt(1 - |Q|/(mu P))`` [m]."""
         return self.normal.half_width * sqrt(1 - abs(tangential) / self.limit)
 
     def shear(self, x, tangential: float) -> np.ndarray:
-        """Shear along Q that the body pushed by Q exerts on first loading [Pa].
+        """Shear traction along Q exerted by the body pushed by Q, on first loading [Pa].
 
         ``mu p0 (sqrt(1 - x²/a²) - c/a sqrt(1 - x²/c²))`` (Johnson, section 7.2).
         """
@@ -66,10 +66,10 @@ class MindlinLine:
         return self.shear(x, largest) - 2 * self.shear(x, change)
 
     def slip(self, x, tangential: float) -> np.ndarray:
-        """Slip of the body pushed by Q, against the sticking zone, on first loading [m].
+        """Slip of the body pushed by Q, relative to the stick zone, on first loading [m].
 
-        Of similar half-planes, ``ds/dx = 2/(π E*) ∫ q(ξ)/(x - ξ) dξ`` (Johnson, section 2.5); both
-        ellipses of the shear have closed integrals, which leave
+        For similar half-planes, ``ds/dx = 2/(π E*) ∫ q(ξ)/(x - ξ) dξ`` (Johnson, section 2.5); the
+        integrals of both elliptic parts of the shear have closed forms, which give
         ``ds/dx = 2 mu p0/(E* a) sqrt(x² - c²)`` in ``c < x < a``, thus
         ``s = mu p0/(E* a) (x sqrt(x² - c²) - c² arcosh(x/c))``.
         """
@@ -98,7 +98,7 @@ class MindlinLine:
     def loss_per_cycle(self, amplitude: float) -> float:
         """Energy dissipated in a full cycle of Q between plus and minus the amplitude [J/m].
 
-        Each half changes Q by twice the amplitude, which slips twice as far as first loading under
+        Each half cycle changes Q by twice the amplitude, with twice the slip of first loading under
         the same ``mu p``: four times `loss_on_loading`.
         """
         return 4 * self.loss_on_loading(amplitude)
@@ -106,14 +106,14 @@ class MindlinLine:
 
 @dataclass(frozen=True)
 class MindlinSphere:
-    """Two spheres; the small slip across Q is neglected, as Mindlin did.
+    """Two spheres; slip transverse to Q is neglected, as by Mindlin.
 
     Attributes
     ----------
     force : float
         P [N].
     radius : float
-        Of the contact, a [m].
+        Contact radius a [m].
     compliance : float
         ``(2 - ν1)/G1 + (2 - ν2)/G2`` [1/Pa].
     friction : float
@@ -126,7 +126,7 @@ class MindlinSphere:
     friction: float
 
     def displacement(self, tangential: float) -> float:
-        """Of distant points on first loading, ``3 mu P/(16 a) K (1 - (1 - f)^(2/3))`` [m].
+        """Distant displacement on first loading, ``3 mu P/(16 a) K (1 - (1 - f)^(2/3))`` [m].
 
         Johnson, section 7.2, with ``f = |Q|/(mu P)`` and K the compliance.
         """
@@ -137,7 +137,7 @@ class MindlinSphere:
     def loss_per_cycle(self, amplitude: float) -> float:
         """Energy dissipated in a full cycle of Q between plus and minus the amplitude [J].
 
-        The area of the loop that Masing's rule makes of `displacement`,
+        Area of the loop that results from `displacement` and Masing's rule,
         ``8 (∫ Q dδ - Q δ/2)``, which is the result of Mindlin and Deresiewicz (1953)
         ``9 (mu P)²/(10 a) K (1 - (1 - f)^(5/3) - 5 f/6 (1 + (1 - f)^(2/3)))``.
         """

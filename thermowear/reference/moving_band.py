@@ -1,12 +1,12 @@
-"""A band of heat that moves over an insulated half-space (Jaeger's moving source of heat).
+"""Band heat source moving over an insulated half-space (Jaeger).
 
-Uniform over |x| <= b and moving along +x, seen from the source, where all is steady. With
-``X = v x/(2 κ)`` and ``L = v b/(2 κ)`` the surface is warmer than far below by ::
+Uniform over |x| <= b and moving along +x, in the frame of the source, steady state. With
+``X = v x/(2 κ)`` and ``L = v b/(2 κ)`` the temperature rise of the surface is ::
 
     T = (2 κ q/(π k v)) ∫ exp(-u) K0(|u|) du,   u from X - L to X + L
 
 (J. C. Jaeger, J. Proc. Roy. Soc. New South Wales 76 (1942) 203; Carslaw and Jaeger, Conduction of
-Heat in Solids, 1959, section 10.7). The integral is a closed one,
+Heat in Solids, 1959, section 10.7). The integral has a closed form,
 ``∫ exp(±u) K0(u) du = u exp(±u) (K0(u) ± K1(u))``.
 """
 
@@ -22,7 +22,7 @@ from scipy.special import k0e, k1e
 
 @dataclass(frozen=True)
 class MovingBand:
-    """Source and half-space.
+    """Moving band heat source on a half-space.
 
     Attributes
     ----------
@@ -44,21 +44,21 @@ class MovingBand:
 
     @property
     def length(self) -> float:
-        """``L = v b/(2 κ)``: half the Péclet number of the half-width."""
+        """Half the Péclet number of the half-width, ``L = v b/(2 κ)``."""
         return self.speed * self.half_width / (2 * self.diffusivity)
 
     @property
     def scale(self) -> float:
-        """``2 κ q/(π k v)`` [K]."""
+        """Temperature scale ``2 κ q/(π k v)`` [K]."""
         return 2 * self.diffusivity * self.flux / (pi * self.conductivity * self.speed)
 
     def rise(self, x) -> np.ndarray:
-        """Temperature of the surface above that far below.
+        """Temperature rise of the surface.
 
         Parameters
         ----------
         x : array_like
-            From the middle of the source, positive ahead of it [m].
+            Position relative to the middle of the source, positive ahead of it [m].
 
         Returns
         -------
@@ -69,10 +69,10 @@ class MovingBand:
 
     @property
     def hottest_place(self) -> float:
-        """Place x of the largest temperature, between the rear edge and the middle [m].
+        """Position x of the largest temperature, between the rear edge and the middle [m].
 
-        There the heat of both edges is equal, ``exp(-a) K0(a) = exp(c) K0(c)`` at the distances
-        a from the rear one and ``c = 2 L - a`` from the front one.
+        The contributions of both edges are equal there, ``exp(-a) K0(a) = exp(c) K0(c)``, at the
+        distances a from the rear one and ``c = 2 L - a`` from the front one.
         """
         L = self.length
 
@@ -84,12 +84,12 @@ class MovingBand:
 
     @property
     def peak(self) -> float:
-        """Largest temperature of the surface above that far below [K]."""
+        """Largest temperature rise of the surface [K]."""
         return float(self.rise(self.hottest_place))
 
     @property
     def fast_peak(self) -> float:
-        """The same where L is large, ``(2 q/k) √(2 κ b/(π v))`` [K]."""
+        """Largest temperature rise in the limit of large L, ``(2 q/k) √(2 κ b/(π v))`` [K]."""
         passing = 2 * self.half_width / self.speed
         return 2 * self.flux / self.conductivity * sqrt(self.diffusivity * passing / pi)
 
@@ -104,11 +104,11 @@ PEAKS = {
     20.0: 15.639733,
     100.0: 35.322929,
 }
-"""Largest temperature over the scale by L, by quadrature of K0 to all digits."""
+"""Largest temperature over the scale by L, by numerical quadrature of K0."""
 
 
 def _integral(u: np.ndarray) -> np.ndarray:
-    """``∫ exp(-s) K0(|s|) ds`` from 0 to u."""
+    """Integral ``∫ exp(-s) K0(|s|) ds`` from 0 to u."""
     size = np.abs(u)
     safe = np.where(size > 0, size, 1.0)
     ahead = 1 + safe * np.exp(-2 * safe) * (k0e(safe) - k1e(safe))

@@ -1,12 +1,12 @@
-"""Contact conductance that grows with the pressure, and how warm it leaves the faces of two blocks.
+"""Pressure-dependent contact conductance, and face temperatures of two blocks in contact.
 
-Heat crosses where asperities touch, on a part ``p/H`` of the face that the softer material decides.
-With harmonic means of conductivities and hardnesses,
+Heat is conducted through touching asperities, a fraction ``p/H`` of the face governed by the softer
+material. With harmonic means of conductivities and hardnesses,
 
     h = C k_h p/H_h,   k_h = 2 k1 k2/(k1 + k2),   H_h = 2 H1 H2/(H1 + H2),
 
-as in MOOSE (class GapFluxModelPressureDependentConduction of its heat transfer module) and, with a
-constant of its own, in 4C.
+as in MOOSE (class GapFluxModelPressureDependentConduction of its heat transfer module) and, with
+another constant, in 4C.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .slabs import contact_temperatures
 
 
 def harmonic_mean(first: float, second: float) -> float:
-    """``2 a b/(a + b)``."""
+    """Harmonic mean ``2 a b/(a + b)``."""
     return 2 * first * second / (first + second)
 
 
@@ -50,22 +50,22 @@ def block_temperatures(
     friction_heat: float = 0.0,
     partition: float = 0.5,
 ) -> tuple[float, float]:
-    """Temperatures of the faces of two blocks that are pressed together.
+    """Temperatures of the faces of two blocks in contact.
 
-    The far ends have given temperatures, the sides are insulated; see `slabs` for the resistances.
+    The far ends have prescribed temperatures, the sides are insulated; see `slabs` for resistances.
 
     Parameters
     ----------
     lengths, conductivities, hardnesses, ends : tuple of float
-        Of each block: length [m], conductivity [W/(m K)], hardness [Pa], temperature of its end.
+        For each block: length [m], conductivity [W/(m K)], hardness [Pa], temperature of its end.
     coefficient : float
         See `conductance` [1/m].
     pressure : float
-        > 0 [Pa].
+        Contact pressure > 0 [Pa].
     friction_heat : float
-        [W/m²]
+        Friction heat [W/m²].
     partition : float
-        Part of it set free on block 1.
+        Fraction of it released on block 1.
     """
     h = conductance(coefficient, conductivities, hardnesses, pressure)
     return contact_temperatures(lengths, conductivities, ends, friction_heat, partition, h)[0]

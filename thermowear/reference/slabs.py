@@ -1,4 +1,4 @@
-"""Two slabs in contact with friction heat between them: heat flows along one direction only."""
+"""Two slabs in contact with friction heat between them: one-dimensional conduction."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ def contact_temperatures(
     Parameters
     ----------
     lengths, conductivities, ends : tuple of float
-        Of each slab: length [m], conductivity [W/(m K)], temperature at the far end.
+        For each slab: length [m], conductivity [W/(m K)], temperature at the far end.
     friction_heat : float
-        [W/m²]
+        Friction heat [W/m²].
     partition : float
-        Part of it set free on slab 1.
+        Fraction of it released on slab 1.
     conductance : float
-        Of the contact [W/(m² K)]; may be 0 or infinite.
+        Contact conductance [W/(m² K)]; may be 0 or infinite.
 
     Returns
     -------
     temperatures, fluxes : tuple of float
-        Of the faces, and into each slab [W/m²].
+        Temperatures of the faces, and fluxes into each slab [W/m²].
     """
     R1, R2 = (length / k for length, k in zip(lengths, conductivities, strict=True))
     T1, T2 = ends

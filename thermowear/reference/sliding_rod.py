@@ -1,13 +1,13 @@
-"""A rod that is pressed on a sliding wall, heated there by friction, and worn.
+"""Thermoelastic instability of a rod pressed on a sliding wall, with friction heat and wear.
 
-Its far end is fixed and stays cold; its other end is pressed by an interference d0 on a rigid
-insulating wall. Poisson's ratio is 0, so all is as in a column of anything wider. Friction heat
-lengthens the rod, and so raises the pressure that makes it: above a critical speed without bound,
-the simplest case of thermoelastic instability (J. R. Barber, Proc. R. Soc. A 312 (1969) 381), which
-wear holds back (T. A. Dow and R. A. Burton, J. Lubr. Technol. 95 (1973) 71).
+Its far end is fixed and kept at ambient temperature; its other end is pressed by an interference d0
+on a rigid insulating wall. With Poisson's ratio 0 the rod is equivalent to a wider column. Friction
+heat lengthens the rod, which increases the pressure and thereby the heat, without bound above a
+critical speed: the simplest case of thermoelastic instability (J. R. Barber, Proc. R. Soc. A 312
+(1969) 381), stabilised by wear (T. A. Dow and R. A. Burton, J. Lubr. Technol. 95 (1973) 71).
 
-What grows as ``exp(s t)`` has the temperature ``sinh(x √(s/κ))``, x from the far end. The pressure
-p that goes with its elongation by the heat ``mu p v``, less what wear takes off, is p itself if ::
+A mode growing as ``exp(s t)`` has the temperature ``sinh(x √(s/κ))``, x from the far end. The
+pressure due to its elongation by the heat ``mu p v``, minus wear, equals p if ::
 
     s = (E v/L) [α mu/(ρ c) (1 - sech(L √(s/κ))) - k_w],
 
@@ -26,12 +26,12 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar, newton
 
 _POLE = -(pi**2) / 4
-"""z of the slowest decay of heat in a rod whose end is insulated."""
+"""z of the slowest thermal decay in a rod whose end is insulated."""
 
 
 @dataclass(frozen=True)
 class SlidingRod:
-    """Rod and friction.
+    """Data of the rod, friction and wear.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class SlidingRod:
     friction : float
         mu.
     wear : float
-        k_w: length worn off per pressure and distance [1/Pa].
+        k_w: worn length per pressure and distance [1/Pa].
     """
 
     length: float
@@ -61,15 +61,15 @@ class SlidingRod:
 
     @property
     def critical_speed(self) -> float:
-        """``vcr = 2 k/(E α mu L)``, up to which a rod that does not wear is stable [m/s]."""
+        """Critical speed without wear, ``vcr = 2 k/(E α mu L)``; the rod is stable below [m/s]."""
         E, α, mu = self.young_modulus, self.expansion, self.friction
         return 2 * self.conductivity / (E * α * mu * self.length)
 
     @property
     def critical_speed_with_wear(self) -> float:
-        """Speed up to which the rod is stable if it wears, for k_w up to ``α mu/(ρ c)`` [m/s].
+        """Critical speed with wear, for k_w up to ``α mu/(ρ c)`` [m/s].
 
-        There the pressure swings: z is imaginary, so ``Re sech √z = 1 - w``.
+        The critical mode is oscillatory: z is imaginary, so ``Re sech √z = 1 - w``.
         """
         if self.wear == 0.0:
             return self.critical_speed
@@ -81,15 +81,15 @@ class SlidingRod:
         return self.critical_speed * abs(z) / (2 * (1 - _sech(z)).imag)
 
     def pressure(self, interference: float, speed: float) -> float:
-        """``(E d0/L)/(1 - v/vcr)``, steady below the critical speed, without wear [Pa]."""
+        """Pressure ``(E d0/L)/(1 - v/vcr)``, steady below the critical speed, without wear [Pa]."""
         cold = self.young_modulus * interference / self.length
         return cold / (1 - speed / self.critical_speed)
 
     def growth_rate(self, speed: float) -> complex:
-        """Rate s of the disturbance that grows fastest, or decays most slowly, at a speed [1/s].
+        """Growth rate s of the mode that grows fastest, or decays most slowly, at a speed [1/s].
 
-        With wear it may swing; then that with the positive imaginary part. Without wear a change of
-        the interference stays for ever, s = 0, which is left out.
+        With wear the mode may be oscillatory; then the rate with positive imaginary part. Without
+        wear the stationary mode of a changed interference, s = 0, is left out.
         """
         r, w = speed / self.critical_speed, self._worn
         z = _unworn(r) if w == 0.0 else _worn(r, w)
@@ -101,7 +101,7 @@ class SlidingRod:
 
 
 def _unworn(r: float) -> complex:
-    """The root z without wear, a real one right of the pole."""
+    """Root z without wear, real and right of the pole."""
 
     def excess(z):
         return 2 * r * ((1 - _sech(z)).real / z if abs(z) > 1e-9 else 0.5 - 5 * z / 24) - 1
@@ -110,7 +110,7 @@ def _unworn(r: float) -> complex:
 
 
 def _worn(r: float, w: float) -> complex:
-    """The root z with wear: the larger one of two that are real, or one of a pair.
+    """Root z with wear: the larger one of two real roots, or one of a complex pair.
 
     ``sech √z`` is a Laplace transform of a density, so it is convex right of the pole.
     """
@@ -131,5 +131,5 @@ def _worn(r: float, w: float) -> complex:
 
 
 def _sech(z: complex) -> complex:
-    """``sech √z``."""
+    """Function ``sech √z``."""
     return 1 / cmath.cosh(cmath.sqrt(z))

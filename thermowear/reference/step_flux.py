@@ -1,8 +1,8 @@
-"""Half-spaces that are heated evenly from a moment on.
+"""Half-spaces under a constant heat flux from t = 0 on.
 
 One half-space under a constant flux (Carslaw and Jaeger, Conduction of Heat in Solids, 1959,
-section 2.9), and two that touch and share what friction sets free between them. All that counts at
-a surface is the effusivity ``e = √(k ρ c)``: a flux q has raised it by ``2 q √(t/π)/e``.
+section 2.9), and two in contact that share their friction heat. The surface temperature depends on
+the effusivity ``e = √(k ρ c)`` only: a flux q raises it by ``2 q √(t/π)/e``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from scipy.special import erfc, erfcx
 
 @dataclass(frozen=True)
 class HalfSpace:
-    """A material from the surface on.
+    """Half-space of a material.
 
     Attributes
     ----------
@@ -30,22 +30,22 @@ class HalfSpace:
 
     @property
     def diffusivity(self) -> float:
-        """κ [m²/s]."""
+        """Diffusivity κ [m²/s]."""
         return self.conductivity / self.capacity
 
     @property
     def effusivity(self) -> float:
-        """``√(k ρ c)`` [W √s/(m² K)]."""
+        """Effusivity ``√(k ρ c)`` [W √s/(m² K)]."""
         return sqrt(self.conductivity * self.capacity)
 
     def rise(self, flux: float, time, depth=0.0) -> np.ndarray:
-        """``(2 q/k) √(κ t) ierfc(z/(2 √(κ t)))`` under a constant flux [K].
+        """Rise ``(2 q/k) √(κ t) ierfc(z/(2 √(κ t)))`` under a constant flux [K].
 
         Parameters
         ----------
         flux : float [W/m²]
         time : array_like
-            Since it began, > 0 [s].
+            Time since the start, > 0 [s].
         depth : array_like
             z [m].
         """
@@ -54,7 +54,7 @@ class HalfSpace:
 
 
 def share(first: HalfSpace, second: HalfSpace) -> float:
-    """Part of the friction heat that the first one takes where both are equally warm."""
+    """Fraction of the friction heat into the first one for equal surface temperatures."""
     return first.effusivity / (first.effusivity + second.effusivity)
 
 
@@ -65,15 +65,15 @@ def surface_rises(
     partition: float = 0.5,
     conductance: float = inf,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Temperatures of both surfaces above where they began, with constant friction heat [K].
+    """Temperature rise of both surfaces under constant friction heat [K].
 
     With the flux ``h D`` from body 2 to body 1, ``D = T2 - T1``, the Laplace transforms
     ``T_i = q_i/(e_i √s)`` give with ``g = h (1/e1 + 1/e2)`` ::
 
         h D = A (1 - exp(g² t) erfc(g √t)),   A = q ((1 - f)/e2 - f/e1)/(1/e1 + 1/e2),
 
-    so that body 1 has received as much as under the constant flux ``f q + A``, less
-    ``A (1 - exp(g² t) erfc(g √t))/(g e1)`` of temperature.
+    so that body 1 is heated by the constant flux ``f q + A``, with a temperature lower by
+    ``A (1 - exp(g² t) erfc(g √t))/(g e1)``.
 
     Parameters
     ----------
@@ -81,11 +81,11 @@ def surface_rises(
     friction_heat : float
         q [W/m²].
     time : array_like
-        Since it began, > 0 [s].
+        Time since the start, > 0 [s].
     partition : float
-        f, part of it set free on body 1; without effect where the contact is perfect.
+        f, fraction of it released on body 1; without effect in perfect contact.
     conductance : float
-        h > 0, infinite for a perfect contact [W/(m² K)].
+        h > 0, infinite for perfect contact [W/(m² K)].
     """
     first, second = bodies
     e1, e2 = first.effusivity, second.effusivity

@@ -19,7 +19,7 @@ LONG = SLOW | {
     "methods-agree", "mindlin", "moving-band", "optimal-shape", "patch", "pressure-conductance",
     "reciprocating", "running-in", "step-flux", "temperature-dependent", "two-slabs",
 }  # fmt: skip
-"""Of more than three seconds; run by `make verify`."""
+"""Cases of more than three seconds; run by `make verify`."""
 
 
 @pytest.mark.parametrize(

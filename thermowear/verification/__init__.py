@@ -1,4 +1,4 @@
-"""Verification: the program against references, by ``thermowear verify`` and by the tests."""
+"""Verification of the program against references, for ``thermowear verify`` and the tests."""
 
 from .cases import (
     annular_punch,
@@ -69,6 +69,6 @@ CASES: dict[str, Checks] = special_cases.CHECKS | {
 """Verification cases by id; each yields its checks."""
 
 SLOW = frozenset({deep_wear.ID})
-"""Of them, those that take more than two minutes."""
+"""Cases that take more than two minutes."""
 
 __all__ = ["CASES", "SLOW", "Check", "all_checks", "compare"]

@@ -1,4 +1,4 @@
-"""One number of the program held against a reference."""
+"""Comparison of one number of the program with a reference."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from ..errors import CaseError, ComputationError
 
 @dataclass(frozen=True)
 class Check:
-    """A row of ``thermowear verify``.
+    """Row of ``thermowear verify``.
 
     Attributes
     ----------
     id : str
-        Of the verification case.
+        Id of the verification case.
     quantity : str
-        What is compared, with its unit.
+        Compared quantity, with its unit.
     computed, reference : float
     error, allowed : float
-        Relative, to the reference or to the scale that the quantity names.
+        Relative error and its tolerance, to the reference or to the scale named by the quantity.
     source : str
-        Where the reference comes from.
+        Source of the reference.
     """
 
     id: str
@@ -38,10 +38,10 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        return bool(self.error <= self.allowed)  # a NaN fails
+        return bool(self.error <= self.allowed)  # fails for NaN
 
     def as_row(self) -> dict:
-        """For ``--json``: null where a number is not finite."""
+        """Dictionary for ``--json``; None for numbers that are not finite."""
         row = asdict(self) | {"passed": self.passed}
         numbers = (key for key, value in row.items() if isinstance(value, float))
         return row | {key: None for key in numbers if not math.isfinite(row[key])}
@@ -65,7 +65,7 @@ def compare(
 
 
 def all_checks(id: str, checks: Checks) -> list[Check]:
-    """All checks of a case; where it ends with an error, those before, and one that fails."""
+    """All checks of a case; after an error, the previous ones and one that fails."""
     found: list[Check] = []
     try:
         found.extend(checks())

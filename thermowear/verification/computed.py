@@ -1,4 +1,4 @@
-"""Runs whose numbers are held against references: they have come to their end."""
+"""Completed runs for comparison with references."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ def computed(case: Case) -> Result:
     Raises
     ------
     ComputationError
-        If it stopped before, or its balances do not hold.
+        If it stopped early, or its balances do not hold.
     KeyboardInterrupt
-        If a request to stop was noted on the way.
+        If a stop was requested during the run.
     """
     result = run(case)
     if result.stopped is not None:

@@ -1,4 +1,4 @@
-"""Running a starter case with a few keys changed."""
+"""Runs of starter cases with a few keys changed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .computed import computed
 
 
 def starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
-    """A starter case with changes.
+    """Starter case with changes.
 
     Parameters
     ----------

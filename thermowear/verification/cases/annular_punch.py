@@ -1,4 +1,4 @@
-"""The steady state of the ring on a plate: worn shape, temperature, pressure, power."""
+"""Steady state of the ring on a plate: worn shape, temperature, pressure, power."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FORCE = 50e6 * np.pi * (OUTER**2 - INNER**2)
 
 
 def checks() -> Iterator[Check]:
-    """B = 1, 2 and 0.5, cold and at 0.1 rad/s."""
+    """Checks for b = 1, 2 and 0.5, without heat and at 0.1 rad/s."""
     for b, speed in reference.STEADY_SHAPE:
         result = steady(b, speed)
         yield from _shape(result, b, speed)
@@ -29,7 +29,7 @@ def checks() -> Iterator[Check]:
 
 
 def steady(b: float, speed: float) -> Result:
-    """The starter case with another pressure exponent; speed 0 means without heat."""
+    """Starter case with another pressure exponent; speed 0 means without heat."""
     overrides = (
         f"wear.punch.pressure_exponent={b}",
         f'wear.punch.coefficient="2e-7 1/MPa^{b}"',
@@ -38,7 +38,7 @@ def steady(b: float, speed: float) -> Result:
 
 
 def _shape(result: Result, b: float, speed: float) -> Iterator[Check]:
-    """Height of the worn face over its height at r = 70 mm, relative to its range."""
+    """Height of the worn face relative to that at r = 70 mm, scaled by its range."""
     interface = result.interface
     heights = along(interface, reference.RADII, interface.shape)
     heights = 1e3 * (heights - along(interface, 0.07, interface.shape))
@@ -56,7 +56,7 @@ def _pressure(result: Result, b: float, speed: float) -> Iterator[Check]:
     interface = result.interface
     exact = reference.steady_pressure(interface.x, FORCE, INNER, OUTER, b)
     worst = int(np.abs(interface.pressure / exact - 1).argmax())
-    quantity = f"pressure where it differs most, b = {b:g}, {_state(speed)} [Pa]"
+    quantity = f"pressure at the point of largest deviation, b = {b:g}, {_state(speed)} [Pa]"
     yield compare(ID, quantity, interface.pressure[worst], exact[worst], 1e-6, CLOSED_FORM)
 
 

@@ -1,4 +1,4 @@
-"""A beam over a gap that wears until it touches no more."""
+"""Wear shakedown of a beam over a gap."""
 
 from __future__ import annotations
 
@@ -14,38 +14,38 @@ from ..starter import run_starter
 
 ID = "beam-shakedown"
 STARTER = "beam-on-foundation"
-COMPUTED = "200 Hermite elements, other implicit steps"
+COMPUTED = "200 Hermite elements, independent implicit steps"
 SHEAR = (
     "beam theory with shear flexibility (Timoshenko; A_s by Cowper, J. Appl. Mech. 33 (1966) 335)"
 )
-FREE = "the free deflection of the same finite elements, less the gap"
+FREE = "free deflection of the same finite elements minus the gap"
 BELOW = "Páczelt and Mróz: 1e-7 MPa"
 
 MESH = ("mesh.degree=2", 'wear.update="never"')
-"""Beam theory bends the section as if all of it were there."""
+"""Beam theory has the bending stiffness of the unworn section."""
 SMOOTH = (
     "contact.friction=0.0",
     'wear.beam={coefficient="7.5e-4 1/MPa", per="pressure"}',
 )
-"""The same wear without friction in the section, as in beam theory."""
+"""Wear without friction in the section, as in beam theory."""
 NEVER = ("geometry.gap=5 mm", 'analysis={type="initial"}')
-"""A beam that touches nothing."""
+"""Gap that is too large for contact."""
 
 _EULER_STEPS = 6000
-"""Implicit Euler steps of 10 ms at last, with which all of the table comes out. They let the
-pressure, which falls as ``e^(-λ t)`` with λ = 0.30/s, fall too slowly by ``e^(λ² Δt t / 2)``: 2.7 %
-after 60 s."""
+"""Number of implicit Euler steps (10 ms at the end) with which the whole table was computed. The
+pressure ``e^(-λ t)``, λ = 0.30/s, decays too slowly by a factor ``e^(λ² Δt t / 2)``: 2.7 % after
+60 s."""
 _CONVERGED = 4e-2
-"""Allowed of converged pressure and reaction after 60 s: so far off are these steps, and the
-table's two digits."""
+"""Tolerance of converged pressure and reaction after 60 s: error of those steps, and rounding to
+the table's two digits."""
 
 
 def checks() -> Iterator[Check]:
-    """Beam theory against the table, finite elements against beam theory, and the end of it all."""
+    """Beam theory against the table, finite elements against beam theory, and the final state."""
     for state in EXAMPLE.states(list(TABLE)):
         yield from _against_table(EXAMPLE, state, "beam theory", _CONVERGED)
     for state in EXAMPLE.states(list(TABLE), _EULER_STEPS, EXAMPLE.euler):
-        yield from _against_table(EXAMPLE, state, "beam theory by steps of first order", 1e-2)
+        yield from _against_table(EXAMPLE, state, "beam theory, implicit Euler", 1e-2)
     flexible = replace(EXAMPLE, shear_stiffness=_shear_stiffness(0.3))
     states = flexible.states(list(TABLE))
     smooth = run_starter(STARTER, *MESH, *SMOOTH)
@@ -55,7 +55,7 @@ def checks() -> Iterator[Check]:
 
 
 def _shear_stiffness(poisson_ratio: float) -> float:
-    """``G A_s`` of the rectangular section with ``A_s = A 10 (1 + ν)/(12 + 11 ν)`` [N]."""
+    """Shear stiffness ``G A_s`` of a rectangle with ``A_s = A 10 (1 + ν)/(12 + 11 ν)`` [N]."""
     modulus = EXAMPLE.young_modulus / (2 * (1 + poisson_ratio))
     part = 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
     return modulus * part * EXAMPLE.height * EXAMPLE.width
@@ -71,7 +71,7 @@ def _against_table(
     force = beam.area * pressure.sum()
     rows = [
         ("largest pressure", "MPa", pressure.max() / 1e6, largest, allowed),
-        ("place of it", "mm", x[pressure.argmax()], place, 1e-2),
+        ("its position", "mm", x[pressure.argmax()], place, 1e-2),
         ("reaction", "N", force, reaction, allowed),
         ("start of the zone", "mm", ends[0], zone[0], 1e-2),
         ("end of the zone", "mm", ends[1], zone[1], 1e-2),
@@ -89,9 +89,7 @@ def _against_theory(
 ) -> Iterator[Check]:
     interfaces = result.outputs | {result.history[-1].time: result.interface}
     for state in states:
-        if (
-            state.time < 0.8
-        ):  # the load is a point in theory: it matters as long as the zone is small
+        if state.time < 0.8:  # the point load of beam theory matters while the zone is small
             continue
         interface = interfaces[state.time]
         found = np.interp(PLACES, interface.x, interface.wear_1)
@@ -102,12 +100,12 @@ def _against_theory(
 
 
 def _end(result: Result, free: Result) -> Iterator[Check]:
-    """The shape that is left, where it differs most from what it should be, and what presses."""
+    """Final worn shape at the point of largest deviation, and final pressure."""
     deflection = 5e-3 - free.interface.gap
     left = np.maximum(deflection - EXAMPLE.gap, 0.0)
     worn = result.interface.wear_1
     worst = int(np.abs(worn - left).argmax())
-    quantity = "depth in the end where it differs most, relative to the largest [m]"
+    quantity = "final wear depth at the point of largest deviation, relative to the largest [m]"
     yield compare(ID, quantity, worn[worst], left[worst], 1e-2, FREE, scale=left.max())
     pressure = result.interface.pressure.max() / 1e6
     yield Check(ID, "pressure after 60 s [MPa]", pressure, 1e-6, pressure / 1e-6, 1.0, BELOW)

@@ -1,6 +1,6 @@
-"""A block worn by a ring that turns on it: from line contact to a worn circle.
+"""Block worn by a rotating ring: from line contact to a worn circle.
 
-The mesh of the block follows its worn face; the ring does not wear.
+The geometry updates remove the wear of the block; the ring does not wear.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .hertz import MODULUS
 ID = "block-on-ring"
 PRESS, RADIUS, COEFFICIENT = 10_833.0, 20e-3, 2e-15
 DISTANCES = (400.0, 800.0, 1600.0, 2400.0, 3600.0)
-CIRCLE = "a circle of the radius of the ring"
+CIRCLE = "circle with the radius of the ring"
 
 
 def checks() -> Iterator[Check]:
@@ -34,12 +34,12 @@ def checks() -> Iterator[Check]:
     found = summary["geometry_volume_2_m3"]
     yield compare(ID, "volume lost by the mesh [m³]", found, volume, 1e-3, ARCHARD)
     error = summary["geometry_volume_error"]
-    known = "the wear integrated over the face"
+    known = "integral of the wear over the face"
     yield compare(ID, "worst update: volume lost by the mesh [1]", 1 + error, 1.0, 1e-6, known)
 
 
 def _state(law: GrowingContact, distance: float, state: Interface) -> Iterator[Check]:
-    """After a sliding distance [m]."""
+    """State after a sliding distance [m]."""
     place, depth = f"after {distance:g} m", float(state.wear_2[0])
     width, known = worn_half_width(state, 5), float(law.half_width(distance))
     yield compare(ID, f"half-width {place} [m]", width, known, 1e-2, RIGID)
@@ -47,4 +47,6 @@ def _state(law: GrowingContact, distance: float, state: Interface) -> Iterator[C
     inside = state.x < 0.95 * known
     ring = depth - RADIUS + np.sqrt(RADIUS**2 - state.x**2)
     off = float(np.abs(state.wear_2 - ring)[inside].max())
-    yield compare(ID, f"worn face {place} [m], of its depth", off, 0.0, 1e-2, CIRCLE, depth)
+    yield compare(
+        ID, f"worn face {place} [m], relative to its depth", off, 0.0, 1e-2, CIRCLE, depth
+    )

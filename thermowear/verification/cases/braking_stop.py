@@ -1,4 +1,4 @@
-"""Braking to a stop: wide blocks against the exact solution, a car's brake against its energy."""
+"""Braking to a stop: wide blocks against the exact solution, a car brake against its energy."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from .step_flux import AMBIENT, DEEP, HEAT, LOWER, UPPER
 
 ID = "braking-stop"
 EXACT = "Duhamel's integral; Fazekas, SAE Technical Paper 530221, 1953"
-BALANCE = "what goes in stays in or goes out"
+BALANCE = "energy balance"
 ENERGY = "energy over heat capacity, by hand"
 STOP, TIMES = 4.0, (1.0, 2.0, 3.0, 4.0, 6.0)
 FORCE, FRICTION, SPEED, RISE = 7.9e3, 0.4, 92.6, 0.2
 ARM = 2 / 3 * (0.13**3 - 0.08**3) / (0.13**2 - 0.08**2)
 """Mean radius of the pads [m]."""
 DISK_CAPACITY = 7200.0 * 480 * np.pi * (0.135**2 - 0.05**2) * 6e-3
-"""Of half the disk [J/K]."""
+"""Heat capacity of half the disk [J/K]."""
 
 
 def checks() -> Iterator[Check]:
-    """Half-spaces, the starter case, and a disk that keeps all of the heat."""
+    """Half-spaces, the starter case, and a disk that stores all of the heat."""
     yield from _wide_blocks()
     yield from _starter(run_starter("disk-brake-stop"))
     yield from _insulated_disk()
 
 
 def _wide_blocks() -> Iterator[Check]:
-    """Both faces of half-spaces in perfect contact, during the stop and after it."""
+    """Both faces of half-spaces in perfect contact, during and after the stop."""
     times = ",".join(f'"{time:g} s"' for time in TIMES)
     case = starter(
         "stacked-blocks",
@@ -58,7 +58,7 @@ def _wide_blocks() -> Iterator[Check]:
 
 
 def _starter(result: Result) -> Iterator[Check]:
-    """The balance in each step, and the heat of the friction power."""
+    """Energy balance in each step, and integral of the friction power."""
     yield _balance(result, "car")
     time = np.array([row.time for row in result.heat])
     power = np.array([row.friction_power for row in result.heat])
@@ -70,7 +70,7 @@ def _starter(result: Result) -> Iterator[Check]:
 
 
 def _insulated_disk() -> Iterator[Check]:
-    """All of the heat goes into the disk, and none goes out: its temperature evens out."""
+    """Disk that receives all of the heat without losses: its temperature becomes uniform."""
     result = run_starter(
         "disk-brake-stop",
         "heat.partition=0",
@@ -85,15 +85,15 @@ def _insulated_disk() -> Iterator[Check]:
         rise = getattr(last, f"{which}_temperature_2") - AMBIENT
         quantity = f"{which} rise of the insulated disk's face in the end [K]"
         yield compare(ID, quantity, rise, expected, 1e-3, ENERGY)
-    # the torque of an even pressure, which it is not quite
+    # torque for a uniform pressure, which is an approximation
     under_way = RISE / 2 - RISE**2 / (3 * STOP) + (STOP - RISE) ** 2 / (2 * STOP)
     work = FRICTION * FORCE * ARM * SPEED * under_way
     yield compare(ID, "friction heat, insulated disk [J]", made, work, 2e-2, "torque times angle")
 
 
 def _balance(result: Result, name: str) -> Check:
-    """Where heat fits worst of all the steps."""
+    """Energy balance in the step with the largest error."""
     worst = max(result.heat, key=lambda row: row.balance_error)
     gone = worst.heat_stored + worst.heat_lost
-    quantity = f"heat stored and lost where it fits worst, {name} [J]"
+    quantity = f"heat stored and lost in the step of largest balance error, {name} [J]"
     return compare(ID, quantity, gone, worst.heat_in, 1e-9, BALANCE)

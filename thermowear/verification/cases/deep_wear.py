@@ -1,7 +1,7 @@
-"""An annular punch of which a fifth of the height is worn off, hot and cooled on its top.
+"""Annular punch worn by a fifth of its height, with friction heat and cooling at its top.
 
-Meshes are moved to the worn face on the way. The run must end like a punch that is meshed as low as
-the worn one, and what it finds must not depend on how often the meshes are moved.
+Geometry updates move the mesh to the worn face. The run must end in the state of a punch meshed
+with the worn height, and its results must not depend on the interval of the updates.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ FINE = ("mesh.degree=8", "mesh.elements=12")
 COARSE = ("mesh.degree=6", "mesh.elements=4")
 SIZES = (0.04, 0.02, 0.01, 0.005)
 AMBIENT = 293.15
-LOW = "a punch meshed as low as the worn mesh, by the principle"
-LATE = "a punch as low in the end that has lost its last millimetre only"
-FACE = "the wear integrated over the face"
-SMALL = "the same with updates at each 0.25 % of the height"
-ORDER = "four runs, each with updates twice as often as the one before"
+LOW = "steady principle for a punch of the worn height"
+LATE = "punch of the same final height, worn by its last millimetre only"
+FACE = "integral of the wear over the face"
+SMALL = "same case with updates at each 0.25 % of the height"
+ORDER = "four runs, with the update interval halved each time"
 _SCATTER = 1e-2
-"""Of an order in the mean of four runs: none is made up of equal intervals alone, so that the order
-of three of them scatters by 0.05."""
+"""Tolerance of the mean order of four runs: the last interval of a run is shorter than the others,
+so that the order from three runs scatters by 0.05."""
 
 
 def checks() -> Iterator[Check]:
-    """Volumes, shapes and temperatures at the end; how much the updates count for."""
+    """Final volumes, shapes and temperatures; influence of the update interval."""
     worn = deep("wear.update=0.007", *FINE)
     summary = worn.summary
     error = 1 + summary["geometry_volume_error"]
@@ -46,7 +46,7 @@ def checks() -> Iterator[Check]:
     volume = float(worn.interface.weight @ worn.interface.wear_1)
     whole = summary["wear_volume_1_m3"]
     yield compare(ID, "volume lost by the mesh and kept in the gap [m³]", whole, volume, 1e-6, FACE)
-    # the last step is taken again on the moved mesh: the difference of both stays in the gap
+    # the last step is repeated on the moved mesh: the difference of both remains in the gap
     yield compare(
         ID,
         "volume lost by the mesh in the end, but for the last step [m³]",
@@ -57,24 +57,24 @@ def checks() -> Iterator[Check]:
     )
     yield compare(ID, "height worn off [m]", lost / AREA, WORN, 1e-3, "the steady wear rate")
     height = HEIGHT - lost / AREA
-    yield from _like_low(worn, height)
+    yield from _against_low_punch(worn, height)
     late = deep("wear.update=0.0035", *FINE, height=height + LAST, worn=LAST)
     yield from _shapes(worn, late, LATE, "its lowest point")
     yield from _updates()
 
 
 def deep(*overrides: str, height: float = HEIGHT, worn: float = WORN) -> Result:
-    """Until so much of a height is worn off at the wear rate of the steady state [m]."""
+    """Transient until a depth is worn off, at the steady wear rate [m]."""
     end = worn / run_starter(STARTER, *COARSE).summary["rigid_wear_velocity_m_per_s"]
     transient = f'analysis={{type="transient", end_time="{end!r} s", tolerance=1e-3}}'
     return run_starter(STARTER, transient, f"geometry.punch_height={height!r} m", *overrides)
 
 
-def _like_low(worn: Result, height: float) -> Iterator[Check]:
+def _against_low_punch(worn: Result, height: float) -> Iterator[Check]:
     """Shape and temperatures against the steady state of a punch of a height [m].
 
-    That one has a flat face. Bodies that grow hot along a worn face, which slopes, close its gap a
-    little, too: the slope times their relative displacement along it, 0.8e-3 of the range.
+    That punch has a flat face. Thermal displacement along the inclined worn face closes its gap by
+    the slope times the relative displacement, 0.8e-3 of the range.
     """
     low = run_starter(STARTER, *FINE, f"geometry.punch_height={height!r} m")
     yield from _shapes(worn, low, LOW, "its mean")
@@ -89,7 +89,7 @@ def _like_low(worn: Result, height: float) -> Iterator[Check]:
 
 
 def _shapes(worn: Result, known: Result, source: str, origin: str) -> Iterator[Check]:
-    """Heights of the face, from its mean or from its lowest point."""
+    """Heights of the face, relative to its mean or to its lowest point."""
     profiles = []
     for face in (worn.interface, known.interface):
         mean = float(face.weight @ face.shape / face.weight.sum()) if origin == "its mean" else 0.0
@@ -100,10 +100,10 @@ def _shapes(worn: Result, known: Result, source: str, origin: str) -> Iterator[C
 
 
 def _updates() -> Iterator[Check]:
-    """The order of the outer loop, and updates as they are chosen against frequent ones.
+    """Order of the geometry-update loop, and automatic updates against frequent ones.
 
-    Between updates heat goes through a punch that is too high by what is kept in the gap: in the
-    mean over the run. In the end nothing is kept.
+    Between updates the conduction path is too long by the gap wear, on average over the run. At the
+    end the gap wear is zero.
     """
     hottest = [_mean_of_hottest(deep(f"wear.update={size}", *COARSE)) for size in SIZES]
     changes = np.diff(hottest)
@@ -128,6 +128,6 @@ def _updates() -> Iterator[Check]:
 
 
 def _mean_of_hottest(result: Result) -> float:
-    """Highest temperature of the faces, in the mean over time [K]."""
+    """Time average of the highest face temperature [K]."""
     steps = result.history[1:]
     return sum(row.max_temperature * row.step for row in steps) / steps[-1].time

@@ -1,7 +1,7 @@
-"""Special cases by finite elements: pressures of the closed form, and a running-in that ends there.
+"""Special cases by finite elements: running-in to the pressure and shape of the steady principle.
 
-A steady state needs no finite elements for its pressure, only for the worn shape. So the check is
-the running-in: contact of the bodies, worn step by step from unworn faces, must end in both.
+A steady pressure needs no finite elements, only the worn shape does. The check is therefore a
+running-in from unworn faces, whose final pressure and shape must be the steady ones.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from ...simulation.model.rigid_modes import reference_point
 from ..check import Check, compare
 from ..computed import computed
 
-PRINCIPLE = "the steady state, directly from the principle of minimum wear dissipation power"
+PRINCIPLE = "steady state from the principle of minimum wear dissipation power"
 EDGE = 2e-3
-"""Corners have singular stresses: nearer to an end of a face nothing is compared [m]."""
+"""Distance from the ends of a face that is excluded, as corner stresses are singular [m]."""
 
 _UNWORN = "wear.update=never"
-"""The steady state is that of bodies as they are drawn, so the running-in must not thin them."""
+"""The steady state refers to the unworn bodies, so the running-in must not thin them."""
 _TRANSIENT = "analysis={type='transient', until='steady', steady_tolerance=1e-3, tolerance=1e-3}"
 
 
@@ -38,9 +38,9 @@ def running_in(
     Parameters
     ----------
     id : str
-        Of the verification case.
+        Id of the verification case.
     label : str
-        What is said of the run.
+        Label of the run in the output.
     starter : str
     *overrides : str
         ``KEY=VALUE`` each.
@@ -54,7 +54,7 @@ def running_in(
     inner = away_from_ends(case, direct)
     yield compare(
         id,
-        f"{name}: pressure after running-in less the steady one, root mean square [Pa]",
+        f"{name}: pressure after running-in minus the steady one, root mean square [Pa]",
         _mean_square(direct, reached.interface.pressure - direct.interface.pressure, inner),
         0.0,
         0.01,
@@ -68,12 +68,12 @@ def running_in(
         "largest": (float(np.abs(off[inner]).max()), 0.02),
     }
     for measure, (found, allowed) in measures.items():
-        quantity = f"{name}: worn shape after running-in less the steady one, {measure} [m]"
+        quantity = f"{name}: worn shape after running-in minus the steady one, {measure} [m]"
         yield compare(id, quantity, found, 0.0, allowed, PRINCIPLE, scale=size)
 
 
 def variant(starter: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
-    """A starter case with keys changed and tables left out."""
+    """Starter case with keys changed and tables left out."""
     tables = tomllib.loads(starter_text(starter))
     for table in without:
         tables.pop(table, None)
@@ -81,7 +81,7 @@ def variant(starter: str, *overrides: str, without: tuple[str, ...] = ()) -> Cas
 
 
 def away_from_ends(case: Case, result: Result) -> np.ndarray:
-    """Points that are not at an end of the face, shape (n,); faces in space have four sides."""
+    """Mask of points away from the ends of the face, shape (n,); faces in space have four sides."""
     i, center = result.interface, case.geometry.rotation_center
     lengths = [i.s] if case.model != "3d" else [i.x, i.y]
     if case.model == "3d" and center is not None:
@@ -92,16 +92,16 @@ def away_from_ends(case: Case, result: Result) -> np.ndarray:
 
 
 def _mean_square(result: Result, values: np.ndarray, inner: np.ndarray) -> float:
-    """Root of the mean square over the area of points."""
+    """Root mean square, weighted with the area of the points."""
     return float(np.sqrt(np.average(values[inner] ** 2, weights=result.interface.weight[inner])))
 
 
 def _without_motion(
     case: Case, result: Result, heights: np.ndarray, inner: np.ndarray
 ) -> np.ndarray:
-    """Heights less what a constant and rigid motions of the holder make up.
+    """Heights minus their least-squares fit by a constant and the rigid motions of the holder.
 
-    Shapes are given up to these.
+    Shapes are determined up to these.
     """
     profile = result.profile
     points = np.column_stack([profile.x, profile.y, profile.z])
@@ -114,7 +114,7 @@ def _without_motion(
 
 
 def _motion(case: Case, name: str) -> RigidMotion:
-    """A motion of the holder, whatever its sense."""
+    """Rigid motion of the holder, of either sign."""
     if name in _AXES:
         return translation(_AXES[name])
     if name in _TURNS:

@@ -1,4 +1,4 @@
-"""A flat punch on a block: the singular pressure of a rigid punch on a half-plane."""
+"""Flat punch on a block: singular pressure of a rigid punch on a half-plane."""
 
 from __future__ import annotations
 

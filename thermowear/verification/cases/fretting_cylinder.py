@@ -1,4 +1,4 @@
-"""Fretting of a cylinder on a flat, 18 000 cycles in adaptive jumps."""
+"""Fretting of a cylinder on a flat, 18 000 cycles with adaptive cycle jumps."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ MCCOLL = (
     "data of McColl, Ding and Leen, Wear 256 (2004) 1114; Llavori's runs with meshes that move and "
     "finite sliding"
 )
-FINER = "the same with jumps four times smaller"
+FINER = "same case with cycle jumps four times smaller"
 DEPTHS = {1000: 0.373e-6, 5000: 1.125e-6, 10000: 1.808e-6, CYCLES: 2.7055e-6}
-"""Worn off the flat after so many cycles [m]."""
+"""Wear depth of the flat by number of cycles [m]."""
 BOUND = 9.657e-10
-"""Section worn off the flat if all of it slid all the way [m²]."""
+"""Worn section of the flat under gross slip [m²]."""
 
 
 def checks() -> Iterator[Check]:
-    """Depths, worn section and energy; what the jumps do to them, measured and estimated."""
+    """Depths, worn section and energy; cycle-jump error, actual and estimated."""
     result = run_starter(STARTER)
     found, last = _by_number(result), result.interface
     for number, depth in DEPTHS.items():
@@ -46,13 +46,21 @@ def checks() -> Iterator[Check]:
 
 
 def _jumps(found: dict[int, CycleRow]) -> Iterator[Check]:
-    """The error of a jump goes with the square of its size."""
+    """The cycle-jump error is proportional to the square of the jump."""
     estimated = max(row.error for row in found.values())
-    quantity = "largest error of a jump, estimated, over the tolerance [1]"
+    quantity = "largest estimated cycle-jump error over the tolerance [1]"
     yield Check(ID, quantity, estimated / TOLERANCE, 0.0, estimated / TOLERANCE, 1.0, "tolerance")
     fine = _by_number(run_starter(STARTER, f"analysis.tolerance={TOLERANCE / 16}"))
     smaller = len(fine) / len(found)
-    yield Check(ID, "jumps more [1]", smaller, 4.0, abs(smaller / 4 - 1), 0.25, FINER)
+    yield Check(
+        ID,
+        "ratio of the numbers of cycle jumps [1]",
+        smaller,
+        4.0,
+        abs(smaller / 4 - 1),
+        0.25,
+        FINER,
+    )
     for number in DEPTHS:
         for name in ("max_wear_1", "max_wear_2", "wear_volume_2"):
             coarse, exact = (getattr(rows[number], name) for rows in (found, fine))

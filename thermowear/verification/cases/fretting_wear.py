@@ -1,4 +1,4 @@
-"""Fretting wear of a cylinder pushed to and fro on a block, farther than it sticks."""
+"""Fretting wear of a cylinder on a block under gross slip."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from ..starter import run_starter
 ID = "fretting-wear"
 FORCE, THICKNESS, RADIUS, AMPLITUDE, FRICTION = 18.5, 1e-3, 6e-3, 25e-6, 0.9
 FLAT, CYLINDER = 2.9e-14, 1.9e-14  # 1/Pa
-GROWTH = "quasi-steady growth of elastic bodies, to the first order in (a0/a)²"
+GROWTH = "quasi-steady growth for elastic bodies, to first order in (a0/a)²"
 MCCOLL = (
     "data of McColl, Ding and Leen, Wear 256 (2004) 1114; Llavori's runs with meshes that move and "
     "finite sliding"
 )
 DEPTHS = {1000: 0.373e-6, 5000: 1.125e-6}
-"""Worn off the flat after so many cycles [m]."""
+"""Wear depth of the flat by number of cycles [m]."""
 
 
 def checks() -> Iterator[Check]:
-    """Both bodies wear, as measured and computed by others; only the cylinder wears."""
+    """Both bodies wear, against measured and published results; only the cylinder wears."""
     cycles = rubbed(CYLINDER, FLAT)
     for number, depth in DEPTHS.items():
         quantity = f"depth of the flat after {number} cycles [m]"
@@ -49,7 +49,7 @@ def checks() -> Iterator[Check]:
 
 
 def rubbed(cylinder: float, flat: float | None) -> dict[int, CycleRow]:
-    """5000 cycles by jumps of 250, by their number."""
+    """Results of 5000 cycles with cycle jumps of 250, by number of cycles."""
     wear = {"cylinder": cylinder} | ({} if flat is None else {"block": flat})
     laws = ", ".join(
         f'{body}={{coefficient="{k} 1/Pa", per="pressure"}}' for body, k in wear.items()
@@ -58,7 +58,7 @@ def rubbed(cylinder: float, flat: float | None) -> dict[int, CycleRow]:
         "cylinder-stick-slip",
         "geometry.zone=0.22 mm",
         "mesh={degree=2, elements=44, grading=1.0}",
-        f'load={{force="{FORCE} N", history={{{_to_and_fro(AMPLITUDE)}}}}}',
+        f'load={{force="{FORCE} N", history={{{_cycle_history(AMPLITUDE)}}}}}',
         f"contact.friction={FRICTION}",
         f"wear={{{laws}}}",
         'analysis={type="fretting", increments=5, cycles=5000, jump=250}',
@@ -67,15 +67,15 @@ def rubbed(cylinder: float, flat: float | None) -> dict[int, CycleRow]:
     return {row.cycle: row for row in result.friction.cycles}
 
 
-def _to_and_fro(amplitude: float) -> str:
-    """A history of one cycle, as text of the case."""
+def _cycle_history(amplitude: float) -> str:
+    """History of one cycle, as text of the case."""
     places = ", ".join(f'"{x} m"' for x in (0, amplitude, 0, -amplitude, 0))
     return f'time=["0 s", "1 s", "2 s", "3 s", "4 s"], tangential_displacement=[{places}]'
 
 
 def _balance(row: CycleRow, coefficient: float, note: str) -> Iterator[Check]:
-    """Friction is mu p where it slips: the volume is that of the energy."""
+    """Shear traction is mu p in the slip zone: wear volume from the dissipated energy."""
     found = row.wear_volume_1 + row.wear_volume_2
     known = coefficient / FRICTION * row.dissipated
     quantity = f"worn volume, {note} [m³]"
-    yield compare(ID, quantity, found, known, 1e-9, "k/mu times the energy dissipated")
+    yield compare(ID, quantity, found, known, 1e-9, "k/mu times the dissipated energy")

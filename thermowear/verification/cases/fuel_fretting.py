@@ -1,8 +1,8 @@
-"""A tube that frets in its support (special case 10), held against closed forms.
+"""Fretting of a tube in its support (special case 10), against closed forms.
 
-A tube whose centre moves sideways by d rolls in the wider hole: by their radii R1 and R2 and the
-clearance c, the contact travels by ``d R2/c`` along the support, while the tube slips by d. Every
-place that it passes wears alike.
+A tube whose centre moves sideways by d rolls in the larger hole: with their radii R1 and R2 and
+the clearance c, the contact travels by ``d R2/c`` along the support, while the tube slips by d. All
+points that it passes wear equally.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ HERTZ = MindlinLine(
     contact_modulus((99e9, 0.37), (99e9, 0.37)),
     FRICTION,
 )
-ENERGY = "k/mu times the energy dissipated"
-SLIDING = "rigid tube that slides and rolls, less what sticks by the compliance of the contact"
+ENERGY = "k/mu times the dissipated energy"
+SLIDING = "rigid tube that slides and rolls, minus stick due to the compliance of the contact"
 ROLLING = "rolling in the hole"
 MINDLIN = "Cattaneo and Mindlin (Johnson, Contact Mechanics, 1985, section 7.2)"
 
 
 def checks() -> Iterator[Check]:
-    """Energy, volume a cycle, depth and width of the worn zone; stick and slip before it slides."""
+    """Energy, volume per cycle, depth and width of the worn zone; stick-slip before gross slip."""
     result = run_starter(STARTER, "analysis.cycles=20000", "analysis.output_times=[]")
     yield from _energy(result)
     yield from _volumes(result)
@@ -51,7 +51,7 @@ def _energy(result: Result) -> Iterator[Check]:
 
 
 def _volumes(result: Result) -> Iterator[Check]:
-    """What sticks at the turning points does not slide: that much less is worn."""
+    """Wear volume per cycle, reduced by the sticking at the turning points."""
     push = 0.1
     history = f'time=["0 s", "1 s"], tangential_force=["0 N", "{push} N"]'
     stuck = run_starter(
@@ -61,7 +61,7 @@ def _volumes(result: Result) -> Iterator[Check]:
         without=("wear",),
     )
     compliance = stuck.summary["tangential_displacement_m"] / push
-    slid = _rolled() - 4 * compliance * FRICTION * FORCE
+    slid = _weighted_slip() - 4 * compliance * FRICTION * FORCE
     for body in (1, 2):
         found = result.summary[f"wear_volume_per_cycle_{body}_m3"]
         known = COEFFICIENT * FORCE * slid
@@ -69,12 +69,12 @@ def _volumes(result: Result) -> Iterator[Check]:
         yield compare(ID, quantity, found, known, 1e-3, SLIDING)
 
 
-def _rolled() -> float:
-    """Slip of a cycle, weighted with the normal over the vertical force; four times d or so [m].
+def _weighted_slip() -> float:
+    """Slip per cycle, weighted with the normal over the vertical force; about four times d [m].
 
     With the tube's centre at an angle α about that of the hole, ``sin α = d/c``, it slips by
-    ``c dα`` under ``N = F/(cos α - mu sin α)`` on its way to larger α. With ``mu = tan φ`` the
-    integral of that is ``cos φ artanh(sin(α + φ))``.
+    ``c dα`` under ``N = F/(cos α - mu sin α)`` towards larger α. With ``mu = tan φ`` the integral
+    is ``cos φ artanh(sin(α + φ))``.
     """
     α, φ = np.arcsin(AMPLITUDE / CLEARANCE), np.arctan(FRICTION)
     ends = np.arctanh(np.sin(φ + np.array([-α, α])))
@@ -82,7 +82,7 @@ def _rolled() -> float:
 
 
 def _zone() -> Iterator[Check]:
-    """The first cycles: the contact passes each place twice a cycle, and wears a little of it."""
+    """First cycles: the contact passes each point twice per cycle, with little wear."""
     count = 400
     result = run_starter(
         STARTER,
@@ -99,12 +99,12 @@ def _zone() -> Iterator[Check]:
     assert result.friction is not None
     row = result.friction.cycles[-1]
     reach = travel * TUBE / HOLE + HERTZ.normal.half_width
-    quantity = "half-width of the zone that is touched [m]"
+    quantity = "half-width of the zone swept by the contact [m]"
     yield compare(ID, quantity, row.contact_area / THICKNESS / 2, reach, 4e-2, ROLLING)
 
 
 def _sticking() -> Iterator[Check]:
-    """Less than friction carries: the middle sticks. A thick tube is as good as a half-space."""
+    """Partial slip with a stick zone. A thick-walled tube approximates a half-space."""
     push = 0.5 * FRICTION * FORCE
     history = f'time=["0 s", "1 s"], tangential_force=["0 N", "{push} N"]'
     result = run_starter(
@@ -121,7 +121,7 @@ def _sticking() -> Iterator[Check]:
     c = HERTZ.stick_half_width(line)
     yield compare(
         ID,
-        "half-width that sticks [m]",
+        "half-width of the stick zone [m]",
         result.summary["stick_area_m2"] / THICKNESS / 2,
         c,
         3e-2,

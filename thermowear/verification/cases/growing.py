@@ -1,4 +1,4 @@
-"""What the growing contacts share: runs to multiples of the first half-width, and their checks."""
+"""Common runs and checks of contacts that grow by wear, up to multiples of the first half-width."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from ..starter import run_starter
 
 RIGID = "Argatov, Wear 271 (2011) 1147, rigid bodies"
 ELASTIC = (
-    "the same with the dent of a uniform pressure (Johnson, Contact Mechanics, 1985, ch. 2, 3)"
+    "Argatov, with the dent of a uniform pressure (Johnson, Contact Mechanics, 1985, ch. 2, 3)"
 )
 ARCHARD = "Archard's law"
 SPEED = 0.05
 FULL = ("penalty", "nitsche")
 """Methods on the full system: slower, so on the coarsest mesh and not as far."""
 _SEEN = 0.9e-2
-"""Closed forms of rigid bodies are asked for where elasticity counts for less than that."""
+"""Largest relative effect of elasticity for which closed forms of rigid bodies are compared."""
 
 
 @dataclass(frozen=True)
 class Growth:
-    """A run of a contact that grows.
+    """Run of a contact that grows by wear.
 
     Attributes
     ----------
     id, note : str
-        Of the verification case, and what is special about the run.
+        Id of the verification case, and label of the run.
     law : GrowingContact
         Closed form.
     moment : int
         ``a²`` over the mean ``x²`` of a parabola that falls to zero at a, weighted by its depth: 5
         over a half-width, 3 over a radius.
     states : dict of float to Interface
-        By sliding distance [m].
+        Interfaces by sliding distance [m].
     """
 
     id: str
@@ -62,10 +62,10 @@ class Growth:
                     yield compare(self.id, f"{name}, rigid", value, float(hard), 1e-2, RIGID)
 
     def from_scar(self) -> Iterator[Check]:
-        """The same from the first state on, against the closed form of rigid bodies alone.
+        """Checks from the first state on, against the closed form of rigid bodies only.
 
-        That scar is its a0. It is some times wider than Hertz's zone, and the dent of the bodies
-        counts for less the wider the contact has become.
+        That worn zone is the start a0. It is several times wider than Hertz's, and the effect of
+        the elastic dent decreases as the contact widens.
         """
         (begun, scar), *later = self.states.items()
         law = replace(self.law, start=worn_half_width(scar, self.moment))
@@ -78,9 +78,9 @@ class Growth:
                 yield compare(self.id, f"{name} {place}, rigid [m]", value, rigid, 1e-2, RIGID)
 
     def peaks(self, load: float, power: int) -> Iterator[Check]:
-        """Largest pressure, wherever in an element the edge lies, against the uniform one.
+        """Largest pressure against the uniform one, for any position of the edge in an element.
 
-        That is the load over ``a^power``: half the load per length, or the force over π.
+        The load is half the force per length, or the force over π; uniform: load over ``a^power``.
         """
         for distance, state in self.states.items():
             a = float(self.law.elastic_half_width(distance))
@@ -89,7 +89,7 @@ class Growth:
             yield compare(self.id, f"largest pressure {place} [Pa]", found, uniform, 5e-2, ELASTIC)
 
     def volumes(self, rate: float) -> Iterator[Check]:
-        """Worn volume against ``k F s``; `rate` is k F [m²]."""
+        """Wear volume against ``k F s``; `rate` is k F [m²]."""
         for distance, state in self.states.items():
             volume = state.weight @ (state.wear_1 + state.wear_2)
             quantity = f"volume after {distance:.4g} m{self.note} [m³]"
@@ -107,9 +107,9 @@ def grown(starter: str, distances, *overrides: str) -> dict[float, Interface]:
 
 
 def worn_half_width(interface: Interface, moment: int) -> float:
-    """Half-width of the parabola whose depth is spread as far from the middle as the worn one [m].
+    """Half-width of the parabola with the second moment of the wear depth [m].
 
-    Unlike the last point that touches it does not jump from element to element.
+    Unlike the last contact point it does not jump from element to element.
     """
     worn = interface.weight * (interface.wear_1 + interface.wear_2)
     return float(np.sqrt(moment * (worn @ interface.x**2) / worn.sum()))

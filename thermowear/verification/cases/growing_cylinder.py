@@ -1,4 +1,4 @@
-"""A cylinder on a block whose contact grows by wear."""
+"""Cylinder on a block with a contact that grows by wear."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SQUARE = ('wear={cylinder={coefficient="1e-10 1/MPa^2", per="pressure", pressure
 
 
 def checks() -> Iterator[Check]:
-    """The block wears, both wear, and the cylinder wears with the square of the pressure."""
+    """Wear of the block, of both bodies, and of the cylinder with the square of the pressure."""
     growth = run("", 1.0, COEFFICIENT, (3, 4, 5, 6))
     yield from growth.checks()
     yield from growth.volumes(COEFFICIENT * FORCE)
@@ -47,7 +47,7 @@ def checks() -> Iterator[Check]:
 def run(
     note: str, exponent: float, coefficient: float, multiples: tuple[float, ...], *overrides: str
 ) -> Growth:
-    """Up to multiples of the first half-width, by the closed form of rigid bodies."""
+    """Run up to multiples of the first half-width, by the closed form of rigid bodies."""
     law = growing_line(FORCE / THICKNESS, RADIUS, MODULUS, coefficient, exponent)
     distances = law.distance(law.start * np.array(multiples))
     return Growth(ID, note, law, 5, grown(STARTER, distances, *MESH, *overrides))

@@ -1,4 +1,4 @@
-"""A sphere on a block whose contact grows by wear: a pin-on-disc test."""
+"""Sphere on a block with a contact that grows by wear: a pin-on-disc test."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ ELEMENTS, PLACES = (40, 80, 160), (3, 3.55, 4.1, 4.65, 5.2, 5.75, 6)
 
 SQUARE = ('wear={block={coefficient="1.33e-9 1/MPa^2", per="pressure", pressure_exponent=2}}',)
 PUBLISHED = {0.32: 2.7426, 0.64: 3.2543}
-"""Radius over that of Hertz's contact, by sliding distance [m]."""
+"""Contact radius over Hertz's, by sliding distance [m]."""
 
 
 def checks() -> Iterator[Check]:
-    """The sphere wears; the block wears with the square of the pressure."""
+    """Wear of the sphere, and of the block with the square of the pressure."""
     growth = run("", 1.0, COEFFICIENT, (3, 4, 5, 6))
     yield from growth.checks()
     yield from growth.volumes(COEFFICIENT * FORCE)
@@ -50,7 +50,7 @@ def checks() -> Iterator[Check]:
 def run(
     note: str, exponent: float, coefficient: float, multiples: tuple[float, ...], *overrides: str
 ) -> Growth:
-    """Up to multiples of the first radius, by the closed form of rigid bodies."""
+    """Run up to multiples of the first radius, by the closed form of rigid bodies."""
     law = growing_point(FORCE, RADIUS, MODULUS, coefficient, exponent)
     distances = law.distance(law.start * np.array(multiples))
     return Growth(ID, note, law, MOMENT, grown(STARTER, distances, *MESH, *overrides))

@@ -1,6 +1,6 @@
-"""Waves on a conductor that slides on an insulator: critical speed and growth, worn or not.
+"""Thermoelastic instability of a conductor on an insulator: critical speed and growth rate.
 
-Half a wave between planes of symmetry, in blocks that are 1.5 waves deep.
+Half a wavelength between planes of symmetry, in blocks 1.5 wavelengths deep.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ WEAR = 1e-14  # 1/Pa
 
 
 def checks() -> Iterator[Check]:
-    """A rigid insulator and an elastic one, and a conductor that wears."""
+    """Rigid and elastic insulator, and a conductor that wears."""
     for name, insulator in INSULATORS.items():
         speed = 1.3 * wave(insulator).critical_speed
         result = half_wave(speed, insulator)
@@ -36,7 +36,7 @@ def checks() -> Iterator[Check]:
 
 
 def _critical(name: str, result: Result, speed: float, insulator) -> Iterator[Check]:
-    """Of one to four half waves along the face."""
+    """Critical speeds of one to four half waves along the face."""
     for halves, factor in enumerate(result.summary["static_speed_factors"], 1):
         known = wave(insulator, halves).critical_speed
         quantity = f"critical speed of {halves} half waves, {name} insulator [m/s]"
@@ -49,13 +49,13 @@ def _rates(name: str, result: Result, part: float, rate: complex) -> Iterator[Ch
     yield compare(ID, f"growth rate {at}", found, rate.real, 1e-3, SOURCE, abs(rate))
     if rate.imag > 0:
         found = result.summary["growth_frequency_rad_per_s"]
-        yield compare(ID, f"its frequency {at}", found, rate.imag, 1e-3, SOURCE)
+        yield compare(ID, f"frequency of the growing mode {at}", found, rate.imag, 1e-3, SOURCE)
 
 
 def wave(
     insulator: tuple[float, float], halves: int = 1, wear: float = 0.0
 ) -> ConductorOnInsulator:
-    """Waves of which so many halves are along the face."""
+    """Closed form for a number of half waves along the face."""
     modulus, ratio = insulator
     softness = (1 - RATIO**2) / insulated.YOUNG_MODULUS + (1 - ratio**2) / modulus
     return ConductorOnInsulator(
@@ -71,7 +71,7 @@ def wave(
 
 
 def half_wave(speed: float, insulator: tuple[float, float], wear: float = 0.0) -> Result:
-    """Half a wave of the conductor."""
+    """Stability analysis of half a wavelength of the conductor."""
     depth = 1.5 * WAVE
     sizes = {"width": WAVE / 2, "upper_height": depth, "lower_height": depth}
     pressing = {"mean_pressure": "5 MPa"}

@@ -1,4 +1,4 @@
-"""What the Hertzian cases share: contact modulus, half-width, peak against the formula."""
+"""Common data of the Hertzian cases: contact modulus, computed half-width."""
 
 from __future__ import annotations
 

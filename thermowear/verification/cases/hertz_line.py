@@ -1,4 +1,4 @@
-"""Hertz's line contact: half cylinders on blocks, by a force and by an approach."""
+"""Hertz's line contact: half cylinders on blocks, under a force and under an approach."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .hertz import MODULUS, half_width
 
 ID = "hertz-line"
 JOHNSON = "Johnson, Contact Mechanics (1985), section 4.2"
-OWN = "the program's own converged value (degree 8, 24 elements in the zone)"
+OWN = "converged value of the program (degree 8, 24 elements in the zone)"
 RADIUS, THICKNESS = 10e-3, 1e-3
 
 SMALL = (
@@ -21,7 +21,7 @@ SMALL = (
     "bodies.cylinder.young_modulus=200 GPa",
     'load={force="120 N"}',
 )
-"""120 N/mm on a cylinder of 6 mm: the contact is small against the bodies."""
+"""Line load of 120 N/mm on a cylinder of 6 mm: the contact is small relative to the bodies."""
 
 MESHES = {
     "unpositioned, degree 2": (
@@ -36,7 +36,7 @@ MESHES = {
 
 
 def checks() -> Iterator[Check]:
-    """Under a force against the formula; under an approach against converged values too."""
+    """Under a force against the formula; under an approach also against converged values."""
     small = run_starter("cylinder-on-block", *SMALL)
     modulus = contact_modulus((200e9, 0.3), (200e9, 0.3))
     exact = line_contact(120e3, 6e-3, modulus)
@@ -55,12 +55,12 @@ def checks() -> Iterator[Check]:
     yield compare(ID, quantity, over_formula(result), over_formula(converged), 1e-4, OWN)
     dofs = result.summary["dofs_displacement"]
     yield Check(
-        ID, "displacement values, positioned, degree 6", dofs, 5000, dofs / 5000, 1.0, "asked"
+        ID, "displacement values, positioned, degree 6", dofs, 5000, dofs / 5000, 1.0, "limit"
     )
 
 
 def pressed(*overrides: str) -> Result:
-    """The starter case: R = 10 mm, pressed by 0.05 mm."""
+    """Starter case: R = 10 mm, approach 0.05 mm."""
     return run_starter("cylinder-on-block", *overrides)
 
 

@@ -30,13 +30,13 @@ MESHES = {
 
 
 def checks() -> Iterator[Check]:
-    """Peak pressure, radius of the contact and approach."""
+    """Peak pressure against Hertz and the finite sphere, radius and pressures of the contact."""
     for name, overrides in MESHES.items():
         yield from _against_formula(pressed(*overrides), name)
 
 
 def pressed(*overrides: str) -> Result:
-    """The starter case: R = 10 mm under 500 N."""
+    """Starter case: R = 10 mm under 500 N."""
     return run_starter("sphere-on-block", *overrides)
 
 

@@ -1,4 +1,4 @@
-"""A steel block that slides on an insulator and takes all of the friction heat: its stability."""
+"""Stability analysis of a steel block that slides on an insulator and takes all friction heat."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CONDUCTIVITY = 50.0  # W/(m K)
 CAPACITY = 3.7e6  # J/(m³ K)
 FRICTION = 0.3
 RIGID = 1e20  # Pa
-COLD = 1e5  # W/(m K): what hardly takes heat, and leads it off, stays cold
+COLD = 1e5  # W/(m K): little heat and high conductivity: no temperature rise
 
 
 def stability(
@@ -32,21 +32,21 @@ def stability(
     Parameters
     ----------
     speed : float
-        [m/s]
+        Sliding speed [m/s].
     sizes : dict of str to float
-        Of the geometry ``stacked-blocks`` [m].
+        Dimensions of the geometry ``stacked-blocks`` [m].
     poisson_ratio : float
-        Of the steel.
+        Poisson's ratio of the steel.
     pressing : dict of str to str
-        The table ``load``.
+        Table ``load``.
     wear : float
         Archard's k of the steel [1/Pa].
     insulator : tuple of float
         Young's modulus [Pa] and Poisson's ratio.
     conductance : float
-        Of the contact; it hardly conducts [W/(m² K)].
+        Contact conductance, nearly insulating [W/(m² K)].
     elements, degree : int
-        Of the mesh.
+        Number of elements, and degree, of the mesh.
     """
     lower_modulus, lower_ratio = insulator
     storing = {"density": "1000 kg/m^3", "specific_heat": f"{CAPACITY / 1e3} J/(kg K)"}

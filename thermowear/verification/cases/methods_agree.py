@@ -1,4 +1,4 @@
-"""Condensed contact, Nitsche's method and penalty against one another."""
+"""Condensed contact, Nitsche's method and the penalty method against each other."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from ..check import Check, compare
 from ..starter import run_starter
 
 ID = "methods-agree"
-CONDENSED = "condensed contact of the same case"
-THEORY = "a penalty's error goes with its inverse (Kikuchi and Oden, Contact Problems, 1988, ch. 3)"
+CONDENSED = "same case with condensed contact"
+THEORY = "penalty error proportional to 1/penalty (Kikuchi and Oden, Contact Problems, 1988, ch. 3)"
 HALF_WIDTH = 0.496e-3
 RANGES = {"hertz": (0.0, 0.95 * HALF_WIDTH), "annular punch": (0.025, 0.115)}
 PENALTIES = {"hertz": (1e16, 1e17, 1e18), "annular punch": (1e14, 1e15, 1e16)}
 
 
 def checks() -> Iterator[Check]:
-    """Pressure away from edges; slope of the penalty's error."""
+    """Pressure away from edges; convergence order of the penalty error."""
     for case in RANGES:
         condensed = solved(case, "condensed")
         for theta in (1, 0, -1):
@@ -37,7 +37,7 @@ def checks() -> Iterator[Check]:
 
 
 def solved(case: str, method: str, *overrides: str) -> Result:
-    """The unworn contact of a starter case by a method."""
+    """Unworn contact of a starter case by a method."""
     key = f"contact.method={method}"
     if case == "hertz":
         return run_starter("cylinder-on-block", 'load={force="2230 N"}', key, *HERTZ, *overrides)
@@ -49,11 +49,11 @@ PUNCH = ("analysis.type=initial", "mesh.degree=6", "mesh.elements=16")
 
 
 def _compared(case: str, result: Result, condensed: Result, note: str) -> Check:
-    """Where the pressures differ most, relative to the largest there."""
+    """Pressure at the point of largest deviation, relative to the largest pressure."""
     x = np.linspace(*RANGES[case], 400)
     found, known = (_along(r, x) for r in (result, condensed))
     worst = int(np.abs(found - known).argmax())
-    quantity = f"pressure where it differs most, {note}, {case} [Pa]"
+    quantity = f"pressure at the point of largest deviation, {note}, {case} [Pa]"
     return compare(
         ID, quantity, found[worst], known[worst], 1e-3, CONDENSED, scale=float(known.max())
     )

@@ -1,4 +1,4 @@
-"""Cattaneo and Mindlin: a cylinder on a block, pushed to and fro within the limit of friction."""
+"""Cattaneo-Mindlin problem: a cylinder on a block under cyclic tangential load in partial slip."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ ID = "mindlin"
 JOHNSON = "Johnson, Contact Mechanics (1985), section 7.2"
 THICKNESS, FORCE, PUSH = 1e-3, 120e3, 36e3
 EXACT = MindlinLine(FORCE, 6e-3, contact_modulus((200e9, 0.3), (200e9, 0.3)), 0.6)
-AWAY = 0.05  # of the half-width: nearer to the edges of the sticking zones is not compared
+AWAY = 0.05  # of the half-width: excluded distance from the edges of the stick zones
 
 
 def checks() -> Iterator[Check]:
-    """Sticking width and shear on loading, half unloaded and reversed; energy of a cycle."""
+    """Stick zone and shear on loading, half unloaded and reversed; energy per cycle."""
     result = pushed()
     assert result.friction is not None
     outputs = result.friction.outputs
@@ -33,7 +33,7 @@ def checks() -> Iterator[Check]:
 
 
 def pushed(*overrides: str) -> Result:
-    """One cycle after loading, from the starter case."""
+    """One cycle after loading, based on the starter case."""
     force = PUSH * THICKNESS
     steps = ", ".join(f'"{f:g} N"' for f in (0, force, 0, -force, 0, force))
     times = ", ".join(f'"{t} s"' for t in range(6))
@@ -51,7 +51,7 @@ def pushed(*overrides: str) -> Result:
 def _state(
     found: FrictionInterface, push: float, turned: FrictionInterface | None
 ) -> Iterator[Check]:
-    """Shear, and the width of the zone that has stuck since the load turned round, if it has."""
+    """Shear, and width of the zone that has stuck since the last load reversal, if any."""
     a = EXACT.normal.half_width
     change = PUSH if turned is None else (PUSH - push) / 2
     shear = EXACT.shear_after(found.x, PUSH, push)
@@ -64,7 +64,7 @@ def _state(
     note = f"Q = {push / 1e3:g} N/mm"
     yield compare(
         ID,
-        f"shear where it differs most, {note} [Pa]",
+        f"shear at the point of largest deviation, {note} [Pa]",
         -found.shear[worst],
         shear[worst],
         2e-2,
@@ -74,13 +74,13 @@ def _state(
     since = found.shear if turned is None else (found.shear - turned.shear) / 2
     width = _sticking_half_width(found, since)
     exact = EXACT.stick_half_width(change)
-    yield compare(ID, f"half-width that sticks, {note} [m]", width, exact, 1e-2, JOHNSON)
+    yield compare(ID, f"half-width of the stick zone, {note} [m]", width, exact, 1e-2, JOHNSON)
 
 
 def _sticking_half_width(found: FrictionInterface, shear: np.ndarray) -> float:
-    """Where the shear reaches the limit of friction, with the root of the distance to that edge.
+    """Half-width at which the shear reaches the friction limit.
 
-    The square of what is missing to the limit is a parabola, fitted away from the edges.
+    The squared difference to the limit is nearly a parabola, fitted away from the edges.
     """
     missing = EXACT.friction * found.pressure - np.abs(shear)
     inner = missing > 0.3 * missing.max()

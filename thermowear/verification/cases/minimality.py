@@ -1,8 +1,8 @@
-"""The principle itself: no admissible change of the pressure has less wear dissipation power.
+"""Steady principle: no admissible change of the pressure lowers the wear dissipation power.
 
-For q = 1 the steady state of each special case is the minimum of D_w; for other q each of the three
-functionals has a minimum of its own. Every minimum is held against random pressures that carry the
-same load, near and far.
+For q = 1 the steady state of each special case is the minimum of D_w; for other q each of the
+three functionals has a minimum of its own. Every minimum is compared with random pressures of the
+same resultants, close to it and far away.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ CHANGES = 1000
 CONTROLS = (0.8, 2.0, 5.0)
 """Values of q other than 1."""
 CONTROLS_OF_OWN = (0.8, 2.0)
-"""Those for which D_w has a minimum that agrees with its own wear velocity in all cases."""
+"""Values of q for which D_w has a minimum consistent with its own wear velocity in all cases."""
 FRICTION = 0.3
 PRINCIPLE = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, minimum of D_w"
-CONVEX = "a convex functional has one minimum"
+CONVEX = "unique minimum of a convex functional"
 
 
 def special_cases() -> dict[str, SpecialCase]:
-    """One of each, with friction, both senses, one and two wearing bodies, closed and parting."""
+    """One per case, with both senses, one or two wearing bodies, full and partial contact."""
     r, w = patches.along(0.02, 0.12)
     α, v = patches.along(0.6, 1.5)
     arc = (1000.0, 0.02, 0.01, FRICTION)
@@ -54,7 +54,7 @@ def special_cases() -> dict[str, SpecialCase]:
         "case 2": patches.tilting_punch(0.5),
         "case 3, +": patches.block_on_disk(1.0, (-0.2, 0.7), *arc, sense=1),
         "case 3, -": patches.block_on_disk(2.0, (-0.2, 0.7), *arc, sense=-1),
-        "case 4": _with_both(patches.ring_segment(0.5, (-0.2, 0.7), *arc, sense=1), a=0.5),
+        "case 4": _with_second_body(patches.ring_segment(0.5, (-0.2, 0.7), *arc, sense=1), a=0.5),
         "case 5, +": patches.brake_block(2.0, 1, 200.0, 0.05, 0.15, 0.04, 0.01, FRICTION),
         "case 5, -": patches.brake_block(0.5, -1, 200.0, 0.05, 0.15, 0.04, 0.01, FRICTION),
         "case 6": patches.tilting_block(1.5, 1, block[0], 62.0, *block[1:]),
@@ -62,7 +62,7 @@ def special_cases() -> dict[str, SpecialCase]:
         "case 7, leading": patches.drum_brake(
             1.0, -1, 476.0, 0.15, 0.125, 0.04, (0.3, 2.1), FRICTION
         ),
-        "case 8, cone": _with_both(cone, a=2.0),
+        "case 8, cone": _with_second_body(cone, a=2.0),
         "case 8, torus": torus,
         "case 9": patches.disk_brake(
             2.0, 1.0, 5e3, (0.06, 0.1), 1.0, (0.0765, -0.003), FRICTION, 0.01
@@ -70,15 +70,15 @@ def special_cases() -> dict[str, SpecialCase]:
     }
 
 
-def _with_both(case: SpecialCase, a: float) -> SpecialCase:
-    """The same with a second body that wears, with another velocity exponent."""
+def _with_second_body(case: SpecialCase, a: float) -> SpecialCase:
+    """Case with a second body that wears, with another velocity exponent."""
     (first,) = case.laws
     second = WearLaw(0.5 * first.coefficient, first.pressure_exponent, a)
     return SpecialCase(case.patch, case.load, (first, second))
 
 
 def checks() -> Iterator[Check]:
-    """Counts of random admissible pressures that have less than the minimum, or as little."""
+    """Numbers of random admissible pressures whose functional is at most the minimum."""
     rng = np.random.default_rng(0)
     for name, case in special_cases().items():
         steady = case.steady()
@@ -93,7 +93,7 @@ def checks() -> Iterator[Check]:
 def own_minima(
     case: SpecialCase,
 ) -> Iterator[tuple[str, SpecialCase, PowerFunctional, Minimum]]:
-    """Each functional with the points it is of and its minimum, for all q for which it has one."""
+    """Functional, its points and its minimum, for all q for which it has one."""
     velocity = case.steady().velocity
     pressed = _approaching(case, velocity)
     for q in CONTROLS:
@@ -122,12 +122,12 @@ def _approach(case: SpecialCase, velocity: np.ndarray) -> np.ndarray:
 
 
 def _approaching(case: SpecialCase, velocity: np.ndarray) -> SpecialCase:
-    """The points where the bodies approach: elsewhere nothing wears, and D_w has no meaning."""
+    """Restrict a case to the points where the bodies approach: D_w is undefined elsewhere."""
     return replace(case, patch=case.patch.part(_approach(case, velocity) > 0))
 
 
 def _inclined(case: SpecialCase, velocity: np.ndarray, q: float) -> PowerFunctional:
-    """``D_w^(q)`` with χ of a rigid-body wear velocity."""
+    """Functional ``D_w^(q)`` with χ of a rigid-body wear velocity."""
     patch = case.patch
     factor = (patch.force_modes @ velocity) / _approach(case, velocity)
     return wear_dissipation(patch.weights, case.laws, patch.speed, q, factor)

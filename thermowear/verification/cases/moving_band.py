@@ -1,7 +1,7 @@
-"""A band of friction heat on a half-space that moves by: Jaeger's moving source of heat.
+"""Band of friction heat moving on a half-space: Jaeger's moving heat source.
 
-A punch in a guide presses evenly on a wide and high strip, and all of the friction heat goes into
-the strip, which carries it along.
+A guided punch with uniform pressure on a long and high strip; all of the friction heat goes into
+the strip, which advects it.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from ..starter import run_starter
 
 ID = "moving-band"
 JAEGER = "J. C. Jaeger, J. Proc. Roy. Soc. New South Wales 76 (1942) 203"
-BALANCE = "what goes in goes out"
-DOMAIN = "the same on a strip of half the length and height"
+BALANCE = "energy balance"
+DOMAIN = "same case on a strip of half the length and height"
 SHOWN = (0.5, 1.0, 5.0, 10.0, 20.0)
 FAST = 100.0
 HALF_WIDTH, CONDUCTIVITY, DIFFUSIVITY = 1e-3, 50.0, 1e-5
@@ -26,7 +26,7 @@ PRESSURE, FRICTION, AMBIENT = 10e6, 0.3, 293.15
 
 
 def checks() -> Iterator[Check]:
-    """Slow to fast, in terms of ``L = v b/(2 κ)``."""
+    """Slow to fast motion, in terms of ``L = v b/(2 κ)``."""
     for L in SHOWN:
         result = passed(L)
         yield from _rises(result, L)
@@ -45,18 +45,18 @@ def checks() -> Iterator[Check]:
 
 
 def band(L: float) -> MovingBand:
-    """The source that the punch is."""
+    """Moving source equivalent to the punch."""
     speed = 2 * DIFFUSIVITY * L / HALF_WIDTH
     return MovingBand(FRICTION * PRESSURE * speed, HALF_WIDTH, speed, CONDUCTIVITY, DIFFUSIVITY)
 
 
 def _reach(L: float) -> float:
-    """Half-widths that the strip reaches to both sides: heat goes about ``b/L`` far ahead."""
+    """Length of the strip to both sides in half-widths: heat diffuses about ``b/L`` ahead."""
     return max(10.0, 10.0 / L)
 
 
 def passed(L: float, reach: float | None = None, *overrides: str) -> Result:
-    """The strip under the punch."""
+    """Strip under the punch."""
     reach = reach or _reach(L)
     return run_starter(
         "punch-on-strip",
@@ -68,7 +68,7 @@ def passed(L: float, reach: float | None = None, *overrides: str) -> Result:
         'bodies.punch.density="5000 kg/m^3"',
         f'bodies.punch.specific_heat="{CONDUCTIVITY / DIFFUSIVITY / 5000} J/(kg K)"',
         f'load.force="{PRESSURE * 2 * HALF_WIDTH * 0.01} N"',
-        f'motion.velocity="{-band(L).speed} m/s"',  # of the punch: the strip moves along +x
+        f'motion.velocity="{-band(L).speed} m/s"',  # of the punch; the strip moves along +x
         f"contact.friction={FRICTION}",
         'heat.conductance="1e-9 W/(m^2 K)"',
         "heat.partition=0",
@@ -78,7 +78,7 @@ def passed(L: float, reach: float | None = None, *overrides: str) -> Result:
 
 
 def surface(result: Result) -> tuple[np.ndarray, np.ndarray]:
-    """Places x along the strip's face [m], and its rise over the ambient there [K]."""
+    """Positions x along the strip's face [m], and temperature rise there [K]."""
     fields = result.fields
     assert fields is not None
     assert fields.temperature is not None
@@ -96,21 +96,25 @@ def _rises(result: Result, L: float) -> Iterator[Check]:
     interface = result.interface
     rise, exact = interface.temperature_2 - AMBIENT, source.rise(-interface.x)
     worst = int(np.abs(rise - exact).argmax())
-    quantity = f"rise under the band where it differs most, L = {L:g}, of the largest [K]"
+    quantity = (
+        f"rise under the band at the point of largest deviation, L = {L:g}, of the largest [K]"
+    )
     yield compare(ID, quantity, rise[worst], exact[worst], 1e-3, JAEGER, scale=peak)
 
 
 def _balance(result: Result, L: float) -> Iterator[Check]:
     error = result.summary["heat_balance_relative_error"]
-    yield compare(ID, f"heat out but not in, L = {L:g}, of all", error, 0.0, 1e-9, BALANCE, 1.0)
+    yield compare(
+        ID, f"relative error of the heat balance, L = {L:g}", error, 0.0, 1e-9, BALANCE, 1.0
+    )
     summary = result.summary
     lost = summary["heat_carried_out_W"] + summary["heat_cooled_W"]
-    quantity = f"heat carried out and cooled off, L = {L:g} [W]"
+    quantity = f"heat advected out and removed by cooling, L = {L:g} [W]"
     yield compare(ID, quantity, lost, summary["friction_power_W"], 1e-9, BALANCE)
 
 
 def _smooth(result: Result) -> Iterator[Check]:
-    """Nothing is colder than what comes in, and it becomes warmer all the way to the band."""
+    """No undershoot below the inflow temperature, and monotonic rise up to the band."""
     x, rise = surface(result)
     peak, where = rise.max(), f"L = {FAST:g}, of the largest [K]"
     fields = result.fields

@@ -1,6 +1,6 @@
-"""The optimal initial shape: a run that starts from the design of the steady state stays in it.
+"""Optimal initial shape: a run from the design of the steady state remains in that state.
 
-Hot, from the files that ``shape`` writes, and long enough to wear off several times the shape.
+With friction heat, from the files written by ``shape``, until several times the shape is worn.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ..computed import computed
 from .finite_elements import away_from_ends, variant
 
 ID = "optimal-shape"
-PRINCIPLE = "the steady state, directly from the principle of minimum wear dissipation power"
+PRINCIPLE = "steady state from the principle of minimum wear dissipation power"
 HOT_SHOE = (
     "bodies.shoe.conductivity=180 W/(m K)",
     "bodies.shoe.expansion=2.3e-5 1/K",
@@ -33,7 +33,7 @@ HOT_SHOE = (
     "heat={conductance='1e4 W/(m^2 K)', advection='spread', "
     "cooling={drum_rim='300 W/(m^2 K)', shoe_inside='100 W/(m^2 K)'}}",
 )
-"""Heat in the drum brake, chosen by us: with less cooling its steady state would be unstable."""
+"""Heat data of the drum brake, our own: with less cooling its steady state would be unstable."""
 CASES = {
     "block-on-disk": (),
     "drum-brake": HOT_SHOE,
@@ -41,13 +41,13 @@ CASES = {
 }
 OTHER = ("mesh.elements=17", "mesh.degree=6", "mesh.grading=0.4")
 TIMES = (1e-6, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0)
-"""Of the run, as parts of its end."""
+"""Output times relative to the end time of the run."""
 _WORN = 5.0
-"""Depth that is worn off in a run, over the depth of the design."""
+"""Depth worn in a run, relative to the depth of the design."""
 
 
 def checks() -> Iterator[Check]:
-    """Largest difference to the steady pressure in the whole run, for special cases 3, 7 and 8."""
+    """Largest deviation from the steady pressure in the whole run, for special cases 3, 7 and 8."""
     for starter, overrides in CASES.items():
         for label, mesh in (("", ()), (", on another mesh", OTHER)):
             steady, began = from_its_shape(starter, *overrides, mesh=mesh)
@@ -62,7 +62,8 @@ def _worst(label: str, steady: Result, began: Result, chosen: np.ndarray) -> Che
     times = {t: furthest(steady, state, chosen) for t, state in began.outputs.items()}
     worst = max(times, key=lambda t: times[t])
     quantity = (
-        f"{label}: pressure over the steady one where it differs most, at {worst:.3g} s "
+        f"{label}: pressure over the steady one at the point of largest deviation, at "
+        f"{worst:.3g} s "
         f"of {max(times):.3g} s [1]"
     )
     return compare(ID, quantity, 1.0 + times[worst], 1.0, 0.01, PRINCIPLE)
@@ -71,7 +72,7 @@ def _worst(label: str, steady: Result, began: Result, chosen: np.ndarray) -> Che
 def from_its_shape(
     starter: str, *overrides: str, body: int = 1, mesh: tuple[str, ...] = ()
 ) -> tuple[Result, Result]:
-    """The steady state, and a running-in of a face that was made to its shape.
+    """Steady state, and a running-in of a face that has its shape initially.
 
     Parameters
     ----------
@@ -79,9 +80,9 @@ def from_its_shape(
     *overrides : str
         ``KEY=VALUE`` each.
     body : int
-        Whose face was made so: 1 or 2.
+        Body whose face has the shape: 1 or 2.
     mesh : tuple of str
-        What is different of the mesh on which both are computed, but not the design.
+        Overrides for the mesh of both runs, but not of the design.
     """
     steady = computed(variant(starter, *overrides, *mesh))
     design = design_of(variant(starter, *overrides), body)
@@ -97,13 +98,13 @@ def from_its_shape(
 
 
 def design_of(case: Case, body: int) -> Design:
-    """The steady shape of a body's face."""
+    """Steady shape of a body's face."""
     from mpi4py import MPI
 
     return steady_design(prepare(case, MPI.COMM_WORLD, Phases(lambda _: None)), body)
 
 
 def furthest(steady: Result, state, chosen: np.ndarray) -> float:
-    """Largest difference to the steady pressure of the same point, over that."""
+    """Largest relative deviation from the steady pressure."""
     exact = steady.interface.pressure[chosen]
     return float(np.abs(state.pressure[chosen] / exact - 1.0).max())

@@ -1,4 +1,4 @@
-"""The contact patch test: two distorted blocks of one width carry a uniform pressure exactly."""
+"""Contact patch test: two distorted blocks of equal width transmit a uniform pressure exactly."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ METHODS = ("condensed", "nitsche", "penalty")
 
 
 class PatchGeometry(PlaneGeometry):
-    """Two blocks, one on the other; nothing pulls at their sides.
+    """Two stacked blocks with traction-free sides.
 
     Attributes
     ----------
     columns : tuple of int
-        Elements along the contact of each body.
+        Number of elements along the contact of each body.
     triangles : bool
     """
 
@@ -69,7 +69,7 @@ class PatchGeometry(PlaneGeometry):
 
 
 def _distorted(points: np.ndarray) -> np.ndarray:
-    """Points moved within the blocks, and along the faces."""
+    """Points displaced inside the blocks and along the faces."""
     x, y = points.T
     within = np.sin(np.pi * x / WIDTH)
     rows = np.sin(np.pi * y / np.where(y > 0, HEIGHTS[0], HEIGHTS[1]))
@@ -79,7 +79,7 @@ def _distorted(points: np.ndarray) -> np.ndarray:
 
 
 def checks() -> Iterator[Check]:
-    """Pressure at every point, and the approach."""
+    """Pressure at every point, and approach."""
     for method, triangles, degree in itertools.product(METHODS, (False, True), (1, 2, 3, 4)):
         for columns, allowed in ((MATCHING, 1e-10), (OTHER, 1e-3)):
             yield from _patch(method, triangles, degree, columns, allowed)
@@ -93,7 +93,12 @@ def _patch(method, triangles: bool, degree: int, columns, allowed: float) -> Ite
     pressure = result.interface.pressure
     worst = pressure[np.abs(pressure / PRESSURE - 1).argmax()]
     yield compare(
-        ID, f"pressure where it differs most, {note} [Pa]", worst, PRESSURE, allowed, SOURCE
+        ID,
+        f"pressure at the point of largest deviation, {note} [Pa]",
+        worst,
+        PRESSURE,
+        allowed,
+        SOURCE,
     )
     shortened = PRESSURE * sum(h / E for h, E in zip(HEIGHTS, MODULI, strict=True))
     if method == "penalty":
@@ -106,7 +111,7 @@ PENALTY = 1e15
 
 
 def patch(method: str, triangles: bool, degree: int, columns: tuple[int, int]) -> Result:
-    """Contact of the two blocks under a mean pressure, without Poisson's effect."""
+    """Contact of the two blocks under a mean pressure, for Poisson's ratio 0."""
     materials = zip(PatchGeometry.bodies, MODULI, strict=True)
     contact: dict = {"method": method}
     if method == "penalty":

@@ -1,4 +1,4 @@
-"""Contact conductance that grows with the pressure: temperatures of two blocks in closed form."""
+"""Pressure-dependent contact conductance: temperatures of two blocks against closed forms."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..starter import run_starter
 
 ID = "pressure-conductance"
 MODEL = "h = C k_h p/H_h as in MOOSE (GapFluxModelPressureDependentConduction), blocks in series"
-SERIES = "straight lines between the table's pressures, blocks in series"
+SERIES = "linear interpolation of the table, blocks in series"
 LENGTHS, CONDUCTIVITIES, HARDNESSES = (0.01, 0.02), (50.0, 15.0), (2e9, 3e9)
 ENDS = (293.15, 393.15)
 COEFFICIENT = 2e4
@@ -31,7 +31,7 @@ _TABLE = (
 
 
 def checks() -> Iterator[Check]:
-    """Several loads and speeds, in the steady state and of unworn faces."""
+    """Several loads and speeds, in the steady state and for unworn faces."""
     for analysis in ("steady", "initial"):
         for pressure in (0.5, 5.0, 50.0):
             for speed in (1e-9, 0.01):
@@ -47,7 +47,7 @@ def checks() -> Iterator[Check]:
                     heat,
                 )
                 result = _run(_MODEL, pressure, speed, analysis)
-                yield from _rows(result, f"in proportion, {title}", exact, MODEL)
+                yield from _rows(result, f"proportional, {title}", exact, MODEL)
                 h = np.interp(pressure, (1.0, 10.0), (1e3, 5e3))
                 exact, _ = contact_temperatures(LENGTHS, CONDUCTIVITIES, ENDS, heat, 0.5, h)
                 result = _run(_TABLE, pressure, speed, analysis)

@@ -1,4 +1,4 @@
-"""A punch that slides to and fro on a strip, against what is known of its end and of its limits."""
+"""Reciprocating punch on a strip, against its steady state and limit cases."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ ID = "reciprocating"
 STARTER = "punch-on-strip-reciprocating"
 HALF_WIDTH, AMPLITUDE, THICKNESS = 5e-3, 5e-3, 10e-3
 FORCE, COEFFICIENT, SPEED = 2e3, 1e-13, 4 * 5e-3 * 2.0
-SLIDING = "k F times the way: every position carries the load"
+SLIDING = "k F times the sliding distance"
 END = "uniform wear of the punch and of the trough, see `reciprocating_problem`"
-IN_PLACE = "the program's running-in of both faces in place, at the same mean speed"
+IN_PLACE = "running-in of both faces with stationary contact, at the same mean speed"
 LAW = '{coefficient="1e-7 1/MPa", per="pressure"}'
 PLACES = (0.0, 0.4, 0.8)
 
 
 def checks() -> Iterator[Check]:
-    """Volumes, rates in the end, one body that wears, and strokes that shrink to nothing."""
+    """Volumes, final rates, wear of one body only, and the limit of small strokes."""
     long = run_starter(STARTER, "analysis={type='reciprocating', cycles=50000}")
     yield from _volumes(long)
     yield from _rates(long)
@@ -54,7 +54,7 @@ def _rates(result: Result) -> Iterator[Check]:
 
 
 def _one_body() -> Iterator[Check]:
-    """On a long strip all positions are alike: a punch that alone wears fits it in all of them."""
+    """Wear of one body: on a long strip a punch that wears alone has a uniform pressure."""
     alone = run_starter(
         STARTER,
         f"wear={{punch={LAW}}}",
@@ -64,7 +64,9 @@ def _one_body() -> Iterator[Check]:
     i, known = alone.interface, FORCE / (2 * HALF_WIDTH * THICKNESS)
     inside = np.abs(i.x) <= 0.8 * HALF_WIDTH
     worst = i.pressure[inside][np.abs(i.pressure[inside] - known).argmax()]
-    quantity = "pressure where it differs most within 0.8 of the half-width, punch wears [Pa]"
+    quantity = (
+        "pressure at the point of largest deviation within 0.8 of the half-width, punch wears [Pa]"
+    )
     yield compare(ID, quantity, float(worst), known, 1e-3, "a uniform pressure")
     alone = run_starter(
         STARTER, f"wear={{strip={LAW}}}", "analysis={type='reciprocating', cycles=20000}"
@@ -75,12 +77,14 @@ def _one_body() -> Iterator[Check]:
     inside = np.abs(track.x) <= 0.9 * half
     rates = track.wear_rate_2[inside]
     worst = rates[np.abs(rates - known).argmax()]
-    quantity = "wear rate where it differs most within 0.9 of the trough, strip wears [m/s]"
+    quantity = (
+        "wear rate at the point of largest deviation within 0.9 of the trough, strip wears [m/s]"
+    )
     yield compare(ID, quantity, float(worst), known, 1e-2, END)
 
 
 def _short_strokes() -> Iterator[Check]:
-    """A stroke of a hundredth of the punch: both faces wear as if in place."""
+    """Stroke of a hundredth of the punch: both faces wear as in a stationary contact."""
     mesh = (
         "geometry.stroke=0.5 mm",
         "contact.friction=0",

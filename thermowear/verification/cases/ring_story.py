@@ -1,7 +1,7 @@
-"""The ring's own story (special case 8): worn in under one load and law, then others, then hot.
+"""Ring on a plate (special case 8) under changing conditions: exponent and load, then heat.
 
-It starts from the steady shape of b = 2 under 100 MPa, goes on with b = 1 under 50 MPa, and then
-with friction heat. Shapes differ at each end; the pressure is the closed form, hot or cold.
+It starts from the steady shape for b = 2 and 100 MPa and continues with b = 1 and 50 MPa, then
+with friction heat. The final shapes differ; the pressure is the closed form in both cases.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def story(id: str) -> Iterator[Check]:
             last_rate / first_rate - 1.0,
             0.0,
             1e-3,
-            "a steady rate of wear",
+            "steady wear rate",
             scale=1.0,
         )
 
@@ -67,7 +67,7 @@ def _continued(starter: str, before: Result) -> Result:
 
 
 def _volume_rates(result: Result) -> tuple[float, float]:
-    """Volumes worn per time in the last two steps [m³/s]."""
+    """Wear volume rates of the last two steps [m³/s]."""
     times = np.array([row.time for row in result.history[-3:]])
     volumes = np.array([row.wear_volume_1 for row in result.history[-3:]])
     first, last = np.diff(volumes) / np.diff(times)

@@ -1,4 +1,4 @@
-"""The cold running-in of a flat ring, on faces that match and on faces that do not."""
+"""Running-in of a flat ring without heat, on matching and on non-matching meshes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..check import Check, along, compare
 from ..starter import run_starter
 
 ID = "running-in"
-TABLE = "running-in exact in time, by two other pressure spaces that agree"
+TABLE = "time-exact running-in with two other pressure spaces in agreement"
 DEPTH_RADII = (0.025, 0.07, 0.115)
 
 
@@ -36,7 +36,7 @@ def _against_table(result: Result, note: str, allowed: float) -> Iterator[Check]
             yield compare(ID, quantity, p, known, allowed, TABLE)
         worn = along(state, DEPTH_RADII, state.wear_1) * 1e6
         for depth_r, w, known in zip(DEPTH_RADII, worn, depths, strict=True):
-            quantity = f"depth worn at {time} s, r = {1e3 * depth_r:g} mm{note} [µm]"
+            quantity = f"wear depth at {time} s, r = {1e3 * depth_r:g} mm{note} [µm]"
             yield compare(ID, quantity, w, known, allowed, TABLE)
         lost = state.weight @ state.wear_1 * 1e9
         yield compare(ID, f"volume at {time} s{note} [mm³]", lost, volume, 5e-4, TABLE)

@@ -1,4 +1,4 @@
-"""The sliding rod: its critical speed, and what grows below and above it, with and without wear."""
+"""Sliding rod: critical speed, and growth rates below and above it, with and without wear."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ ROD = SlidingRod(
 WALL = 0.01  # m, its thickness
 BARBER = "Chebfun example, J. R. Barber's rod: φ'' = λ φ, φ(0) = 0, φ'(1) + φ(1) = 4 d ∫φ"
 EIGENVALUES = {0.96: -0.1601435706615, 1.02: 0.0799646106}
-"""λ by d."""
+"""Eigenvalues λ by d."""
 WEAR = 1e-14  # 1/Pa
 SPEEDS = {0.0: (0.5, 1.05, 2.0), WEAR: (0.5, 1.05, 2.0), 30 * WEAR: (1.3, 2.0)}
-"""Parts of the critical speed, by wear."""
+"""Speeds relative to the critical speed, by wear coefficient."""
 
 
 def checks() -> Iterator[Check]:
-    """The critical speed, and rates at some speeds; a rod that its wall cools."""
+    """Critical speed, growth rates at some speeds, and a rod that is cooled by its wall."""
     for wear, parts in SPEEDS.items():
         rod = replace(ROD, wear=wear)
         for part in parts:
@@ -42,7 +42,7 @@ def checks() -> Iterator[Check]:
 
 
 def _cooled(d: float, eigenvalue: float) -> Iterator[Check]:
-    """The wall takes as much heat off the end of the rod as the rod itself conducts."""
+    """Wall that removes as much heat from the end of the rod as the rod itself conducts."""
     resistance = ROD.length / ROD.conductivity - WALL / insulated.COLD
     summary = solved(ROD, 2 * d, conductance=1 / resistance).summary
     found = summary["growth_rate_per_s"] * ROD.capacity * ROD.length**2 / ROD.conductivity
@@ -57,7 +57,7 @@ def _critical(rod: SlidingRod, part: float, result: Result) -> Iterator[Check]:
     yield compare(ID, f"critical speed{at}", found, rod.critical_speed, 1e-4, SOURCE)
     if rod.wear > 0:
         found, known = summary["critical_speed_with_wear_m_per_s"], rod.critical_speed_with_wear
-        yield compare(ID, f"critical speed with it{at}", found, known, 1e-4, SOURCE)
+        yield compare(ID, f"critical speed with wear{at}", found, known, 1e-4, SOURCE)
 
 
 def _rates(rod: SlidingRod, part: float, result: Result) -> Iterator[Check]:
@@ -66,7 +66,9 @@ def _rates(rod: SlidingRod, part: float, result: Result) -> Iterator[Check]:
     yield compare(ID, f"growth rate {at} [1/s]", found, rate.real, 1e-3, SOURCE, abs(rate))
     if rate.imag > 0:
         found = result.summary["growth_frequency_rad_per_s"]
-        yield compare(ID, f"its frequency {at} [1/s]", found, rate.imag, 1e-3, SOURCE)
+        yield compare(
+            ID, f"frequency of the growing mode {at} [1/s]", found, rate.imag, 1e-3, SOURCE
+        )
 
 
 def _worn(rod: SlidingRod) -> str:
@@ -74,7 +76,7 @@ def _worn(rod: SlidingRod) -> str:
 
 
 def solved(rod: SlidingRod, part: float, conductance: float = 1e-4) -> Result:
-    """The rod as a column without Poisson's effect, at a part of its critical speed."""
+    """Stability analysis of the rod as a column with ν = 0, at a part of its critical speed."""
     sizes = {"width": 0.01, "upper_height": rod.length, "lower_height": WALL}
     pressing = {"approach": "1 um"}
     speed = part * rod.critical_speed

@@ -1,4 +1,4 @@
-"""The nine special cases of Páczelt and Mróz: closed forms, and running-in by finite elements."""
+"""Nine special cases of Páczelt and Mróz: closed forms, and running-in by finite elements."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .ring_story import story
 
 @dataclass(frozen=True)
 class _Run:
-    """A running-in of a starter case with keys changed, or tables left out."""
+    """Running-in of a starter case with keys changed, or tables left out."""
 
     label: str
     starter: str
@@ -21,8 +21,8 @@ class _Run:
     without: tuple[str, ...] = ()
 
 
-def _warm(upper: str, *cooled: str) -> tuple[str, ...]:
-    """Keys that let the bodies of a cold case conduct, expand and be cooled."""
+def _thermal_keys(upper: str, *cooled: str) -> tuple[str, ...]:
+    """Keys that add conduction, expansion and cooling to the bodies of a case without heat."""
     cooling = ", ".join(f"{surface}='2000 W/(m^2 K)'" for surface in cooled)
     return (
         f"bodies.{upper}.conductivity=50 W/(m K)",
@@ -65,21 +65,28 @@ _RUNS: dict[str, tuple[_Run, ...]] = {
         _Run(
             "hot",
             _RING,
-            (*_warm("segment", "segment_inside", "disk_rim"), "motion.angular_velocity=0.3 rad/s"),
+            (
+                *_thermal_keys("segment", "segment_inside", "disk_rim"),
+                "motion.angular_velocity=0.3 rad/s",
+            ),
         ),
     ),
     "case-5": (
         _Run("strip away from the pivot", _PIVOT),
         _Run("strip towards the pivot", _PIVOT, ("motion.velocity=50 mm/s",)),
         _Run(
-            "hot", _PIVOT, (*_warm("block", "block_top", "strip_bottom"), "motion.velocity=-1 mm/s")
+            "hot",
+            _PIVOT,
+            (*_thermal_keys("block", "block_top", "strip_bottom"), "motion.velocity=-1 mm/s"),
         ),
     ),
     "case-6": (
         _Run("strip to the right", _TILT),
         _Run("strip to the left", _TILT, ("motion.velocity=50 mm/s",)),
         _Run(
-            "hot", _TILT, (*_warm("punch", "punch_top", "strip_bottom"), "motion.velocity=-3 mm/s")
+            "hot",
+            _TILT,
+            (*_thermal_keys("punch", "punch_top", "strip_bottom"), "motion.velocity=-3 mm/s"),
         ),
     ),
     "case-7": (
@@ -89,7 +96,7 @@ _RUNS: dict[str, tuple[_Run, ...]] = {
             "hot",
             _DRUM,
             (
-                *_warm("shoe", "shoe_inside", "drum_rim"),
+                *_thermal_keys("shoe", "shoe_inside", "drum_rim"),
                 *_LINING,
                 "motion.angular_velocity=-0.2 rad/s",
             ),
@@ -120,4 +127,4 @@ def _checks_of(id: str) -> Checks:
 
 
 CHECKS: dict[str, Checks] = {id: _checks_of(id) for id in _RUNS}
-"""By id."""
+"""Checks by id of the special case."""

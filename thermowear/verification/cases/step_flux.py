@@ -1,4 +1,4 @@
-"""Temperatures in time: half-spaces that begin to slide, against exact solutions."""
+"""Temperatures in time: half-spaces that start to slide, against exact solutions."""
 
 from __future__ import annotations
 
@@ -42,20 +42,20 @@ DEEP = (
     'analysis.type="transient"',
     f'analysis.end_time="{END} s"',
 )
-"""The starter case as two half-spaces, as far as heat goes in the time."""
+"""Starter case as two half-spaces, deep enough for the duration."""
 HEATED = (
     ("heat into one alone", 1.0, 1e-3),
     ("perfect contact", 0.5, inf),
     ("conductance 1e4 W/(m² K)", 0.5, 1e4),
     ("conductance 2e3 W/(m² K), heat set free on body 2", 0.0, 2e3),
 )
-"""What it is, partition and conductance."""
+"""Label, partition and conductance."""
 STEPS = (2, 4, 8, 16)
 FINEST = 64
 
 
 def checks() -> Iterator[Check]:
-    """Both faces over two decades of time, the balance of heat, the order of the scheme."""
+    """Both faces over two decades of time, the heat balance, the order of the time integration."""
     for name, partition, conductance in HEATED:
         yield from _temperatures(
             computed(heated(partition, conductance)), name, partition, conductance
@@ -64,7 +64,7 @@ def checks() -> Iterator[Check]:
 
 
 def heated(partition: float, conductance: float) -> Case:
-    """Two half-spaces that begin to slide, and to share the heat."""
+    """Two half-spaces that start to slide, with a heat partition and conductance."""
     times = ",".join(f'"{t:g} s"' for t in TIMES)
     own = [f"heat.partition={partition}", f"analysis.output_times=[{times}]"]
     without = ["wear", "heat.temperature"]
@@ -78,25 +78,25 @@ def heated(partition: float, conductance: float) -> Case:
 def _temperatures(
     result: Result, name: str, partition: float, conductance: float
 ) -> Iterator[Check]:
-    """Where the faces differ most from the exact solution."""
+    """Face temperatures at the points of largest deviation from the exact solution."""
     states = result.outputs | {END: result.interface}
     for time, state in states.items():
         exact = surface_rises((UPPER, LOWER), HEAT, time, partition, conductance)
         for body, known in enumerate(map(float, exact), 1):
-            if known < 1e-3 * float(np.max(exact)):  # of the one that gets no heat
+            if known < 1e-3 * float(np.max(exact)):  # of the body without heat input
                 continue
             rises = getattr(state, f"temperature_{body}") - AMBIENT
             worst = rises[np.abs(rises - known).argmax()]
             quantity = f"rise of body {body} at {time:g} s, {name} [K]"
             yield compare(ID, quantity, worst, known, 1e-3, SOURCE)
     worst = max(result.heat, key=lambda row: row.balance_error)
-    quantity = f"heat stored and lost where it fits worst, {name} [J]"
+    quantity = f"heat stored and lost in the step of largest balance error, {name} [J]"
     gone = worst.heat_stored + worst.heat_lost
-    yield compare(ID, quantity, gone, worst.heat_in, 1e-9, "what goes in stays in or goes out")
+    yield compare(ID, quantity, gone, worst.heat_in, 1e-9, "energy balance")
 
 
 def _orders() -> Iterator[Check]:
-    """How fast the error falls with steps that are all the same, and half as large each time."""
+    """Convergence order in time, from equal steps that are halved successively."""
     problem = interface_problem(prepare(heated(0.5, 1e4), MPI.COMM_WORLD, Phases()))
     start = problem.start()
     warm = _march(problem, start, 0.0, 1.0, FINEST)
@@ -113,7 +113,7 @@ def _orders() -> Iterator[Check]:
 def _march(
     problem: InterfaceProblem, state: WornContact, begin: float, end: float, steps: int
 ) -> WornContact:
-    """The state at the end of steps of one size."""
+    """State after equal steps from begin to end."""
     step = (end - begin) / steps
     for k in range(steps):
         state = advance(problem, state, begin + k * step, step)
@@ -121,7 +121,7 @@ def _march(
 
 
 def _difference(state: WornContact, other: WornContact) -> float:
-    """Largest difference of the faces' temperatures [K]."""
+    """Largest difference of the face temperatures [K]."""
     assert state.faces is not None
     assert other.faces is not None
     return float(np.abs(np.subtract(state.faces.rise, other.faces.rise)).max())

@@ -1,4 +1,4 @@
-"""Properties that change with temperature: closed forms, and the fixed point against time."""
+"""Temperature-dependent properties: closed forms, and the fixed point against the transient."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ ID = "temperature-dependent"
 KIRCHHOFF = "Kirchhoff's transformation of a slab with k = k0 (1 + b T)"
 STRAIN = "thermal strain of blocks between planes of symmetry, integrated"
 LINEAR = "friction linear in the temperature of two blocks: a linear equation"
-LAWS = "the tables at the pressures and temperatures returned"
-IN_TIME = "the end of a running-in"
+LAWS = "tables at the computed pressures and temperatures"
+IN_TIME = "end of a running-in"
 AMBIENT = 293.15
 _FAR = 600
-"""How far straight tables reach, farther than any rise here [K]."""
+"""Range of the linear tables, larger than any rise here [K]."""
 
 
 def checks() -> Iterator[Check]:
@@ -33,7 +33,7 @@ def checks() -> Iterator[Check]:
 
 
 def _straight(slope: float) -> str:
-    """A factor that is 1 at ambient and changes by so much per kelvin."""
+    """Linear factor, 1 at ambient, with a slope per kelvin."""
     return f'{{at=["20 degC", "{20 + _FAR} degC"], factor=[1.0, {1 + _FAR * slope}]}}'
 
 
@@ -60,7 +60,7 @@ def _conductivity() -> Iterator[Check]:
 
 
 def _expansion() -> Iterator[Check]:
-    """How far the holder comes down on blocks that are squeezed and swell."""
+    """Approach of the holder on blocks that are compressed and expand thermally."""
     slope = 1e-3
     factors = [f"bodies.{body}.expansion_factor={_straight(slope)}" for body in ("upper", "lower")]
     result = computed(starter("stacked-blocks", *_BLOCKS[:1], *factors, 'analysis.type="initial"'))
@@ -85,12 +85,12 @@ def _expansion() -> Iterator[Check]:
 
 
 def _mean_strain(T: float, other: float, slope: float) -> float:
-    """Mean of ``(1 + slope T) T`` where T goes straight from one value to another."""
+    """Mean of ``(1 + slope T) T`` for T linear between two values."""
     return (T + other) / 2 + slope * (T**2 + T * other + other**2) / 3
 
 
 def _friction() -> Iterator[Check]:
-    """Of two blocks: the mean temperature of both faces is in proportion to the friction heat."""
+    """Friction of two blocks, whose mean face temperature is proportional to the friction heat."""
     for slope in (-1.5e-3, 8e-3):
         overrides = f"contact.friction_factor.temperature={_straight(slope)}"
         per_heat = _mean_rise(starter("stacked-blocks")) / 1e5
@@ -109,7 +109,7 @@ def _mean_rise(case: Case) -> float:
 
 
 def _worn() -> Iterator[tuple[str, str, tuple[str, ...]]]:
-    """Cases in which all of friction, wear, temperature and pressure depend on each other."""
+    """Cases in which friction, wear, temperature and pressure all depend on each other."""
     yield (
         "ring, friction falling",
         "annular-punch",
@@ -154,13 +154,13 @@ def _steady_against_time(title: str, name: str, *overrides: str) -> Iterator[Che
 
 
 def _along_press(result: Result) -> np.ndarray:
-    """The worn shape about its mean, without the ends, where it is singular."""
+    """Worn shape about its mean, without the singular ends."""
     shape, weight = result.profile.shape_along_press[1:-1], result.interface.weight[1:-1]
     return shape - np.average(shape, weights=weight)
 
 
 def _consistent(case: Case, result: Result, title: str) -> Iterator[Check]:
-    """Friction heat and wear rates by the laws of the case at the state returned."""
+    """Friction heat and wear rates by the laws of the case at the computed state."""
     i = result.interface
     assert case.motion is not None
     turned = case.geometry.rotation_center
@@ -186,7 +186,7 @@ def _largest(
     allowed: float = 1e-8,
     scale: float | None = None,
 ) -> Check:
-    """Compare where they differ most, relative to the largest known one."""
+    """Compare at the point of largest deviation, relative to the largest known value."""
     worst = int(np.abs(found - known).argmax())
     scale = scale or float(np.abs(known).max())
     return compare(ID, quantity, found[worst], known[worst], allowed, source, scale=scale)

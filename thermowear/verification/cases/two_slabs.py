@@ -17,7 +17,7 @@ SERIES = "resistances in series (Carslaw and Jaeger, Conduction of Heat in Solid
 LENGTHS, CONDUCTIVITIES, AMBIENT = (0.01, 0.02), (50.0, 15.0), 293.15
 HEAT = 0.2 * 5e6 * 0.1
 _INSULATING = 1e-9
-"""Conductance that stands for none [W/(m² K)]."""
+"""Conductance that represents insulation [W/(m² K)]."""
 _STORING = (
     'bodies.upper.density="7800 kg/m^3"',
     'bodies.upper.specific_heat="470 J/(kg K)"',
@@ -27,7 +27,7 @@ _STORING = (
 
 
 def checks() -> Iterator[Check]:
-    """Conductance from none to perfect contact, partition, ends of other temperatures, gaps."""
+    """Conductance from zero to perfect contact, partition, different end temperatures, gaps."""
     for h in (0.0, 1e3, 1e4, inf):
         for partition in (0.0, 0.5, 1.0):
             for analysis in ("steady", "initial"):
@@ -53,7 +53,7 @@ def _rows(
     heat: float = HEAT,
     ends: tuple[float, float] = (AMBIENT, AMBIENT),
 ) -> Iterator[Check]:
-    """Temperatures and fluxes of both faces, where they differ most from the closed form."""
+    """Temperatures and fluxes of both faces at the points of largest deviation."""
     i = result.interface
     known = contact_temperatures(LENGTHS, CONDUCTIVITIES, ends, heat, partition, conductance)
     scales = max(abs(T - AMBIENT) for T in known[0]), max(map(abs, known[1])) or HEAT
@@ -67,7 +67,7 @@ def _rows(
 
 
 def _by_effusivity() -> Iterator[Check]:
-    """Shared as half-spaces would share it."""
+    """Partition of the friction heat by effusivity."""
     first, second = sqrt(50.0 * 7800 * 470), sqrt(15.0 * 7900 * 500)
     partition = first / (first + second)
     result = _run(1e3, 'heat.partition="effusivity"', *_STORING)
@@ -75,7 +75,7 @@ def _by_effusivity() -> Iterator[Check]:
 
 
 def _across_a_gap() -> Iterator[Check]:
-    """Blocks that shrink apart make no friction heat, and exchange what the gap lets through."""
+    """Blocks that separate thermally: no friction heat, heat exchange across the gap only."""
     cold = 'heat.temperature.lower_bottom="-80 degC"'
     slow = 'motion.velocity="1e-6 m/s"'
     apart = ('load={approach="1 um"}', 'analysis.type="initial"', cold, slow)

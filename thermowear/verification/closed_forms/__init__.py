@@ -1,7 +1,7 @@
-"""The special cases against closed forms: the principle on rigid faces, without finite elements.
+"""Special cases against closed forms: steady principle on rigid faces, without finite elements.
 
-Each case is solved by the generic method on points of its geometry (`patches`);
-closed forms enter as references only. Printed numbers are held to the last digit.
+Each case is solved by the generic method on points of its geometry (`patches`); closed forms are
+references only. Tabulated numbers must agree to the last digit.
 """
 
 from __future__ import annotations
@@ -23,4 +23,4 @@ CLOSED_FORMS: dict[str, Checks] = {
     "case-8": case_8,
     "case-9": case_9,
 }
-"""By id."""
+"""Checks by id of the special case."""

@@ -1,4 +1,4 @@
-"""A block on a disk (case 3) and a segment inside a ring (case 4)."""
+"""Block on a disk (case 3) and segment inside a ring (case 4)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .rows import CLOSED_FORM, MPA, dissipation, printed, worst
 
 
 def case_3() -> Iterator[Check]:
-    """A block above a disk that turns either way."""
+    """Block above a disk rotating in either sense."""
     data = (arc.FORCE, arc.RADIUS, arc.WIDTH)
     for b, peak in arc.SYMMETRIC.items():
         without = cases.block_on_disk(b, (-0.5, 0.5), *data, 0.0, 1, probes=(0.0,)).steady()
@@ -23,7 +23,7 @@ def case_3() -> Iterator[Check]:
             steady, name = case.steady(), f", b = {b:g}, mu = {sense * friction:g}"
             quantity = f"largest pressure{name} [MPa]"
             yield printed("case-3", quantity, steady.pressure[-1] / MPA, peak)
-            quantity = f"pressure against that without friction{name} [Pa]"
+            quantity = f"pressure against the one without friction{name} [Pa]"
             yield worst("case-3", quantity, steady.pressure, without.pressure, 1e-10)
             guide = case.patch.force(steady.pressure)[0]
             exact = sense * friction * arc.FORCE
@@ -41,7 +41,7 @@ def case_3() -> Iterator[Check]:
 
 
 def case_4() -> Iterator[Check]:
-    """A segment inside a ring: the block on a disk with its normal reversed."""
+    """Segment inside a ring: the block on a disk with its normal reversed."""
     data = (arc.FORCE, arc.RADIUS, arc.WIDTH)
     for sense, peak in arc.ASYMMETRIC.items():
         case = cases.ring_segment(1.0, (-0.2, 0.7), *data, arc.FRICTION, sense, probes=(0.0,))
@@ -51,7 +51,7 @@ def case_4() -> Iterator[Check]:
 
 
 def _random_arcs(id: str, build) -> Iterator[Check]:
-    """Pressures and rates on arcs at random."""
+    """Pressures and rates on random arcs."""
     rng = np.random.default_rng(3)
     for sense in (1, -1, 1, -1):
         b, friction = rng.uniform(0.3, 4.0), rng.uniform(0.0, 0.8)

@@ -1,4 +1,4 @@
-"""A flat face that descends (case 1) and tilts (cases 2 and 6)."""
+"""Flat face that translates (case 1) and tilts (cases 2 and 6)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .rows import CLOSED_FORM, EXPONENTS, MPA, dissipation, printed, worst
 
 
 def case_1() -> Iterator[Check]:
-    """A punch that only descends."""
+    """Punch that translates without tilting."""
     rng = np.random.default_rng(1)
     for b in (*EXPONENTS, *rng.uniform(0.3, 4.0, 2)):
         force, length, width, speed = rng.uniform((1e2, 0.01, 0.01, 0.01), (1e5, 0.1, 0.1, 1.0))
@@ -29,7 +29,7 @@ def case_1() -> Iterator[Check]:
 
 
 def case_2() -> Iterator[Check]:
-    """A rectangular punch that descends and tilts both ways."""
+    """Rectangular punch that translates and tilts about both axes."""
     for b, (constant, slope, *pressures) in flat_face.TILTING_PUNCH.items():
         case = cases.tilting_punch(b, probes=(0.0, 0.03, 0.06))
         found = case.pressure(3) / MPA
@@ -47,9 +47,9 @@ def case_2() -> Iterator[Check]:
 
 
 def case_6() -> Iterator[Check]:
-    """A block that descends and tilts about a joint, with and without parting."""
+    """Block that translates and tilts about a joint, with full and partial contact."""
     rng = np.random.default_rng(6)
-    for eccentricity in (-0.12, 0.05, 0.15, -0.25, 0.4):  # of the length; parting from 1/6 on
+    for eccentricity in (-0.12, 0.05, 0.15, -0.25, 0.4):  # of the length; partial from 1/6 on
         for b in EXPONENTS:
             sense = int(rng.choice((-1, 1)))
             force, start, length, width = rng.uniform((500, 0.0, 0.05, 0.01), (5e3, 0.1, 0.2, 0.05))
@@ -63,11 +63,11 @@ def case_6() -> Iterator[Check]:
                 split=(end,) if zone < length else (),
             )  # fmt: skip
             steady = case.steady()
-            state = "parting" if zone < length else "closed"
+            state = "partial contact" if zone < length else "full contact"
             name = f", b = {b:g}, mu = {sense * friction:.3g}, {state}"
             ζ = case.patch.points[:, 2] - middle
             exact = flat_face.tilted_pressure(ζ, force, offset, length, width, b)
-            smooth = zone == length or b <= 1  # else the rule feels the root at the edge
+            smooth = zone == length or b <= 1  # else the root at the edge limits the quadrature
             allowed = 1e-9 if smooth else 1e-4
             yield worst("case-6", f"pressure{name} [Pa]", steady.pressure, exact, allowed)
             if b == 1 and zone == length:

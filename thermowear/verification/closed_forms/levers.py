@@ -17,7 +17,7 @@ SHIGLEY = "Budynas and Nisbett, Shigley's Mechanical Engineering Design, long-sh
 
 
 def case_5() -> Iterator[Check]:
-    """A block on a lever; the sense of minus locks where friction reaches a known value."""
+    """Block on a lever; self-locking in the sense of minus from a known friction on."""
     data = (lever.INNER, lever.OUTER, lever.OFFSET, lever.WIDTH)
     for (b, sense), ends in lever.ENDS.items():
         case = cases.brake_block(
@@ -42,15 +42,15 @@ def case_5() -> Iterator[Check]:
         yield dissipation("case-5", case, name)
     for b in EXPONENTS:
         limit = lever.locking_friction(lever.INNER, lever.OUTER, lever.OFFSET, b)
-        found = _first_to_lock(b, data, 0.99 * limit, 1.01 * limit)
-        quantity = f"friction that locks, b = {b:g} [1]"
+        found = _self_locking_friction(b, data, 0.99 * limit, 1.01 * limit)
+        quantity = f"least friction of self-locking, b = {b:g} [1]"
         yield compare("case-5", quantity, found, limit, 1e-6, CLOSED_FORM)
 
 
-def _first_to_lock(
+def _self_locking_friction(
     b: float, data: tuple[float, float, float, float], free: float, locked: float
 ) -> float:
-    """The friction from which on the solver reports self-locking, by bisection."""
+    """Least friction for which the solver reports self-locking, by bisection."""
     while locked - free > 1e-6 * free:
         friction = (free + locked) / 2
         try:
@@ -63,7 +63,7 @@ def _first_to_lock(
 
 
 def case_7() -> Iterator[Check]:
-    """A shoe in a drum: the long-shoe law, leading and trailing, and other exponents."""
+    """Shoe in a drum: the long-shoe law, leading and trailing, and other exponents."""
     size, ends, friction = (0.15, 0.125, 0.04), (0.0, np.radians(120)), 0.28
     moment = 2.2e3 * 2 * 0.125 * np.cos(np.radians(30))
     torques, tops = {}, {}

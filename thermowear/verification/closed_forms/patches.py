@@ -1,8 +1,8 @@
-"""The special cases of Páczelt and Mróz as contact patches, built from their geometry.
+"""Special cases of Páczelt and Mróz as contact patches, built from their geometry.
 
-Nothing here knows a formula for a pressure: points, normals, directions of sliding and the free
-motions of the holder are all that the principle is given. Faces are integrated by Gauss's rule;
-places of interest are added as points without area.
+No formula for a pressure is used: the principle gets points, normals, sliding directions and
+free motions of the holder only. Faces are integrated by Gauss's rule; points of interest are added
+with zero area.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ POINTS = 40
 
 @dataclass(frozen=True)
 class SpecialCase:
-    """A patch with what loads and what wears it.
+    """Contact patch with its load and wear laws.
 
     Attributes
     ----------
     patch : ContactPatch
     load : ndarray, shape (k,)
-        Along each motion [N or N m].
+        Load along each motion [N or N m].
     laws : tuple of WearLaw
     """
 
@@ -36,7 +36,7 @@ class SpecialCase:
     laws: tuple[WearLaw, ...]
 
     def steady(self) -> SteadyWear:
-        """The steady state, by the generic solver."""
+        """Steady state, by the generic solver."""
         return self.patch.steady(self.load, self.laws)
 
     def pressure(self, probes: int) -> np.ndarray:
@@ -45,14 +45,14 @@ class SpecialCase:
 
 
 def wear_law(b: float, a: float = 1.0) -> WearLaw:
-    """A wear law with rates of an ordinary size for pressures of some MPa."""
+    """Wear law with realistic rates for pressures of some MPa."""
     return WearLaw(1e-13 * 1e6 ** (1 - b), b, a)
 
 
 def along(
     start: float, end: float, probes: Sequence[float] | np.ndarray = (), split: Sequence[float] = ()
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points and weights on an interval, by parts, and probes with weight 0."""
+    """Gauss points and weights on an interval, piecewise, and probes with weight 0."""
     x, w = np.polynomial.legendre.leggauss(POINTS)
     parts = list(pairwise([start, *split, end]))
     points = [(low + high) / 2 + (high - low) / 2 * x for low, high in parts]
@@ -61,7 +61,7 @@ def along(
 
 
 def punch(b: float, force: float, length: float, width: float, speed: float) -> SpecialCase:
-    """Case 1: a flat punch that only descends."""
+    """Case 1: flat punch that translates."""
     x, w = along(0.0, length)
     points = np.column_stack([x, 0 * x, 0 * x])
     patch = contact_patch(points, w * width, DOWN, [translation(DOWN)], speed)
@@ -90,9 +90,9 @@ def block_on_disk(
     sense: int,
     probes: Sequence[float] = (),
 ) -> SpecialCase:
-    """Case 3: a block above a disk; in the sense +1 the disk turns anticlockwise."""
+    """Case 3: block above a disk; in the sense +1 the disk rotates anticlockwise."""
     α, w = along(*ends, probes)
-    outward = np.column_stack([np.sin(α), np.cos(α)])  # of the disk
+    outward = np.column_stack([np.sin(α), np.cos(α)])  # outward normal of the disk
     clockwise = np.column_stack([np.cos(α), -np.sin(α)])
     patch = contact_patch(
         radius * outward,
@@ -116,7 +116,7 @@ def ring_segment(
     sense: int,
     probes: Sequence[float] = (),
 ) -> SpecialCase:
-    """Case 4: a segment pressed up from inside a ring; at +1 the ring turns clockwise."""
+    """Case 4: segment pressed up inside a ring; in the sense +1 the ring rotates clockwise."""
     α, w = along(*ends, probes)
     outward = np.column_stack([np.sin(α), np.cos(α)])
     anticlockwise = np.column_stack([-np.cos(α), np.sin(α)])
@@ -143,7 +143,7 @@ def brake_block(
     friction: float,
     probes: Sequence[float] = (),
 ) -> SpecialCase:
-    """Case 5: a block on a lever about the origin; at +1 the strip moves away from the pivot."""
+    """Case 5: block on a lever about the origin; at +1 the strip moves away from the pivot."""
     z, w = along(inner, outer, probes)
     patch = contact_patch(
         np.column_stack([np.full_like(z, offset), 0 * z, z]),
@@ -169,10 +169,10 @@ def tilting_block(
     friction: float,
     split: Sequence[float] = (),
 ) -> SpecialCase:
-    """Case 6: a block that moves along x and turns about a joint at ``z = joint``.
+    """Case 6: block that moves along x and rotates about a joint at ``z = joint``.
 
-    The joint stands at `height` behind the face; `split` are ends of the contact, where the rule is
-    interrupted.
+    The joint lies `height` behind the face; `split` are ends of the contact, where the quadrature
+    is subdivided.
     """
     z, w = along(*ends, split=split)
     patch = contact_patch(
@@ -198,7 +198,7 @@ def drum_brake(
     friction: float,
     probes: Sequence[float] = (),
 ) -> SpecialCase:
-    """Case 7: a shoe inside a drum; trailing at +1, where the drum turns anticlockwise."""
+    """Case 7: shoe inside a drum; trailing at +1, for anticlockwise rotation of the drum."""
     θ, w = along(*ends, probes)
     outward = np.column_stack([np.cos(θ), np.sin(θ)])
     clockwise = np.column_stack([np.sin(θ), -np.cos(θ)])
@@ -224,17 +224,17 @@ def annular_punch(
     friction: float = 0.0,
     transverse_friction: float = 0.0,
 ) -> SpecialCase:
-    """Case 8: a ring that turns on its axis, on a face with any meridian.
+    """Case 8: ring that rotates about its axis, on a face with any meridian.
 
     Parameters
     ----------
     b, a, force
     radius, area : ndarray, shape (n,)
-        Of the points, and the face around the axis that they stand for.
+        Radii of the points, and area of the face around the axis per point.
     angle : float or ndarray
         α between the face's normal and the radius.
     friction, transverse_friction : float
-        Round the axis, and along the meridian.
+        Circumferential, and along the meridian.
     """
     α = np.broadcast_to(angle, radius.shape)
     zero = np.zeros_like(radius)
@@ -262,9 +262,9 @@ def disk_brake(
     friction: float = 0.0,
     height: float = 0.0,
 ) -> SpecialCase:
-    """Case 9: a pad on a disk that turns clockwise; it may tilt where a centre of load is given.
+    """Case 9: pad on a disk that rotates clockwise; it may tilt if a centre of load is given.
 
-    The joint about which it tilts stands at `height` over the centre of the disk.
+    The joint about which it tilts lies `height` above the centre of the disk.
     """
     r, w = along(*radii)
     φ, v = along(-angle / 2, angle / 2)

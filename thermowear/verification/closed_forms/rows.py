@@ -1,4 +1,4 @@
-"""Rows of checks that the cases have in common."""
+"""Common rows of checks."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, closed 
 TABLE = "closed form, tabulated"
 EXPONENTS = (0.5, 1.0, 2.0)
 MPA = 1e6
-_ROUNDED = 1 + 1e-9  # of half a unit: what lies in the middle between two printed numbers
+_ROUNDED = 1 + 1e-9  # relative to half a unit: allows ties in rounding
 
 
 def printed(id: str, quantity: str, computed: float, text: str) -> Check:
-    """A number against one in print, to half a unit of its last digit."""
+    """Compare a number with a tabulated one, to half a unit of its last digit."""
     mantissa, _, power = text.partition("e")
     decimals = len(mantissa.partition(".")[2])
     half_unit = 0.5 * 10.0 ** (int(power or 0) - decimals)
@@ -24,16 +24,16 @@ def printed(id: str, quantity: str, computed: float, text: str) -> Check:
 
 
 def worst(id: str, quantity: str, computed, exact, allowed: float = 1e-9) -> Check:
-    """Values at points against a formula, where they differ most, relative to the largest."""
+    """Compare values at points with a formula, at the point of largest deviation."""
     computed, exact = np.broadcast_arrays(computed, exact)
     at = int(np.abs(computed - exact).argmax())
     scale = float(np.abs(exact).max())
-    quantity = f"{quantity}, where it differs most"
+    quantity = f"{quantity}, at the point of largest deviation"
     return compare(id, quantity, computed[at], exact[at], allowed, CLOSED_FORM, scale)
 
 
 def dissipation(id: str, case: SpecialCase, name: str) -> Check:
-    """``D_w = ∫ p·w' dS`` against the power of the load, ``F·V``."""
+    """Compare ``D_w = ∫ p·w' dS`` with the power of the load, ``F·V``."""
     steady = case.steady()
     quantity = f"wear dissipation power{name} [W]"
     power = float(case.load @ steady.velocity)

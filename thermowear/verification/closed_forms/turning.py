@@ -1,4 +1,4 @@
-"""Faces whose speed grows with the radius: an annular punch (case 8), a disk brake (case 9)."""
+"""Faces whose speed grows with the radius: annular punch (case 8), disk brake (case 9)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .rows import CLOSED_FORM, MPA, dissipation, printed, worst
 
 
 def case_8() -> Iterator[Check]:
-    """A ring that turns on a plate, on flat, conical and toroidal faces."""
+    """Ring rotating on a plate, with flat, conical and toroidal faces."""
     inner, outer = 0.02, 0.12
     force = 100e6 * np.pi * (outer**2 - inner**2)
     places = np.array([0.02, 0.04, 0.07, 0.12])
@@ -68,7 +68,7 @@ def _tori() -> Iterator[Check]:
 
 
 def case_9() -> Iterator[Check]:
-    """A pad on a disk, pressed straight or free to tilt."""
+    """Pad on a disk, without and with free tilting."""
     rng = np.random.default_rng(9)
     for same in (True, True, False, False):
         b, a, angle, force = rng.uniform((0.3, 0.5, 0.3, 100), (3.0, 2.0, 2.0, 1e4))

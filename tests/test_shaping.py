@@ -114,7 +114,7 @@ def test_bad_words(words, text, capsys):
 def test_a_case_without_steady_state(capsys):
     """requirement: exit code 1, with why there is none."""
     assert main(["shape", "cylinder-stick-slip.toml", "-o", "d.csv"]) == 1
-    assert "for a transient or fretting analysis, not for steady" in capsys.readouterr().err
+    assert "requires a transient or fretting analysis, not steady" in capsys.readouterr().err
 
 
 def test_one_process(monkeypatch, capsys):

@@ -1,4 +1,4 @@
-"""What may change where a run goes on."""
+"""Changes that are allowed when a run is resumed."""
 
 import pytest
 
@@ -67,14 +67,14 @@ def test_changes_are_shown_with_both_values():
     """requirement: what the key was and what it is, in one line, however long."""
     one = tw.load(COLD_RUNNING_IN)
     (found,) = changes(one, tw.load(COLD_RUNNING_IN, ("contact.friction=0.3",)))
-    assert str(found) == "contact.friction was 0.25, and is 0.3 now"
+    assert str(found) == "contact.friction was 0.25, is now 0.3"
     times = str([f"{number} s" for number in range(1, 100)])
     (found,) = changes(one, tw.load(COLD_RUNNING_IN, (f"analysis.output_times={times}",)))
     assert str(found).startswith("analysis.output_times was ('1.0 s', '5.0 s', ")
     assert len(str(found)) < 160
     start = changes(tw.load(TUBE), tw.load(TUBE, ("load.history.cycle_start=0 ms",)))
     assert [str(change) for change in start] == [
-        "load.history.cycle_start was not given, and is 0.0 s now"
+        "load.history.cycle_start was not given, is now 0.0 s"
     ]
 
 

@@ -119,10 +119,10 @@ def test_files_are_looked_for_beside_the_case(tmp_path, monkeypatch):
     here.mkdir()
     (here / FILE).write_text(HEAD + "0,2\n")
     monkeypatch.chdir(here)
-    with pytest.warns(CaseNote, match="is another file, and is not read"):
+    with pytest.warns(CaseNote, match="the other file .* is not read"):
         assert tw.load(path).force() == 1000.0
     (beside / FILE).unlink()
-    with pytest.warns(CaseNote, match="paths are meant from the case file's"):
+    with pytest.warns(CaseNote, match="paths are relative to the folder of the case file"):
         assert tw.load(path).force() == 2000.0
     override = (f"load.history={beside / 'other.csv'}",)
     (beside / "other.csv").write_text(HEAD + "0,3\n")
@@ -131,12 +131,12 @@ def test_files_are_looked_for_beside_the_case(tmp_path, monkeypatch):
 
 FAULTS = {
     "no file": (None, f"{FILE} cannot be read: No such file"),
-    "empty": ("", f"{FILE} is empty; needs a header, of: time [s], force [kN]"),
-    "header alone": (HEAD, f"{FILE} has a header, but no rows"),
+    "empty": ("", f"{FILE} is empty; needs a header with columns of: time [s], force [kN]"),
+    "header alone": (HEAD, f"{FILE} has a header but no rows"),
     "binary": (b"\xff\xfe\x00\x01", f"{FILE} is not text in UTF-8"),
-    "no unit": ("time [s],force\n0,1\n", f"{FILE}, line 1: force: no unit; write it like force ["),
+    "no unit": ("time [s],force\n0,1\n", f"{FILE}, line 1: force: unit missing; write force ["),
     "unknown column": ("time [s],farce [N]\n0,1\n", f"{FILE}, line 1: found the column 'farce"),
-    "column twice": ("time [s],time [s]\n0,1\n", f"{FILE}, line 1: the column time is there twice"),
+    "column twice": ("time [s],time [s]\n0,1\n", f"{FILE}, line 1: the column time is given twice"),
     "wrong unit": (HEAD.replace("kN", "mm") + "0,1\n", f"{FILE}, line 2: force: "),
     "unreadable unit": (HEAD.replace("kN", "kXN") + "0,1\n", f"{FILE}, line 2: force: "),
     "short row": (HEAD + "0,1\n1\n", f"{FILE}, line 3: has 1 cells for 2 columns"),

@@ -191,7 +191,7 @@ def test_a_line_break_behind_set_is_not_dropped():
     """
     requirement: what stands behind a line break of --set is not left out silently.
     """
-    with pytest.raises(tw.CaseError, match="another key behind a line break"):
+    with pytest.raises(tw.CaseError, match="a second key after a line break"):
         tw.load(tables(), ("mesh.degree=6\nmesh.elements=4",))
     times = 'analysis.output_times=["1 s",\n "2 s"]'
     assert tw.load(tables(RUNNING_IN), (times,)).analysis.output_times == (1.0, 2.0)

@@ -85,26 +85,27 @@ MOVING = [
     Bad("plate below a ring", {PASSING: "spread"}, PASSING, "plate does not pass under"),
     Bad("block below", {PASSING: "resolved", "bodies.lower.density": "1 g/cm^3",
         "bodies.lower.specific_heat": "1 J/kg/K"}, PASSING, "lower does not pass", BLOCKS),
-    Bad("disk that is spread", {PASSING: "spread"}, PASSING, "round the disk already", BRAKE),
+    Bad("disk that is spread", {PASSING: "spread"}, PASSING,
+        "already distributed around the disk", BRAKE),
     Bad("at a speed that changes", STORING | IN_TIME | {PASSING: "resolved",
         "motion.history": {"time": ["0 s", "1 s"], "factor": [1.0, 0.0]}},
-        PASSING, "is for one speed", STRIP),
+        PASSING, "needs a constant speed", STRIP),
     Bad("carried round, and nothing cools", {PASSING: "resolved", "heat.cooling": GONE,
         "bodies.block.density": "1 g/cm^3", "bodies.block.specific_heat": "1 J/kg/K"},
-        "heat", "nowhere to go", DISK),
+        "heat", "there is no heat sink", DISK),
     Bad("carries what", {PASSING: "resolved", DENSE: "1 g/cm^3"}, WARM, '"resolved"', STRIP),
 ]  # fmt: skip
 
 STORED = [
-    Bad("steady in time", STORING | {"heat.transient": True}, "heat.transient", "not for steady"),
+    Bad("steady in time", STORING | {"heat.transient": True}, "heat.transient", "not steady"),
     Bad("initial in time", HOT | {"analysis": {"type": "initial"}}, "heat.transient",
-        "is for a transient analysis, not for initial"),
+        "requires a transient analysis, not initial"),
     Bad("no density", IN_TIME | {"heat.transient": True, WARM: "460 J/kg/K"}, DENSE,
         "missing; needed because heat.transient is true"),
     Bad("no specific heat", IN_TIME | {"heat.transient": True, DENSE: "1 g/cm^3"}, WARM,
         "missing; needed because heat.transient is true"),
     Bad("by penalty", HOT | {"contact.method": "penalty"}, "contact.method",
-        "'penalty' is not for temperatures in time; use condensed"),
+        "'penalty' does not support temperatures in time; use condensed"),
     Bad("hot at the start", {"heat.initial": "80 degC"}, "heat.initial", "heat.transient = true"),
     Bad("colder than cold", HOT | {"heat.initial": "-300 degC"}, "heat.initial", "at least 0 K"),
     Bad("in time, 1", HOT | {"heat.transient": 1}, "heat.transient", "must be true or false"),
@@ -115,19 +116,19 @@ STORED = [
         "heat": {"transient": True},
         "bodies.punch.conductivity": "1 W/m/K", "bodies.punch.expansion": "1e-5 1/K",
         "bodies.punch.density": "1 g/cm^3", "bodies.punch.specific_heat": "1 J/kg/K",
-    }, "heat", "not for a reciprocating", RECIPROCATING),
+    }, "heat", "not supported in a reciprocating", RECIPROCATING),
 ]  # fmt: skip
 
 UNSTABLE = [
-    Bad("cold", STABLE | {"heat": GONE}, "heat", "missing; a stability analysis"),
+    Bad("cold", STABLE | {"heat": GONE}, "heat", "missing; required in a stability analysis"),
     Bad("still", STABLE | {"motion": GONE}, "motion", "missing; wear and friction heat"),
     Bad("so many modes", STABLE | {"analysis.modes": 3}, "analysis.modes", "unknown key"),
     Bad("smooth", STABLE | {"contact.friction": 0, "wear": GONE}, "contact.friction", "is 0"),
     Bad("by Nitsche", STABLE | {"contact.method": "nitsche"}, "contact.method",
-        "'nitsche' is not for a stability analysis"),
-    Bad("insulated", STABLE | {"heat.cooling": GONE}, "heat", "nowhere to go"),
+        "'nitsche' does not support a stability analysis"),
+    Bad("insulated", STABLE | {"heat.cooling": GONE}, "heat", "there is no heat sink"),
     Bad("in time", STABLE | STORING | {"heat.transient": True}, "heat.transient",
-        "not for stability"),
+        "not stability"),
 ]  # fmt: skip
 
 REST = {"motion": GONE, "wear": GONE, "analysis": {"type": "initial"}}
@@ -136,7 +137,7 @@ RAMP = {"time": ["0 s", "1 s"], "temperature": ["20 degC", "90 degC"]}
 TOP = "heat.temperature.upper_top"
 FLUX, POWER, SURROUNDED = "heat.flux", "heat.power", "heat.ambient_history"
 AT_REST = [
-    Bad("nothing heats", REST, "motion", "nothing heats the bodies: needs sliding, or", BLOCKS),
+    Bad("nothing heats", REST, "motion", "no heat source: needs sliding, or", BLOCKS),
     Bad("smooth, and nothing heats", {"contact.friction": 0, "wear.upper.per": "pressure"},
         "contact.friction", "friction heat needs friction", BLOCKS),
     Bad("steady at rest", HEATED | {"wear.upper": {"coefficient": "1e-8 1/MPa"},
@@ -144,19 +145,19 @@ AT_REST = [
     Bad("nothing passes", REST | {PASSING: "spread",
         "heat.power": {"punch_top": "1 W"}}, PASSING, "needs [motion]", STRIP),
     Bad("heat with nowhere to go", REST | {"heat.temperature": GONE,
-        FLUX: {"upper_top": "1 W/m^2"}}, "heat", "nowhere to go", BLOCKS),
+        FLUX: {"upper_top": "1 W/m^2"}}, "heat", "there is no heat sink", BLOCKS),
     Bad("no flux", {FLUX: {"upper_side": "0 W/m^2"}}, f"{FLUX}.upper_side", "other than", BLOCKS),
     Bad("flux in watts", {FLUX: {"upper_side": "1 W"}}, f"{FLUX}.upper_side", "W/m^2", BLOCKS),
-    Bad("power per area", {POWER: {"upper_side": "1 W/m^2"}}, f"{POWER}.upper_side", "of W",
+    Bad("power per area", {POWER: {"upper_side": "1 W/m^2"}}, f"{POWER}.upper_side", "be in W",
         BLOCKS),
     Bad("unknown surface", {POWER: {"side": "1 W"}}, f"{POWER}.side", "one of: upper_face", BLOCKS),
     Bad("on the contact", {FLUX: {"lower_face": "1 W/m^2"}}, f"{FLUX}.lower_face",
         "exchanges heat with the other body only", BLOCKS),
     Bad("on a given temperature", {POWER: {"upper_top": "1 W"}}, f"{POWER}.upper_top",
-        "has a given temperature already", BLOCKS),
+        "already has a prescribed temperature", BLOCKS),
     Bad("twice", {FLUX: {"upper_side": "1 W/m^2"}, POWER: {"upper_side": "1 W"}},
-        f"{POWER}.upper_side", "has a given flux already", BLOCKS),
-    Bad("steady ramp", {TOP: RAMP}, TOP, "is for a transient analysis, not for steady", BLOCKS),
+        f"{POWER}.upper_side", "already has a prescribed flux", BLOCKS),
+    Bad("steady ramp", {TOP: RAMP}, TOP, "requires a transient analysis, not steady", BLOCKS),
     Bad("ramp without memory", IN_TIME | {TOP: RAMP}, TOP, "heat.transient = true", BLOCKS),
     Bad("ramp of lists that differ", {TOP: RAMP | {"time": ["0 s"]}}, f"{TOP}.temperature",
         "has 2 values for 1 times", BLOCKS),
@@ -171,7 +172,7 @@ AT_REST = [
         "no surface has heat.cooling"),
     Bad("until steady in other surroundings",
         HOT | {SURROUNDED: RAMP, "analysis": {"type": "transient", "until": "steady"}},
-        "analysis.until", f"nothing is steady under {SURROUNDED}"),
+        "analysis.until", f"there is no steady state under {SURROUNDED}"),
 ]  # fmt: skip
 
 

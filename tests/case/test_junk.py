@@ -43,7 +43,7 @@ junk = st.recursive(
 
 
 def related(fault: str, path: str) -> bool:
-    """Whether a fault is charged to the key, to another of its table, or names the key."""
+    """Test whether a fault names the key, or is reported at it or at another key of its table."""
     table, _, key = path.rpartition(".")
     beside = bool(table) and fault.startswith((f"{table}.", f"{table}: "))
     return fault.startswith((f"{path}.", f"{path}: ")) or beside or key in fault

@@ -45,7 +45,7 @@ def ends_at_all():
 
 
 def try_one(seed: int, folder, capsys) -> bool:
-    """Whether a mutated case is accepted; what is said in any case is short and complete."""
+    """Test whether a mutated case is accepted; any message must be short and complete."""
     kind, (content, overrides) = mutated(seed)
     file = folder / "case.toml"
     file.write_bytes(content)

@@ -1,4 +1,4 @@
-"""What is written out as a case is read back as the same case."""
+"""Cases written out and read back are equal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What starters and messages say of keys that are easily taken wrongly."""
+"""Hints in starters and messages on keys that are often set wrongly."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PER = "wear.punch.per"
 
 
 def notes(given: dict) -> list[str]:
-    """What is noted of a case."""
+    """Notes issued for a case."""
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always", CaseNote)
         tw.load(given)

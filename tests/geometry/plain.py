@@ -41,7 +41,7 @@ class Plain:
         return sorted({node for name, nodes in self.cells if name == body for node in nodes})
 
     def moved(self, body: str, x: float, y: float) -> Plain:
-        """The same with a body somewhere else."""
+        """Copy with one body displaced."""
         result = copy.deepcopy(self)
         for node in self.nodes(body):
             px, py = self.points[node]

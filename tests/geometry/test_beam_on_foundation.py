@@ -85,7 +85,7 @@ def test_supports():
 
 
 def deflection(geometry, modulus, force):
-    """How far the middle of the load sinks on the lower face, nothing touching [m]."""
+    """Deflection of the lower face at the middle of the load, without contact [m]."""
     bodies = distribute(geometry.build(Mesh(elements=40), None), MPI.COMM_SELF)
     model = section_model("plane-stress", geometry.thickness_factor)
     steel = ElasticMaterial(modulus, 0.3, 0.0)

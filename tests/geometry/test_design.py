@@ -53,7 +53,7 @@ def body_of(name: str, index: int = 0, changes=None):
 
 
 def area(mesh) -> float:
-    """Of all cells [m²]."""
+    """Total area of all cells [m²]."""
     return sum(areas(mesh, body).sum() for body in mesh.bodies)
 
 
@@ -66,7 +66,7 @@ def test_depth_between_points():
     on_face = np.column_stack([x, np.zeros(333)])
     assert design.depth_at(on_face) == pytest.approx(waves(x), abs=1e-10)
     for off in ([0.0, 0.01], [0.01, 0.0]):
-        with pytest.raises(ValueError, match=r"0\.01 m off the contact face"):
+        with pytest.raises(ValueError, match=r"0\.01 m away from the contact face"):
             design.depth_at(on_face + off)
 
 
@@ -125,7 +125,10 @@ def test_a_file_without_a_table(tmp_path):
         (lambda t: t.replace("normal_y", "normal"), "no column normal_y"),
         (lambda t: t.replace("\n1,", "\n3,"), "column body"),
         (lambda t: t.replace("\n1,", "\n2,", 1), "column body"),
-        (lambda t: "\n".join([*t.split("\n")[:5], "1,a,b,c,d,e,f,g,h,i,j"]), "no numbers"),
+        (
+            lambda t: "\n".join([*t.split("\n")[:5], "1,a,b,c,d,e,f,g,h,i,j"]),
+            "that are not numbers",
+        ),
         (lambda t: "\n".join(t.split("\n")[:3]), "fewer than 4 rows"),
         (lambda t: "\n".join([*t.split("\n")[:-2], "1,0.1,0,0,1,0,-1,0,0,0,25"]), "in metres"),
     ],

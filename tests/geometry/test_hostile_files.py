@@ -35,8 +35,8 @@ GRID = """<?xml version="1.0"?><Xdmf Version="3.0"><Domain><Grid Name="g">
 </Geometry><Topology TopologyType="Quadrilateral" NumberOfElements="1">
 <DataItem DataType="Int" Dimensions="1 4" Format="XML">0 1 2 3</DataItem></Topology>
 </Grid></Domain></Xdmf>"""
-SECTION = "belongs to no section of a mesh; commands are never carried out"
-NO_SECTION = "only meshes are read, commands are never carried out"
+SECTION = "belongs to no section of a mesh; commands are never executed"
+NO_SECTION = "only meshes are read, commands are never executed"
 
 TEXTS = {
     "script.msh": (CALL, NO_SECTION),
@@ -50,12 +50,18 @@ TEXTS = {
     ),
     "comments_first.msh": ("$Comments\nhello\n$EndComments\n" + CALL, SECTION),
     "comments_only.msh": ("$Comments\n" + CALL + "$EndComments\n", "no section $MeshFormat"),
-    "own_section.msh": (GOOD + "$Script\n" + CALL + "$EndScript\n", "$Script is none of a mesh"),
-    "among_nodes.msh": (GOOD.replace("$EndNodes", CALL + "$EndNodes"), "where a number is due"),
+    "own_section.msh": (
+        GOOD + "$Script\n" + CALL + "$EndScript\n",
+        "$Script is not part of a mesh",
+    ),
+    "among_nodes.msh": (
+        GOOD.replace("$EndNodes", CALL + "$EndNodes"),
+        "where a number is expected",
+    ),
     "views.msh": ("$PostFormat\n1.4 0 8\n$EndPostFormat\n" + CALL, NO_SECTION),
     "script.inp": (CALL, NO_SECTION),
-    "include.inp": (DECK + "*INCLUDE, INPUT={secret}\n", "*INCLUDE takes in another file"),
-    "nodes_elsewhere.inp": ("*NODE, INPUT={secret}\n" + DECK, "*NODE takes in another file"),
+    "include.inp": (DECK + "*INCLUDE, INPUT={secret}\n", "*INCLUDE includes another file"),
+    "nodes_elsewhere.inp": ("*NODE, INPUT={secret}\n" + DECK, "*NODE includes another file"),
     "script.vtu": (CALL, NO_SECTION),
     "entity.vtu": (
         HEAD + '<!DOCTYPE v [<!ENTITY x SYSTEM "file://{secret}">]><VTKFile>&x;</VTKFile>',
@@ -78,18 +84,21 @@ TEXTS = {
     "binary.xdmf": (GRID.replace("{form}", "Binary").replace("{text}", "{secret}"), "other files"),
     "heavy_elsewhere.xdmf": (
         GRID.replace("{form}", "HDF").replace("{text}", "../secret:/x"),
-        "which is no file beside it",
+        "which is not a file in the same folder",
     ),
     "heavy_anywhere.xdmf": (
         GRID.replace("{form}", "HDF").replace("{text}", "{secret}:/x"),
-        "which is no file beside it",
+        "which is not a file in the same folder",
     ),
-    "nodes_of_a_file.inp": (DECK + "*ELEMENT, TYPE=CPS4, FILE={secret}\n", "takes in another file"),
-    "on_the_next_line.inp": (DECK + "*NODE,\n INPUT={secret}\n", "where a number is due"),
+    "nodes_of_a_file.inp": (DECK + "*ELEMENT, TYPE=CPS4, FILE={secret}\n", "includes another file"),
+    "on_the_next_line.inp": (DECK + "*NODE,\n INPUT={secret}\n", "where a number is expected"),
     "old_lines.msh": (GOOD.replace("\n", "\r") + CALL, SECTION),
     "nothing_first.msh": (GOOD.replace("$Nodes", "\0$Nodes"), SECTION),
-    "unsaid.msh": (GOOD.replace("$EndNodes", "99 0 0 0\n$EndNodes"), "holds more than it says"),
-    "script.geo": (CALL, "unknown ending"),
+    "unsaid.msh": (
+        GOOD.replace("$EndNodes", "99 0 0 0\n$EndNodes"),
+        "holds more data than announced",
+    ),
+    "script.geo": (CALL, "unknown file ending"),
     "script.MSH": (CALL, NO_SECTION),
     "hidden_include.vtu": (
         HEAD + "<VTKFile type='UnstructuredGrid'><!-- <AppendedData -->" + INCLUDED + "</VTKFile>",
@@ -100,9 +109,12 @@ TEXTS = {
         '<VTKFile type="PUnstructuredGrid"><Piece Source="{secret}"/></VTKFile>',
         "found PUnstructuredGrid",
     ),
-    "group.xdmf": (GRID.replace("{form}", "HDF").replace("{text}", "..:/x"), "no file beside it"),
+    "group.xdmf": (
+        GRID.replace("{form}", "HDF").replace("{text}", "..:/x"),
+        "not a file in the same folder",
+    ),
     "script.med": (CALL, NO_SECTION),
-    "archive.msh": ("\x1f\x8b\x08\x00", "it is no mesh of gmsh"),
+    "archive.msh": ("\x1f\x8b\x08\x00", "it is not a gmsh mesh"),
 }
 """Name of a file, its text, and part of the answer."""
 
@@ -186,7 +198,7 @@ def test_commands_in_binary_meshes(version, section, place):
     content, call = path.read_bytes(), CALL.replace("{mark}", str(place / "mark")).encode()
     path.write_bytes(content[:at] + b"\n" + call + content[at:])
     line = refused(place, "mesh.msh", GMSH_NAMES)
-    assert SECTION in line or f"the section ${section} holds more than it says" in line
+    assert SECTION in line or f"the section ${section} holds more data than announced" in line
 
 
 @pytest.mark.parametrize("ending", ["msh", "vtu", "xdmf"])
@@ -259,7 +271,7 @@ def test_hdf5_files_that_lead_elsewhere(hide, ending, place):
         text = GRID.replace("{form}", "HDF").replace("{text}", "heavy.h5:/x")
         (place / "folder" / "mesh.xdmf").write_text(text)
     line = refused(place, f"mesh.{ending}")
-    assert "a mesh has to be in one file" in line or "is kept in another file" in line
+    assert "a mesh must be in one file" in line or "is stored in another file" in line
 
 
 @pytest.mark.parametrize("content", [b"", b"\x89HDF\r\n\x1a\n" + 300 * b"\xff", b"\0" * 999])
@@ -288,7 +300,7 @@ def test_data_that_swell(place, monkeypatch):
         '<Points><DataArray type="Float64" NumberOfComponents="3" format="binary">'
         f"{text}</DataArray></Points></Piece></UnstructuredGrid></VTKFile>"
     )
-    assert "it takes more memory than a mesh may" in refused(place, "mesh.vtu")
+    assert "it exceeds the memory limit of a mesh" in refused(place, "mesh.vtu")
 
 
 @pytest.mark.parametrize("ending", ["msh", "inp", "vtu", "xdmf", "med"])
@@ -309,7 +321,7 @@ def test_files_that_are_too_large(place):
     path = place / "folder" / "mesh.msh"
     path.write_text(GOOD)
     os.truncate(path, 2**40)
-    assert "it has 1048576 MB; a mesh may have 32 MB" in refused(place, "mesh.msh")
+    assert "it has 1048576 MB; at most 32 MB are allowed" in refused(place, "mesh.msh")
 
 
 def test_ranges_without_end(place):

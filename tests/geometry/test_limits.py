@@ -75,7 +75,7 @@ def test_meshes_too_large(starter, changes, text):
     with pytest.raises(CaseError, match=text) as caught:
         case.tagged_mesh()
     assert len(caught.value.faults) == 1
-    assert "slip in a unit" in str(caught.value)
+    assert "check the units" in str(caught.value)
 
 
 def test_counting_comes_first(monkeypatch):
@@ -95,8 +95,8 @@ def test_counting_comes_first(monkeypatch):
 
 
 ZONES = [
-    (HERTZ, {"load": {"force": "1e-30 N"}}, "can be meshed from"),
-    (SPHERE, {"load": {"force": "1e-40 N"}}, "can be meshed from"),
+    (HERTZ, {"load": {"force": "1e-30 N"}}, "the least width that can be meshed is"),
+    (SPHERE, {"load": {"force": "1e-40 N"}}, "the least width that can be meshed is"),
     (HERTZ, {"load": {"force": "1e9 N"}}, "geometry.radius: too small for the contact"),
     (TUBE, {"geometry.zone": "1 m"}, "geometry.zone: too large"),
 ]

@@ -41,7 +41,7 @@ def fault(path, mesh: Plain, **more) -> str:
 
 
 def gap(mesh) -> float:
-    """How far apart the level faces of both blocks lie [m]."""
+    """Gap between the level faces of both blocks [m]."""
     upper, lower = (
         mesh.points[mesh.facets[mesh.facet_tags == mesh.surfaces.index(name) + 1]][..., 1]
         for name in NAMES["contact"]
@@ -50,7 +50,7 @@ def gap(mesh) -> float:
 
 
 def quadratic(mesh: Plain) -> Plain:
-    """The same with cells of nine nodes and lines of three, straight."""
+    """Copy with straight cells of nine nodes and lines of three."""
     result, middle = Plain(copy.deepcopy(mesh.points)), {}
 
     def between(*nodes: int) -> int:
@@ -146,15 +146,21 @@ def _node_twice_in_a_line(mesh):
 SPOILT = {
     "tangled": (_tangled, "cells of 'punch' are tangled or flat (det J <= 0)"),
     "flat": (_flat, "cells of 'punch' are tangled or flat (det J <= 0)"),
-    "nan": (_nowhere, "nodes without a place"),
+    "nan": (_nowhere, "the coordinates of some nodes of the bodies are not finite"),
     "far": (_far, "a node lies at ("),
     "three cells on an edge": (_third, "1 edges of 'punch' have three or more cells"),
-    "cell twice": (_double, "1 cells are in 'PUNCH' and 'PLATE' both, or twice"),
+    "cell twice": (_double, "1 cells are in both 'PUNCH' and 'PLATE', or twice"),
     "crack": (_crack, "cells of 'punch' are not joined along 2 edges"),
-    "hinge": (_hinge, "hang together by a single node"),
-    "loose piece": (_loose, "1 of 9 cells of 'punch' are not joined to those that 'PUNCH_TOP'"),
-    "line of nothing": (_line_of_nothing, "1 of 5 lines of 'PUNCH_FACE' are on the boundary of no"),
-    "line within": (_line_within, "1 of 5 lines of 'PUNCH_FACE' are on the boundary of no body"),
+    "hinge": (_hinge, "are joined by a single node"),
+    "loose piece": (_loose, "1 of 9 cells of 'punch' are not joined to those held at 'PUNCH_TOP'"),
+    "line of nothing": (
+        _line_of_nothing,
+        "1 of 5 lines of 'PUNCH_FACE' are not on the boundary of any",
+    ),
+    "line within": (
+        _line_within,
+        "1 of 5 lines of 'PUNCH_FACE' are not on the boundary of any body",
+    ),
     "two names": (_two_names, "'PUNCH_FACE' and 'PUNCH_TOP' share 1 edges"),
     "face with a hole": (_face_with_a_hole, "the edges of 'PUNCH_FACE' are in 2 pieces"),
     "node twice": (_node_twice_in_a_line, "an element of type line has a node twice"),
@@ -251,7 +257,7 @@ def test_a_half_model(tmp_path):
             lambda m: m.lines.__setitem__(
                 slice(None), [x for x in m.lines if x[0] != "AXES" or x[1][0] > 14]
             ),
-            "no surface of 'punch' is named",
+            "no surface of 'punch' is listed",
         ),
     ],
 )
@@ -294,16 +300,14 @@ def test_bodies_upside_down(tmp_path):
     """
     mesh = blocks()
     mesh.points = [[x, -y] for x, y in mesh.points]
-    assert "'PUNCH_FACE' does not look down" in fault(tmp_path, mesh)
+    assert "'PUNCH_FACE' does not face down" in fault(tmp_path, mesh)
 
 
 def test_bodies_that_overlap_a_little(tmp_path):
     """
     requirement: an overlap of some percent may be meant, and is said; a thousandth is not.
     """
-    with pytest.warns(
-        CaseNote, match="the bodies overlap by 1 mm before they are pressed, 5.0% of"
-    ):
+    with pytest.warns(CaseNote, match="the bodies overlap by 1 mm before loading, 5.0% of"):
         much = case(tmp_path, blocks().moved("PUNCH", 0, -1e-3)).tagged_mesh()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -313,7 +317,11 @@ def test_bodies_that_overlap_a_little(tmp_path):
 
 
 LOADS = {
-    "unit": ({"length_unit": "1 um"}, {"approach": "0.05 mm"}, "load.approach: 50 µm squeezes the"),
+    "unit": (
+        {"length_unit": "1 um"},
+        {"approach": "0.05 mm"},
+        "load.approach: 50 µm compresses the",
+    ),
     "force": ({"length_unit": "1 um"}, {"force": "10 kN"}, "times the modulus of"),
     "open": ({"length_unit": "1 m"}, {"approach": "0.05 mm"}, "does not close the gap of 1 mm"),
     "atoms": ({"length_unit": "1e-9 m"}, {"force": "1 N"}, "the bodies have a size of 6e-11 m"),

@@ -298,12 +298,12 @@ def test_kinds_of_abaqus_elements(tmp_path, kind):
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
-        (("*HEADING", "*NGEN\n1, 4, 1"), "*NGEN makes nodes or elements"),
-        (("*HEADING", "*SYSTEM\n0, 0, 0"), "*SYSTEM turns the coordinates"),
+        (("*HEADING", "*NGEN\n1, 4, 1"), "*NGEN generates nodes or elements"),
+        (("*HEADING", "*SYSTEM\n0, 0, 0"), "*SYSTEM transforms coordinates"),
         (("*HEADING", "*Instance, name=A\n1., 0., 0."), "*INSTANCE moves a part"),
-        (("*Node, NSET=ALL", "*Node, NSET=ALL, SYSTEM=C"), "is no Cartesian one"),
-        (("12, 1., 0., 0.", "2, 1.5, 0., 0."), "node 2 is there twice"),
-        (("2, 11, 12, 13, 14, 15", "1, 11, 12, 13, 14, 15"), "element 1 is there twice"),
+        (("*Node, NSET=ALL", "*Node, NSET=ALL, SYSTEM=C"), "is not Cartesian"),
+        (("12, 1., 0., 0.", "2, 1.5, 0., 0."), "node 2 is defined twice"),
+        (("2, 11, 12, 13, 14, 15", "1, 11, 12, 13, 14, 15"), "element 1 is defined twice"),
         (("2, 2, 1", "2, 2, 0"), "a range with the step 0"),
     ],
 )
@@ -328,7 +328,7 @@ ELSEWHERE = "is not on the boundary of"
         ({"bodies": {"punch": "TOP", "plate": "PLATE"}}, f"{NO_CELLS} 'TOP'"),
         (
             {"bodies": {"punch": "PUNCH", "plate": "PUNCH"}},
-            "geometry.bodies: 1 cells are in 'PUNCH' and 'PUNCH' both",
+            "geometry.bodies: 1 cells are in both 'PUNCH' and 'PUNCH'",
         ),
         ({"contact": ["FACE", "PLATE_FACE"]}, f"geometry.contact: {NO_SURFACE} 'FACE'; {SURFACES}"),
         (
@@ -360,7 +360,7 @@ def test_names_that_are_not_there(tmp_path, keys, expected):
         (("16, 17, 18", "16, 17, 99"), "99"),
         (("*Element, type=CPS8R, elset", "*Element, type=C3D8, elset"), "type C3D8"),
         (("2, 1., 0.", "2, 1., zero"), "zero"),
-        (("2, 1., 0.", "2, 1., nan"), "nodes without a place"),
+        (("2, 1., 0.", "2, 1., nan"), "the coordinates of some nodes of the bodies are not finite"),
         (("13, 1., -1., 0.", "13, 1., -1., 1."), "do not lie in a plane"),
     ],
 )
@@ -397,7 +397,7 @@ def test_mixed_cells(tmp_path):
         gmsh.model.mesh.generate(2)
         gmsh.write(str(tmp_path / "a.msh"))
     text = fault(tmp_path / "a.msh")
-    assert text.startswith("geometry.bodies: the bodies have different cells, triangles of 3 nodes")
+    assert text.startswith("geometry.bodies: different cell types, triangles of 3 nodes")
 
 
 def test_three_dimensional_cells(tmp_path):
@@ -431,7 +431,7 @@ def test_files_that_are_not_there(tmp_path):
     requirement: missing files and unknown endings give one line.
     """
     assert fault(tmp_path / "no.msh").endswith("cannot be read: No such file or directory")
-    assert "unknown ending; one of: .msh, .inp" in fault(tmp_path / "mesh.stl")
+    assert "unknown file ending; must be one of: .msh, .inp" in fault(tmp_path / "mesh.stl")
     (tmp_path / "folder.msh").mkdir()
     assert fault(tmp_path / "folder.msh").endswith("cannot be read: Is a directory")
 
@@ -498,8 +498,8 @@ def test_a_case_with_a_file(tmp_path):
         ({"bodies": {"punch": "PUNCH"}}, "geometry.bodies: needs two"),
         ({"bodies": ["PUNCH", "PLATE"]}, "geometry.bodies: "),
         ({"contact": ["punch_face"]}, "geometry.contact"),
-        ({"contact": ["FACE", "FACE"]}, "geometry.contact: 'FACE' is there twice"),
-        ({"held": "BOTTOM"}, "geometry.fixed: 'BOTTOM' is there twice"),
+        ({"contact": ["FACE", "FACE"]}, "geometry.contact: 'FACE' is used twice"),
+        ({"held": "BOTTOM"}, "geometry.fixed: 'BOTTOM' is used twice"),
         ({"held": 3}, "geometry.held: found 3; must be text"),
         ({"length_unit": "1 s"}, "geometry.length_unit: "),
         ({"length_unit": 0.001}, "geometry.length_unit: found 0.001; needs a quantity"),
@@ -554,7 +554,7 @@ def test_paths_are_meant_from_the_folder_of_the_case(two_folders):
     assert tw.load(tw.case.as_plain(known)) == known
     assert len(known.tagged_mesh().cells) > 0
     (here / "mesh.msh").write_text("not this\n")
-    with pytest.warns(CaseNote, match="is another file, and is not read"):
+    with pytest.warns(CaseNote, match="the other file .* is not read"):
         assert tw.load(case / "case.toml") == known
 
 
@@ -565,7 +565,7 @@ def test_paths_from_the_current_folder_are_the_second_try(two_folders):
     case, here = two_folders
     gmsh_blocks(here / "mesh.msh")
     with pytest.warns(
-        CaseNote, match="in the current folder; paths are meant from the case file's"
+        CaseNote, match="in the current folder; paths are relative to the folder of the case file"
     ):
         found = tw.load(case / "case.toml")
     assert found.geometry.path == str(here / "mesh.msh")
@@ -584,5 +584,5 @@ def test_validate_opens_the_file(two_folders, capsys):
     assert "geometry.held: the file has no surface named 'TUP'" in capsys.readouterr().err
     assert main(words) == 0
     said = capsys.readouterr()
-    assert "punch 40 mm by 20 mm of 44 cells, plate 40 mm by 30 mm" in said.out
+    assert "punch 40 mm by 20 mm with 44 cells, plate 40 mm by 30 mm" in said.out
     assert said.err == ""

@@ -52,7 +52,7 @@ def test_the_volume_lost_is_that_of_the_mesh(order, name):
 
 
 def test_the_rim_goes_along_the_sides():
-    """Of a box whose sides are slanted: along them, at corners along the edge between two."""
+    """requirement: the rim moves along slanted sides, at corners along the edge between two."""
 
     def slanted(p):
         x, y, z = np.moveaxis(p, -1, 0)

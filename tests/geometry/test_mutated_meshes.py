@@ -75,7 +75,7 @@ def accepted(path, keys):
 
 
 def check_sound(mesh) -> None:
-    """What holds of any mesh of two bodies in a plane, found otherwise than the program does it."""
+    """Check any mesh of two plane bodies, by other methods than the program's."""
     assert np.isfinite(mesh.points).all()
     corners = mesh.cells[:, : 3 if mesh.cell_type == "triangle" else 4]
     x, y = np.moveaxis(mesh.points[corners], 2, 0)

@@ -104,7 +104,7 @@ def test_the_face_is_on_the_groove():
 
 
 def test_places_are_found_again():
-    """What is at a place of the former face is at the same place of the new one."""
+    """requirement: a position on the former face is at the same position of the new one."""
     _, _, _, divided, _ = grooved(0.008, 2, columns=24)
     former = np.linspace(0.0, len(divided.former), 101)
     number = divided.at(former)
@@ -150,5 +150,5 @@ def test_a_body_with_zones_keeps_them():
 
 
 def test_a_face_worn_through_its_body_is_refused():
-    with pytest.raises(ComputationError, match="passes through"):
+    with pytest.raises(ComputationError, match="intersects other sides"):
         grooved(0.0295)

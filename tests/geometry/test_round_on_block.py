@@ -263,4 +263,5 @@ def test_a_zone_smaller_than_the_contact_is_refused(geometry):
     with pytest.raises(CaseError) as error:
         small.expected_zone(Pressing(100.0, None, 115.4e9))
     assert len(error.value.faults) == 1
-    assert error.value.faults[0].startswith("geometry.zone: found 1e-05 m; the unworn bodies touch")
+    said = "geometry.zone: found 1e-05 m; must be at least the expected half-width"
+    assert error.value.faults[0].startswith(said)

@@ -34,7 +34,7 @@ def read(path):
 
 
 def level(design: Design) -> Design:
-    """The same face, unworn."""
+    """Design with zero depth."""
     return Design(**{**vars(design), "depth": np.zeros(len(design.depth))})
 
 

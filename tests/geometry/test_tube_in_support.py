@@ -146,7 +146,7 @@ def test_the_expected_zone_is_that_of_hertz_up_to_a_limit():
     [
         ((-1e-3, 9.7e-3), "geometry.support_clearance: too small for the contact"),
         ((-9.7e-3, -1e-3), "geometry.support_clearance: too small for the contact"),
-        ((1e-3, 1e-3), "geometry: a contact from x = 0.001 to 0.001 m is none"),
+        ((1e-3, 1e-3), "geometry: the contact zone from x = 0.001 to 0.001 m is empty"),
     ],
 )
 def test_a_contact_that_cannot_be_meshed_is_refused(zone, text):

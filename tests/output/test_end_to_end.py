@@ -442,7 +442,11 @@ WRONG = {
     "no file": ({"path": "none.msh"}, "geometry.path", "none.msh cannot be read: No such file"),
     "folder": ({"path": "folder.msh"}, "geometry.path", "folder.msh cannot be read: Is a dir"),
     "no mesh": ({"path": "text.inp"}, "geometry.path", "begins with 'hello'; only meshes"),
-    "ending": ({"path": "mesh.stl"}, "geometry.path", "unknown ending; one of: .msh, .inp"),
+    "ending": (
+        {"path": "mesh.stl"},
+        "geometry.path",
+        "unknown file ending; must be one of: .msh, .inp",
+    ),
 }
 
 

@@ -121,7 +121,7 @@ def test_faces_side_by_side_are_refused(tmp_path, round_body):
     tables = case_tables(path, FORCE)
     tables["geometry"] |= {"contact": ["upper_end", "lower_end"]}
     tables["geometry"] |= {"held": "upper_face", "fixed": "lower_face"}
-    with pytest.raises(CaseError, match="does not look down"):
+    with pytest.raises(CaseError, match="does not face down"):
         tw.run(tw.load(tables))
 
 

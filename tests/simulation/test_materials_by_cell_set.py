@@ -241,7 +241,7 @@ def test_every_material_is_written_out():
         (
             {"bodies.pad.materials.PAD": SOFT},
             "bodies.pad.materials.PAD",
-            "36 cells are in 'PAD' and",
+            "36 cells are in both 'PAD' and",
         ),
         (
             {"geometry.bodies.pad": ["LINING", "ROOF"]},
@@ -283,7 +283,7 @@ def test_sets_that_do_not_fit_the_file(layers, changes, path, text):
         (
             {"bodies.pad.materials.LINING.like": "block"},
             "bodies.pad.materials.LINING.poisson_ratio",
-            "no keys of its own",
+            "not allowed together with like",
         ),
         (
             {"bodies.pad.materials.LINING.materials": {}},
@@ -313,6 +313,6 @@ def test_cell_sets_are_of_mesh_files():
 
     found = refused(tables(STEADY, {"bodies.punch.materials": {"COATING": SOFT}}))
     assert found == [
-        "bodies.punch.materials: is by cell sets of a mesh file "
-        "(geometry.type = \"file\"), not for 'annular-punch'",
+        "bodies.punch.materials: needs cell sets of a mesh file "
+        "(geometry.type = \"file\"), found 'annular-punch'",
     ]

@@ -1,4 +1,4 @@
-"""What the user writes: the case file, its units and its checks. No dolfinx here."""
+"""Case files: schema, units, reading and validation, without dolfinx."""
 
 from .loading import load
 from .tables.geometry import Geometry

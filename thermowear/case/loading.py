@@ -1,4 +1,4 @@
-"""From a file and overrides to a case, and from faults to one clear line each."""
+"""Reading of a case file with overrides; validation errors become one line per fault."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
     Parameters
     ----------
     source : str, Path or dict
-        A case file, or its tables. Paths in a file are meant from its folder, and else, with a
-        warning, from the current one, as those in tables are.
+        Case file, or its tables. Relative paths in a file refer to its folder, otherwise (with a
+        warning) to the current one, as do those in tables.
     overrides : tuple of str
-        ``KEY=VALUE`` each, with the key's path (``mesh.degree=6``); the value as in TOML, or plain
-        text.
+        ``KEY=VALUE`` each, with the key's path (``mesh.degree=6``); the value is a TOML value or
+        plain text.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
         case = Case.model_validate(tables, context=context)
     except ValidationError as error:
         found = error.errors(include_url=False)
-        lines = [_line(fault) for fault in found[:MOST_FAULTS]]
+        lines = [_message(fault) for fault in found[:MOST_FAULTS]]
         raise CaseError(*lines, more=len(found) - len(lines)) from None
     check(case)
     return case
@@ -91,14 +91,14 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _override(tables: dict[str, Any], text: str) -> dict[str, Any]:
-    """A copy of the tables with one key set."""
+    """Copy of the tables with one key set."""
     key, equals, value = text.partition("=")
     path = [part.strip() for part in key.split(".")]
     given = f"--set {shortened(text, 100)}"
     if not equals or not all(path):
         raise CaseError(f"{given}: must be KEY=VALUE, such as mesh.degree=6")
     if len(path) > MOST_PARTS:
-        raise CaseError(f"{given}: a key of {len(path)} parts; at most {MOST_PARTS}")
+        raise CaseError(f"{given}: the key has {len(path)} parts; at most {MOST_PARTS} are allowed")
     parsed = _value(given, value)
     result = table = dict(tables)
     for part in path[:-1]:
@@ -112,12 +112,12 @@ def _override(tables: dict[str, Any], text: str) -> dict[str, Any]:
 
 
 def _value(given: str, text: str) -> Any:
-    """The value behind ``--set KEY=``: as in TOML, or plain text.
+    """Value of ``--set KEY=VALUE``: a TOML value, or plain text.
 
     Raises
     ------
     CaseError
-        If there is more than one: further lines would set keys that nobody hears of.
+        If the text holds more than one value: further lines would set keys silently.
     """
     check_keys(text, given)
     try:
@@ -125,12 +125,12 @@ def _value(given: str, text: str) -> Any:
     except (ValueError, RecursionError):
         return text.strip()
     if len(parsed) > 1:
-        raise CaseError(f"{given}: has another key behind a line break; give each its own --set")
+        raise CaseError(f"{given}: contains a second key after a line break; use one --set per key")
     return parsed["value"]
 
 
-def _line(fault: Any) -> str:
-    """One line for one fault: the key's path, what was found, what is allowed."""
+def _message(fault: Any) -> str:
+    """Message of one fault: the key's path, the value found, the values allowed."""
     location = fault["loc"]
     if location[0] == "analysis":
         location = (*location[:1], *location[2:])  # pydantic puts the type of analysis second
@@ -151,7 +151,7 @@ def _line(fault: Any) -> str:
 
 
 def _suggestion(location: tuple[Any, ...]) -> str:
-    """A key that is known near there and reads alike."""
+    """Hint at the most similar known key of the same tables."""
     table = Case.model_fields.get(location[0])
     sections = _sections(table.annotation) if table else (Case,)
     words = {
@@ -164,7 +164,7 @@ def _suggestion(location: tuple[Any, ...]) -> str:
 
 
 def _sections(annotation: Any) -> Iterator[type[Section]]:
-    """The tables that an annotation names, and the tables in them."""
+    """Tables named in an annotation, and the tables nested in them."""
     for part in get_args(annotation):
         yield from _sections(part)
     if isinstance(annotation, type) and issubclass(annotation, Section):

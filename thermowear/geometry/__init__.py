@@ -1,4 +1,4 @@
-"""Geometries and meshes: built-in geometries, mesh files, mesh motion, shapes for CAD."""
+"""Built-in geometries, mesh files, meshing, mesh motion, export to CAD."""
 
 from .mesh.tagged import TaggedMesh
 

@@ -1,4 +1,4 @@
-"""Starter cases: complete case files with comments that teach."""
+"""Starter cases: complete, commented case files."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ def starters() -> dict[str, str]:
 
 
 def starter_text(name: str) -> str:
-    """The case file of a starter case.
+    """Text of the case file of a starter case.
 
     Raises
     ------
     CaseError
-        If there is none of that name.
+        If no starter case has this name.
     """
     if name not in starters():
         raise CaseError(f"init {name}: no such starter case; one of: {', '.join(starters())}")
@@ -29,12 +29,12 @@ def starter_text(name: str) -> str:
 
 
 def starter_files(name: str) -> dict[str, bytes]:
-    """Files that a starter case reads from its own folder, by their names.
+    """Files that a starter case reads from its own folder, by name.
 
     Raises
     ------
     CaseError
-        If there is none of that name.
+        If no starter case has this name.
     """
     path = tomllib.loads(starter_text(name))["geometry"].get("path")
     return {} if path is None else {path: (resources.files(__name__) / path).read_bytes()}

@@ -1,4 +1,4 @@
-"""The analyses a case can ask for."""
+"""Types of analysis."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ class Initial(Section):
 
 
 class Steady(Section):
-    """Steady state of wear, directly."""
+    """Steady state of wear, computed without time stepping."""
 
     type: Literal["steady"]
 
 
-_MINUTES = 120.0  # s; a state takes milliseconds to write
+_MINUTES = 120.0  # s; writing a state takes milliseconds
 Frames = Annotated[int, Field(ge=0, le=1000, strict=True)]
 
 
-def _all_different(output_times: tuple[float, ...]) -> None:
-    """Refuse times that would share a file."""
+def _check_distinct(output_times: tuple[float, ...]) -> None:
+    """Reject output times that would be written to the same file."""
     counts = Counter(f"{t:g}" for t in output_times)
     twice = [name for name, count in counts.items() if count > 1]
     if twice:
-        raise KeyFault("output_times", f"{twice[0]} s is there twice (to six digits)")
+        raise KeyFault("output_times", f"contains {twice[0]} s twice (to six digits)")
 
 
 class Timed(Section):
-    """Base of analyses that follow wear in time by steps of their own choice.
+    """Base of analyses that integrate wear in time with adaptive steps.
 
     Attributes
     ----------
@@ -46,13 +46,13 @@ class Timed(Section):
     until : str or None
         ``"steady"``: stop when the steady state is reached within `steady_tolerance`.
     output_times : tuple of float
-        Times that get an interface file of their own [s].
+        Times at which a separate interface file is written [s].
     tolerance : float
-        Allowed error of one step, relative to the largest pressure and to the largest depth worn.
+        Allowed error of one step, relative to the largest pressure and to the largest wear depth.
     frames : int
-        How many states on the way are kept for an animation, at most.
+        Largest number of intermediate states stored for an animation.
     checkpoint_every : float
-        Time of computing after which the run is saved again, besides at output times [s].
+        Computing time between checkpoints, besides those at output times [s].
     """
 
     type: str
@@ -67,7 +67,7 @@ class Timed(Section):
 
     @model_validator(mode="after")
     def _outputs(self):
-        _all_different(self.output_times)
+        _check_distinct(self.output_times)
         if self.end_time is not None:
             late = [t for t in self.output_times if t > self.end_time]
             if late:
@@ -78,7 +78,7 @@ class Timed(Section):
 
 
 class Transient(Timed):
-    """Running-in; steady is the pressure within `steady_tolerance` of the largest steady one."""
+    """Running-in; steady within `steady_tolerance`, relative to the largest steady pressure."""
 
     type: Literal["transient"]
 
@@ -90,17 +90,17 @@ class Transient(Timed):
 
 
 class Reciprocating(Timed):
-    """Wear of a body 1 that slides to and fro, and of what it rubs along, averaged over cycles.
+    """Reciprocating wear of body 1 and of the face that it slides on, averaged over cycles.
 
-    Steady are wear rates that differ from their mean along each of the worn faces, but for its
-    ends, by less than `steady_tolerance` of it.
+    Steady once the wear rates along each worn face, apart from its ends, deviate from their mean
+    by less than `steady_tolerance` of it.
 
     Attributes
     ----------
     cycles : float or None
-        How many of them, instead of an end time; ``wear.cycles`` says the same.
+        Number of cycles, instead of an end time; equivalent to ``wear.cycles``.
     positions : int
-        Places of body 1 in which contact is solved, between the ends of the stroke.
+        Positions of body 1 at which contact is solved, between the ends of the stroke.
     """
 
     type: Literal["reciprocating"]
@@ -117,7 +117,7 @@ class Reciprocating(Timed):
 
 
 class Stability(Section):
-    """Thermoelastic instability of the contact: the critical speed and the shape that grows."""
+    """Thermoelastic instability of the contact: critical speed and unstable mode."""
 
     type: Literal["stability"]
 
@@ -130,27 +130,27 @@ def _jump(value: Any) -> Any:
 
 
 class Fretting(Section):
-    """Sticking and slipping under a history of loads.
+    """Fretting: stick and slip under a load history.
 
     Attributes
     ----------
     increments : int
-        From each corner of the history to the next.
+        Increments per load segment (from one corner of the history to the next).
     output_times : tuple of float
-        Times that get files of their own [s].
+        Times at which separate files are written [s].
     cycles : int or None
-        How often the cycle of the history goes on, see `History.cycle_start`; ``wear.cycles`` says
-        the same. Once by default.
+        Number of repetitions of the cycle of the history, see `History.cycle_start`; equivalent
+        to ``wear.cycles``. One by default.
     jump : int or str
-        How many of them each computed cycle stands for: so many times it wears. ``"auto"``: as many
-        as the tolerance allows.
+        Number of cycles that each computed cycle stands for: its wear is multiplied by it.
+        ``"auto"``: as many as the tolerance allows.
     tolerance : float
-        Allowed error of one jump, relative to the largest depth worn.
+        Allowed error of one cycle jump, relative to the largest wear depth.
     frames : int
-        How many states on the way are kept for an animation, at most: ends of cycles, or of
+        Largest number of intermediate states stored for an animation: ends of cycles, or of
         increments where there is only one cycle.
     checkpoint_every : float
-        Time of computing after which the run is saved again, besides at output times [s].
+        Computing time between checkpoints, besides those at output times [s].
     """
 
     type: Literal["fretting"]
@@ -164,5 +164,5 @@ class Fretting(Section):
 
     @model_validator(mode="after")
     def _outputs(self):
-        _all_different(self.output_times)
+        _check_distinct(self.output_times)
         return self

@@ -1,4 +1,4 @@
-"""What drives body 1: its holder, the loads on it, and sliding."""
+"""Holder of body 1, loads on it, and sliding motion."""
 
 from __future__ import annotations
 
@@ -14,23 +14,22 @@ FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
 
 
 class Holder(Section):
-    """How body 1 is held.
+    """Rigid holder of body 1.
 
     Attributes
     ----------
     free : tuple of str
-        Motions it may make under its loads, or is given: ``"z"`` along the press, ``"x"`` (and
-        ``"y"``) across it, ``"rotation"`` in the section, ``"rotation-x"`` and ``"rotation-y"`` in
-        space.
+        Free rigid motions: ``"z"`` along the load direction, ``"x"`` (and ``"y"``) across it,
+        ``"rotation"`` in the section, ``"rotation-x"`` and ``"rotation-y"`` in space.
     pivot : tuple of float or None
-        Point about which it turns, by default that of the geometry, or the origin [m].
+        Centre of its rotation, by default that of the geometry, or the origin [m].
     """
 
     free: tuple[FreeMotion, ...] = ("z",)
     pivot: tuple[units.Coordinate, ...] | None = None
 
     @model_validator(mode="after")
-    def _once(self):
+    def _distinct_motions(self):
         if len(set(self.free)) != len(self.free):
             raise KeyFault("free", "names a motion twice")
         return self
@@ -41,40 +40,41 @@ class Holder(Section):
 
 
 class Load(Section):
-    """What presses body 1 on body 2.
+    """Loads that press body 1 on body 2.
 
-    Exactly one of force, mean pressure and approach; a holder that only turns may have a moment
-    instead, and one that is fixed needs forces or pressures on surfaces. Pressures on surfaces may
-    also press alone.
+    Exactly one of force, mean pressure and approach; a holder that can only rotate may have a
+    moment instead, and a fixed one needs forces or pressures on surfaces. Pressures on surfaces
+    may also act alone.
 
     Attributes
     ----------
     mean_pressure : float or None
-        On the nominal contact area [Pa].
+        Mean over the nominal contact area [Pa].
     force : float or None
-        Of the whole ring, or of the thickness, along the press [N].
+        Normal force along the load direction, on the whole ring or on the thickness [N].
     approach : float or None
-        How far the holder moves along the press, towards body 2, from where it stands in the mesh
-        [m].
+        Displacement of the holder along the load direction, towards body 2, from its position in
+        the mesh [m].
     lever : float or None
-        Distance along x from the pivot to the line of the force [m].
+        Distance along x from the pivot to the line of action of the force [m].
     point : tuple of float or None
-        Where the force acts: x, or x and y in space, by default at the pivot [m].
+        Point of application of the force: x, or x and y in space, by default at the pivot [m].
     moment : float or None
-        About the pivot, in addition [N m]: positive where it presses if the holder only turns,
-        anticlockwise otherwise.
+        Additional moment about the pivot [N m]: positive where it closes the contact if the holder
+        can only rotate, anticlockwise otherwise.
     moments : tuple of float or None
-        About x and y through the pivot, in space, by the right-hand rule [N m].
+        Moments about x and y through the pivot, in space, by the right-hand rule [N m].
     tangential_force : float or None
-        Along x, for a holder that is free along it [N].
+        Force along x, for a holder that is free along x [N].
     surfaces : dict of str to float
-        Forces along the press, spread evenly over surfaces of body 1, whose holder is fixed [N].
+        Forces along the load direction, distributed evenly over surfaces of body 1 with a fixed
+        holder [N].
     pressure : dict of str to float
         Pressures on surfaces of either body, normal to them and towards the body, in addition to
-        all other loads and constant in time. What they press body 1 with along a free motion of
-        its holder is in equilibrium with the contact, too [Pa].
+        all other loads and constant in time. Their resultant along a free motion of the holder
+        enters its equilibrium with the contact [Pa].
     history : History or None
-        What changes: the loads of a fretting analysis, the force of a transient one.
+        Time history: of the loads of a fretting analysis, of the force of a transient one.
     """
 
     mean_pressure: units.Pressure | None = None
@@ -91,19 +91,19 @@ class Load(Section):
 
 
 class Motion(Section):
-    """Sliding.
+    """Sliding motion.
 
     Attributes
     ----------
     angular_velocity : float or None
-        Of body 1 about the axis of an axisymmetric model; of a disk or drum (body 2) about its
-        centre, anticlockwise, in plane models and seen from above in space [rad/s].
+        Rotation of body 1 about the axis of an axisymmetric model; of a disk or drum (body 2) about
+        its centre, anticlockwise, in plane models and seen from above in space [rad/s].
     velocity : float or None
-        Of body 1 over body 2 along x; negative: against it [m/s].
+        Velocity of body 1 relative to body 2 along x; negative: along -x [m/s].
     amplitude, frequency : float or None
-        Body 1 slides to and fro, ``x = amplitude sin(2 π frequency t)`` [m, Hz].
+        Reciprocating motion of body 1, ``x = amplitude sin(2 π frequency t)`` [m, Hz].
     history : FactorHistory or None
-        How the speed of a transient analysis changes.
+        Time-dependent factor of the speed in a transient analysis.
     """
 
     angular_velocity: units.AngularVelocity | None = None
@@ -114,7 +114,7 @@ class Motion(Section):
 
     @property
     def one_way(self) -> Motion:
-        """The same, with the mean speed of sliding to and fro as a velocity along +x."""
+        """Copy with the mean speed of a reciprocating motion as a velocity along +x."""
         if self.amplitude is None or self.frequency is None:
             return self
         return self.model_copy(update={"velocity": 4 * self.amplitude * self.frequency})

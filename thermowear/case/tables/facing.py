@@ -1,4 +1,4 @@
-"""Materials of the parts of the bodies that touch at the points of a contact."""
+"""Materials of the two faces at the contact points."""
 
 from __future__ import annotations
 
@@ -11,34 +11,34 @@ from ...errors import CaseError
 from .materials import Properties
 
 _KEYS = {"effusivity": ("conductivity", "density", "specific_heat")}
-"""What properties of a material follow from; others are keys themselves."""
+"""Keys of a material that a derived property follows from; other properties are keys themselves."""
 
 Materials = Callable[[str], tuple[str, Properties]]
-"""Key's path and material of a part, by its name."""
+"""Function from the name of a part to the key's path and the material of the part."""
 
 
 @dataclass(frozen=True)
 class Facing:
-    """The parts that touch at the points of a contact.
+    """Parts of the bodies that face each other at the contact points.
 
     Attributes
     ----------
     parts : tuple of str
-        Names of parts.
+        Names of the parts.
     at : tuple of ndarray of int, shape (n,)
-        Which of them bears the face of body 1 and of body 2 at each point.
+        Index of the part that bears the face of body 1 and of body 2 at each point.
     """
 
     parts: tuple[str, ...]
     at: tuple[np.ndarray, np.ndarray]
 
     def of(self, materials: Materials, key: str) -> tuple[np.ndarray, np.ndarray]:
-        """A property of the materials at the points of both faces, shape (n,) each.
+        """Material property at the points of both faces, shape (n,) each.
 
         Raises
         ------
         CaseError
-            If a material that touches lacks it.
+            If a material on a contact face does not define it.
         """
         first, second = (self._on_face(materials, key, at) for at in self.at)
         return first, second
@@ -49,6 +49,8 @@ class Facing:
             path, material = materials(self.parts[index])
             for needed in _KEYS.get(key, (key,)):
                 if getattr(material, needed) is None:
-                    raise CaseError(f"{path}.{needed}: missing; it lies on a contact face")
+                    raise CaseError(
+                        f"{path}.{needed}: missing; the material lies on a contact face"
+                    )
             values[index] = getattr(material, key)
         return values[at]

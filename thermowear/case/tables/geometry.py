@@ -1,6 +1,6 @@
-"""What the case file may say about a geometry, and what every geometry answers.
+"""Base class of geometries: keys in the case file and interface to the program.
 
-Each geometry is a subclass in the room ``geometry`` (one file a geometry).
+Each geometry is a subclass in the room ``geometry`` (one file per geometry).
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from ..values.section import KeyFault, Section
 from ..values.units import Length
 
 KNOWN: dict[str, type[Geometry]] = {}
-"""By the word behind ``geometry.type``; see `geometry_type.known_geometries`."""
+"""Geometries by ``geometry.type``; see `geometry_type.known_geometries`."""
 
 _APART = 1e7
-"""Ratio of the sizes of a geometry at most: coordinates have 16 digits, and meshes some layers."""
+"""Largest ratio of two lengths of a geometry: coordinates have 16 digits, meshes few layers."""
 
 
 @dataclass(frozen=True)
 class Pressing:
-    """How hard the bodies are pressed together, for estimates.
+    """Normal load and contact modulus, for estimates of the contact zone.
 
     Attributes
     ----------
     force : float or None
-        Normal force [N]; None where the approach is given.
+        Normal force [N]; None if the approach is given.
     approach : float or None
-        [m]; None where the force is given.
+        Approach [m]; None if the force is given.
     modulus : float
         Contact modulus E*, ``1/E* = Σ (1 - ν²)/E`` [Pa].
     """
@@ -44,21 +44,21 @@ class Pressing:
 
 
 def keyed(value: Callable[[Any], Any]) -> Any:
-    """Decorate what one geometry works out from its keys and others have as a plain attribute."""
+    """Decorate a property computed from the keys that is a class attribute in other geometries."""
     return property(value)
 
 
 class Geometry(Section):
     """Base of all geometries.
 
-    Names are attributes of the class, or `keyed` where they follow from the keys.
+    Names are class attributes, or `keyed` properties where they follow from the keys.
 
     Attributes
     ----------
     name : str
-        The word behind ``geometry.type``.
+        Value of ``geometry.type``.
     models : tuple of str
-        The values of ``model`` it can be used with.
+        Values of ``model`` that it supports.
     bodies : tuple of str
         Body 1 (held and loaded) and body 2.
     surfaces : tuple of str
@@ -68,14 +68,14 @@ class Geometry(Section):
     held, fixed : str
         Surface of body 1 on the rigid holder; fixed surface of body 2.
     unmeshed : tuple of str
-        Keys of lengths that are no size of a mesh.
+        Length keys that are no dimension of the mesh.
     slides_across : bool
-        Whether body 1 may slide across its axis, as a ball does on a flat, or across its section.
+        True if body 1 may slide across its axis or section, as a ball on a flat does.
     from_file : bool
-        Whether the mesh was made elsewhere, so that it can be wrong as the case can.
+        True if the mesh was made elsewhere and therefore has to be checked like the case.
     initial_shape : str or None
-        File with the worn shape to start from (a design, as ``shape`` writes it, or ``profile.csv``
-        of an earlier run).
+        File with an initial worn shape (a design written by ``shape``, or ``profile.csv`` of an
+        earlier run).
     """
 
     name: ClassVar[str]
@@ -99,8 +99,8 @@ class Geometry(Section):
             KNOWN[cls.name] = cls
 
     @model_validator(mode="after")
-    def _of_one_order(self):
-        """Sizes many orders apart are slips of a unit, and cannot be meshed."""
+    def _comparable_sizes(self):
+        """Reject dimensions many orders of magnitude apart: unit errors, which cannot be meshed."""
         sizes = self.sizes()
         if not sizes:
             return self
@@ -112,12 +112,12 @@ class Geometry(Section):
             raise KeyFault(
                 wrong,
                 f"found {sizes[wrong]:g} m beside {other} = {sizes[other]:g} m; sizes of a "
-                f"geometry must be within a factor {_APART:g} of each other (a slip in a unit?)",
+                f"geometry must be within a factor {_APART:g} of each other (wrong unit?)",
             )
         return self
 
     def sizes(self) -> dict[str, float]:
-        """The lengths that the meshes are made from, by their keys [m]."""
+        """Lengths that the mesh is made from, by key [m]."""
         keys = [key for key, field in type(self).model_fields.items() if _is_length(field)]
         return {
             key: getattr(self, key)
@@ -137,104 +137,104 @@ class Geometry(Section):
 
     @property
     def press_direction(self) -> tuple[float, ...]:
-        """Unit vector along which body 1 is pressed on body 2."""
+        """Unit vector of the load direction of body 1, towards body 2."""
         return (0.0, -1.0)
 
     @property
     def pivot_point(self) -> tuple[float, ...] | None:
-        """Point about which the holder of body 1 turns, unless the case gives one [m]."""
+        """Default centre of rotation of the holder of body 1, unless the case gives one [m]."""
         return None
 
     @property
     def rotation_center(self) -> tuple[float, float] | None:
-        """Point about which body 2 turns, in the section; None: it moves along x [m]."""
+        """Centre of rotation of body 2, in the section; None: it moves along x [m]."""
         return None
 
     @property
     def track(self) -> float | None:
-        """Length of the path round body 2 that passes under body 1 [m]."""
+        """Length of the track on body 2 that passes under body 1 [m]."""
         return None
 
     @property
     def duty(self) -> float | None:
-        """Part of a turn for which a point of body 2 is under body 1, at every radius, in space."""
+        """Duty factor: fraction of a turn for which a point of body 2 is under body 1, in space."""
         return None
 
     @property
     def sector(self) -> float:
-        """Part of the circumference that an axisymmetric body 1 takes up."""
+        """Fraction of the circumference covered by an axisymmetric body 1."""
         return 1.0
 
     @property
     def zones(self) -> dict[str, str]:
-        """Parts of bodies that may have a material of their own, and the body of each."""
+        """Parts of bodies that may have their own material, and the body of each."""
         return {}
 
     @property
     def facing(self) -> tuple[str | None, str | None]:
-        """What touches: each body, or the first of its zones, which bears its contact face.
+        """Part that bears the contact face of each body: the body, or the first of its zones.
 
-        None where only the mesh can tell.
+        None where this depends on the mesh.
         """
         first, second = (self.parts_of(body)[:2][-1] for body in self.bodies)
         return first, second
 
     @property
     def set_of(self) -> dict[str, str]:
-        """Cell sets of a mesh file by the zones that stand for them."""
+        """Cell sets of a mesh file by the zones that represent them."""
         return {}
 
     def sets_of(self, body: str) -> tuple[str, ...]:
-        """Cell sets of a mesh file that a body is made of."""
+        """Cell sets of a mesh file that a body consists of."""
         return ()
 
     def with_cell_sets(self, sets: dict[str, tuple[str, ...]]) -> Geometry:
-        """The geometry with zones for cell sets of bodies, by body; as it is where it has none."""
+        """Geometry with zones for the cell sets of each body; unchanged where there are none."""
         return self
 
     @property
     def passes(self) -> bool:
-        """Whether body 2 passes under body 1 in the model, as a strip, a disk or a drum does."""
+        """True if body 2 passes under body 1 in the model, as a strip, a disk or a drum does."""
         turns_in_space = self.rotation_center is not None and len(self.press_direction) == 3
         return self.track is not None or turns_in_space
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """Everything that has a material: the bodies, then the zones."""
+        """All parts that have a material: the bodies, then the zones."""
         return *self.bodies, *self.zones
 
     def parts_of(self, body: str) -> tuple[str, ...]:
-        """A body, and its zones."""
+        """Body and its zones."""
         return body, *(zone for zone, owner in self.zones.items() if owner == body)
 
     @property
     def thickness_factor(self) -> float | None:
-        """Thickness of plane models that forces are of; twice the given one for half models [m]."""
+        """Thickness that forces of plane models refer to; twice the key's in half models [m]."""
         return None
 
     @property
     def follows_contact(self) -> bool:
-        """Whether the mesh is made for where the faces touch, and moves with it."""
+        """True if the mesh is refined for the contact zone and moves with it."""
         return type(self).expected_zone is not Geometry.expected_zone
 
     def contact_area(self) -> float | None:
-        """Nominal contact area, which turns a mean pressure into a force; None without one [m²]."""
+        """Nominal contact area for a mean pressure; None if there is none [m²]."""
         return None
 
     def expected_zone(self, pressing: Pressing) -> tuple[float, float] | None:
-        """Where the faces will touch, as a range of x; None where the whole face is meshed alike.
+        """Estimate of the contact zone as a range of x; None where the whole face is meshed alike.
 
-        An estimate is enough: the mesh is refined there.
+        The mesh is refined there.
         """
         return None
 
     def check_zone(self, zone: tuple[float, float]) -> None:
-        """Refuse a zone where the faces cannot touch, or that cannot be meshed.
+        """Reject a contact zone that lies outside the faces or cannot be meshed.
 
         Parameters
         ----------
         zone : tuple of float
-            Range of x, as `expected_zone` gives it [m].
+            Range of x, as returned by `expected_zone` [m].
 
         Raises
         ------
@@ -248,8 +248,8 @@ class Geometry(Section):
         ----------
         mesh : thermowear.case.tables.schema.Mesh
         zone : tuple of float, optional
-            Range of x where the faces touch; element ends lie at both ends of it where it is not
-            the whole face.
+            Contact zone as a range of x; element ends lie at both ends of it unless it is the whole
+            face.
 
         Returns
         -------
@@ -258,7 +258,7 @@ class Geometry(Section):
         raise NotImplementedError
 
     def check(self, mesh, case) -> None:
-        """Check a mesh that was not made here: nothing, where it was.
+        """Check a mesh that was read from a file; no-op for generated meshes.
 
         Parameters
         ----------
@@ -268,11 +268,11 @@ class Geometry(Section):
         Raises
         ------
         CaseError
-            If it cannot be what the case says it is.
+            If it contradicts the case.
         """
 
 
 def _is_length(field: FieldInfo) -> bool:
-    """Whether a key holds a length greater than 0, or may do so."""
+    """Test whether a key holds a length greater than 0, or may do so."""
     optional = (getattr(part, "__metadata__", ()) for part in get_args(field.annotation))
     return any(Length.__metadata__[0] in marks for marks in (field.metadata, *optional))

@@ -1,4 +1,4 @@
-"""From the word behind ``geometry.type`` to the geometry, known once its room is imported."""
+"""Selection of the geometry class by ``geometry.type``."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from .geometry import KNOWN, Geometry
 
 
 def known_geometries() -> dict[str, type[Geometry]]:
-    """All geometries that can be named in a case file, by their names in order.
+    """All geometries that a case file can name, sorted by name.
 
-    Their room, which knows this one, is imported by its name where nobody has done so yet.
+    Imports their room by name where this has not been done yet, as that room imports this one.
     """
     importlib.import_module("thermowear.geometry.geometries")
     return dict(sorted(KNOWN.items()))
@@ -25,7 +25,7 @@ def _pick(data: Any, info: ValidationInfo) -> Any:
     if isinstance(data, Geometry):
         return data
     if not isinstance(data, dict):
-        raise ValueError(f"found {quoted(data)}; needs a table")
+        raise ValueError(f"found {quoted(data)}; must be a table")
     if "type" not in data:
         raise KeyFault("type", f"missing; one of: {', '.join(known_geometries())}")
     try:

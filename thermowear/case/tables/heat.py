@@ -1,4 +1,4 @@
-"""Heat: by friction, from the surroundings, and where it goes."""
+"""Table ``heat``: sources, boundary conditions, interface properties."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .conductance import Conductance
 from .history import Course, TemperatureHistory
 
 
-def _share(value: Any) -> Any:
-    """A number as a float; one message for all that is neither a part nor the word."""
+def _parse_partition(value: Any) -> Any:
+    """Convert a number to float; one message for all values outside [0, 1]."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if number and math.isfinite(value) and 0 <= value <= 1:
         return float(value)
@@ -25,64 +25,66 @@ def _share(value: Any) -> Any:
     raise ValueError(f'found {quoted(value)}; must be at least 0 and at most 1, or "effusivity"')
 
 
-Partition = Annotated[float | Literal["effusivity"], BeforeValidator(_share)]
+Partition = Annotated[float | Literal["effusivity"], BeforeValidator(_parse_partition)]
 
 
 _CONSTANT = TypeAdapter(units.Temperature)
 
 
-def _temperature(data: Any, info: ValidationInfo) -> Any:
-    """A constant where it is a quantity, else a history, or the name of a file with one."""
+def _parse_temperature(data: Any, info: ValidationInfo) -> Any:
+    """Convert a quantity to a constant, a table or the name of a CSV file to a history."""
     in_a_file = isinstance(data, str) and data.strip().lower().endswith(".csv")
     if in_a_file or isinstance(data, dict | TemperatureHistory):
         return TemperatureHistory.model_validate(data, context=info.context)
     return _CONSTANT.validate_python(data)
 
 
-def _written(value: Any) -> Any:
+def _serialise_temperature(value: Any) -> Any:
     return value.model_dump() if isinstance(value, Section) else _CONSTANT.dump_python(value)
 
 
 GivenTemperature = Annotated[
-    float | TemperatureHistory, PlainValidator(_temperature), PlainSerializer(_written)
+    float | TemperatureHistory,
+    PlainValidator(_parse_temperature),
+    PlainSerializer(_serialise_temperature),
 ]
-"""A constant [K], or a history."""
+"""Constant [K], or history of a temperature."""
 
 
 class Heat(Section):
-    """Temperatures of the bodies, what heats them, and where the heat goes.
+    """Heat sources, thermal boundary conditions and thermal properties of the interface.
 
-    Friction heats where the bodies slide; pressed together at rest they conduct.
+    Friction heats the faces while the bodies slide; bodies in contact conduct also at rest.
 
     Attributes
     ----------
     conductance : float, PressureConductance, TabulatedConductance or None
-        Contact conductance [W/(m² K)], or how it depends on the pressure; None: perfect contact.
+        Contact conductance [W/(m² K)], or a law of the pressure; None: perfect contact.
     gap_conductance : float or None
-        Of faces that are apart [W/(m² K)]; None: they exchange no heat.
+        Conductance of separated faces [W/(m² K)]; None: they exchange no heat.
     partition : float or str
-        Part of the friction heat that is set free on body 1; ``"effusivity"``: ``e1/(e1 + e2)``.
+        Fraction of the friction heat released on body 1; ``"effusivity"``: ``e1/(e1 + e2)``.
     advection : str
-        What a body 2 that passes under body 1 does with heat: ``"none"``, it conducts as if it
-        stood still; ``"resolved"``, it carries heat along; ``"spread"``, it passes so fast that
-        heat is spread evenly along its way.
+        Heat transport by a body 2 that passes under body 1: ``"none"``, conduction as at rest;
+        ``"resolved"``, advection with the motion; ``"spread"``, the limit of fast motion, heat
+        distributed evenly along the track.
     transient : bool
-        Temperatures in time, instead of those that the present friction heat would lead to.
+        Temperatures in time, instead of the steady ones of the present friction heat.
     initial : float or None
-        Temperature of both bodies at the start, by default the ambient one [K].
+        Initial temperature of both bodies, by default the ambient one [K].
     ambient : float
-        Temperature of the surroundings, and of the stress-free state [K].
+        Temperature of the surroundings and of the stress-free state [K].
     ambient_history : TemperatureHistory or None
-        Of the surroundings, where their temperature changes in time; the stress-free state keeps
-        `ambient`.
+        Time-dependent temperature of the surroundings; `ambient` remains that of the stress-free
+        state.
     cooling : dict of str to float
         Heat transfer coefficients of named surfaces [W/(m² K)].
     temperature : dict of str to float or TemperatureHistory
-        Given temperatures of named surfaces [K].
+        Prescribed temperatures of named surfaces [K].
     flux : dict of str to float
-        Heat into the body through named surfaces, per area; negative: out of it [W/m²].
+        Heat flux into the body through named surfaces; negative: out of it [W/m²].
     power : dict of str to float
-        Likewise of whole surfaces, spread evenly: of the whole ring, or of the thickness [W].
+        Total heat into named surfaces, distributed evenly: on the whole ring or the thickness [W].
     """
 
     conductance: Conductance | None = None
@@ -100,7 +102,7 @@ class Heat(Section):
 
     @property
     def histories(self) -> Mapping[str, Course]:
-        """What changes in time, by its key."""
+        """Time histories by key."""
         found = {
             f"temperature.{surface}": value
             for surface, value in self.temperature.items()
@@ -112,7 +114,7 @@ class Heat(Section):
 
     @property
     def driven(self) -> bool:
-        """Whether anything but friction makes the bodies warmer or colder than the ambient."""
+        """True if the bodies are heated or cooled by anything besides friction."""
         given = [*self.temperature.values(), self.ambient if self.initial is None else self.initial]
         return bool(self.flux or self.power or self.ambient_history) or any(
             value != self.ambient for value in given

@@ -1,4 +1,4 @@
-"""The materials of a body, or the name of the body whose material it shares."""
+"""Materials of a body, or the name of the body whose material it shares."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from .multipliers import ExpansionFactor, TemperatureFactor
 
 
 class Properties(Section):
-    """Base: a material, or the name of the body whose material it shares.
+    """Material properties, or the name of the body whose material applies (``like``).
 
     Attributes
     ----------
     conductivity, conductivity_factor
-        At the ambient temperature [W/(m K)], and its factor at others.
+        Value at the ambient temperature [W/(m K)], and its temperature-dependent factor.
     expansion, expansion_factor
-        Secant coefficient from the ambient temperature [1/K], and its factor at others: the thermal
-        strain is ``expansion factor(T) (T - ambient)``.
+        Secant coefficient from the ambient temperature [1/K], and its temperature-dependent factor:
+        the thermal strain is ``expansion factor(T) (T - ambient)``.
     hardness : float or None
-        Of the softer surface layer, for a contact conductance that depends on the pressure [Pa].
+        Hardness of the softer surface layer, for a pressure-dependent contact conductance [Pa].
     """
 
     like: str | None = None
@@ -41,7 +41,7 @@ class Properties(Section):
 
     @property
     def effusivity(self) -> float:
-        """``sqrt(k rho c)`` [W sqrt(s)/(m² K)]."""
+        """Thermal effusivity ``sqrt(k rho c)`` [W sqrt(s)/(m² K)]."""
         k, rho, c = self.conductivity, self.density, self.specific_heat
         assert k is not None  # the case has been checked
         assert rho is not None
@@ -54,53 +54,53 @@ class Material(Properties):
 
 
 class Body(Properties):
-    """Material of a body, and those of cell sets in it.
+    """Material of a body, and of cell sets in it.
 
     Attributes
     ----------
     materials : dict of str to Material
-        By cell sets of a mesh file that lie in the body. Its other cells have the body's own
-        material, which may be left out where the file's sets that the body is made of all have one.
+        Materials by cell set of a mesh file. All other cells of the body have the body's own
+        material, which may be omitted if every cell set of the body has one.
     """
 
     materials: dict[str, Material] = {}
 
     @property
     def has_own(self) -> bool:
-        """Whether the body has a material of its own, beside those of its cell sets."""
+        """True if the body has a material of its own, besides those of its cell sets."""
         return bool(self.model_fields_set - {"materials"})
 
 
 def resolve_like(bodies: dict[str, Body], name: str) -> str:
-    """Follow ``like`` from body to body.
+    """Name of the body at the end of a chain of ``like`` references.
 
     Raises
     ------
     ValueError
-        If the chain names a body that does not exist, or comes back to itself.
+        If the chain names an unknown body, or is circular.
     """
     seen = [name]
     while (other := bodies[seen[-1]].like) is not None:
         check_named(bodies, other)
         if other in seen:
-            raise ValueError(f"like = {quoted(other)} leads back to itself")
+            raise ValueError(f"like = {quoted(other)} is a circular reference")
         seen.append(other)
     return seen[-1]
 
 
 def check_named(bodies: dict[str, Body], name: str) -> None:
-    """Raise a `ValueError` where `like` names no body."""
+    """Raise a `ValueError` if `like` names no body."""
     if name not in bodies:
         raise ValueError(f"like = {quoted(name)} names no body; one of: {', '.join(bodies)}")
 
 
 def material_of(geometry: Geometry, bodies: dict[str, Body], part: str) -> tuple[str, Properties]:
-    """Key's path of the table that has the material of a part, and that material.
+    """Path of the table that defines the material of a part, and this material.
 
     Raises
     ------
     ValueError
-        If ``like`` names no body, or comes back to itself.
+        If ``like`` names an unknown body, or is circular.
     """
     owner = geometry.zones.get(part, part)
     name = part if part in bodies else owner

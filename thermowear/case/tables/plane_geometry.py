@@ -1,4 +1,4 @@
-"""Bases of geometries for plane models."""
+"""Base classes of geometries for plane models."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class PlaneGeometry(Geometry):
     Attributes
     ----------
     thickness : float
-        Forces are of this thickness [m].
+        Thickness that forces refer to [m].
     """
 
     name: ClassVar[str] = ""
@@ -28,12 +28,12 @@ class PlaneGeometry(Geometry):
 
 
 class HalvableGeometry(PlaneGeometry):
-    """Base of plane geometries that are symmetric, or may be.
+    """Base of plane geometries with optional symmetry about x = 0.
 
     Attributes
     ----------
     half : bool
-        Mesh only x >= 0 of bodies and loads that are symmetric about x = 0.
+        Mesh only x >= 0; bodies and loads are symmetric about x = 0.
     """
 
     name: ClassVar[str] = ""

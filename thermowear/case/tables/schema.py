@@ -1,6 +1,6 @@
 """The tables and keys of a case file.
 
-Everything here is in SI once it is read; the unit of each key stands in `units`.
+All values are in SI after reading; `units` defines the unit of each key.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .wear import WearTable
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
 _MOST_NODES = 2_000_000
-"""Of displacement: their matrices fill the memory of today's workstations."""
+"""Largest number of displacement nodes: larger matrices exceed the memory of a workstation."""
 
 Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
 Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
@@ -41,7 +41,7 @@ def _pressure_degree(value: Any) -> Any:
 
 
 def _variant(value: Any) -> Any:
-    if isinstance(value, bool | float):  # equal to 1 in Python, but not what was asked for
+    if isinstance(value, bool | float):  # equal to 1 in Python, but not valid here
         raise ValueError(f"found {quoted(value)}; must be 1, 0 or -1")
     return value
 
@@ -51,7 +51,7 @@ Variant = Annotated[Literal[1, 0, -1] | None, BeforeValidator(_variant)]
 
 
 class FaceMesh(Section):
-    """How the contact face of one body is divided where it differs from the other's."""
+    """Mesh of the contact face of one body where it differs from the default."""
 
     elements: Elements | None = None
     grading: Grading | None = None
@@ -65,11 +65,11 @@ class Mesh(Section):
     degree : int
         Polynomial degree of displacement and temperature.
     elements : int
-        Elements along the contact.
+        Number of elements along the contact.
     grading : float
         Size ratio of neighbouring elements towards the contact edges.
     bodies : dict of str to FaceMesh
-        Differences of single bodies: faces need not match.
+        Deviations for single bodies: the meshes of the faces need not match.
     """
 
     degree: Annotated[int, Field(ge=1, le=10, strict=True)] = 8
@@ -78,7 +78,7 @@ class Mesh(Section):
     bodies: dict[str, FaceMesh] = {}
 
     def face(self, body: str) -> tuple[int, float]:
-        """Elements along the contact and grading of one body."""
+        """Number of elements along the contact, and grading, of one body."""
         own = self.bodies.get(body, FaceMesh())
         return own.elements or self.elements, own.grading or self.grading
 
@@ -91,26 +91,28 @@ class Contact(Section):
     friction : float
         Coefficient of friction in the direction of sliding.
     friction_factor : Factors
-        Of it, by the mean temperature of both faces, pressure and speed.
+        Its multipliers: tables of the mean face temperature, the pressure and the speed.
     friction_history : FactorHistory or None
-        How the friction of a transient analysis changes in time, by a factor.
+        Time-dependent factor of the friction in a transient analysis.
     transverse_friction : float
-        Coefficient of friction across it, on faces that are not level (Páczelt and Mróz's mu_d).
+        Coefficient of friction across the sliding direction, on inclined faces (mu_d of Páczelt
+        and Mróz).
     compliance : float or None
-        Of a soft layer between the faces: how far a pressure presses it together [m/Pa].
+        Compliance of a soft layer between the faces: compression per pressure [m/Pa].
     method : str
-        ``"condensed"``: the bodies condensed to the interface; ``"penalty"`` and ``"nitsche"`` on
-        the full system.
+        ``"condensed"``: static condensation of the bodies to the interface; ``"penalty"`` and
+        ``"nitsche"``: full system.
     pressure_degree : int or str or None
-        Of the pressure space, by default one below the displacement; ``"lobatto"``: point by point.
+        Degree of the pressure space, by default one below the displacement; ``"lobatto"``: nodal
+        values at Gauss-Lobatto points.
     penalty : float or None
-        Pressure per penetration of the penalty method, by default from the mesh [Pa/m].
+        Penalty stiffness, pressure per penetration, by default from the mesh [Pa/m].
     theta : int or None
         Variant of Nitsche's method: 1 symmetric (default), 0 incomplete, -1 skew-symmetric.
     gamma : float or None
-        Stabilisation of Nitsche's method, times ``E degree² / h``.
+        Stabilisation parameter of Nitsche's method, in units of ``E degree² / h``.
     positioning : bool
-        Move the mesh until element ends lie at the edges of the contact.
+        Move the mesh until element ends coincide with the contact edges.
     """
 
     friction: Annotated[Number, Field(ge=0.0)] = 0.0
@@ -127,7 +129,7 @@ class Contact(Section):
 
 
 class Case(Section):
-    """A complete case: what to compute, of which bodies, under which load."""
+    """Complete case: model, bodies, loads, analysis."""
 
     title: str = ""
     model: Literal["axisymmetric", "plane-strain", "plane-stress", "3d"]
@@ -153,7 +155,7 @@ class Case(Section):
         return self
 
     def force(self) -> float | None:
-        """Normal force on body 1 [N], the largest of a history; None under a given approach."""
+        """Normal force on body 1 [N], the maximum of a history; None if the approach is given."""
         history = self.load.history
         if history is not None and history.force is not None:
             return max(history.force)
@@ -163,14 +165,14 @@ class Case(Section):
         return self.load.force
 
     def approach(self) -> float | None:
-        """Given approach of the holder [m], the largest of a history."""
+        """Prescribed approach of the holder [m], the maximum of a history."""
         history = self.load.history
         if history is not None and history.approach is not None:
             return max(history.approach)
         return self.load.approach
 
     def pressing(self) -> Pressing:
-        """How hard the bodies are pressed together, for estimates."""
+        """Normal load and contact modulus, for estimates of the contact zone."""
         softness = 0.0
         for name in self.geometry.bodies:
             body = self.material(name)
@@ -181,13 +183,13 @@ class Case(Section):
 
     @property
     def cycles(self) -> float | None:
-        """Number of cycles of the loads or of the motion; None where none is given."""
+        """Number of cycles of the loads or of the motion; None if none is given."""
         in_analysis = getattr(self.analysis, "cycles", None)
         return self.wear.cycles if in_analysis is None else in_analysis
 
     @property
     def histories(self) -> dict[str, Course]:
-        """What changes in time, by the path of its key."""
+        """Time histories by the path of their key."""
         found: dict[str, Course | None] = {
             "load.history": self.load.history,
             "motion.history": None if self.motion is None else self.motion.history,
@@ -199,19 +201,19 @@ class Case(Section):
 
     @property
     def friction_varies(self) -> bool:
-        """Whether the coefficient of friction depends on time, temperature, pressure or speed."""
+        """True if the coefficient of friction depends on time, temperature, pressure or speed."""
         contact = self.contact
         return bool(contact.friction_factor.depends_on) or contact.friction_history is not None
 
     @property
     def varies(self) -> bool:
-        """Whether friction, wear or conductance depend on temperature, pressure or speed."""
+        """True if friction, wear or conductance depend on temperature, pressure or speed."""
         tables = (self.contact.friction_factor, *(law.factor for law in self.wear.values()))
         conductance = None if self.heat is None else self.heat.conductance
         return isinstance(conductance, Section) or any(table.depends_on for table in tables)
 
     def partition(self, facing: Facing) -> float | np.ndarray:
-        """Part of the friction heat that is set free on body 1, at points (n,) or everywhere."""
+        """Fraction of the friction heat released on body 1, at points (n,) or uniform."""
         assert self.heat is not None
         share = self.heat.partition
         if isinstance(share, float):
@@ -225,9 +227,9 @@ class Case(Section):
         Parameters
         ----------
         pressure : ndarray, shape (n,)
-            [Pa]
+            Contact pressure [Pa].
         facing : Facing
-            Parts that touch there.
+            Parts that face each other there.
         """
         assert self.heat is not None
         given = self.heat.conductance
@@ -242,7 +244,7 @@ class Case(Section):
         return None if given is None else np.full(np.shape(pressure), given)
 
     def tagged_mesh(self, zone: tuple[float, float] | None = None):
-        """The mesh of the case, made for a contact zone (by default the expected one).
+        """Mesh of the case for a contact zone (by default the expected one).
 
         Parameters
         ----------
@@ -252,7 +254,7 @@ class Case(Section):
         Raises
         ------
         CaseError
-            If it has more nodes than can be computed, or lies beyond the axis.
+            If it has too many nodes, or nodes beyond the axis.
         """
         if zone is None:
             zone = self.geometry.expected_zone(self.pressing())
@@ -261,8 +263,8 @@ class Case(Section):
         if nodes > _MOST_NODES:
             raise CaseError(
                 f"mesh: {len(mesh.cells)} cells of degree {self.mesh.degree} have about "
-                f"{nodes / 1e6:.2g} million nodes, at most {_MOST_NODES / 1e6:g} million can be "
-                "computed; look for a slip in a unit of the geometry, or lower mesh.elements or "
+                f"{nodes / 1e6:.2g} million nodes; at most {_MOST_NODES / 1e6:g} million can be "
+                "computed; check the units of the geometry, or lower mesh.elements or "
                 "mesh.degree"
             )
         x = mesh.points[:, 0]
@@ -272,20 +274,20 @@ class Case(Section):
         return mesh
 
     def material(self, part: str) -> Properties:
-        """The material of a part, ``like`` followed to its end; a zone may have its body's."""
+        """Material of a part, with ``like`` resolved; a zone may share the material of its body."""
         return self.located_material(part)[1]
 
     def located_material(self, part: str) -> tuple[str, Properties]:
-        """Key's path of the table that has the material of a part, and that material.
+        """Path of the table that defines the material of a part, and this material.
 
         Raises
         ------
         ValueError
-            If ``like`` names no body, or comes back to itself.
+            If ``like`` names an unknown body, or is circular.
         """
         return material_of(self.geometry, self.bodies, part)
 
 
 def as_plain(case: Case) -> dict[str, Any]:
-    """The case as nested tables of text and numbers, every default written out."""
+    """Case as nested tables of text and numbers, including defaults."""
     return case.model_dump(exclude_none=True)

@@ -1,6 +1,6 @@
-"""What must hold between the tables of a case.
+"""Consistency checks between the tables of a case.
 
-Every check yields the path of the key at fault and what is wrong there.
+Every check yields the path of the key at fault and a message.
 """
 
 from __future__ import annotations
@@ -20,18 +20,19 @@ from .varying import condensed_only, varying
 Fault = tuple[str, str]
 
 _LOCKING = {1: 0.45, 2: 0.499}
-"""Largest Poisson ratio by degree. Measured on a cylinder on a block with 16 elements in contact:
-up to there the force errs no more than twice as much as at 0.3; from degree 3 on always."""
+"""Largest Poisson ratio by degree, measured for a cylinder on a block with 16 elements in
+contact: up to this value the error of the force is at most twice that at 0.3; no limit from
+degree 3 on."""
 
 _SLIDING = ("steady", "transient", "reciprocating")
 """Analyses of wear by sliding."""
 
 
 def check(case: Case) -> None:
-    """Raise a `CaseError` that lists every fault between the tables of `case`.
+    """Raise a `CaseError` that lists every inconsistency between the tables of `case`.
 
-    Where there is none, the contact that its loads lead to must fit the bodies; what is odd about
-    the case is noted.
+    A consistent case is also checked for a contact zone that fits the bodies, and unusual
+    defaults are noted.
     """
     faults = [f"{path}: {text}" for look in _CHECKS for path, text in look(case)]
     if faults:
@@ -43,7 +44,7 @@ def check(case: Case) -> None:
 
 
 def _note_defaults(case: Case) -> None:
-    """Note what is left to a default that changes the answer and is easily taken wrongly."""
+    """Note defaults that change the result and are often set differently."""
     friction = case.contact.friction
     for name, law in case.wear.items():
         if "per" not in law.model_fields_set and friction > 0.0:
@@ -55,7 +56,7 @@ def _note_defaults(case: Case) -> None:
 
 
 def _names(case: Case) -> Iterator[Fault]:
-    """Bodies and surfaces must be those of the geometry."""
+    """Bodies and surfaces must be defined by the geometry."""
     bodies, surfaces = case.geometry.bodies, case.geometry.surfaces
     named = tuple(part for part in case.geometry.parts if part not in case.geometry.set_of)
     yield from _unknown("bodies", case.bodies, named)
@@ -65,7 +66,7 @@ def _names(case: Case) -> Iterator[Fault]:
     yield from _unknown("load.pressure", case.load.pressure, surfaces)
     for name in bodies:
         if name not in case.bodies:
-            yield f"bodies.{name}", "missing; every body of the geometry needs its material"
+            yield f"bodies.{name}", "missing; every body of the geometry needs a material"
     if case.heat is not None:
         for table in SURFACES:
             yield from _unknown(f"heat.{table}", getattr(case.heat, table), surfaces)
@@ -74,7 +75,10 @@ def _names(case: Case) -> Iterator[Fault]:
 def _unknown(table: str, found: Iterable[str], known: tuple[str, ...]) -> Iterator[Fault]:
     for name in found:
         if name not in known:
-            yield f"{table}.{name}", f"not a name of this geometry; one of: {', '.join(known)}"
+            yield (
+                f"{table}.{name}",
+                f"unknown name in this geometry; must be one of: {', '.join(known)}",
+            )
 
 
 def _model(case: Case) -> Iterator[Fault]:
@@ -83,7 +87,7 @@ def _model(case: Case) -> Iterator[Fault]:
 
 
 def _locking(case: Case) -> Iterator[Fault]:
-    """Low elements cannot deform at nearly constant volume: they are far too stiff."""
+    """Volumetric locking of low-order elements at nearly constant volume."""
     limit = _LOCKING.get(case.mesh.degree)
     if limit is None or case.model == "plane-stress":
         return
@@ -112,28 +116,27 @@ def _materials(case: Case) -> Iterator[Fault]:
         own = part == name or in_set is not None
         if table.like is not None and own:
             for key in sorted(table.model_fields_set - {"like", "materials"}):
-                yield f"{path}.{key}", "a body that is like another has no keys of its own"
+                yield f"{path}.{key}", "not allowed together with like"
         try:
             sources[part] = case.located_material(part)
         except ValueError as error:
             if own:
                 yield f"{path}.like", str(error)
     missing: dict[str, str] = {}
-    for part, key, why in _needs(case):
+    for part, key, why in _required_properties(case):
         if part in sources and getattr(sources[part][1], key) is None:
             missing.setdefault(f"{sources[part][0]}.{key}", f"missing; needed{why}")
     yield from missing.items()
 
 
 def _cell_sets(case: Case) -> Iterator[Fault]:
-    """Materials by cell sets are for bodies of mesh files, all of whose cells must have one."""
+    """Materials by cell set require bodies of a mesh file, with a material for each cell."""
     geometry = case.geometry
     for name, body in case.bodies.items():
         if body.materials and not geometry.set_of:
             yield (
                 f"bodies.{name}.materials",
-                'is by cell sets of a mesh file (geometry.type = "file"), not for '
-                f"{geometry.type!r}",
+                f'needs cell sets of a mesh file (geometry.type = "file"), found {geometry.type!r}',
             )
         elif body.materials and name in geometry.bodies and not body.has_own:
             named = {geometry.set_of[part] for part in geometry.parts_of(name)[1:]}
@@ -145,8 +148,8 @@ def _cell_sets(case: Case) -> Iterator[Fault]:
                     )
 
 
-def _needs(case: Case) -> Iterator[Need]:
-    """Parts, the keys of their material that are needed, and why."""
+def _required_properties(case: Case) -> Iterator[Need]:
+    """Parts, keys of their material that are required, and the reason."""
     for part in case.geometry.parts:
         yield from ((part, key, "") for key in ("young_modulus", "poisson_ratio"))
     yield from thermal_needs(case)
@@ -154,7 +157,7 @@ def _needs(case: Case) -> Iterator[Need]:
 
 def _sliding(case: Case) -> Iterator[Fault]:
     analysis = case.analysis
-    if not case.wear and _wears(case):
+    if not case.wear and _computes_wear(case):
         yield "wear", f"missing; a {analysis.type} analysis needs the wear law of a body"
     heated_by_friction = analysis.type == "stability" or (
         case.heat is not None and not case.heat.driven
@@ -175,7 +178,7 @@ def _sliding(case: Case) -> Iterator[Fault]:
 def _at_rest(case: Case, heated_by_friction: bool) -> Iterator[Fault]:
     """Without sliding there is neither wear nor friction heat, only conduction."""
     type_ = case.analysis.type
-    if _wears(case) or type_ == "stability" or (case.wear and type_ in _SLIDING):
+    if _computes_wear(case) or type_ == "stability" or (case.wear and type_ in _SLIDING):
         text = "missing; wear and friction heat need sliding"
         if case.heat is not None and not heated_by_friction:
             text += (
@@ -186,13 +189,12 @@ def _at_rest(case: Case, heated_by_friction: bool) -> Iterator[Fault]:
     elif heated_by_friction:
         yield (
             "motion",
-            "missing; nothing heats the bodies: needs sliding, or heat.temperature, heat.flux or "
-            "heat.power",
+            "missing; no heat source: needs sliding, or heat.temperature, heat.flux or heat.power",
         )
 
 
-def _wears(case: Case) -> bool:
-    """Whether the analysis is about wear; temperatures in time may be followed without any."""
+def _computes_wear(case: Case) -> bool:
+    """True if the analysis computes wear; a transient thermal one may have none."""
     analysis, heat = case.analysis, case.heat
     if isinstance(analysis, Transient) and analysis.until is None and heat is not None:
         return not heat.transient
@@ -205,15 +207,22 @@ def _spread(case: Case) -> Iterator[Fault]:
         if law.spread == "in-place":
             continue
         if name != moving:
-            yield f"wear.{name}.spread", f"only {moving} passes under the other body"
+            yield f"wear.{name}.spread", f"only {moving} passes under the other body; leave it out"
         elif not case.geometry.passes and case.geometry.sector == 1.0:
-            yield f"wear.{name}.spread", f"all of {moving} is in the contact all the time"
+            yield (
+                f"wear.{name}.spread",
+                f"the whole face of {moving} is always in contact; leave it out",
+            )
         elif case.analysis.type in ("fretting", "reciprocating"):
-            yield f"wear.{name}.spread", f"nothing passes by in a {case.analysis.type} analysis"
+            yield (
+                f"wear.{name}.spread",
+                f"not supported in a {case.analysis.type} analysis: body 2 does not pass by",
+            )
         elif case.analysis.type == "steady" and len(case.wear) == 1 and case.geometry.sector == 1.0:
             yield (
                 f"wear.{name}.spread",
-                "wear along a track alone evens nothing out: no steady state",
+                "no unique steady pressure: wear spread uniformly along the track does not "
+                "constrain it",
             )
 
 
@@ -227,29 +236,32 @@ def _method(case: Case) -> Iterator[Fault]:
     keys = {"penalty": "penalty", "theta": "nitsche", "gamma": "nitsche"}
     for key, method in keys.items():
         if getattr(case.contact, key) is not None and case.contact.method != method:
-            yield f"contact.{key}", f'is for method = "{method}"'
+            yield f"contact.{key}", f'requires method = "{method}"'
     refused = condensed_only(case)
     if refused is not None and case.contact.method != "condensed" and case.model != "3d":
-        yield "contact.method", f"{case.contact.method!r} is not for {refused}; use condensed"
+        yield "contact.method", f"{case.contact.method!r} does not support {refused}; use condensed"
 
 
 def _in_space(case: Case) -> Iterator[Fault]:
     if case.model != "3d":
         return
     if case.contact.method != "condensed":
-        yield "contact.method", f"{case.contact.method!r} is for sections; use condensed in 3d"
+        yield "contact.method", f"{case.contact.method!r} does not support 3d models; use condensed"
     if case.contact.transverse_friction > 0 or case.contact.pressure_degree == "lobatto":
         key = "transverse_friction" if case.contact.transverse_friction > 0 else "pressure_degree"
-        yield f"contact.{key}", "is for sections, not for 3d"
+        yield f"contact.{key}", "not supported in 3d models"
     if case.analysis.type in ("fretting", "reciprocating"):
-        yield "analysis.type", f"{case.analysis.type!r} is for sections, not for 3d"
+        yield "analysis.type", f"{case.analysis.type!r} is not supported in 3d models"
 
 
 def _positioning(case: Case) -> Iterator[Fault]:
     if case.contact.positioning and not case.geometry.follows_contact:
         yield "contact.positioning", f"the mesh of {case.geometry.type!r} cannot be moved"
     elif case.contact.positioning and getattr(case.geometry, "zone", None) is not None:
-        yield "contact.positioning", "moves the mesh to the unworn contact; leave out geometry.zone"
+        yield (
+            "contact.positioning",
+            "moves the mesh to the contact zone of the unworn faces; leave out geometry.zone",
+        )
 
 
 def _symmetry(case: Case) -> Iterator[Fault]:
@@ -260,11 +272,14 @@ def _symmetry(case: Case) -> Iterator[Fault]:
 
 
 def _update(case: Case) -> Iterator[Fault]:
-    """Sizes of updates that are asked for where no meshes are moved."""
+    """Intervals of geometry updates in analyses without geometry updates."""
     if case.wear.update in ("auto", "never"):
         return
     if case.analysis.type != "transient":
-        yield "wear.update", f"meshes are not moved in a {case.analysis.type} analysis"
+        yield (
+            "wear.update",
+            f"geometry updates are not supported in a {case.analysis.type} analysis",
+        )
 
 
 _CHECKS = (

@@ -1,4 +1,4 @@
-"""What two cases differ in, and what may differ where one goes on with the run of the other."""
+"""Differences between two cases, and those allowed when a run is resumed."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from ..tables.analyses import Fretting, Reciprocating, Timed
 from ..tables.schema import Case, as_plain
 
 _FREE = {"title", "analysis.max_steps", "analysis.frames", "analysis.checkpoint_every"}
-"""Keys that no number that was computed depends on."""
+"""Keys that do not affect any computed number."""
 _FILES = {"geometry.path", "geometry.initial_shape"}
-"""Keys of files, wherever they lie: what is compared is the bodies and gaps that they lead to."""
+"""Keys of files, whose path may change: the meshes and gaps read from them are compared instead."""
 _END = {"analysis.end_time", "analysis.cycles", "wear.cycles"}
 _OUTPUTS = "analysis.output_times"
 _LONGEST = 60  # characters of a value that is shown
@@ -25,9 +25,9 @@ class Change:
     Attributes
     ----------
     key : str
-        With its tables, dotted.
+        Dotted path of the key.
     before, now : object
-        Plain values; None where there is none.
+        Plain values; None if absent.
     """
 
     key: str
@@ -35,58 +35,58 @@ class Change:
     now: Any
 
     def __str__(self) -> str:
-        return f"{self.key} was {_shown(self.before)}, and is {_shown(self.now)} now"
+        return f"{self.key} was {_truncated(self.before)}, is now {_truncated(self.now)}"
 
 
 def changes(before: Case, now: Case) -> list[Change]:
-    """What two cases differ in, in the order of the case."""
-    return list(_different(as_plain(before), as_plain(now), ""))
+    """Keys whose values differ between two cases, in the order of the case."""
+    return list(_differences(as_plain(before), as_plain(now), ""))
 
 
 def irrelevant_changes_only(before: Case, now: Case) -> bool:
-    """Whether both lead to the same numbers, if a mesh file has the same content."""
+    """True if both lead to the same numbers, provided that a mesh file has the same content."""
     return all(change.key in _FREE | {"geometry.path"} for change in changes(before, now))
 
 
 def other_mesh(case: Case) -> str:
-    """Message to one who goes on with a run of another mesh."""
+    """Error message for a run resumed with a different mesh."""
     path = as_plain(case)["geometry"]["path"]
     return (
-        f"--resume: geometry.path: the mesh in {path} is not that of the run; name "
-        "the file with that mesh, or --overwrite starts it from the beginning"
+        f"--resume: geometry.path: the mesh in {path} differs from that of the run; name "
+        "the file with that mesh, or start anew with --overwrite"
     )
 
 
 def forbidden_changes(before: Case, now: Case, time: float) -> list[Change]:
-    """What keeps a case from going on with the run of another one from a time [s].
+    """Changes that prevent a case from resuming another one's run at a time [s].
 
-    The physics must be the same; the end may be another one, if it has not passed, and so may the
-    output times that have not, and the places of files.
+    The physics must be identical. The end may change unless it has passed, and so may later
+    output times and the paths of files.
     """
     free = _FREE | _FILES
-    if _end(before) is not None and (_end(now) or 0.0) >= time:
+    if _end_time(before) is not None and (_end_time(now) or 0.0) >= time:
         free |= _END
     if _outputs(before, time) == _outputs(now, time):
         free.add(_OUTPUTS)
     return [change for change in changes(before, now) if change.key not in free]
 
 
-def _different(one: Any, other: Any, path: str) -> Iterator[Change]:
+def _differences(one: Any, other: Any, path: str) -> Iterator[Change]:
     if isinstance(one, dict) and isinstance(other, dict):
         for key in dict.fromkeys([*one, *other]):
-            yield from _different(one.get(key), other.get(key), f"{path}.{key}" if path else key)
+            yield from _differences(one.get(key), other.get(key), f"{path}.{key}" if path else key)
     elif one != other:
         yield Change(path, one, other)
 
 
-def _shown(value: Any) -> str:
-    """A value in a few words."""
+def _truncated(value: Any) -> str:
+    """Text of a value, truncated."""
     text = "not given" if value is None else str(value)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 2]} …"
 
 
-def _end(case: Case) -> float | None:
-    """Time at which an analysis that can be made longer ends at the latest [s]."""
+def _end_time(case: Case) -> float | None:
+    """Latest end time of an analysis that can be extended [s]."""
     settings = case.analysis
     if isinstance(settings, Fretting):
         return _end_of_cycles(case)
@@ -101,7 +101,7 @@ def _end(case: Case) -> float | None:
 
 
 def _end_of_cycles(case: Case) -> float:
-    """Time at which the history of loads ends, the repetitions of its cycle included [s]."""
+    """End time of the load history, including the repetitions of its cycle [s]."""
     history = case.load.history
     assert history is not None  # the case has been checked
     begin, end = history.cycle or (0.0, history.time[-1])
@@ -109,7 +109,7 @@ def _end_of_cycles(case: Case) -> float:
 
 
 def _outputs(case: Case, time: float) -> set[float]:
-    """Output times that have passed at a time."""
+    """Output times reached at a time."""
     settings = case.analysis
     if not isinstance(settings, Timed | Fretting):
         return set()

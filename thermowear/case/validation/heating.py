@@ -1,4 +1,4 @@
-"""What must hold between the tables of cases with heat."""
+"""Consistency checks of cases with heat."""
 
 from __future__ import annotations
 
@@ -13,40 +13,40 @@ Need = tuple[str, str, str]
 SURFACES = ("cooling", "temperature", "flux", "power")
 """Keys of heat that are tables by surface."""
 _COLD = ("fretting", "reciprocating")
-"""Analyses that refuse the whole table."""
+"""Analyses that do not support heat."""
 
 
 def heat(case: Case) -> Iterator[Fault]:
-    """Heat must come from somewhere, and go somewhere, by what geometry and analysis allow."""
+    """Heat needs a source and a sink that geometry and analysis support."""
     heat = case.heat
     if heat is None:
         if case.analysis.type == "stability":
-            yield "heat", "missing; a stability analysis asks what friction heat does"
+            yield "heat", "missing; required in a stability analysis"
         return
     yield from _surfaces(case, heat)
     if heat.advection != "none" and not case.geometry.passes:
         yield "heat.advection", _not_advected(case)
     elif heat.advection != "none" and case.motion is None:
-        yield "heat.advection", "needs [motion]: nothing passes by without"
+        yield "heat.advection", "needs [motion]: without it body 2 does not pass by"
     elif heat.advection == "resolved" and case.motion is not None and case.motion.history:
         yield (
             "heat.advection",
-            '"resolved" is for one speed, not for motion.history: use "spread" or "none"',
+            '"resolved" needs a constant speed, without motion.history: use "spread" or "none"',
         )
     if case.analysis.type in _COLD:
         return
     if heat.transient and case.analysis.type != "transient":
-        yield "heat.transient", f"is for a transient analysis, not for {case.analysis.type}"
+        yield "heat.transient", f"requires a transient analysis, not {case.analysis.type}"
     elif not heat.transient:
         keys = [] if heat.initial is None else ["initial"]
         if case.analysis.type == "transient":  # the others have no histories at all
             keys += heat.histories
         for key in keys:
-            yield f"heat.{key}", "is for temperatures in time: heat.transient = true"
+            yield f"heat.{key}", "requires temperatures in time: heat.transient = true"
 
 
 def thermal_needs(case: Case) -> Iterator[Need]:
-    """Parts, the keys of their material that heat needs, and why."""
+    """Parts, keys of their material that heat requires, and the reason."""
     heat, geometry = case.heat, case.geometry
     if heat is None:
         return
@@ -70,20 +70,20 @@ def thermal_needs(case: Case) -> Iterator[Need]:
 
 
 def _surfaces(case: Case, heat: Heat) -> Iterator[Fault]:
-    """What heats, cools, or has a given temperature."""
-    lasts = not heat.transient  # a stability analysis asks for a base state that lasts
+    """Thermal boundary conditions: heat sink, and at most one condition per surface."""
+    lasts = not heat.transient  # a stability analysis needs a steady base state
     leaves = heat.advection == "resolved" and case.geometry.rotation_center is None
     if lasts and not leaves and not heat.cooling and not heat.temperature:
-        yield "heat", "needs cooling or a given temperature: the heat has nowhere to go"
+        yield "heat", "needs heat.cooling or heat.temperature: there is no heat sink"
     if heat.ambient_history is not None and not heat.cooling and not leaves:
-        yield "heat.ambient_history", "changes nothing: no surface has heat.cooling"
+        yield "heat.ambient_history", "has no effect: no surface has heat.cooling"
     for table in ("cooling", "flux", "power"):
         for name in getattr(heat, table):
             if name in heat.temperature:
-                yield f"heat.{table}.{name}", "this surface has a given temperature already"
+                yield f"heat.{table}.{name}", "this surface already has a prescribed temperature"
     for name in heat.power:
         if name in heat.flux:
-            yield f"heat.power.{name}", "this surface has a given flux already"
+            yield f"heat.power.{name}", "this surface already has a prescribed flux"
     for table in SURFACES:
         for name in getattr(heat, table):
             if name in case.geometry.contact:
@@ -96,5 +96,5 @@ def _surfaces(case: Case, heat: Heat) -> Iterator[Fault]:
 def _not_advected(case: Case) -> str:
     moving = case.geometry.bodies[1]
     if case.geometry.sector != 1.0:
-        return f"heat is spread round the {moving} already, which is modelled by its section"
+        return f"heat is already distributed around the {moving}, which is modelled by its section"
     return f"{moving} does not pass under the other body, as a strip, a disk or a drum does"

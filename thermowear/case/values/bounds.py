@@ -1,7 +1,7 @@
-"""Bounds of what a case may hold, so that every case is read or refused at once.
+"""Limits on the size of a case, so that any input is read or rejected without delay.
 
-They are far beyond any real case. Without them a few bytes can keep a parser busy for hours: a
-tower of exponents, a key of 200 000 parts, a table within a table a thousand times over.
+They are far beyond any real case. Without them a few bytes can occupy a parser for hours: a
+tower of exponents, a key of 200 000 parts, a thousand nested tables.
 """
 
 from __future__ import annotations
@@ -12,28 +12,28 @@ from typing import Any
 from ...errors import CaseError, quoted
 
 LARGEST_FILE = 2_000_000
-"""Bytes of a case file."""
+"""Largest size of a case file [bytes]."""
 LONGEST_KEY = 200
-"""Characters of the name of a key."""
+"""Largest number of characters in a key."""
 MOST_PARTS = 20
-"""Parts of a dotted key, and tables within each other."""
+"""Largest number of parts of a dotted key, and of nested tables."""
 MOST_VALUES = 60_000
-"""Values of all keys together, those in lists one by one; histories of 5 000 rows fit in."""
+"""Largest number of values of all keys, list items included; histories of 5 000 rows fit in."""
 _WIDEST = 1024
-"""Bits of a whole number: beyond them it is not even a floating-point number."""
+"""Largest number of bits of an integer: beyond it, it does not fit a floating-point number."""
 
 _PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 _LONG_KEY = re.compile(rf"(?<![\w\\-])(?:{_PART}[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}", re.DOTALL)
 
 
 def check_keys(text: str, where: str) -> None:
-    """Refuse TOML with a dotted key of too many parts, which takes the parser quadratic time.
+    """Reject TOML with a dotted key of too many parts, which takes the parser quadratic time.
 
     Parameters
     ----------
     text : str
     where : str
-        What the text is, for the message.
+        Origin of the text, for the message.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def check_keys(text: str, where: str) -> None:
 
 
 def check_tables(tables: dict[str, Any]) -> None:
-    """Refuse tables that are too deep or too large, and numbers that no key could take.
+    """Reject tables that are too deep or too large, and integers beyond the range of floats.
 
     Raises
     ------
@@ -59,26 +59,28 @@ def check_tables(tables: dict[str, Any]) -> None:
         below = [pair for path, value in level for pair in _parts(path, value)]
         count += len(below)
         if count > MOST_VALUES:
-            raise CaseError(f"the case has more than {MOST_VALUES} values; that is the limit")
+            raise CaseError(f"the case has more than {MOST_VALUES} values, the limit")
         for path, value in below:
             if isinstance(value, int) and value.bit_length() > _WIDEST:
-                raise CaseError(f"{path}: has more digits than any number that can be used here")
+                raise CaseError(f"{path}: the integer has too many digits")
         level = [(path, value) for path, value in below if isinstance(value, dict | list | tuple)]
         if not level:
             return
         if depth == MOST_PARTS:
             raise CaseError(
-                f"{level[0][0]}: tables or lists within each other; at most {MOST_PARTS}"
+                f"{level[0][0]}: tables or lists are nested too deeply; at most "
+                f"{MOST_PARTS} levels are allowed"
             )
 
 
 def _parts(path: str, value: Any):
-    """The entries of a table or a list, and the path of each."""
+    """Entries of a table or a list, with the path of each."""
     entries = value.items() if isinstance(value, dict) else enumerate(value)
     above = f"{path}." if path else ""
     for key, inner in entries:
         if isinstance(key, str) and len(key) > LONGEST_KEY:
             raise CaseError(
-                f"{above}{quoted(key)}: a key of {len(key)} characters; at most {LONGEST_KEY}"
+                f"{above}{quoted(key)}: the key has {len(key)} characters; at most "
+                f"{LONGEST_KEY} are allowed"
             )
         yield f"{above}{key}", inner

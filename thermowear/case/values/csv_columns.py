@@ -1,4 +1,4 @@
-"""Columns of numbers from CSV files whose header names quantities and units."""
+"""Columns of numbers from CSV files whose header gives quantities and units."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from pathlib import Path
 from ...user_files import read_text
 
 LARGEST = 10_000_000
-"""Bytes of a file."""
+"""Largest size of a file [bytes]."""
 MOST_ROWS = 5_000
-"""Each of them is a corner that a step must end at, and stands in the resolved case."""
-_SHOWN = 40  # characters of what was found
+"""Largest number of rows: each is a step boundary, and is written to the resolved case."""
+_SHOWN = 40  # characters quoted from a cell
 _HEAD = re.compile(r"([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True)
 class Columns:
-    """A table by columns.
+    """Table by columns.
 
     Attributes
     ----------
     name : str
-        Of the file.
+        Name of the file.
     values : dict of str to list
-        By key: quantities as text; numbers where the header has no unit.
+        Values by key: quantities as text; numbers where the header has no unit.
     lines : list of int
-        Where each row stands in the file, from 1.
+        Line number of each row in the file, from 1.
     """
 
     name: str
@@ -42,31 +42,31 @@ def read_columns(path: Path, known: dict[str, str]) -> Columns:
     """Read a CSV file: a header such as ``time [s], force [kN]``, then rows of numbers.
 
     Commas, semicolons or tabs separate the cells; numbers have a decimal point; empty lines and
-    those that begin with ``#`` are skipped. Times must increase.
+    comments (``#``) are skipped. Times must increase.
 
     Parameters
     ----------
     path : Path
     known : dict of str to str
-        Keys that columns may stand for, with a unit that fits each; empty for plain numbers. Words
-        of a key may be separated by spaces.
+        Allowed keys, each with an example of a suitable unit; empty for plain numbers. Words of a
+        key may be separated by spaces.
 
     Raises
     ------
     ValueError
-        With file and line, if it is not such a table.
+        With file and line, if the file is no such table.
     """
     name = path.name
     rows = _rows(name, _text(path))
     allowed = ", ".join(f"{key} [{unit}]" if unit else key for key, unit in known.items())
     if not rows:
-        raise ValueError(f"{name} is empty; needs a header, of: {allowed}")
+        raise ValueError(f"{name} is empty; needs a header with columns of: {allowed}")
     heads = _heads(name, *rows[0], known, allowed)
     body = rows[1:]
     if not body:
-        raise ValueError(f"{name} has a header, but no rows of numbers")
+        raise ValueError(f"{name} has a header but no rows of numbers")
     if len(body) > MOST_ROWS:
-        raise ValueError(f"{name} has {len(body)} rows; at most {MOST_ROWS} are read")
+        raise ValueError(f"{name} has {len(body)} rows; at most {MOST_ROWS} are allowed")
     table = [_numbers(name, line, cells, list(heads)) for line, cells in body]
     if "time" in heads:
         _increasing(name, [row[list(heads).index("time")] for row in table], body)
@@ -82,12 +82,12 @@ def _text(path: Path) -> str:
         return read_text(path, LARGEST)
     except OSError as error:
         raise ValueError(f"{path} cannot be read: {error.strerror}") from None
-    except ValueError as error:  # not in UTF-8, or no name of a file
+    except ValueError as error:  # not in UTF-8, or an invalid file name
         raise ValueError(f"{path} {error}") from None
 
 
 def _rows(name: str, text: str) -> list[tuple[int, list[str]]]:
-    """Rows with the number of their line; comments and empty lines are left out."""
+    """Rows with their line numbers, without comments and empty lines."""
     lines = [
         (number, line)
         for number, line in enumerate(re.split("\r\n|\r|\n", text), 1)
@@ -119,13 +119,16 @@ def _heads(
         if match is None or key not in known:
             raise ValueError(f"{where}: found the column {_shown(cell)}; known: {allowed}")
         if key in heads:
-            raise ValueError(f"{where}: the column {key} is there twice")
+            raise ValueError(f"{where}: the column {key} is given twice")
         unit = (match[2] or "").strip()
         unit = "" if unit in ("-", "1") else unit
         if known[key] and not unit:
-            raise ValueError(f"{where}: {key}: no unit; write it like {key} [{known[key]}]")
+            raise ValueError(f"{where}: {key}: unit missing; write {key} [{known[key]}]")
         if unit and not known[key]:
-            raise ValueError(f"{where}: {key}: found the unit {_shown(unit)}; has none")
+            raise ValueError(
+                f"{where}: {key}: found the unit {_shown(unit)}; must be a plain number without "
+                "unit"
+            )
         heads[key] = unit
     return heads
 

@@ -1,4 +1,4 @@
-"""Files that a case names: where they are, wherever the program is called."""
+"""Paths of files named by a case, independent of the working directory."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pydantic import AfterValidator, ValidationInfo
 from ...errors import note
 
 FOLDER = "folder"
-"""Key of the folder of the case file in the context of validation."""
+"""Key of the case file's folder in the validation context."""
 
 
-def _found(path: str, info: ValidationInfo) -> str:
-    """The absolute path of a file: from the folder of the case file, or else from the current one.
+def _resolve_path(path: str, info: ValidationInfo) -> str:
+    """Absolute path of a file: relative to the folder of the case file, or else to the current one.
 
-    A case without a file of its own (tables in Python) has only the current folder.
+    A case without a file of its own (tables in Python) uses the current folder only.
     """
     here = os.path.abspath(path)
     folder = (info.context or {}).get(FOLDER)
@@ -26,11 +26,14 @@ def _found(path: str, info: ValidationInfo) -> str:
     if here == beside or not os.path.exists(here):
         return beside
     if os.path.exists(beside):
-        note(f"found {beside}, beside the case file; {here} is another file, and is not read")
+        note(f"found {beside}, next to the case file; the other file {here} is not read")
         return beside
-    note(f"found {here} in the current folder; paths are meant from the case file's: {folder}")
+    note(
+        f"found {here} in the current folder; paths are relative to the folder of the case "
+        f"file: {folder}"
+    )
     return here
 
 
-UserFile = Annotated[str, AfterValidator(_found)]
-"""Type of a key that holds the path of a file: absolute inside."""
+UserFile = Annotated[str, AfterValidator(_resolve_path)]
+"""Type of a key that holds the path of a file, made absolute."""

@@ -1,4 +1,4 @@
-"""What all tables of a case file have in common."""
+"""Base class of all tables of a case file."""
 
 from typing import Annotated, Any
 
@@ -9,7 +9,7 @@ Switch = Annotated[bool, Field(strict=True)]
 
 
 class KeyFault(ValueError):
-    """A fault found by comparing keys of one table, charged to one of them."""
+    """Fault found by comparing keys of one table, reported at one of them."""
 
     def __init__(self, key: str, text: str):
         self.key = key
@@ -17,7 +17,7 @@ class KeyFault(ValueError):
 
 
 class Section(BaseModel):
-    """A table of the case file: no unknown keys, no changes once read.
+    """Table of the case file: no unknown keys, immutable once read.
 
     A list of quantities may be written as its numbers and their common unit:
     ``time = { values = [0, 1, 2], unit = "s" }``.
@@ -34,17 +34,21 @@ class Section(BaseModel):
 
 
 def _quantities(key: str, value: Any) -> Any:
-    """A list of quantities from numbers and their unit; anything else as it is."""
+    """List of quantities from numbers and a common unit; other values unchanged."""
     if not isinstance(value, dict) or not value.keys() >= {"values", "unit"}:
         return value
     for other in value.keys() - {"values", "unit"}:
-        raise KeyFault(f"{key}.{other}", "unknown key; a list with one unit has values and unit")
+        raise KeyFault(
+            f"{key}.{other}", "unknown key; a list with a common unit has the keys values and unit"
+        )
     numbers, unit = value["values"], value["unit"]
     if not isinstance(unit, str) or not unit.strip():
-        raise KeyFault(f"{key}.unit", 'must be the unit of all values, such as "s"')
+        raise KeyFault(f"{key}.unit", 'must be the common unit of all values, such as "s"')
     if not isinstance(numbers, list):
         raise KeyFault(f"{key}.values", "must be a list of numbers")
     for i, number in enumerate(numbers):
         if isinstance(number, bool) or not isinstance(number, int | float):
-            raise KeyFault(f"{key}.values.{i}", "must be a number, as its unit stands beside it")
+            raise KeyFault(
+                f"{key}.values.{i}", "must be a number without unit, which is given by the key unit"
+            )
     return [f"{number!r} {unit}" for number in numbers]

@@ -1,7 +1,7 @@
-"""Quantities with units, written by the user and turned to SI at the border.
+"""Quantities with units: text in a case file, converted to SI on reading.
 
-Every dimensional key of a case file is a string such as ``"50 MPa"``. Inside the
-program there are only SI numbers.
+Every dimensional key of a case file is a string such as ``"50 MPa"``. The program works
+with SI numbers only.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from pydantic import BeforeValidator, PlainSerializer
 from ...errors import quoted
 
 _LONGEST = 200
-"""Characters of a quantity."""
+"""Largest number of characters of a quantity."""
 _EXTREME = 1e100
-"""Sizes of numbers in SI: products of three of them are still numbers."""
+"""Largest magnitude in SI: products of three such numbers remain finite."""
 _NUMBER = re.compile(r"\s*([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))", re.IGNORECASE)
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-")
 _SUPERSCRIPT = re.compile(rf"[{''.join(map(chr, _SUPERSCRIPTS))}]+")
@@ -44,7 +44,7 @@ _ANGLES = ("radian", "turn", "revolution", "degree")
 
 @lru_cache(maxsize=1)
 def registry():
-    """The one unit registry (made at first use: it is slow to build)."""
+    """The unit registry (created at first use: construction is slow)."""
     import pint
 
     units = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
@@ -53,14 +53,14 @@ def registry():
 
 
 def parse(text: Any, example: str):
-    """Read a quantity written as text.
+    """Read a quantity given as text.
 
     Parameters
     ----------
     text : object
-        What the case file holds at the key.
+        Value of the key in the case file.
     example : str
-        A well-formed value, for the message.
+        Well-formed value, for the message.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def parse(text: Any, example: str):
     Raises
     ------
     ValueError
-        If it is not a string, has no unit, or is not understood.
+        If it is no string, has no unit, or cannot be parsed.
     """
     import pint
 
@@ -84,7 +84,7 @@ def parse(text: Any, example: str):
             f"found {quoted(text)}, {len(text)} characters; a quantity has at most {_LONGEST}"
         )
     try:
-        with np.errstate(over="ignore"):  # of decibels; what is not finite is refused
+        with np.errstate(over="ignore"):  # of decibels; values that are not finite are rejected
             value = _read(text)
             bare = value.unitless
     except Exception as error:  # pint raises a dozen kinds, tokenizer errors among them
@@ -97,7 +97,7 @@ def parse(text: Any, example: str):
 
 
 def _read(text: str):
-    """Number and unit apart: only so does ``W/(m^2 degC)`` mean a difference of temperatures."""
+    """Number and unit parsed separately, so that ``W/(m^2 degC)`` is per temperature difference."""
     number = _NUMBER.match(text)
     if number is None:
         raise ValueError("no number")
@@ -106,7 +106,7 @@ def _read(text: str):
 
 @lru_cache(maxsize=1000)
 def _unit(text: str):
-    """A unit as engineers write it: ``W/(m² K)``, ``/K``, ``mm^3/(N m)``, ``1/MPa**0.5``."""
+    """Unit in engineering notation: ``W/(m² K)``, ``/K``, ``mm^3/(N m)``, ``1/MPa**0.5``."""
     text = _SUPERSCRIPT.sub(_as_power, text)
     _check_unit(text)
     return registry().parse_units(f"1{text}" if text.startswith("/") else text, as_delta=True)
@@ -117,10 +117,10 @@ def _as_power(superscript: re.Match[str]) -> str:
 
 
 def _check_unit(unit: str) -> None:
-    """Refuse towers of powers and numbers beside exponents: pint works them out exactly.
+    """Reject nested powers and numbers other than exponents, which pint evaluates exactly.
 
-    ``m^9^9^9`` would have more digits than there is memory for. What may stand there are names,
-    signs, the number 1, and one small exponent behind each of them.
+    ``m^9^9^9`` would have more digits than fit into memory. Allowed are names, operators, the
+    number 1, and one small exponent after each of them.
     """
     names_and_signs = _WORD.sub("u", _POWER.sub(" ", unit))
     if _NUMERIC.search(_ONE.sub("", names_and_signs)):
@@ -128,7 +128,7 @@ def _check_unit(unit: str) -> None:
 
 
 def _converted(value, unit: str) -> float | None:
-    """The number in a unit; infinite where powers of units overflow, None in other dimensions."""
+    """Number in a unit; infinite if powers of units overflow, None if dimensions differ."""
     try:
         with np.errstate(over="ignore"):
             return float(value.to(unit).magnitude) if value.is_compatible_with(unit) else None
@@ -141,13 +141,13 @@ def _to_si(unit: str, example: str, bounds: dict[str, float], text: Any) -> floa
     number = _converted(value, unit)
     if number is None:
         raise ValueError(
-            f'"{text}" has the dimension {value.dimensionality}; needs one of {unit}, '
+            f'"{text}" has the dimension {value.dimensionality}; must be in {unit}, '
             f'such as "{example}"'
         )
     if unit == "rad/s" and "hertz" in str(value.units):
-        raise ValueError(f'found "{text}", which counts turns; write turn/s, or rad/s')
+        raise ValueError(f'found "{text}", a frequency; write turn/s or rad/s')
     if unit == "Hz" and any(angle in str(value.units) for angle in _ANGLES):
-        raise ValueError(f'found "{text}", which measures angles; write Hz, or 1/s')
+        raise ValueError(f'found "{text}", an angular velocity; write Hz or 1/s')
     if not math.isfinite(number):
         raise ValueError(f'found "{text}"; the number must be finite in {unit} too')
     if number != 0.0 and not 1 / _EXTREME <= abs(number) <= _EXTREME:
@@ -163,16 +163,16 @@ def _to_si(unit: str, example: str, bounds: dict[str, float], text: Any) -> floa
 
 
 def quantity(unit: str, example: str, **bounds: float):
-    """Type of a key that holds a quantity: a float in SI inside, text with a unit outside.
+    """Type of a key that holds a quantity: SI float inside, text with a unit outside.
 
     Parameters
     ----------
     unit : str
-        The SI unit the number is kept in.
+        SI unit of the stored number.
     example : str
-        A well-formed value, shown in messages.
+        Well-formed value, shown in messages.
     **bounds
-        ``gt``, ``ge``, ``le``, ``ne`` in SI, checked in their order.
+        ``gt``, ``ge``, ``le``, ``ne`` in SI, checked in this order.
     """
     return Annotated[
         float,
@@ -182,7 +182,7 @@ def quantity(unit: str, example: str, **bounds: float):
 
 
 _SMALLEST, _FARTHEST = 1e-12, 1e7
-"""Lengths that a body can have [m]: beyond them sums of squares and products of areas overflow."""
+"""Smallest and largest length of a body [m]: larger ones overflow in sums and products of areas."""
 
 Length = quantity("m", "20 mm", gt=0, ge=_SMALLEST, le=_FARTHEST)
 Distance = quantity("m", "0.05 mm", ge=0, le=_FARTHEST)

@@ -1,1 +1,1 @@
-"""Designed shapes as worn bodies, meshes and STEP files."""
+"""Export of designed (worn) shapes: tables, meshes and STEP files."""

@@ -1,7 +1,7 @@
-"""A worn shape as a design: what a contact face should lack so that there is no running-in.
+"""Design: initial shape of a contact face for which there is no running-in.
 
-As a table it has a row a point of the unworn face. Files of other formats, which show the body with
-that face moved, carry the same table as a comment: a run can start from any of them.
+Its table has one row per point of the unworn face. Files of other formats, which hold the body
+with that face moved, carry the same table as a comment: a run can start from any of them.
 """
 
 from __future__ import annotations
@@ -31,33 +31,33 @@ _COMMENTS = {
     ".vtu": ("<!--", "-->"),
     ".step": ("/*", "*/"),
 }
-"""How the first and the last line of a comment are written."""
+"""First and last line of a comment by file ending."""
 CARRIERS = tuple(_COMMENTS)
-"""Endings of files that carry the table as a comment."""
-_NEAR = 1e-3  # of the size of the face: a point that far off belongs to another one
-_STEPS = 20  # of Gauss and Newton's method to a closest point
-_NEIGHBOURS = 40  # points from which a depth in space is interpolated
+"""File endings of formats that carry the table as a comment."""
+_NEAR = 1e-3  # relative to the face: larger distance to it means a different face
+_STEPS = 20  # of the Gauss-Newton closest-point projection
+_NEIGHBOURS = 40  # points of the interpolation stencil in space
 
 
 @dataclass(frozen=True)
 class Design:
-    """The unloaded, unheated steady shape of one contact face; the other stays as drawn.
+    """Unloaded, unheated steady shape of one contact face; the other face stays unworn.
 
     Attributes
     ----------
     body : int
         1 or 2.
     points : ndarray, shape (n, gdim)
-        Of the unworn face, in a plane body in order along it [m].
+        Points of the unworn face, ordered along it in plane models [m].
     s : ndarray, shape (n,)
-        Length along the face [m]; NaN in space.
+        Arc length along the face [m]; NaN in space.
     normals : ndarray, shape (n, gdim)
         Outward unit normals of the body.
     shape, shape_along_press : ndarray, shape (n,)
-        Height over the deepest point towards the other face, along the normal and along the press
-        [m].
+        Height above the deepest point, towards the other face, along the normal and along the load
+        direction [m].
     depth : ndarray, shape (n,)
-        To be taken off along the normal, nowhere negative [m].
+        Depth to be removed along the normal, nowhere negative [m].
     """
 
     body: int
@@ -94,7 +94,7 @@ class Design:
         return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
     def _along(self, points: np.ndarray) -> np.ndarray:
-        """Lengths (of chords) at the closest points of a curve through the design [m]."""
+        """Chord lengths at the closest points of a curve through the design points [m]."""
         face, slopes = self._face, self._face.derivative()
         s = self._lengths[scipy.spatial.cKDTree(self.points).query(points)[1]]
         for _ in range(_STEPS):
@@ -103,12 +103,12 @@ class Design:
             s = np.clip(s, 0.0, self._lengths[-1])
         off = np.linalg.norm(face(s) - points, axis=1).max()
         if off > _NEAR * self.extent:
-            raise ValueError(f"is of a face that lies up to {off:.3g} m off the contact face")
+            raise ValueError(f"belongs to a face up to {off:.3g} m away from the contact face")
         return s
 
     @cached_property
     def _lengths(self) -> np.ndarray:
-        """Along the chords between the points, shape (n,) [m]."""
+        """Chord lengths along the points, shape (n,) [m]."""
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(steps)])
 
@@ -121,10 +121,10 @@ class Design:
         return scipy.interpolate.CubicSpline(self._lengths, self.depth)
 
     def _in_space(self, points: np.ndarray) -> np.ndarray:
-        """Interpolated in the plane across the mean normal."""
+        """Interpolation in the plane normal to the mean normal."""
         distance = scipy.spatial.cKDTree(self.points).query(points)[0].max()
         if distance > 0.5 * self.extent:
-            raise ValueError(f"is of a face that lies up to {distance:.3g} m off the contact face")
+            raise ValueError(f"belongs to a face up to {distance:.3g} m away from the contact face")
         across = np.linalg.svd(self.normals.mean(axis=0)[None])[2][1:]
         known = self.points @ across.T / self.extent
         neighbours = min(_NEIGHBOURS, len(known))
@@ -135,7 +135,7 @@ class Design:
 
 
 def write_table(design: Design, path: Path) -> None:
-    """Write a design as a table, a row a point.
+    """Write a design as a table with one row per point.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def write_table(design: Design, path: Path) -> None:
 def add_table(design: Design, path: Path) -> None:
     """Add the table of a design to its file in another format, as a comment.
 
-    Nodes of a mesh and control points of a surface are too few to begin a run with.
+    Nodes of a mesh and control points of a surface are too coarse to start a run from.
 
     Raises
     ------
@@ -171,12 +171,12 @@ def add_table(design: Design, path: Path) -> None:
 
 
 def read_table(path: Path) -> np.ndarray | None:
-    """The table of a design in a file of any format, columns by their names; None without one.
+    """Table of a design from a file of any format, columns by name; None if there is none.
 
     Raises
     ------
     OSError, ValueError
-        If it cannot be read.
+        If the file cannot be read.
     """
     lines = read_bytes(path, _LARGEST).decode("utf-8-sig", errors="replace").splitlines()
     heads = [k for k, line in enumerate(lines) if "depth_m" in line.split(",")]
@@ -189,19 +189,19 @@ def read_table(path: Path) -> np.ndarray | None:
 
 
 def from_table(table: np.ndarray, gdim: int) -> Design:
-    """A design from the columns of its table.
+    """Design from the columns of its table.
 
     Parameters
     ----------
     table : ndarray with names
-        Columns as in `HEADERS`; lengths along the face and shapes need not be there.
+        Columns as in `HEADERS`; arc lengths and shapes are optional.
     gdim : int
         2 or 3.
 
     Raises
     ------
     ValueError
-        If a column is missing, has entries that are no numbers, or depths beyond the face's size.
+        If a column is missing, has entries that are not numbers, or depths beyond the face's size.
     """
     columns = table.dtype.names or ()
     needed = [name for name in HEADERS if name not in _NOT_NEEDED]
@@ -209,10 +209,10 @@ def from_table(table: np.ndarray, gdim: int) -> Design:
     if missing:
         raise ValueError(f"has no column {missing[0]}")
     if len(table) < _FEWEST or not all(np.isfinite(table[name]).all() for name in needed):
-        raise ValueError(f"has entries that are no numbers, or fewer than {_FEWEST} rows")
+        raise ValueError(f"has entries that are not numbers, or fewer than {_FEWEST} rows")
     bodies = np.unique(table["body"])
     if len(bodies) != 1 or bodies[0] not in (1, 2):
-        raise ValueError("has other numbers than 1, or 2, all along the column body")
+        raise ValueError("must have either 1 or 2 in all rows of the column body")
     places = np.array([table[f"{axis}_m"] for axis in "xyz"[:gdim]])
     deepest, extent = np.abs(table["depth_m"]).max(), np.ptp(places, axis=1).max()
     if not deepest < extent:

@@ -1,4 +1,4 @@
-"""A design as a mesh: the body with its face moved, and how far each node was moved."""
+"""Export of a design as a mesh with moved contact face and nodal displacements."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .worn_body import moved_body
 def write_design_mesh(mesh: TaggedMesh, design: Design, face: str, path: Path) -> None:
     """Write the mesh of a body whose contact face has a worn shape.
 
-    Straight-sided cells become quadratic, as they could not follow the shape; .vtu knows no others.
-    ``displacement_m`` tells how far the nodes were moved.
+    Straight-sided cells become quadratic to follow the shape; .vtu supports no higher order.
+    ``displacement_m`` holds the displacement of the nodes.
 
     Parameters
     ----------
     mesh : TaggedMesh
-        Of the body, unworn.
+        Mesh of the unworn body.
     design : Design
     face : str
         Name of its contact face.

@@ -1,4 +1,4 @@
-"""The outline of a plane body: closed loops of boundary edges, cut into smooth pieces."""
+"""Outline of a plane body: closed loops of boundary edges, split into smooth pieces."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from ..mesh.orders import boundary, compact
 from ..mesh.tagged import TaggedMesh
 
 _CORNER = math.radians(20.0)
-"""Edges that meet at more than this make a corner."""
+"""Smallest angle between edges that makes a corner [rad]."""
 
 
 @dataclass(frozen=True)
 class Piece:
-    """Part of an outline between two corners, the body to its left.
+    """Piece of an outline between two corners, with the body to its left.
 
     Attributes
     ----------
     nodes : ndarray of int, shape (n,)
-        In order, both ends included; both are the same where the piece is a whole loop.
+        Nodes in order, both ends included; the ends coincide if the piece is a closed loop.
     is_face : bool
-        Whether it is the contact face.
+        True if the piece is the contact face.
     """
 
     nodes: np.ndarray
@@ -31,13 +31,13 @@ class Piece:
 
 
 def only_body(mesh: TaggedMesh, parts: tuple[str, ...]) -> TaggedMesh:
-    """One body of a mesh, with the surfaces that it has.
+    """Mesh of one body, with its surfaces.
 
     Parameters
     ----------
     mesh : TaggedMesh
     parts : tuple of str
-        The body and its zones.
+        Names of the body and its zones.
     """
     tags = sorted(mesh.bodies.index(part) + 1 for part in parts if part in mesh.bodies)
     cells = np.isin(mesh.cell_tags, tags)
@@ -59,12 +59,12 @@ def only_body(mesh: TaggedMesh, parts: tuple[str, ...]) -> TaggedMesh:
 
 
 def loops(mesh: TaggedMesh, face: str) -> list[list[Piece]]:
-    """The outline of a plane body: its loops, each a list of pieces in order.
+    """Loops of the outline of a plane body, each a list of pieces in order.
 
     Parameters
     ----------
     mesh : TaggedMesh
-        Of one body.
+        Mesh of one body.
     face : str
         Name of its contact face.
     """
@@ -83,7 +83,7 @@ def loops(mesh: TaggedMesh, face: str) -> list[list[Piece]]:
 
 
 def _pieces(points: np.ndarray, chain: np.ndarray, is_face: np.ndarray) -> list[Piece]:
-    """Cut a closed chain of edges at its corners and at the ends of the contact face."""
+    """Split a closed chain of edges at its corners and at the ends of the contact face."""
     along = np.column_stack([chain[:, 0], chain[:, 2:], chain[:, 1]])
     first = points[along[:, 1]] - points[along[:, 0]]
     last = points[along[:, -1]] - points[along[:, -2]]
@@ -103,6 +103,6 @@ def _pieces(points: np.ndarray, chain: np.ndarray, is_face: np.ndarray) -> list[
 
 
 def _angle(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """By which one direction must turn to become the other, shape (n,) [rad]."""
+    """Angle from one direction to the other, shape (n,) [rad]."""
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return np.arctan2(cross, (before * after).sum(axis=1))

@@ -1,4 +1,4 @@
-"""STEP, the files of CAD, in millimetres: by OpenCASCADE, the kernel in gmsh."""
+"""STEP files (CAD) in millimetres, written by OpenCASCADE through gmsh."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ UNIT = 1e3
 
 
 def save(gmsh, path: Path) -> None:
-    """Write what a model has, in silence: OpenCASCADE talks on the standard output.
+    """Write a gmsh model to a file, with the output of OpenCASCADE suppressed.
 
-    Written beside and renamed: gmsh knows the format by the letters of the ending.
+    Written to a temporary file and renamed: gmsh derives the format from a fixed file ending.
     """
     draft = path.with_name(f".{path.name}.step")
     try:
@@ -31,7 +31,7 @@ def save(gmsh, path: Path) -> None:
 
 @contextmanager
 def _silence() -> Iterator[None]:
-    """Nothing on the standard output of the process."""
+    """Suppress the standard output of the process."""
     sys.stdout.flush()
     kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     try:

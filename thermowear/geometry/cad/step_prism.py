@@ -1,4 +1,4 @@
-"""A worn body in space for CAD: a prism on a B-spline surface through its worn face."""
+"""STEP export of a worn body in space: a prism on a B-spline surface through its worn face."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ _WITHIN = 5
 def write_prism(mesh: TaggedMesh, design: Design, face: str, path: Path) -> None:
     """Write the solid of a body whose contact face has a worn shape.
 
-    The body stands on its face, z upwards, with upright sides and a level top. The surface passes
-    through a grid of points of the worn face.
+    The body stands on its face, z upwards, with vertical sides and a plane top. The surface
+    interpolates a grid of points of the worn face.
 
     Parameters
     ----------
     mesh : TaggedMesh
-        Of the body, unworn.
+        Mesh of the unworn body.
     design : Design
     face : str
-        Name of its contact face, a patchwork of rows of facets.
+        Name of its contact face, a structured patch of quadrilateral facets.
     path : Path
 
     Raises
@@ -54,7 +54,7 @@ def write_prism(mesh: TaggedMesh, design: Design, face: str, path: Path) -> None
 
 
 def face_grid(mesh: TaggedMesh, face: str) -> np.ndarray:
-    """Points of a face that is a patchwork of facets in rows, shape (n_u, n_v, 3) [m]."""
+    """Grid of points of a face of structured facets, shape (n_u, n_v, 3) [m]."""
     facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index(face) + 1]
     corners = _lattice(facets[:, :4])
     xi, eta = (step[:, None] for step in np.indices((_WITHIN, _WITHIN)).reshape(2, -1))
@@ -67,9 +67,9 @@ def face_grid(mesh: TaggedMesh, face: str) -> np.ndarray:
 
 
 def _lattice(facets: np.ndarray) -> np.ndarray:
-    """Whole numbers (i, j) of the corners of facets that lie in rows, shape (n, 4, 2) from 0.
+    """Integer coordinates (i, j) of the corners of structured facets, shape (n, 4, 2) from 0.
 
-    From one facet on, each neighbour continues it across their common edge.
+    The patch is traversed from the first facet across common edges.
     """
     edges: dict[frozenset, list[tuple[int, int]]] = {}
     for f, corners in enumerate(facets.tolist()):
@@ -99,7 +99,7 @@ def _lattice(facets: np.ndarray) -> np.ndarray:
 
 
 def _surface(occ, grid: np.ndarray) -> int:
-    """A bicubic B-spline through a grid of points, parameters by their mean distances [mm]."""
+    """Bicubic B-spline through a grid of points, parametrised by their mean distances [mm]."""
     control, knots, multiplicities = grid, [], []
     for axis in (0, 1):
         steps = np.linalg.norm(np.diff(grid, axis=axis), axis=2).mean(axis=1 - axis)

@@ -1,4 +1,4 @@
-"""A worn plane body for CAD: its outline with a B-spline through the worn face."""
+"""STEP export of a worn plane body: outline with a B-spline through the worn face."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from .outline import Piece, loops
 from .step_files import UNIT, save
 from .worn_body import face_motion, slide
 
-_STRAIGHT = 1e-9  # of the length of a piece
-_ROUND = 1e-7  # of the radius
-_POINT = 1e-9  # m; nearer points are one
+_STRAIGHT = 1e-9  # relative to the length of a piece
+_ROUND = 1e-7  # relative to the radius
+_POINT = 1e-9  # m; closer points coincide
 
 
 def write_section(
@@ -32,23 +32,23 @@ def write_section(
 ) -> None:
     """Write the solid of a plane body whose contact face has a worn shape.
 
-    The worn face is a B-spline through the points of the design, other sides are straight lines,
-    arcs of circles, or B-splines through the nodes of the mesh.
+    The worn face is a B-spline through the points of the design; other sides are straight lines,
+    circular arcs, or B-splines through the nodes of the mesh.
 
     Parameters
     ----------
     mesh : TaggedMesh
-        Of the body, unworn.
+        Mesh of the unworn body.
     design : Design
     face : str
         Name of its contact face.
     path : Path
     thick : float
-        By how much the section is extruded, half of it to either side [m].
+        Length of the extrusion of the section, symmetric to its plane [m].
     turn : float, optional
-        Angle by which it is turned about the y-axis instead [rad].
+        Angle of revolution about the y-axis, instead of an extrusion [rad].
     half : bool
-        Whether the mesh shows only the half x >= 0 of a symmetric body, which is written whole.
+        True if the mesh covers the half x >= 0 of a symmetric body, which is written as a whole.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def write_section(
     with gmsh_model("worn body") as gmsh:
         occ = gmsh.model.occ
         drawn = [_outline(mesh.points, pieces, design) for pieces in loops(mesh, face)]
-        drawn.sort(key=_area, reverse=True)  # holes run the other way round
+        drawn.sort(key=_area, reverse=True)  # holes have the opposite orientation
         section = [(2, occ.addPlaneSurface([_wire(occ, curves) for curves in drawn]))]
         if turn is None:
             occ.translate(section, 0.0, 0.0, -thick * UNIT / 2)
@@ -75,12 +75,12 @@ def write_section(
 
 @dataclass(frozen=True)
 class _Curve:
-    """Part of an outline.
+    """Curve of an outline.
 
     Attributes
     ----------
     points : ndarray, shape (n, 2)
-        In order [m].
+        Points in order [m].
     kind : str
         ``"line"``, ``"arc"`` or ``"spline"``.
     """
@@ -93,7 +93,7 @@ class _Curve:
         return bool(np.array_equal(self.points[0], self.points[-1]))
 
     def ended(self, end: np.ndarray) -> _Curve:
-        """The same line or circle with its last point next to another one, on it."""
+        """Copy of a line or circle with its last point moved to the closest point to `end`."""
         if self.kind == "arc":
             centre, radius = _circle(self.points)
             end = centre + radius * (end - centre) / np.linalg.norm(end - centre)
@@ -104,8 +104,8 @@ class _Curve:
 
 
 def _outline(points: np.ndarray, pieces: list[Piece], design: Design) -> list[_Curve]:
-    """The curves of a loop with the worn face in it, each from where the one before ends."""
-    curves = [_known(points[piece.nodes]) for piece in pieces]
+    """Curves of a loop including the worn face, each starting at the end of the one before."""
+    curves = [_classified(points[piece.nodes]) for piece in pieces]
     for k, piece in enumerate(pieces):
         if not piece.is_face:
             continue
@@ -123,18 +123,22 @@ def _outline(points: np.ndarray, pieces: list[Piece], design: Design) -> list[_C
             curves[after] = curves[after].backwards().ended(face[-1]).backwards()
             face[-1] = curves[after].points[0]
         curves[k] = _Curve(face, "spline")
-    return [joined for k, curve in enumerate(curves) for joined in _joined(curves[k - 1], curve)]
+    return [
+        joined
+        for k, curve in enumerate(curves)
+        for joined in _with_gap_closed(curves[k - 1], curve)
+    ]
 
 
-def _joined(before: _Curve, curve: _Curve) -> list[_Curve]:
-    """A curve, and the step to it from the end of the one before, where there is any."""
+def _with_gap_closed(before: _Curve, curve: _Curve) -> list[_Curve]:
+    """Curve, preceded by the segment from the end of the one before if there is a gap."""
     step = np.array([before.points[-1], curve.points[0]])
     near = np.linalg.norm(step[1] - step[0]) < _POINT
     return [curve] if near else [_Curve(step, "line"), curve]
 
 
-def _known(points: np.ndarray) -> _Curve:
-    """What a piece of an outline is, by its nodes."""
+def _classified(points: np.ndarray) -> _Curve:
+    """Classify a piece of an outline as line, arc or spline by its nodes."""
     chord = points[-1] - points[0]
     length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
     off = (points - points[0]) @ np.array([-chord[1], chord[0]])
@@ -146,7 +150,7 @@ def _known(points: np.ndarray) -> _Curve:
 
 
 def _circle(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Centre and radius of the circle through points, by least squares [m]."""
+    """Least-squares circle through points: centre and radius [m]."""
     middle = points.mean(axis=0)
     size = np.ptp(points, axis=0).max()
     x = (points - middle) / size
@@ -155,7 +159,7 @@ def _circle(points: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 def _wire(occ, curves: list[_Curve]) -> int:
-    """Draw a loop."""
+    """Add a loop to the model."""
     starts = [_point(occ, curve.points[0]) for curve in curves]
     drawn = []
     for k, curve in enumerate(curves):
@@ -174,7 +178,7 @@ def _wire(occ, curves: list[_Curve]) -> int:
 
 
 def _spline(occ, points: np.ndarray, start: int, end: int) -> int:
-    """A cubic B-spline through points; OpenCASCADE's own only passes within a micrometre."""
+    """Cubic B-spline through points; OpenCASCADE's own is off by up to a micrometre."""
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     spline = scipy.interpolate.make_interp_spline(
         np.concatenate([[0.0], np.cumsum(steps)]), points, k=3
@@ -191,6 +195,6 @@ def _point(occ, point: np.ndarray) -> int:
 
 
 def _area(curves: list[_Curve]) -> float:
-    """Area that a loop goes round anticlockwise, about [m²]."""
+    """Signed area enclosed by a loop, positive anticlockwise, of its polygon [m²]."""
     x, y = np.concatenate([curve.points[:-1] for curve in curves]).T
     return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)

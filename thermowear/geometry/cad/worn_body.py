@@ -1,4 +1,4 @@
-"""A body whose contact face is moved to a worn shape; its sides end on it, its inside follows."""
+"""Mesh of a body with a worn contact face: motion of the face, its sides and the interior."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from .design import Design
 from .outline import loops
 
 _ALONG = 0.2
-"""Least cosine between a side and the normal of the face at which the face's end slides on it."""
+"""Least cosine between a side and the face normal for which the end of the face slides along it."""
 
 
 def moved_body(mesh: TaggedMesh, design: Design, face: str) -> np.ndarray:
-    """Where the nodes of a body are when its contact face has a worn shape.
+    """Nodes of a body after its contact face has been moved to a worn shape.
 
-    In a plane as in `moved`; in space the body is a prism on its face, z upwards, whose nodes sink
-    the less the higher they are.
+    Plane bodies as in `moved`; in space the body is a prism on its face, z upwards, whose nodal
+    displacement decreases linearly with height.
 
     Parameters
     ----------
     mesh : TaggedMesh
-        Of one body.
+        Mesh of one body.
     design : Design
     face : str
         Name of its contact face.
@@ -46,20 +46,20 @@ def moved_body(mesh: TaggedMesh, design: Design, face: str) -> np.ndarray:
 
 
 def offsets(design: Design, points: np.ndarray) -> np.ndarray:
-    """From points (n, gdim) of the unworn face to the worn one, along the normal [m]."""
+    """Displacement of points (n, gdim) of the unworn face to the worn one, along the normal [m]."""
     return -design.depth_at(points)[:, None] * design.normals_at(points)
 
 
 def slide(design: Design, corner: np.ndarray, side: np.ndarray) -> np.ndarray | None:
-    """How far an end of the face moves along a side until it is as deep as the face, shape (2,).
+    """Displacement of an end of the face along the adjacent side to the worn depth, shape (2,) [m].
 
-    None where the side goes on along the face.
+    None if the side continues the face tangentially.
 
     Parameters
     ----------
     design : Design
     corner, side : ndarray, shape (2,)
-        The end, and the next point of the side [m].
+        End of the face, and the next point of the side [m].
     """
     along = (side - corner) / np.linalg.norm(side - corner)
     down = -float(along @ design.normals_at(corner[None])[0])
@@ -67,16 +67,16 @@ def slide(design: Design, corner: np.ndarray, side: np.ndarray) -> np.ndarray | 
 
 
 def face_motion(design: Design, points: np.ndarray, ends: list[np.ndarray | None]) -> np.ndarray:
-    """How far points of a plane face move, in order along it, shape (n, 2) [m].
+    """Displacement of points along a plane face, shape (n, 2) [m].
 
-    To their depth along the normal, and along the face as its ends do, the less the farther off.
+    Normal to the face by the depth; tangential by linear interpolation between the ends.
 
     Parameters
     ----------
     design : Design
     points : ndarray, shape (n, 2)
     ends : list of ndarray or None
-        How far the first and the last point are to move; None: along the normal.
+        Displacement of the first and the last point; None: along the normal.
     """
     motion, normals = offsets(design, points), design.normals_at(points)
     tangents = np.column_stack([-normals[:, 1], normals[:, 0]])

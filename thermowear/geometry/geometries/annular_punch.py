@@ -1,7 +1,7 @@
-"""An annular punch turning about its axis on a plate (half section, r and z).
+"""Annular punch rotating about its axis on a plate (half section, r and z).
 
-The punch is above the plate. Their faces coincide: flat at z = 0, or a cone or a torus that passes
-through z = 0 at the mean radius. Beside a face that is not flat the plate goes on level.
+The punch is above the plate. Their faces coincide: flat at z = 0, or a cone or a torus through
+z = 0 at the mean radius. Beside a face that is not flat the plate continues at constant height.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ from ..meshing.face_profiles import Arc, Profile, Straight
 from .stacked import Section, Stacked
 
 _STEEPEST = math.radians(80)
-"""Slope of a face up to which cells on it stay well shaped."""
+"""Largest slope of a face for which its cells remain well shaped."""
 
 _DEEPEST = 0.9
-"""Part of a body's height that a face may take up."""
+"""Largest height of a face relative to the height of its body."""
 
 
 class AnnularPunch(Stacked):
-    """Sizes of punch and plate.
+    """Dimensions of punch and plate.
 
     Attributes
     ----------
     inner_radius, outer_radius, plate_radius : float [m]
     punch_height, plate_height : float
-        At the mean radius, from the face to the level top and bottom [m].
+        Heights at the mean radius, from the face to the plane top and bottom [m].
     face : str
         ``"flat"``, ``"conical"`` or ``"toroidal"``.
     cone_angle : float or None
-        From the axis to the face, in the half section: with less than 90° the face rises outwards,
-        with more it falls [rad].
+        Angle from the axis to the face, in the half section: the face rises outwards below 90° and
+        falls above [rad].
     torus_radius : float or None
-        Of the face in the half section, an arc that bulges downwards in the middle [m].
+        Radius of the face in the half section, an arc convex towards the plate [m].
     """
 
     name = "annular-punch"
@@ -92,7 +92,7 @@ class AnnularPunch(Stacked):
             if self.face == face and getattr(self, key) is None:
                 raise KeyFault(key, f"missing; a {face} face needs it")
             if self.face != face and getattr(self, key) is not None:
-                raise KeyFault(key, f'is for face = "{face}"')
+                raise KeyFault(key, f'requires face = "{face}"')
         if self.cone_angle is not None:
             self._check_angle(math.degrees(self.cone_angle))
             self._check_rise("cone_angle", "punch_height", "plate_height")
@@ -135,7 +135,7 @@ class AnnularPunch(Stacked):
 
     @property
     def profile(self) -> Profile:
-        """Of both faces."""
+        """Profile of both faces."""
         middle = (self.inner_radius + self.outer_radius) / 2
         if self.torus_radius is not None:
             return Arc(middle, self.torus_radius)
@@ -146,13 +146,13 @@ class AnnularPunch(Stacked):
         return self.profile.order
 
     def contact_area(self) -> float:
-        """Seen along the axis, also of a cone or a torus."""
+        """Area projected along the axis, also of a cone or a torus."""
         return math.pi * (self.outer_radius**2 - self.inner_radius**2)
 
     def _beside(self, sizes, elements, grading):
         contact, _, largest = sizes
         _, outside = super()._beside(sizes, elements, grading)
-        # nothing ends at the axis
+        # no graded rows at the axis
         return growing(self.inner_radius, 0.0, contact, grading, largest), outside
 
     def build(self, mesh, zone=None) -> TaggedMesh:
@@ -161,19 +161,19 @@ class AnnularPunch(Stacked):
         for tag, height in enumerate((self.punch_height, -self.plate_height), start=1):
             cells = flat.cells[flat.cell_tags == tag]
             nodes, columns = np.unique(cells), np.unique(flat.points[cells[:, :4], 0])
-            points[nodes] = self._bent(flat.points[nodes], columns, height)
+            points[nodes] = self._to_profile(flat.points[nodes], columns, height)
         return replace(flat, points=points)
 
-    def _bent(self, points: np.ndarray, columns: np.ndarray, height: float) -> np.ndarray:
-        """Where points of a body go whose flat face becomes the profile and whose end stays.
+    def _to_profile(self, points: np.ndarray, columns: np.ndarray, height: float) -> np.ndarray:
+        """Map points of a body so that its flat face becomes the profile and its far end stays.
 
         Parameters
         ----------
         points : ndarray, shape (n, 2) [m]
         columns : ndarray
-            Radii at the ends of the body's cells, increasing [m].
+            Radii of the element ends of the body, increasing [m].
         height : float
-            z of its end [m].
+            z of the far end [m].
         """
         limits = self.inner_radius, self.outer_radius
         r, z = points.T

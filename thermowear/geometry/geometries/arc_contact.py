@@ -1,4 +1,4 @@
-"""What geometries share whose body 1 fits a circle of a turning body 2.
+"""Base of geometries whose body 1 conforms to a circle of a rotating body 2.
 
 Body 2 is a whole ring (a disk with a bore, a drum) about the origin. Angles are measured from
 12 o'clock (the direction +y), clockwise: positive towards +x.
@@ -24,14 +24,14 @@ ORIGIN = Polar()
 
 
 class ArcContact(PlaneGeometry):
-    """Base: the whole face of body 1, an arc, touches.
+    """Base class: the whole face of body 1, an arc, is in contact.
 
     Attributes
     ----------
     arc_start, arc_end : float
         Angles at the edges of the contact, clockwise from 12 o'clock (+y) [rad].
     rest : str
-        Surface of body 2 that is left of its contact circle.
+        Surface of body 2 that is the rest of its contact circle.
     """
 
     name: ClassVar[str] = ""
@@ -51,7 +51,7 @@ class ArcContact(PlaneGeometry):
         return self
 
     def check_arc(self, limit: float) -> None:
-        """Refuse arcs beyond an angle from 12 o'clock (+y) on either side."""
+        """Reject arcs beyond an angle from 12 o'clock (+y) on either side."""
         for key, angle in (("arc_start", self.arc_start), ("arc_end", self.arc_end)):
             if abs(angle) > limit:
                 raise KeyFault(
@@ -62,12 +62,12 @@ class ArcContact(PlaneGeometry):
 
     @property
     def radius(self) -> float:
-        """Of the contact circle [m]."""
+        """Radius of the contact circle [m]."""
         raise NotImplementedError
 
     @property
     def far_radius(self) -> float:
-        """Of the circle where body 2 is fixed [m]."""
+        """Radius of the circle where body 2 is fixed [m]."""
         raise NotImplementedError
 
     def upper_sheets(self, division: Division) -> list[Sheet]:
@@ -75,7 +75,7 @@ class ArcContact(PlaneGeometry):
         raise NotImplementedError
 
     def on_holder(self, p: np.ndarray) -> np.ndarray:
-        """Which edges of body 1, given by the places of their nodes, are held."""
+        """Mask of edges of body 1, given by their nodes, on the holder."""
         raise NotImplementedError
 
     @keyed
@@ -101,11 +101,11 @@ class ArcContact(PlaneGeometry):
 
     @property
     def follows_contact(self) -> bool:
-        """Where each x belongs to one point of the arc: heat can part the faces."""
+        """True if x is unique along the arc, so that thermal separation can be resolved."""
         return max(map(abs, self.arc)) < math.pi / 2
 
     def contact_area(self) -> float:
-        """Of the arc as seen along the press: a uniform pressure has this resultant per Pa [m²]."""
+        """Projected area of the arc: resultant of a unit pressure along the load direction [m²]."""
         x, y = self.press_direction
         start, end = self.arc
         across = x * (math.cos(start) - math.cos(end)) + y * (math.sin(end) - math.sin(start))
@@ -130,7 +130,7 @@ class ArcContact(PlaneGeometry):
         return first, last
 
     def _claims(self):
-        """All surfaces, see `tagged_bodies`."""
+        """Predicates of all surfaces, see `tagged_bodies`."""
         upper_face, ring_face = self.contact
         return {
             upper_face: lambda p: ORIGIN.on_circle(p, self.radius),

@@ -1,6 +1,6 @@
-"""A beam, clamped on the left and supported on the right, above a foundation that moves along x.
+"""Beam, clamped on the left and supported on the right, above a foundation moving along x.
 
-The foundation's top lies at y = 0, the lower face of the unloaded beam a gap above it.
+The top of the foundation is y = 0, the lower face of the unloaded beam lies a gap above it.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from .on_block import near, within
 
 
 class BeamOnFoundation(PlaneGeometry):
-    """Sizes of beam and foundation; the width of the beam is its `thickness`.
+    """Dimensions of beam and foundation; the width of the beam is its `thickness`.
 
-    Nobody knows beforehand where a beam touches as it bends and wears: its elements are equally
-    long, whatever ``mesh.grading`` says.
+    The contact of a beam that bends and wears is not known in advance: its elements have equal
+    lengths, regardless of ``mesh.grading``.
 
     Attributes
     ----------
     length, height : float
-        Of the beam [m].
+        Dimensions of the beam [m].
     load_position, load_width : float
-        Middle, measured from the clamp, and width of the part of the top that is loaded [m].
+        Centre, measured from the clamp, and width of the loaded part of the top [m].
     gap : float
-        Between the unloaded beam and the foundation [m].
+        Gap between the unloaded beam and the foundation [m].
     foundation_height : float [m]
     """
 
@@ -68,7 +68,7 @@ class BeamOnFoundation(PlaneGeometry):
             raise KeyFault(
                 "load_position",
                 f"the load ranges from {start:g} m to {end:g} m; "
-                f"must lie between the ends of the beam, 0 and {self.length:g} m",
+                f"must be between the ends of the beam, 0 and {self.length:g} m",
             )
         return self
 
@@ -104,14 +104,14 @@ class BeamOnFoundation(PlaneGeometry):
         return tagged_bodies(bodies, claims)
 
     def _rectangle(self, bottom: float, top: float, elements: int, rows: tuple[int, int]) -> Body:
-        """Cells over the whole length, with so many rows at least and at most."""
+        """Cells over the whole length, with the number of rows within limits."""
         columns = self._columns(elements)
         wanted = round((top - bottom) / np.diff(columns).max())
         count = int(np.clip(wanted, *rows))
-        return mesh_body([Sheet(grid(columns, np.linspace(bottom, top, count + 1)), _as_is)], 1)
+        return mesh_body([Sheet(grid(columns, np.linspace(bottom, top, count + 1)), _identity)], 1)
 
     def _columns(self, elements: int) -> np.ndarray:
-        """X at the ends of elements of one size, as nearly as they can end at those of the load."""
+        """X of the ends of nearly equal elements that match the ends of the load."""
         places = [0.0, *self.load_span, self.length]
         spans = np.diff(places)
         counts = np.ones(3, dtype=int)
@@ -124,5 +124,5 @@ class BeamOnFoundation(PlaneGeometry):
         return np.concatenate([*parts, [self.length]])
 
 
-def _as_is(p: np.ndarray) -> np.ndarray:
+def _identity(p: np.ndarray) -> np.ndarray:
     return p

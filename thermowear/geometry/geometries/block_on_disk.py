@@ -1,6 +1,6 @@
-"""A block with a hollow face on the rim of a turning disk (section across the disk's axis).
+"""Block with a concave face on the rim of a rotating disk (section across the disk's axis).
 
-The disk's centre is the origin; the block is above and is held on its flat top.
+The disk's centre is the origin; the block is above and is held at its flat top.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from .arc_contact import ArcContact
 from .on_block import near
 
 _STEEPEST = math.radians(80.0)
-"""The arc and the block's vertical side enclose an angle of at least 10 degrees."""
+"""Largest angle of the arc: it makes at least 10 degrees with the block's vertical side."""
 
 
 class BlockOnDisk(ArcContact):
-    """Sizes of block and disk.
+    """Dimensions of block and disk.
 
     Attributes
     ----------
     disk_radius, disk_bore : float
         Radii of rim and bore [m].
     block_height : float
-        Of the block's top above the highest point of the disk [m].
+        Height of the block's top above the highest point of the disk [m].
     """
 
     name = "block-on-disk"

@@ -1,4 +1,4 @@
-"""A cylinder pressed on a block, or sliding along it (section across the cylinder).
+"""Cylinder pressed on a block, or sliding along it (section across the cylinder).
 
 They touch at the origin; the cylinder is above. Its lower half is meshed.
 """
@@ -14,7 +14,7 @@ from .round_on_block import RoundOnBlock
 
 
 class CylinderOnBlock(RoundOnBlock, PlaneOnBlock):
-    """Sizes of cylinder and block, see the bases."""
+    """Dimensions of cylinder and block, see the bases."""
 
     name = "cylinder-on-block"
     bodies = ("cylinder", "block")

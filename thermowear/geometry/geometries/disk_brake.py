@@ -1,11 +1,11 @@
-"""Brake pads on a disk that turns (half section, r and z).
+"""Brake pads on a rotating disk (half section, r and z).
 
 The contact lies at z = 0; the pad is above. The disk is symmetric about its middle, with pads on
 both sides; its upper half is meshed.
 
-Deformation and temperature are those of a pad that goes all the way round; what acts on the pads,
-which take up a sector of it, is the ring's times that sector. So the pressure and the rigid motions
-are exact, and the ends of the pads are left out of the elasticity.
+Deformation and temperature are those of a pad covering the full circumference; resultants on
+the pads, which cover a sector, are those of the ring times that sector. Pressure and rigid motions
+are therefore exact, while the ends of the pads are neglected in the elasticity.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from .stacked import Section, Stacked
 
 
 class DiskBrake(PadsOnDisk, Stacked):
-    """Sizes of pads and disk, see the base.
+    """Dimensions of pads and disk, see the base.
 
-    The middle of the disk is held along the axis only: it is both fixed and on rollers.
+    The middle plane of the disk is constrained axially only: it is both fixed and on rollers.
     """
 
     name = "disk-brake"
@@ -39,7 +39,7 @@ class DiskBrake(PadsOnDisk, Stacked):
 
     @property
     def covers_disk(self) -> bool:
-        """Whether the pads are as wide as the disk, which leaves no free ring of its face."""
+        """True if the pads are as wide as the disk, so that no free ring of its face remains."""
         return math.isclose(
             self.pad_inner_radius, self.disk_inner_radius, rel_tol=SAME
         ) and math.isclose(self.pad_outer_radius, self.disk_outer_radius, rel_tol=SAME)

@@ -1,7 +1,7 @@
-"""A brake pad on a disk that turns, in space.
+"""Brake pad on a rotating disk, in space.
 
-The contact lies at z = 0; the pad is above, a sector centred at the x-axis. The disk turns about
-the z-axis; its upper half is meshed, all the way round, and fixed at its middle.
+The contact lies at z = 0; the pad is above, a sector centred on the x-axis. The disk rotates
+about the z-axis; its upper half is meshed over the full circumference, and fixed at its middle.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from ..meshing.quads import Body, tagged_bodies
 from .pads_on_disk import PadsOnDisk
 
 _WIDEST = math.radians(30)
-"""Of an element of the disk beside the pad."""
+"""Largest angle of an element of the disk beside the pad."""
 _ORDER = 3
-"""Of the cells at most; never above the degree of the displacement, which has to rotate rigidly."""
+"""Largest cell order; never above the displacement degree, so that rigid rotations are exact."""
 
 
 class DiskSector(PadsOnDisk):
-    """Sizes of pad and disk, see the base.
+    """Dimensions of pad and disk, see the base.
 
-    ``mesh.elements`` lie along the longer side of the pad, fewer along the shorter one.
+    ``mesh.elements`` is the number along the longer side of the pad; the shorter has fewer.
     """
 
     name = "disk-sector"
@@ -52,7 +52,7 @@ class DiskSector(PadsOnDisk):
 
     @property
     def pivot_point(self) -> tuple[float, ...]:
-        """Centre of the pad's face."""
+        """Centroid of the pad's face."""
         r, R, half = self.pad_inner_radius, self.pad_outer_radius, self.pad_angle / 2
         return (2 / 3 * (R**3 - r**3) / (R**2 - r**2) * math.sin(half) / half, 0.0, 0.0)
 
@@ -74,14 +74,14 @@ class DiskSector(PadsOnDisk):
             {
                 "pad_face": lambda p: level(p, 0.0),
                 "pad_back": lambda p: level(p, self.pad_thickness),
-                "pad_inside": lambda p: _round(p, pad_radii[0]),
-                "pad_outside": lambda p: _round(p, pad_radii[1]),
+                "pad_inside": lambda p: _on_radius(p, pad_radii[0]),
+                "pad_outside": lambda p: _on_radius(p, pad_radii[1]),
                 "pad_ends": lambda p: np.ones(len(p), dtype=bool),
                 "disk_face": lambda p: level(p, 0.0) & self._under_pad(p),
                 "disk_rest": lambda p: level(p, 0.0),
                 "disk_middle": lambda p: level(p, -self.disk_thickness / 2),
-                "disk_inside": lambda p: _round(p, disk_radii[0]),
-                "disk_outside": lambda p: _round(p, disk_radii[1]),
+                "disk_inside": lambda p: _on_radius(p, disk_radii[0]),
+                "disk_outside": lambda p: _on_radius(p, disk_radii[1]),
             },
         )
 
@@ -90,7 +90,7 @@ class DiskSector(PadsOnDisk):
         thin, largest = self._sizes(radii, angles, elements)
         rows = growing(0.0, self.pad_thickness, thin, grading, largest)
         ends = ends_of(radii), ends_of(angles), ends_of(rows)
-        return mesh_lattice(Lattice(ends, _turned), order)
+        return mesh_lattice(Lattice(ends, _cylindrical_map), order)
 
     def _disk(self, order: int, elements: int, grading: float) -> Body:
         radii, angles = self._face(elements, grading)
@@ -103,10 +103,10 @@ class DiskSector(PadsOnDisk):
         )
         rows = growing(0.0, -self.disk_thickness / 2, thin, grading, largest)
         ends = ends_of(inside + radii + outside), ends_of(before + angles + after), ends_of(rows)
-        return mesh_lattice(Lattice(ends, _turned, closed=True), order)
+        return mesh_lattice(Lattice(ends, _cylindrical_map, closed=True), order)
 
     def _face(self, elements: int, grading: float) -> tuple[list[Interval], list[Interval]]:
-        """Divisions of the contact along the radius [m] and round the axis [rad]."""
+        """Divisions of the contact along the radius [m] and around the axis [rad]."""
         width, half = self.pad_outer_radius - self.pad_inner_radius, self.pad_angle / 2
         sides = np.array([width, self.pad_angle * self._mean_radius])
         across, along = (max(1, round(elements * side)) for side in sides / sides.max())
@@ -116,7 +116,7 @@ class DiskSector(PadsOnDisk):
         )
 
     def _sizes(self, radii, angles, elements: int) -> tuple[float, float]:
-        """Sizes of elements next to the edges of the contact, and far away at most [m]."""
+        """Element sizes next to the contact edges, and the largest ones far away [m]."""
         width = self.pad_outer_radius - self.pad_inner_radius
         thin = min(smallest(radii), smallest(angles) * self._mean_radius)
         return thin, 3.0 * max(width, self.pad_angle * self._mean_radius) / elements
@@ -126,7 +126,7 @@ class DiskSector(PadsOnDisk):
         return (self.pad_inner_radius + self.pad_outer_radius) / 2
 
     def _under_pad(self, p: np.ndarray) -> np.ndarray:
-        """Which facets have all their nodes under the pad or at its edges."""
+        """Mask of facets with all nodes under the pad or at its edges."""
         r, angle = np.hypot(p[..., 0], p[..., 1]), np.abs(np.arctan2(p[..., 1], p[..., 0]))
         between = (r > (1 - SAME) * self.pad_inner_radius) & (
             r < (1 + SAME) * self.pad_outer_radius
@@ -134,12 +134,12 @@ class DiskSector(PadsOnDisk):
         return np.all(between & (angle < (1 + SAME) * self.pad_angle / 2), axis=1)
 
 
-def _turned(p: np.ndarray) -> np.ndarray:
-    """From radius, angle and z to x, y and z."""
+def _cylindrical_map(p: np.ndarray) -> np.ndarray:
+    """Map of radius, angle and z to x, y and z."""
     r, angle, z = np.moveaxis(p, -1, 0)
     return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=-1)
 
 
-def _round(p: np.ndarray, radius: float) -> np.ndarray:
-    """Which facets have all their nodes at a radius."""
+def _on_radius(p: np.ndarray, radius: float) -> np.ndarray:
+    """Mask of facets with all nodes at a radius."""
     return np.all(np.abs(np.hypot(p[..., 0], p[..., 1]) - radius) < 1e-9 * radius, axis=1)

@@ -1,4 +1,4 @@
-"""A brake shoe with its lining that turns about a pivot and presses on the inside of a drum.
+"""Brake shoe with lining that rotates about a pivot and presses on the inside of a drum.
 
 The drum's centre is the origin (section across its axis).
 """
@@ -20,21 +20,21 @@ from .inside_ring import InsideRing
 
 _LONGEST = math.radians(170.0)
 _ON_THE_LINE = 1e-9
-"""Part of the pivot's distance: an arm as short as that is zero but for rounding."""
+"""Moment arm, relative to the pivot's distance, that is zero up to rounding."""
 
 
 class DrumBrake(InsideRing):
-    """Sizes of shoe and drum.
+    """Dimensions of shoe and drum.
 
     Attributes
     ----------
     drum_radius, drum_thickness : float
-        Radius of the drum inside, where the lining touches, and its radial thickness [m].
+        Inner radius of the drum, where the lining touches, and its radial thickness [m].
     lining_thickness, shoe_thickness : float
-        Radial [m].
+        Radial thicknesses [m].
     pivot : tuple of float
-        Point about which the shoe turns; an end of the lining may lie on the line through it and
-        the centre, where turning does not press [m].
+        Centre of rotation of the shoe; an end of the lining may lie on the line through it and the
+        centre, where a rotation has no normal component [m].
     """
 
     name = "drum-brake"
@@ -55,7 +55,7 @@ class DrumBrake(InsideRing):
         if not self.arc_end - self.arc_start <= _LONGEST:
             raise KeyFault(
                 "arc_end",
-                f"the lining takes {degrees(self.arc_end - self.arc_start)} of the drum; must be "
+                f"the lining covers {degrees(self.arc_end - self.arc_start)} of the drum; must be "
                 f"at most {degrees(_LONGEST)}",
             )
         if not self.held_radius > 0:
@@ -83,12 +83,13 @@ class DrumBrake(InsideRing):
                 "pivot",
                 f"lies at {degrees(math.atan2(*self.pivot))} clockwise from 12 o'clock (+y); must "
                 f"lie neither within the lining, {degrees(self.arc_start)} to "
-                f"{degrees(self.arc_end)}, nor opposite to it, its ends excepted: turning would "
+                f"{degrees(self.arc_end)}, nor opposite to it, except at its ends: a "
+                "rotation would "
                 "press one part of the shoe and lift the other",
             )
 
     def normal_arm(self, angle: float) -> float:
-        """Outward motion of the shoe's face per anticlockwise turn about the pivot [m/rad]."""
+        """Outward motion of the shoe's face per anticlockwise rotation about the pivot [m/rad]."""
         x, y = self.pivot
         return y * math.sin(angle) - x * math.cos(angle)
 
@@ -98,7 +99,7 @@ class DrumBrake(InsideRing):
 
     @property
     def press_direction(self) -> tuple[float, float]:
-        """Outwards in the middle of the lining."""
+        """Outward direction at the middle of the lining."""
         middle = (self.arc_start + self.arc_end) / 2
         return math.sin(middle), math.cos(middle)
 

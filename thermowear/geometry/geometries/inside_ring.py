@@ -1,4 +1,4 @@
-"""What geometries share whose body 1 is a sector of a ring that is pressed outwards on body 2."""
+"""Base of geometries whose body 1 is a ring sector pressed outwards on body 2."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .arc_contact import ORIGIN, ArcContact
 
 
 class InsideRing(ArcContact):
-    """Base: body 1 is held on its inner arc."""
+    """Base class: body 1 is held on its inner arc."""
 
     name: ClassVar[str] = ""
 

@@ -1,4 +1,4 @@
-"""Bodies that were meshed elsewhere and are read from a file."""
+"""Bodies meshed in another program and read from a file."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _KEYS = {
     "symmetry_names": "symmetry",
     "surface_names": "surfaces",
 }
-"""Attributes whose keys have the names of what every geometry answers."""
+"""Attributes whose keys are named like properties of every geometry."""
 
 
 def _cell_sets(value: Any) -> Any:
@@ -41,21 +41,22 @@ CellSets = Annotated[str | tuple[str, ...], BeforeValidator(_cell_sets)]
 
 
 class MeshFile(HalvableGeometry):
-    """Which file, and what is what in it.
+    """Path of a mesh file, and the names of bodies and surfaces in it.
 
     The file names bodies and surfaces by physical groups (gmsh), sets (Abaqus), families (MED) or
-    the numbers of integer cell data (VTK, XDMF). A surface that has no name under ``surfaces``
-    goes by its name in the file.
+    The file names bodies and surfaces by physical groups (gmsh), sets (Abaqus), families (MED) or
+    the numbers of integer cell data (VTK, XDMF). A surface not listed under ``surfaces`` has its
+    name in the file.
 
     Attributes
     ----------
     path : str
         ``.msh``, ``.inp``, ``.vtu``, ``.xdmf`` or ``.med``.
     length_unit : float
-        What 1 in the file stands for [m].
+        Length of one unit of the file [m].
     body_names : dict of str to str or tuple of str
-        Key ``bodies``: name in the file of body 1 (held and loaded) and body 2, by their names
-        in the case; several names: the body is all of their cells together.
+        Key ``bodies``: cell sets in the file that make up body 1 (held and loaded) and body 2, by
+        the names of the bodies in the case; several sets are united.
     contact_names : tuple of str
         Key ``contact``: contact faces of body 1 and body 2.
     held_name, fixed_name : str
@@ -66,7 +67,7 @@ class MeshFile(HalvableGeometry):
         Key ``surfaces``: names in the file of further surfaces, or of those above, by their names
         in the case.
     contact_area_given : float or None
-        Key ``contact_area``: for a mean pressure [m²].
+        Key ``contact_area``: area for a mean pressure [m²].
     """
 
     name = "file"
@@ -88,17 +89,19 @@ class MeshFile(HalvableGeometry):
     @model_validator(mode="after")
     def _complete(self):
         if len(self.body_names) != 2:
-            raise KeyFault("bodies", f"needs two, the held one first; found {len(self.body_names)}")
+            raise KeyFault(
+                "bodies", f"needs two bodies, the held one first; found {len(self.body_names)}"
+            )
         if self.half and not self.symmetry:
             raise KeyFault("half", "needs the surfaces on the plane of symmetry: symmetry = [...]")
         if self.symmetry and not self.half:
-            raise KeyFault("symmetry", "is for half models; add half = true")
+            raise KeyFault("symmetry", "requires a half model; add half = true")
         roles = {"contact": self.contact, "held": (self.held,), "fixed": (self.fixed,)}
         seen: set[str] = set()
         for key, names in roles.items():
             for name in names:
                 if name in seen:
-                    raise KeyFault(key, f"{name!r} is there twice; each surface has one purpose")
+                    raise KeyFault(key, f"{name!r} is used twice; each surface has one purpose")
                 seen.add(name)
         return self
 

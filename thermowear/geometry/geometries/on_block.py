@@ -1,4 +1,4 @@
-"""What geometries share whose body 1 is pressed on a rectangular block at the origin."""
+"""Base of geometries whose body 1 is pressed on a rectangular block at the origin."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from ..meshing.outlines import Block, ringed_body
 from ..meshing.quads import Body, mesh_body, tagged_bodies
 
 ORDER = 3
-"""Of the cells; nodes lie on an arc, points between them within 3e-4 h⁴/R³ of it."""
+"""Order of the cells; nodes lie on an arc, points between them within 3e-4 h⁴/R³ of it."""
 
 _THINNEST = 1e-6
-"""Width of a contact at least, as a part of the block's half width: 10 000 times the tolerance for
-places in the mesh, and finer than any element."""
+"""Least contact width relative to the block's half width: 10 000 times the tolerance for positions
+in the mesh, and finer than any element."""
 
 Claim = Callable[[np.ndarray], np.ndarray]
-"""Which edges, given by the places of their nodes, lie on a surface."""
+"""Predicate of a surface: mask of edges, given by their nodes, that lie on it."""
 
 
 class OnBlock(Geometry):
-    """Base: a block below y = 0, with the contact in the middle of its top.
+    """Base class: a block below y = 0, with the contact in the middle of its top.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class OnBlock(Geometry):
 
     @property
     def right_only(self) -> bool:
-        """Whether only x >= 0 is meshed."""
+        """True if only x >= 0 is meshed."""
         return True
 
     @property
@@ -74,29 +74,29 @@ class OnBlock(Geometry):
         raise NotImplementedError
 
     def upper_limits(self) -> dict[str, float]:
-        """Keys of body 1 that bound the contact, and how far from x = 0 it can reach [m]."""
+        """Keys of body 1 that bound the contact, and its largest distance from x = 0 [m]."""
         raise NotImplementedError
 
     def upper_body(self, mesh, zone: tuple[float, float]) -> tuple[Body, dict[str, Claim]]:
-        """Mesh body 1 for a zone of contact.
+        """Mesh body 1 for a contact zone.
 
         Returns
         -------
         Body
         claims : dict of str to callable
-            Of its surfaces by the last word of their names, see `tagged_bodies`.
+            Predicates of its surfaces by the last word of their names, see `tagged_bodies`.
         """
         raise NotImplementedError
 
     def block_ends(self, mesh, zone: tuple[float, float]) -> tuple[np.ndarray, float, float]:
-        """How the block is divided at the contact.
+        """Element ends along the top of the block, and row sizes below the contact.
 
         Returns
         -------
         ends : ndarray
-            Of elements on the contact face and beside it, see `face_ends`.
+            Ends of elements on the contact face and beside it, see `face_ends`.
         first, ratio : float
-            Size of the first row below it [m], and of each row to the one before.
+            Size of the first row below it [m], and ratio of successive rows.
         """
         elements, grading = mesh.face(self.bodies[1])
         limit = 0.9 * self.block_reach
@@ -125,13 +125,13 @@ class OnBlock(Geometry):
         outer = zone[1] if self.right_only else max(-zone[0], zone[1])
         if not outer > max(zone[0], 0.0):
             raise CaseError(
-                f"geometry: a contact from x = {zone[0]:.3g} to {zone[1]:.3g} m is none"
+                f"geometry: the contact zone from x = {zone[0]:.3g} to {zone[1]:.3g} m is empty"
             )
         least = _THINNEST * self.block_reach
         if not zone[1] - zone[0] >= least:
             raise CaseError(
-                f"geometry: the contact is expected to be {zone[1] - zone[0]:.3g} m wide; beside "
-                f"this {self.block_key} it can be meshed from {least:.3g} m on"
+                f"geometry: the contact is expected to be {zone[1] - zone[0]:.3g} m wide; for "
+                f"this {self.block_key} the least width that can be meshed is {least:.3g} m"
             )
         limits = self.upper_limits() | {self.block_key: 0.75 * self.block_reach}
         for key, limit in limits.items():
@@ -142,7 +142,7 @@ class OnBlock(Geometry):
                 )
 
     def _claims(self, span: tuple[float, float]) -> dict[str, Claim]:
-        """Of the block's surfaces."""
+        """Predicates of the block's surfaces."""
         reach = self.block_reach
 
         def on_top(p):
@@ -157,12 +157,12 @@ class OnBlock(Geometry):
 
 
 class PlaneOnBlock(OnBlock, HalvableGeometry):
-    """Base of those for plane models.
+    """Base of geometries on a block for plane models.
 
     Attributes
     ----------
     block_width : float
-        The block ranges over |x| <= block_width / 2 [m].
+        Width of the block, |x| <= block_width / 2 [m].
     """
 
     name: ClassVar[str] = ""
@@ -185,10 +185,10 @@ class PlaneOnBlock(OnBlock, HalvableGeometry):
 
 
 def near(values: np.ndarray, target: float, size: float) -> np.ndarray:
-    """Which edges have all their nodes at a value, for a body of a size."""
+    """Mask of edges with all nodes at a value, within a tolerance relative to a size."""
     return np.all(np.abs(values - target) < 1e-9 * size, axis=1)
 
 
 def within(p: np.ndarray, span: tuple[float, float]) -> np.ndarray:
-    """Which edges have their middle in a range of x."""
+    """Mask of edges whose midpoint is in a range of x."""
     return np.array([span[0] < x < span[1] for x in p[..., 0].mean(axis=1)], dtype=bool)

@@ -1,4 +1,4 @@
-"""What geometries share whose body 1 rubs with a flat face on a strip that moves along x under it.
+"""Base of geometries whose body 1 slides with a flat face on a strip that moves along x.
 
 The contact lies at y = 0, in the middle of the strip.
 """
@@ -18,14 +18,14 @@ from .stacked import Section, Stacked
 
 
 class OnStrip(Stacked, PlaneGeometry):
-    """Base: body 1 is a rectangle with sharp edges, body 2 the ``strip``.
+    """Base class: body 1 is a rectangle with sharp edges, body 2 the ``strip``.
 
-    Left and right have names of their own: the strip comes in on one side.
+    Left and right sides are separate surfaces, as the strip enters on one side.
 
     Attributes
     ----------
     strip_length, strip_height : float
-        The strip is as long as the face of body 1 at least [m].
+        Dimensions of the strip, at least as long as the face of body 1 [m].
     """
 
     name: ClassVar[str] = ""
@@ -54,7 +54,7 @@ class OnStrip(Stacked, PlaneGeometry):
 
     @property
     def covers_strip(self) -> bool:
-        """Whether the face is as wide as the strip is long, which leaves nothing of its top."""
+        """True if the face is as wide as the strip is long, without a free part of its top."""
         start, end = self.lower_face
         return math.isclose(end - start, self.strip_length, rel_tol=SAME)
 
@@ -74,7 +74,7 @@ class OnStrip(Stacked, PlaneGeometry):
 
     def _beside(self, sizes, elements, grading):
         contact, support, largest = sizes
-        # little happens farther away than the strip is high
+        # beyond a distance of one strip height the fields vary slowly
         coarse = max(largest, self.strip_height)
         return super()._beside(
             (contact, support, coarse), elements, min(grading, 1 / growth(elements))
@@ -84,7 +84,7 @@ class OnStrip(Stacked, PlaneGeometry):
         return self.face_width * self.thickness
 
     def check_strip(self) -> None:
-        """Raise a `KeyFault` where the face is wider than the strip is long."""
+        """Raise a `KeyFault` if the face is wider than the strip is long."""
         start, end = self.lower_face
         if not end - start <= self.strip_length and not self.covers_strip:
             raise KeyFault(

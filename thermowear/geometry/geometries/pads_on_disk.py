@@ -1,4 +1,4 @@
-"""What brake pads on a disk have in common, as a ring in a half section and in space."""
+"""Base of disk brake geometries: as a ring in a half section, and in space."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from ..meshing.blocks import SAME
 
 
 class PadsOnDisk(Geometry):
-    """Base: a disk, symmetric about its middle, of which the upper half is meshed.
+    """Base class: a disk, symmetric about its middle, of which the upper half is meshed.
 
     Attributes
     ----------
     pad_inner_radius, pad_outer_radius, pad_thickness : float [m]
     pad_angle : float
-        That the pads on one side of the disk take up together [rad].
+        Angle covered by all pads on one side of the disk [rad].
     disk_inner_radius, disk_outer_radius : float
-        Those of the pads, or beyond them [m].
+        Radii of the disk, which must enclose those of the pads [m].
     disk_thickness : float
-        Of the whole disk: half of it is meshed [m].
+        Thickness of the whole disk, half of which is meshed [m].
     widest_pad : float
         Largest `pad_angle` that can be meshed [deg].
     """
@@ -63,5 +63,5 @@ class PadsOnDisk(Geometry):
         return self
 
     def contact_area(self) -> float:
-        """Of the pads on one side."""
+        """Area of the pads on one side."""
         return self.pad_angle / 2 * (self.pad_outer_radius**2 - self.pad_inner_radius**2)

@@ -1,7 +1,7 @@
-"""A block that turns about a pivot beside it and rubs on a strip that moves along x.
+"""Block that rotates about a pivot beside it and slides on a strip that moves along x.
 
-The pivot lies at x = 0, above the contact at y = 0. The block hangs on it by a rigid arm that holds
-the whole of its top.
+The pivot lies at x = 0, above the contact at y = 0. The block is attached to it by a rigid arm
+that holds its whole top.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from .stacked import Section
 
 
 class PivotedBlock(OnStrip):
-    """Sizes of block and strip.
+    """Dimensions of block and strip.
 
     Attributes
     ----------
     face_start, face_end : float
-        x at the ends of the block's face, measured from the pivot [m].
+        X at the ends of the block's face, measured from the pivot [m].
     block_height : float [m]
     pivot_height : float
-        Of the pivot above the face [m].
+        Height of the pivot above the face [m].
     """
 
     name = "pivoted-block"

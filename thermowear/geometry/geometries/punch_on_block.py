@@ -1,4 +1,4 @@
-"""A flat punch, sharp or with rounded edges, pressed on a block or sliding along it.
+"""Flat punch, sharp or with rounded edges, pressed on a block or sliding along it.
 
 The contact lies at y = 0 and is centred at x = 0; the punch is above.
 """
@@ -22,14 +22,14 @@ from .on_block import ORDER, PlaneOnBlock, near
 
 
 class PunchOnBlock(PlaneOnBlock):
-    """Sizes of punch and block.
+    """Dimensions of punch and block.
 
     Attributes
     ----------
     width, height : float
-        Of the punch [m].
+        Dimensions of the punch [m].
     edge_radius : float
-        Of the rounding between the flat and the sides, 0 for sharp edges [m].
+        Radius of the rounding between the flat and the sides, 0 for sharp edges [m].
     """
 
     name = "punch-on-block"
@@ -57,11 +57,11 @@ class PunchOnBlock(PlaneOnBlock):
 
     @property
     def flat(self) -> float:
-        """Where the flat ends [m]."""
+        """X of the end of the flat [m]."""
         return self.width / 2 - self.edge_radius
 
     def contact_area(self) -> float:
-        """Of the flat face: without the rounding of the edges."""
+        """Area of the flat face, without the rounding of the edges."""
         return 2 * self.flat * self.thickness
 
     def expected_zone(self, pressing: Pressing) -> tuple[float, float]:
@@ -79,7 +79,7 @@ class PunchOnBlock(PlaneOnBlock):
         return {"edge_radius": self._rounded().largest} if self.edge_radius > 0 else {}
 
     def build(self, mesh, zone):
-        # a sharp punch always touches up to its edges
+        # the contact of a sharp punch extends to its edges
         return super().build(mesh, zone if self.edge_radius > 0 else (-self.flat, self.flat))
 
     def block_span(self, ends):
@@ -92,7 +92,7 @@ class PunchOnBlock(PlaneOnBlock):
         grading = mesh.face("block")[1]
         if self.edge_radius > 0:
             return *self._resolved(ends, first, grading, zone), ratio
-        if grading < 1:  # singular in every direction
+        if grading < 1:  # edge singularity: refine in all directions
             first, ratio = np.diff(ends).min(), min(3.0, 1 / grading)
         return ends, first, ratio
 
@@ -125,9 +125,9 @@ class PunchOnBlock(PlaneOnBlock):
         return RoundedPunch(self.flat, self.edge_radius, self.height, self.half)
 
     def _resolved(self, ends: np.ndarray, first: float, grading: float, zone):
-        """Ends of elements, and the first row, that resolve the peak of pressure at the rounding.
+        """Element ends, and the first row, that resolve the pressure peak at the rounding.
 
-        The flat ends at an end of an element. The peak is as wide as the contact goes beyond it.
+        The end of the flat is an element end. The width of the peak is the contact beyond the flat.
         """
         edges = (self.flat,) if self.half else (-self.flat, self.flat)
         for edge in edges:
@@ -152,7 +152,7 @@ class PunchOnBlock(PlaneOnBlock):
 
 
 def _with_end(ends: np.ndarray, place: float, kept: tuple[float, ...]) -> np.ndarray:
-    """The same ends with the nearest one moved to a place, or one more there if that is kept."""
+    """Element ends with `place` added, or with the nearest one moved there unless it is kept."""
     nearest = int(np.argmin(np.abs(ends - place)))
     apart = np.abs(np.array(kept) - ends[nearest]).min()
     if apart < 1e-12 and abs(ends[nearest] - place) < 1e-9 * np.ptp(ends):

@@ -1,4 +1,4 @@
-"""A flat punch with sharp edges on a strip that moves along x under it, or that it rubs to and fro.
+"""Flat punch with sharp edges on a strip that moves along x, or reciprocating on a strip at rest.
 
 The contact lies at y = 0 and is centred at x = 0.
 """
@@ -17,15 +17,15 @@ from .stacked import Section
 
 
 class PunchOnStrip(OnStrip):
-    """Sizes of punch and strip.
+    """Dimensions of punch and strip.
 
     Attributes
     ----------
     width, height : float
-        Of the punch [m].
+        Dimensions of the punch [m].
     stroke : float
-        How far to each side the punch slides along a strip that stays where it is: the strip is
-        meshed for contact there too [m].
+        Amplitude of a reciprocating punch on a strip at rest: the strip is meshed for contact over
+        the whole stroke [m].
     """
 
     name = "punch-on-strip"
@@ -53,5 +53,5 @@ class PunchOnStrip(OnStrip):
     def _lower_face(self, elements, grading, zone):
         if self.stroke == 0.0:
             return super()._lower_face(elements, grading, zone)
-        start, end = self.lower_face  # the edges of the contact are everywhere: nothing to grade
+        start, end = self.lower_face  # the contact edges move over the face: uniform elements
         return [Interval(start, end, math.ceil(elements * (end - start) / self.width - 1e-9))]

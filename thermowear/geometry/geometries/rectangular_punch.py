@@ -1,4 +1,4 @@
-"""A rectangular punch on a block, in space.
+"""Rectangular punch on a block, in space.
 
 The contact lies at z = 0 and is centred at the origin; the punch is above. Sides are parallel to
 x and y.
@@ -20,14 +20,14 @@ from ..meshing.quads import Body, tagged_bodies
 
 
 class RectangularPunch(Geometry):
-    """Sizes of punch and block.
+    """Dimensions of punch and block.
 
-    ``mesh.elements`` lie along the longer side of the contact, fewer along the shorter one.
+    ``mesh.elements`` is the number along the longer side of the contact; the shorter has fewer.
 
     Attributes
     ----------
     size_x, size_y, height : float
-        Of the punch [m].
+        Dimensions of the punch [m].
     block_x, block_y, block_height : float [m]
     """
 
@@ -118,7 +118,7 @@ class RectangularPunch(Geometry):
         ]
 
     def _sizes(self, x: list[Interval], y: list[Interval], elements: int) -> tuple[float, float]:
-        """Sizes of elements next to the edges of the contact, and far away at most."""
+        """Element sizes next to the contact edges, and the largest ones far away [m]."""
         thin = min(smallest(x), smallest(y))
         return thin, 3.0 * max(self.size_x, self.size_y) / elements
 
@@ -128,5 +128,5 @@ class RectangularPunch(Geometry):
 
 
 def _boxes(x: list[Interval], y: list[Interval], z: list[Interval]) -> Body:
-    """Boxes between the ends of elements along the axes."""
+    """Boxes between the element ends along the axes."""
     return mesh_lattice(Lattice((ends_of(x), ends_of(y), ends_of(z)), lambda p: p), 1)

@@ -1,4 +1,4 @@
-"""A segment of a ring that is pressed upwards on the inside of a turning, ring-shaped disk.
+"""Ring segment pressed upwards on the inside of a rotating, ring-shaped disk.
 
 The centre of both is the origin (section across the axis).
 """
@@ -18,14 +18,14 @@ _STEEPEST = math.radians(85.0)
 
 
 class RingSegmentOnDisk(InsideRing):
-    """Sizes of segment and disk.
+    """Dimensions of segment and disk.
 
     Attributes
     ----------
     disk_radius, disk_outer_radius : float
-        Radii of the disk inside, where they touch, and outside [m].
+        Inner radius of the disk, where they touch, and its outer radius [m].
     segment_thickness : float
-        Radial [m].
+        Radial thickness [m].
     """
 
     name = "ring-segment-on-disk"

@@ -1,7 +1,7 @@
-"""What a cylinder and a sphere on a block share: a disc that touches a rectangle.
+"""Base of a cylinder and a sphere on a block: a circular section touching a rectangle.
 
-They touch at the origin. Of the disc, which is above, the lower half is meshed (or the right half
-of that); it is held on the flat at the height of its centre.
+They touch at the origin. The lower half of the disc above is meshed (or the right half of that);
+it is held on the flat at the height of its centre.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from .on_block import ORDER, OnBlock, near, within
 
 
 class RoundOnBlock(OnBlock):
-    """Base: body 1 is round.
+    """Base class: body 1 has a circular section.
 
     Attributes
     ----------
     radius : float [m]
     zone : float or None
-        Half-width (radius) of the contact that the mesh is made for, by default the expected one
-        of the unworn bodies: more where it grows by wear [m].
+        Half-width (radius) of the contact zone to be meshed, by default the expected one of the
+        unworn bodies; larger for contacts that grow by wear [m].
     """
 
     name: ClassVar[str] = ""
@@ -36,7 +36,7 @@ class RoundOnBlock(OnBlock):
     zone: Length | None = None
 
     def unworn_half_width(self, pressing: Pressing) -> float:
-        """Half-width (radius) of the contact of the unworn bodies, about [m]."""
+        """Estimate of the half-width (radius) of the unworn contact [m]."""
         raise NotImplementedError
 
     def expected_zone(self, pressing):
@@ -45,8 +45,8 @@ class RoundOnBlock(OnBlock):
             return -expected, expected
         if self.zone < expected:
             raise CaseError(
-                f"geometry.zone: found {self.zone:g} m; the unworn bodies touch "
-                f"up to x = {expected:.3g} m already"
+                f"geometry.zone: found {self.zone:g} m; must be at least the expected "
+                f"half-width of the unworn contact, {expected:.3g} m"
             )
         return -self.zone, self.zone
 

@@ -1,4 +1,4 @@
-"""A sphere pressed on a cylindrical block, or turning on it (half section, r and z).
+"""Sphere pressed on a cylindrical block, or rotating on it (half section, r and z).
 
 They touch at the origin; the sphere is above. Its lower half is meshed.
 """
@@ -14,7 +14,7 @@ from .round_on_block import RoundOnBlock
 
 
 class SphereOnBlock(RoundOnBlock):
-    """Sizes of sphere and block.
+    """Dimensions of sphere and block.
 
     Attributes
     ----------

@@ -1,6 +1,6 @@
-"""What geometries share that are a rectangle on another: a ring on a plate, a block on a strip.
+"""Base of geometries of two stacked rectangles: a ring on a plate, a block on a strip.
 
-The contact lies at y = 0; body 1 is above. Columns and rows of elements go straight through.
+The contact lies at y = 0; body 1 is above. The mesh is structured in columns and rows.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Beside = tuple[list[Interval], list[Interval]]
 
 @dataclass(frozen=True)
 class Section:
-    """A rectangle: x (or radius) at its left and right, and its height [m]."""
+    """Rectangle: x (or radius) at its left and right, and its height [m]."""
 
     left: float
     right: float
@@ -27,13 +27,13 @@ class Section:
 
 
 class Stacked(Geometry):
-    """Base: both bodies are rectangles; body 2 goes on beside the face, or ends where it ends.
+    """Base class: both bodies are rectangles; body 2 is as wide as the face, or wider.
 
     Attributes
     ----------
     surfaces : tuple of str
-        Of body 1 the face, top, left and right; of body 2 the face, bottom and right, then, where
-        they have names, the left and what the face leaves of the top, if anything.
+        Face, top, left and right of body 1; face, bottom and right of body 2, then, if named, its
+        left and the rest of its top.
     cell_order : int
         Geometric order of the cells.
     """
@@ -46,12 +46,12 @@ class Stacked(Geometry):
 
     @property
     def upper(self) -> Section:
-        """Body 1."""
+        """Section of body 1."""
         raise NotImplementedError
 
     @property
     def lower(self) -> Section:
-        """Body 2."""
+        """Section of body 2."""
         raise NotImplementedError
 
     @property
@@ -61,7 +61,7 @@ class Stacked(Geometry):
 
     @property
     def follows_contact(self) -> bool:
-        return True  # heat can part the faces, and friction tilt body 1
+        return True  # faces may separate thermally, body 1 may tilt by friction
 
     def build(self, mesh, zone=None) -> TaggedMesh:
         with gmsh_model(self.name) as gmsh:
@@ -95,7 +95,7 @@ class Stacked(Geometry):
         return made, made.top[start:end], made.top[:start] + made.top[end:]
 
     def _beside(self, sizes: tuple[float, float, float], elements: int, grading: float) -> Beside:
-        """How body 2 is divided on the left and on the right of the face, see `_sizes`."""
+        """Divisions of body 2 on the left and on the right of the face, see `_sizes`."""
         contact, support, largest = sizes
         (left, right), (start, end) = (self.lower.left, self.lower.right), self.lower_face
         return (
@@ -104,14 +104,14 @@ class Stacked(Geometry):
         )
 
     def _lower_face(self, elements: int, grading: float, zone) -> list[Interval]:
-        """How the face of body 2 is divided."""
+        """Division of the face of body 2."""
         return self._face(elements, grading, zone)
 
     def _face(self, elements: int, grading: float, zone) -> list[Interval]:
         return divided_face(self.upper.left, self.upper.right, elements, grading, zone)
 
     def _sizes(self, face: list[Interval], elements: int) -> tuple[float, float, float]:
-        """Element sizes at the contact edges, at the clamped edges, and elsewhere at most.
+        """Element sizes at the contact edges, at the clamped edges, and the largest elsewhere.
 
         Clamped edges are singular too; being remote they need fewer thin elements.
         """

@@ -1,8 +1,8 @@
-"""Two blocks of one width, one on the other, between planes of symmetry.
+"""Two stacked blocks of equal width between planes of symmetry.
 
-A column cut out of bodies that are wide and alike everywhere, or half a wave of a state that
-repeats itself along x. The contact lies at y = 0, from x = 0 to the width. Sliding is across the
-section: friction heats and wears the blocks, but drags nothing within it.
+A column of bodies that are wide and uniform, or half a wavelength of a state that is periodic
+along x. The contact lies at y = 0, from x = 0 to the width. Sliding is normal to the section:
+friction heats and wears the blocks, without tangential traction in the section.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from ..meshing.quads import Body, Sheet, grid, mesh_body, tagged_bodies
 from .on_block import Claim, near
 
 _THIN_ROWS = 3
-"""Rows at the contact that shrink by the grading: what heat reaches first, and waves along it."""
+"""Graded rows at the contact, which resolve the thermal boundary layer and waves along the face."""
 
 
 class StackedBlocks(PlaneGeometry):
-    """Sizes of both blocks.
+    """Dimensions of both blocks.
 
-    Nothing is singular where the face meets a plane of symmetry: its elements are equal. There are
-    about as many rows as elements along the face, and some thin ones at the contact.
+    There is no singularity where the face meets a plane of symmetry: its elements are equal.
+    There are about as many rows as elements along the face, and some thin ones at the contact.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class StackedBlocks(PlaneGeometry):
         return tagged_bodies(blocks, claims)
 
     def _block(self, end: float, elements: int, grading: float) -> Body:
-        """A block from the contact to y = `end`."""
+        """Block from the contact to y = `end`."""
         largest = abs(end) / elements
         first = largest * grading**_THIN_ROWS
         steps = sizes(growing(0.0, abs(end), first, grading, largest))
@@ -88,5 +88,5 @@ class StackedBlocks(PlaneGeometry):
 
 
 def _level(y: float, size: float) -> Claim:
-    """Of a level surface."""
+    """Predicate of a horizontal surface."""
     return lambda places: near(places[..., 1], y, size)

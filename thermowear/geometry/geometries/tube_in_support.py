@@ -1,4 +1,4 @@
-"""A tube that rests in the wider hole of a support (section across the tube).
+"""Tube resting in the larger hole of a support (section across the tube).
 
 They touch at the origin, at the bottom of both; the tube is pressed down.
 """
@@ -22,26 +22,26 @@ from ..meshing.quads import mesh_body, tagged_bodies
 from .on_block import ORDER
 
 _THINNEST = 1e-6
-"""Width of a contact at least, as a part of the tube's radius."""
+"""Least contact width relative to the tube's radius."""
 
 _EXPECTED, _LARGEST, _FACE = map(math.radians, (60.0, 75.0, 80.0))
-"""Angles from the bottom: of an expected contact at most, of one that can be meshed, of a face."""
+"""Largest angles from the bottom: of an expected contact, of a meshable contact, of a face."""
 
 
 class TubeInSupport(PlaneGeometry):
-    """Sizes of tube and support.
+    """Dimensions of tube and support.
 
     Attributes
     ----------
     tube_radius, tube_wall : float
-        Radius outside and thickness of the tube [m].
+        Outer radius and wall thickness of the tube [m].
     support_clearance : float
-        What the radius of the hole is larger than that of the tube [m].
+        Radial clearance: radius of the hole minus that of the tube [m].
     support_thickness : float
-        Of the support round its hole [m].
+        Thickness of the support around its hole [m].
     zone : float or None
-        Half-width of the contact that the mesh is made for, by default the expected one of the
-        unworn bodies: more where it moves, or grows by wear [m].
+        Half-width of the contact zone to be meshed, by default the expected one of the unworn
+        bodies; larger for contacts that move, or grow by wear [m].
     """
 
     name = "tube-in-support"
@@ -80,7 +80,7 @@ class TubeInSupport(PlaneGeometry):
         return self.tube_radius + self.support_clearance
 
     def expected_zone(self, pressing: Pressing) -> tuple[float, float]:
-        """Hertz's half-width laid round the tube; contacts that conform are shorter than that."""
+        """Hertzian half-width as an arc of the tube; conforming contacts are shorter."""
         if self.zone is not None:
             return -self.zone, self.zone
         radius = self.tube_radius * self.hole_radius / self.support_clearance
@@ -120,11 +120,11 @@ class TubeInSupport(PlaneGeometry):
         return tagged_bodies({name: mesh_body(s, ORDER) for name, s in bodies.items()}, claims)
 
     def _angles(self, zone: tuple[float, float]) -> tuple[float, float]:
-        """A zone of contact as angles of the tube."""
+        """Contact zone as angles of the tube."""
         outer, limit = max(map(abs, zone)), self.tube_radius * math.sin(_LARGEST)
         if not zone[1] - zone[0] > _THINNEST * self.tube_radius:
             raise CaseError(
-                f"geometry: a contact from x = {zone[0]:.3g} to {zone[1]:.3g} m is none"
+                f"geometry: the contact zone from x = {zone[0]:.3g} to {zone[1]:.3g} m is empty"
             )
         if not outer <= limit:
             raise CaseError(
@@ -136,7 +136,7 @@ class TubeInSupport(PlaneGeometry):
         return first, last
 
     def _opposite(self, angles: np.ndarray) -> np.ndarray:
-        """Angles about the centre of the hole where the tube's normals meet it."""
+        """Angles about the centre of the hole at the intersections with the tube's normals."""
         apart, across, up = self.support_clearance, np.sin(angles), np.cos(angles)
         length = np.sqrt(self.hole_radius**2 - (apart * across) ** 2) - apart * up
         return np.arctan2(length * across, apart + length * up)

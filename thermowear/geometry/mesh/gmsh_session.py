@@ -1,4 +1,4 @@
-"""A gmsh model that cleans up after itself, and its translation to a tagged mesh."""
+"""Context manager for gmsh models, and their conversion to a tagged mesh."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ def tagged_mesh(model, bodies: tuple[str, ...], surfaces: tuple[str, ...]) -> Ta
     Parameters
     ----------
     model : gmsh.model
-        Meshed, with physical surfaces named as `bodies` and physical curves
-        named as `surfaces`.
+        Meshed model, with physical surfaces named as `bodies` and physical curves named as
+        `surfaces`.
     bodies, surfaces : tuple of str
-        The names, in the order in which they get their tags.
+        Names, in the order of their tags.
     """
     groups = {(dim, model.getPhysicalName(dim, tag)): tag for dim, tag in model.getPhysicalGroups()}
     cells, cell_tags, cell_type = _elements(model, 2, [groups[2, name] for name in bodies])
@@ -65,7 +65,7 @@ def tagged_mesh(model, bodies: tuple[str, ...], surfaces: tuple[str, ...]) -> Ta
 
 
 def _elements(model, dim: int, physical: list[int]) -> tuple[np.ndarray, np.ndarray, int]:
-    """Node tags of all elements of the physical groups, their position there, and gmsh's type."""
+    """Node tags of all elements of the physical groups, index of the group, and gmsh's type."""
     nodes, marks, kinds = [], [], set()
     for mark, group in enumerate(physical, start=1):
         for entity in model.getEntitiesForPhysicalGroup(dim, group):

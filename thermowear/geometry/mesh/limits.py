@@ -1,4 +1,4 @@
-"""How many cells a mesh may have, checked before any of them is made."""
+"""Limits on the number of cells, checked before meshing."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ import math
 from ...errors import CaseError
 
 MOST_CELLS = 1_000_000
-"""Of a body: a slip in a unit asks for more, and would fill the memory."""
+"""Largest number of cells of a body: more are a unit error and would exceed the memory."""
 
 
 MOST_HEXAHEDRA = 100_000
-"""Of a body in space: a cell there has many more nodes and neighbours."""
+"""Largest number of cells of a body in space, with many more nodes and neighbours each."""
 
 
 def check_count(*counts: float, most: int = MOST_CELLS) -> None:
-    """Refuse a grid of too many cells.
+    """Reject a grid of too many cells.
 
     Parameters
     ----------
     *counts : float
-        Cells in each of its directions.
+        Number of cells in each direction.
     most : int
-        Cells that a body may have.
+        Largest number of cells of a body.
 
     Raises
     ------
@@ -31,6 +31,6 @@ def check_count(*counts: float, most: int = MOST_CELLS) -> None:
     cells = math.prod(counts)
     if not cells <= most:
         raise CaseError(
-            f"geometry: its sizes and mesh.elements ask for about {cells:.2g} cells in one body, "
-            f"at most {most} can be meshed; look for a slip in a unit, or use fewer elements"
+            f"geometry: dimensions and mesh.elements lead to about {cells:.2g} cells in one body; "
+            f"at most {most} can be meshed; check the units, or use fewer elements"
         )

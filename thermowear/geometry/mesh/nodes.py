@@ -1,4 +1,4 @@
-"""Where the nodes of cells of any order lie, numbered as gmsh does."""
+"""Lagrange nodes of cells of any order, numbered as in gmsh."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 CORNERS = {"triangle": 3, "quadrilateral": 4}
 FACETS = {"triangle": "interval", "quadrilateral": "interval", "hexahedron": "quadrilateral"}
-"""Kind of the facets of each kind of cell."""
+"""Facet type of each cell type."""
 _SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 _PLACES = {
     "interval": np.array([[0.0], [1.0]]),
@@ -23,7 +23,7 @@ _HEXAHEDRON_FACETS = np.array(
 
 
 def reference_nodes(cell_type: str, order: int) -> np.ndarray:
-    """Places of the nodes on the cell of unit sides, shape (n_nodes, 1, 2 or 3)."""
+    """Nodes of the cell with unit sides, shape (n_nodes, 1, 2 or 3)."""
     corners = _PLACES[cell_type]
     if order == 0:
         return corners.mean(axis=0, keepdims=True)
@@ -42,7 +42,7 @@ def reference_nodes(cell_type: str, order: int) -> np.ndarray:
 
 
 def _hexahedron(order: int, corners: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Corners, nodes within edges, within facets, and within."""
+    """Nodes of a hexahedron: corners, then those in edges, in facets, in the interior."""
     edges = [corners[a] + steps * (corners[b] - corners[a]) for a, b in _HEXAHEDRON_EDGES]
     if order == 1:
         return corners
@@ -55,14 +55,14 @@ def _hexahedron(order: int, corners: np.ndarray, steps: np.ndarray) -> np.ndarra
 
 
 def _inner(cell_type: str, order: int) -> np.ndarray:
-    """Nodes off the boundary of a cell: those of a smaller cell."""
+    """Interior nodes of a cell: the nodes of a smaller cell."""
     return 1 / order + (order - 2) / order * reference_nodes(cell_type, order - 2)
 
 
 def facet_nodes(order: int) -> np.ndarray:
-    """Nodes of each facet of a hexahedron, its outward normal by the right-hand rule.
+    """Nodes of each facet of a hexahedron, with outward normal by the right-hand rule.
 
-    In gmsh's order of quadrilaterals, shape (6, (order + 1)²).
+    Numbered as gmsh quadrilaterals, shape (6, (order + 1)²).
     """
     nodes, corners = reference_nodes("hexahedron", order), _PLACES["hexahedron"]
     s, t = reference_nodes("quadrilateral", order).T[..., None]
@@ -74,7 +74,7 @@ def facet_nodes(order: int) -> np.ndarray:
 
 
 def edge_nodes(cell_type: str, order: int) -> np.ndarray:
-    """Nodes of each edge: first, last, then those between; shape (n_edges, order + 1)."""
+    """Nodes of each edge: first, last, then interior; shape (n_edges, order + 1)."""
     n = CORNERS[cell_type]
     side = np.arange(n)[:, None]
     between = n + side * (order - 1) + np.arange(order - 1)

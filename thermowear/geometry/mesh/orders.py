@@ -1,4 +1,4 @@
-"""Meshes of cells of any order: their boundary, and the same mesh with cells of another order."""
+"""Boundary and shape functions of cells of any order; conversion to other orders."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .tagged import TaggedMesh
 
 
 def boundary(cell_type: str, order: int, cells: np.ndarray) -> np.ndarray:
-    """Nodes of the edges or facets that only one cell has, in gmsh's order.
+    """Nodes of the edges or facets that belong to a single cell, in gmsh's order.
 
     Shape (n_edges, order + 1) of plane cells, (n_facets, (order + 1)²) of hexahedra.
     """
@@ -28,7 +28,7 @@ def boundary(cell_type: str, order: int, cells: np.ndarray) -> np.ndarray:
 
 
 def turned(cell_type: str, order: int) -> np.ndarray:
-    """Nodes in the order that turns a cell the other way round."""
+    """Permutation of nodes that reverses the orientation of a cell."""
     nodes = reference_nodes(cell_type, order)
     return np.array([np.abs(nodes - p[::-1]).sum(axis=1).argmin() for p in nodes])
 
@@ -41,7 +41,7 @@ def shape_functions(cell_type: str, order: int, points: np.ndarray) -> np.ndarra
 
 
 def slopes(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
-    """Derivatives of the Lagrange polynomials, shape (n, dim, n_nodes)."""
+    """Gradients of the Lagrange polynomials, shape (n, dim, n_nodes)."""
     powers = _exponents(cell_type, order)
     along = [
         power * np.prod(points[:, None] ** np.maximum(powers - unit, 0), axis=2)
@@ -57,18 +57,18 @@ def _monomials(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
 
 
 def _exponents(cell_type: str, order: int) -> np.ndarray:
-    """Of the monomials that the polynomials of a cell are made of, shape (n_nodes, dim)."""
+    """Exponents of the monomials that span the polynomials of a cell, shape (n_nodes, dim)."""
     dim = reference_nodes(cell_type, 1).shape[1]
     powers = np.indices([order + 1] * dim).reshape(dim, -1).T
     return powers[powers.sum(axis=1) <= order] if cell_type == "triangle" else powers
 
 
 def quadratic(mesh: TaggedMesh) -> TaggedMesh:
-    """The mesh with cells of order 2 whose nodes lie on those of a higher order."""
+    """Mesh with cells of order 2 whose nodes lie on the cells of higher order."""
     kind, order = mesh.cell_type, mesh.order
     values = shape_functions(kind, order, reference_nodes(kind, 2))
     places = np.einsum("qk,cki->cqi", values, mesh.points[mesh.cells])
-    keys = [_between(kind, mesh.cells), _between(FACETS[kind], mesh.facets)]
+    keys = [_corner_keys(kind, mesh.cells), _corner_keys(FACETS[kind], mesh.facets)]
     keys[1] = np.pad(
         keys[1], ((0, 0), (keys[0].shape[1] - keys[1].shape[1], 0)), constant_values=-1
     )
@@ -82,15 +82,15 @@ def quadratic(mesh: TaggedMesh) -> TaggedMesh:
     )
 
 
-def _between(kind: str, cells: np.ndarray) -> np.ndarray:
-    """Corners between which each node of order 2 lies, and -1, sorted: a row a node of a cell."""
+def _corner_keys(kind: str, cells: np.ndarray) -> np.ndarray:
+    """Corners between which each node of order 2 lies, padded with -1, sorted; one row per node."""
     belongs = shape_functions(kind, 1, reference_nodes(kind, 2)) > 1e-9
     corners = cells[:, : belongs.shape[1]]
     return np.sort(np.where(belongs, corners[:, None], -1), axis=2).reshape(-1, belongs.shape[1])
 
 
 def compact(mesh: TaggedMesh) -> TaggedMesh:
-    """The mesh without points that no cell has."""
+    """Mesh without unused points."""
     used, cells = np.unique(mesh.cells, return_inverse=True)
     number = np.full(len(mesh.points), -1, dtype=np.int64)
     number[used] = np.arange(len(used))

@@ -1,4 +1,4 @@
-"""How well cells of any order are shaped, and integrals over them."""
+"""Quality measures of cells of any order, and integrals over them."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from .orders import shape_functions, slopes
 from .tagged import TaggedMesh
 
 _PLACES = {2: 7, 3: 4}
-"""Along each side of a cell of the plane or in space, at which its shape is looked at."""
+"""Points along each side of a plane or spatial cell at which its Jacobian is evaluated."""
 _AT_ONCE = 500
-"""Cells whose matrices are made together."""
+"""Number of cells whose matrices are computed together."""
 
 
 def scaled_jacobians(mesh: TaggedMesh) -> np.ndarray:
-    """Smallest determinant of the unit vectors along the grid lines of each cell.
+    """Scaled Jacobian: smallest determinant of the unit tangents along the grid lines of each cell.
 
-    In the plane the sine of the angle between them; negative where a cell is inverted. Shape
+    In the plane the sine of the angle between them; negative if a cell is inverted. Shape
     (n_cells,).
     """
     dim = mesh.points.shape[1]
@@ -35,7 +35,7 @@ def scaled_jacobians(mesh: TaggedMesh) -> np.ndarray:
 
 
 def quality(mesh: TaggedMesh, parts: tuple[str, ...]) -> float:
-    """Smallest scaled Jacobian of some parts of a mesh; -1 where cells have vanished."""
+    """Smallest scaled Jacobian of some parts of a mesh; -1 if cells have degenerated."""
     of_parts = np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])
     found = scaled_jacobians(replace(mesh, cells=mesh.cells[of_parts]))
     return float(np.nan_to_num(found, nan=-1.0).min())
@@ -44,7 +44,7 @@ def quality(mesh: TaggedMesh, parts: tuple[str, ...]) -> float:
 def volume(
     mesh: TaggedMesh, cells: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]
 ) -> float:
-    """Of plane cells, with a factor from area to volume at points of shape (n, 2).
+    """Volume of plane cells, with a factor from area to volume at points of shape (n, 2).
 
     `cells` as in `stiffness`.
     """
@@ -58,13 +58,13 @@ def volume(
 
 
 def stiffness(mesh: TaggedMesh, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Matrices of ``∫ grad u·grad v`` of cells, and the integrals' places in the whole.
+    """Matrices of ``∫ grad u·grad v`` of cells, and their indices in the global matrix.
 
     Parameters
     ----------
     mesh : TaggedMesh
     cells : ndarray of bool, shape (n_cells,)
-        Which of them.
+        Mask of the cells.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def stiffness(mesh: TaggedMesh, cells: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def laplacians(kind: str, order: int, nodes: np.ndarray) -> np.ndarray:
-    """Matrices of ``∫ grad u·grad v`` of cells, also of lines and surfaces in space.
+    """Matrices of ``∫ grad u·grad v`` of cells, including lines and surfaces in space.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def _determinants(matrices: np.ndarray) -> np.ndarray:
 
 
 def gauss_rule(kind: str, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points and weights of the cell of unit sides."""
+    """Gauss points and weights of the cell with unit sides."""
     roots, weights = np.polynomial.legendre.leggauss(count)
     dim = reference_nodes(kind, 1).shape[1]
     places = np.array(list(itertools.product((roots + 1) / 2, repeat=dim)))

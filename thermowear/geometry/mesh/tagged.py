@@ -1,4 +1,4 @@
-"""The one mesh format that every geometry returns and every room below reads."""
+"""Mesh format returned by every geometry and used by all later rooms."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from .nodes import FACETS, reference_nodes
 class TaggedMesh:
     """Two meshed bodies with named parts.
 
-    Cells and facets are listed with the node order of gmsh. Tags are positions
-    in the tuples of names, plus one (as gmsh's physical groups).
+    Cells and facets are listed with the node order of gmsh. Tags are indices into the tuples of
+    names, plus one (as gmsh's physical groups).
 
     Attributes
     ----------
     points : ndarray, shape (n_points, gdim) [m]
     cell_type : str
-        ``"quadrilateral"``, ``"triangle"`` or ``"hexahedron"``; the type of all cells.
+        ``"quadrilateral"``, ``"triangle"`` or ``"hexahedron"``; the same for all cells.
     cells : ndarray of int64, shape (n_cells, nodes_per_cell)
-        Of any order: curved cells have nodes between their corners.
+        Nodes, of any order: curved cells have nodes between their corners.
     cell_tags : ndarray of int32, shape (n_cells,)
     facets : ndarray of int64, shape (n_facets, nodes_per_facet)
         Named boundary facets only.
     facet_tags : ndarray of int32, shape (n_facets,)
     bodies : tuple of str
         Names of the bodies, body 1 (held) first, then those of zones within bodies that have a
-        material of their own: their cells are not among those of the body.
+        material of their own: the cells of a zone are not tagged with the body.
     surfaces : tuple of str
         Names of the surfaces.
     """
@@ -57,7 +57,7 @@ class TaggedMesh:
         return (math.isqrt(nodes) if self.facet_type == "quadrilateral" else nodes) - 1
 
     def checksum(self) -> str:
-        """SHA-256 of all of it, in hexadecimal digits: equal for equal meshes alone."""
+        """SHA-256 of the mesh, in hexadecimal digits."""
         arrays = (self.points, self.cells, self.cell_tags, self.facets, self.facet_tags)
         found = hashlib.sha256(repr((self.cell_type, self.bodies, self.surfaces)).encode())
         for values in arrays:
@@ -66,5 +66,5 @@ class TaggedMesh:
         return found.hexdigest()
 
     def node_places(self, kind: str) -> np.ndarray:
-        """Places of the listed nodes on a cell or facet of unit sides, shape (n_nodes, dim)."""
+        """Reference coordinates of the nodes of a cell or facet, shape (n_nodes, dim)."""
         return reference_nodes(kind, self.order)

@@ -1,1 +1,1 @@
-"""Structured meshing: blocks, rings, outlines, graded ends."""
+"""Structured meshing: blocks, rings, outlines, graded element ends."""

@@ -1,6 +1,6 @@
 """Structured, graded quadrilaterals on a tensor grid of rectangles, by gmsh's transfinite rules.
 
-A direction is a list of intervals; each knows how many elements it holds and how their sizes grow.
+A direction is a list of intervals, each with its number of elements and their growth ratio.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ import numpy as np
 from ..mesh.limits import check_count
 
 SAME = 1e-9
-"""Relative: lengths that differ by less are the same, written in other units."""
+"""Relative tolerance: lengths in different units that differ by less are equal."""
 
 
 @dataclass(frozen=True)
 class Interval:
-    """One stretch of a grid direction.
+    """Interval of a grid direction.
 
     Attributes
     ----------
     start, end : float [m]
     elements : int
     growth : float
-        Size ratio of each element to the one before it, from start to end.
+        Size ratio of successive elements, from start to end.
     """
 
     start: float
@@ -35,14 +35,14 @@ class Interval:
 
 
 def graded_face(start: float, end: float, elements: int, grading: float) -> list[Interval]:
-    """Split a contact face so that its elements shrink towards both edges.
+    """Divide a contact face so that its elements shrink towards both edges.
 
     Up to three elements at each edge follow the ratio `grading`; the rest are equal.
 
     Returns
     -------
     list of Interval
-        ``thin edge, middle, thin edge`` (only the middle where nothing is graded).
+        ``thin edge, middle, thin edge`` (only the middle if nothing is graded).
     """
     layers = min(3, (elements - 1) // 2)
     if layers == 0 or grading == 1.0:
@@ -67,8 +67,8 @@ def growing(
 ) -> list[Interval]:
     """Fill ``start…end`` with elements that grow from `first` by ``1/grading`` up to `largest`.
 
-    `end` may lie below `start`: the elements grow from `start` in any case. Where both are the same
-    but for rounding there is nothing to fill.
+    `end` may lie below `start`: the elements grow from `start` in either case. The result is empty
+    if both are equal up to rounding.
     """
     span = abs(end - start)
     if span <= SAME * max(abs(start), abs(end)):
@@ -91,7 +91,7 @@ def growing(
 
 
 def _count(span: float, largest: float) -> int:
-    """Equal elements that fill a span, none larger than asked."""
+    """Number of equal elements that fill a span, none larger than `largest`."""
     check_count(span / largest)
     return max(1, math.ceil(span / largest - 1e-9))
 
@@ -101,7 +101,7 @@ def growing_from_both(
 ) -> list[Interval]:
     """Fill ``start…end`` (upwards) with elements that grow from both ends to the middle.
 
-    `first` are the sizes at start and end; nothing is filled as in `growing`.
+    `first` are the sizes at start and end; the result may be empty as in `growing`.
     """
     if abs(end - start) <= SAME * max(abs(start), abs(end)):
         return []
@@ -112,7 +112,7 @@ def growing_from_both(
 
 
 def _oriented(intervals: list[Interval]) -> list[Interval]:
-    """The same intervals listed upwards, whichever way they were filled."""
+    """Intervals in ascending order, whichever way they were filled."""
     if intervals[0].start < intervals[0].end:
         return intervals
     return [Interval(i.end, i.start, i.elements, 1 / i.growth) for i in reversed(intervals)]
@@ -140,7 +140,7 @@ class Grid:
     ----------
     surfaces : list of int
     bottom, top, left, right : list of int
-        Boundary curves, one an interval.
+        Boundary curves, one per interval.
     """
 
     surfaces: list[int]
@@ -151,13 +151,13 @@ class Grid:
 
 
 def add_grid(model, columns: list[Interval], rows: list[Interval]) -> Grid:
-    """Add a rectangle to a gmsh model, ready for a structured quadrilateral mesh.
+    """Add a rectangle to a gmsh model, prepared for a structured quadrilateral mesh.
 
     Parameters
     ----------
     model : gmsh.model
     columns, rows : list of Interval
-        Consecutive, upwards; the directions of the first and second coordinate.
+        Consecutive and ascending; the directions of the first and second coordinate.
     """
     check_count(*(sum(i.elements for i in intervals) for intervals in (columns, rows)))
     geo = model.geo

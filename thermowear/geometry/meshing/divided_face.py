@@ -1,26 +1,26 @@
-"""How a straight contact face is divided whose contact may end inside it."""
+"""Division of a straight contact face whose contact zone may end inside it."""
 
 from __future__ import annotations
 
 from .blocks import Interval, graded_face, growing_from_both, smallest
 
 _APART = 1e-6
-"""An edge of contact nearer to the face's edge is the same; relative to its farthest end."""
+"""Least distance of a contact edge from the edge of the face, relative to its farthest end."""
 
 
 def divided_face(
     start: float, end: float, elements: int, grading: float, zone: tuple[float, float] | None
 ) -> list[Interval]:
-    """Grade a face to its edges, or to those of a contact that ends inside it.
+    """Grade a face towards its edges, or towards those of a contact zone inside it.
 
     Parameters
     ----------
     start, end : float
-        Of the face [m].
+        Ends of the face [m].
     elements, grading
-        In the contact, see `thermowear.case.tables.schema.Mesh`.
+        Number of elements and grading in the contact, see `thermowear.case.tables.schema.Mesh`.
     zone : tuple of float, optional
-        Where the faces touch [m].
+        Contact zone [m].
     """
     if zone is None:
         return graded_face(start, end, elements, grading)

@@ -1,4 +1,4 @@
-"""How a contact face is divided: in the zone where the bodies touch, and on both sides of it."""
+"""Division of a contact face: in the contact zone and on both sides of it."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 from .blocks import graded_face, sizes
 
 _QUICKLY = 3.0
-"""Ratio of elements that grow away from a graded edge of contact, where nothing presses."""
+"""Size ratio of elements away from a graded contact edge, outside the contact zone."""
 
 
 def growth(elements: int) -> float:
-    """Ratio at which elements grow away from a contact that holds so many: fine meshes smoothly."""
+    """Growth ratio of elements away from a contact with `elements`; lower in fine meshes."""
     return min(3.0, 1.0 + 16.0 / elements)
 
 
 def row_ratio(elements: int) -> float:
-    """Ratio at which elements grow within reach of the contact."""
+    """Growth ratio of elements close to the contact."""
     return min(2.0, 1.0 + 12.0 / elements)
 
 
@@ -29,21 +29,21 @@ def face_ends(
     half: bool,
     limits: tuple[float, float],
 ) -> tuple[np.ndarray, float]:
-    """Ends of elements along a face.
+    """Element ends along a face.
 
-    Elements shrink towards both ends of the zone, from inside and, more quickly, from outside.
-    Those outside reach over half the width of the zone, less where a limit is near.
+    Elements shrink towards both ends of the zone, from inside and, with a larger ratio, from
+    outside. Outside they extend over half the width of the zone, or up to the limits.
 
     Parameters
     ----------
     zone : tuple of float
-        Where the faces touch [m]; the left end is not used for `half`.
+        Contact zone [m]; the left end is not used for `half`.
     elements, grading
-        In the whole zone, see `thermowear.case.tables.schema.Mesh`.
+        Number of elements and grading in the zone, see `thermowear.case.tables.schema.Mesh`.
     half : bool
-        Whether only the right half of a symmetric face is there.
+        True if only the right half of a symmetric face is meshed.
     limits : tuple of float
-        Outer ends of the face at most [m].
+        Outer limits of the face [m].
 
     Returns
     -------
@@ -57,7 +57,7 @@ def face_ends(
     reach = (zone[1] - zone[0]) / 2
     ratio = row_ratio(elements)
     left, right = (
-        _beyond(inside, ratio, min(reach, room))
+        _outer_sizes(inside, ratio, min(reach, room))
         for room in (zone[0] - limits[0], limits[1] - zone[1])
     )
     within = zone[0] + np.concatenate([[0.0], np.cumsum(inside)])
@@ -68,11 +68,11 @@ def face_ends(
     return ends, float(inside.max())
 
 
-def _beyond(inside: np.ndarray, ratio: float, reach: float) -> np.ndarray:
+def _outer_sizes(inside: np.ndarray, ratio: float, reach: float) -> np.ndarray:
     """Sizes of elements outside the zone, from its end outwards.
 
-    The first is as large as the last one inside. They grow quickly up to the largest inside, from
-    there by `ratio`, and reach about as far as asked.
+    The first is as large as the adjacent one inside. Sizes grow by `_QUICKLY` up to the largest
+    inside, from there by `ratio`, and extend over about `reach`.
     """
     found: list[float] = []
     while sum(found) < 0.8 * reach:
@@ -86,7 +86,7 @@ def _beyond(inside: np.ndarray, ratio: float, reach: float) -> np.ndarray:
 
 
 def smoothed(ends: np.ndarray, ratio: float) -> np.ndarray:
-    """Split elements that are much more than `ratio` times as large as their neighbours."""
+    """Split elements that are larger than their neighbours by much more than `ratio`."""
     found = [float(x) for x in ends]
     k = 0
     while k < len(found) - 1:
@@ -104,7 +104,7 @@ def smoothed(ends: np.ndarray, ratio: float) -> np.ndarray:
 
 
 def depth_ends(first: float, depth: float, ratio: float) -> np.ndarray:
-    """Ends of rows below a face, from 0 to `depth`, that grow by a ratio from about `first`."""
+    """Row ends below a face, from 0 to `depth`, growing by a ratio from about `first`."""
     count = max(1, round(math.log1p(depth / first * (ratio - 1)) / math.log(ratio)))
     steps = ratio ** np.arange(count)
     return np.concatenate([[0.0], np.cumsum(steps)]) * depth / steps.sum()

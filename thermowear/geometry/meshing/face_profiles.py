@@ -1,4 +1,4 @@
-"""Meridians of annular faces: height over the radius, zero in the middle."""
+"""Meridians of annular faces: height over the radius, zero at the mean radius."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 
 
 class Profile(Protocol):
-    """A meridian.
+    """Meridian of a face.
 
     Attributes
     ----------
     order : int
-        Of cells that follow it.
+        Geometric order of cells that follow it.
     """
 
     order: ClassVar[int]
@@ -23,12 +23,12 @@ class Profile(Protocol):
         """Z at radii [m]."""
 
     def spaced(self, radii: np.ndarray, columns: np.ndarray) -> np.ndarray:
-        """Radii of the nodes of cells that end at `columns`, from equally spaced ones [m]."""
+        """Map equally spaced radii to the nodes of cells that end at `columns` [m]."""
 
 
 @dataclass(frozen=True)
 class Straight:
-    """A cone that rises outwards by `slope`; flat where it is 0."""
+    """Cone that rises outwards by `slope`; flat if it is 0."""
 
     middle: float
     slope: float
@@ -43,7 +43,7 @@ class Straight:
 
 @dataclass(frozen=True)
 class Arc:
-    """A torus: an arc of the given radius that bulges downwards in the middle [m]."""
+    """Torus: an arc of the given radius, convex downwards [m]."""
 
     middle: float
     radius: float

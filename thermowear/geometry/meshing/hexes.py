@@ -1,7 +1,7 @@
-"""Hexahedra on a lattice of three parameters that a map places in space.
+"""Hexahedra on a lattice of three parameters, mapped to space.
 
-Nodes of cells of any order are the images of equally spaced parameters, so nodes of a curved
-boundary lie on it exactly and the inner ones follow the map.
+Nodes of cells of any order are images of equally spaced parameters, so nodes of a curved
+boundary lie on it exactly and the interior ones follow the map.
 """
 
 from __future__ import annotations
@@ -25,12 +25,11 @@ class Lattice:
     Attributes
     ----------
     ends : tuple of ndarray
-        Ends of elements along each parameter, increasing.
+        Element ends along each parameter, increasing.
     place : callable
-        From parameters to coordinates, both of shape (..., 3) [m]; it keeps the sense of
-        orientation.
+        Orientation-preserving map from parameters to coordinates, both of shape (..., 3) [m].
     closed : bool
-        Whether the second parameter, an angle, ends where it starts.
+        True if the second parameter, an angle, is periodic.
     """
 
     ends: tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -39,7 +38,7 @@ class Lattice:
 
 
 def mesh_lattice(lattice: Lattice, order: int) -> Body:
-    """Cells of an order on a lattice."""
+    """Mesh a lattice with cells of an order."""
     check_count(*(len(ends) - 1 for ends in lattice.ends), most=MOST_HEXAHEDRA)
     u, v, w = (_nodes(ends, order) for ends in lattice.ends)
     if lattice.closed:
@@ -62,7 +61,7 @@ def ends_of(intervals: list[Interval]) -> np.ndarray:
 
 
 def level(places: np.ndarray, z: float) -> np.ndarray:
-    """Which facets, by the places of their nodes (n, nodes, 3), lie at a height."""
+    """Mask of facets, given by their nodes (n, nodes, 3), at a height."""
     return np.all(np.abs(places[..., 2] - z) < 1e-9 * np.ptp(places[..., :2]), axis=1)
 
 

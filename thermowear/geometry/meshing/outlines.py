@@ -1,4 +1,4 @@
-"""Shapes of bodies that are meshed by rings round their contact."""
+"""Outlines of bodies that are meshed by rings around their contact."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .quads import Sheet
 from .rings import Outline, ring_levels, ringed
 
 _SHOULDER = 0.66
-"""Where the diagonal of the rings in a disc ends on its flat, as a part of the radius."""
+"""Position on the flat where the diagonal of the rings in a disc ends, relative to the radius."""
 
 
 @dataclass(frozen=True)
 class Disc:
     """Lower half of a disc that touches the origin from above, an `Outline`.
 
-    `along` is the length of arc from the origin. Only x >= 0 where it is `half` of that.
+    `along` is the arc length from the origin. Only x >= 0 if `half`.
     """
 
     radius: float
@@ -47,7 +47,7 @@ class Disc:
 
 @dataclass(frozen=True)
 class Block:
-    """A rectangle below y = 0, an `Outline`; `side` is the distance of its sides from x = 0."""
+    """Rectangle below y = 0, an `Outline`; `side` is the distance of its sides from x = 0."""
 
     side: float
     depth: float
@@ -67,17 +67,17 @@ class Block:
 def ringed_body(
     outline: Outline, ends: np.ndarray, rows: Sequence[float], ratio: float
 ) -> list[Sheet]:
-    """Cells of a body whose contact face is divided already.
+    """Cells of a body with given division of its contact face.
 
     Parameters
     ----------
     outline : Outline
     ends : ndarray
-        Of the elements of the contact face, along it [m].
+        Element ends of the contact face, along it [m].
     rows : sequence of float
-        Size of the first row below the face [m], and of each row to the one before.
+        Size of the first row below the face [m], and ratio of successive rows.
     ratio : float
-        Size of each ring to the one before.
+        Ratio of successive ring widths.
     """
     half = ends[0] == outline.reach[0]
     depth = min((ends[-1] - ends[0]) / (1 if half else 2), outline.depth / 2)

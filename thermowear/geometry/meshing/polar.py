@@ -1,4 +1,4 @@
-"""Cells between circles and rays, fine below an arc of contact.
+"""Cells between circles and rays, refined below a contact arc.
 
 Angles are measured from the vertical, positive towards +x [rad].
 """
@@ -16,22 +16,22 @@ from .face_ends import face_ends, growth, row_ratio
 from .quads import Sheet, grid
 
 _WIDEST = math.radians(12.0)
-"""Of cells away from the contact: cells of order 3 then have the area of a disk to 6e-7."""
+"""Largest angle of cells away from the contact: order 3 reproduces the area of a disk to 6e-7."""
 
 _QUICKLY = 3.0
-"""Ratio of elements that grow away from a graded edge of contact, where nothing presses."""
+"""Size ratio of elements away from a graded contact edge, outside the contact zone."""
 
 
 @dataclass(frozen=True)
 class Polar:
-    """Angle and radius about a centre on the line x = 0.
+    """Polar coordinates about a centre on the line x = 0.
 
     Attributes
     ----------
     height : float
         y of the centre [m].
     downwards : bool
-        Angles are measured from -y, not from +y.
+        True if angles are measured from -y instead of +y.
     """
 
     height: float = 0.0
@@ -49,12 +49,12 @@ class Polar:
         return np.stack([radius * np.sin(angle), y], axis=-1)
 
     def on_circle(self, p: np.ndarray, radius: float) -> np.ndarray:
-        """Which edges have all their nodes on a circle; nodes of shape (n_edges, order + 1, 2)."""
+        """Mask of edges with all nodes on a circle; nodes of shape (n_edges, order + 1, 2)."""
         distance = np.hypot(p[..., 0], p[..., 1] - self.height)
         return np.all(np.abs(distance - radius) < 1e-9 * radius, axis=1)
 
     def on_arc(self, p: np.ndarray, radius: float, span: tuple[float, float]) -> np.ndarray:
-        """Which edges lie on a circle with their middle between two angles."""
+        """Mask of edges on a circle whose midpoint is between two angles."""
         x, y = p.mean(axis=1).T
         up = self.height - y if self.downwards else y - self.height
         turned = np.arctan2(x, up) - (span[0] + span[1]) / 2
@@ -64,16 +64,16 @@ class Polar:
 
 @dataclass(frozen=True)
 class Division:
-    """How a face and the rows below it are divided.
+    """Division of a face and the rows below it.
 
     Attributes
     ----------
     elements : int
-        In the contact.
+        Number of elements in the contact.
     angles : ndarray
-        At the ends of elements, increasing [rad].
+        Angles of the element ends, increasing [rad].
     first, ratio : float
-        Size of the first row below the face [m], and of each row to the one before.
+        Size of the first row below the face [m], and ratio of successive rows.
     """
 
     elements: int
@@ -87,7 +87,7 @@ class Division:
         return float(self.angles[0]), float(self.angles[-1])
 
     def all_round(self) -> np.ndarray:
-        """Angles at the ends of elements, from the first one of the face once round the circle."""
+        """Angles of the element ends around the whole circle, starting with the face."""
         steps = np.diff(self.angles)
         left, right = self._beside(steps[0]), self._beside(steps[-1])
         beside = np.cumsum(np.concatenate([right, left[::-1]]))
@@ -98,7 +98,7 @@ class Division:
     def _beside(self, edge: float) -> np.ndarray:
         """Angles of elements from an end of the face to the point opposite to the face.
 
-        They start as wide as the last one on the face, and grow quickly to the widest there.
+        They start as wide as the last one on the face and grow by `_QUICKLY` to the widest there.
         """
         first, last = self.span
         room = math.pi - (last - first) / 2
@@ -112,7 +112,7 @@ class Division:
         return np.concatenate([quick, sizes(rest)])
 
     def rows(self, start: float, end: float) -> np.ndarray:
-        """Radii at the ends of rows of a ring, from its face to the other side [m]."""
+        """Radii of the row ends of a ring, from its face to the other side [m]."""
         depth, largest = abs(end - start), max(start, end) * _WIDEST
         first = min(self.first, depth / 3)
         rows = sizes(growing(0.0, depth, first, 1 / self.ratio, largest))
@@ -121,16 +121,16 @@ class Division:
         return radii
 
     def layered(self, thicknesses: tuple[float, ...], length: float) -> list[np.ndarray]:
-        """Depths at the ends of rows of each layer below a face; layers meet at ends of rows.
+        """Depths of the row ends of each layer below a face; layer interfaces are row ends.
 
-        Rows grow from the face and from both sides of every border between layers.
+        Rows grow from the face and from both sides of every layer interface.
 
         Parameters
         ----------
         thicknesses : tuple of float
-            From the face inwards [m].
+            Thicknesses of the layers from the face inwards [m].
         length : float
-            Of the face [m].
+            Length of the face [m].
         """
         largest = max(length, sum(thicknesses)) * 3.0 / self.elements
         border = math.sqrt(self.first * largest)
@@ -150,7 +150,7 @@ def complete(
     face: tuple[int, float],
     zone: tuple[float, float] | None = None,
 ) -> Division:
-    """Division of a face with sharp edges that fits the other one, and may touch up to them.
+    """Division of a conforming face with sharp edges, in contact up to them or in a zone.
 
     Parameters
     ----------
@@ -158,9 +158,9 @@ def complete(
         Angles at the edges [rad].
     radius : float [m]
     face : tuple of int and float
-        Elements and grading, see `thermowear.case.tables.schema.Mesh.face`.
+        Number of elements and grading, see `thermowear.case.tables.schema.Mesh.face`.
     zone : tuple of float, optional
-        Angles at the edges of the contact where it ends inside the face [rad].
+        Angles of the contact edges if they lie inside the face [rad].
     """
     elements, grading = face
     steps = sizes(divided_face(*arc, elements, grading, zone))
@@ -174,16 +174,16 @@ def complete(
 def incomplete(
     zone: tuple[float, float], radius: float, face: tuple[int, float], limit: float
 ) -> Division:
-    """Division of a face that touches in a zone only.
+    """Division of a face that is in contact in a zone only.
 
     Parameters
     ----------
     zone : tuple of float
-        Angles at the edges of the contact, where elements end [rad].
+        Angles of the contact edges, which are element ends [rad].
     radius, face
-        As in `complete`.
+        See `complete`.
     limit : float
-        Angle beyond which the face does not go on, but for a few degrees [rad].
+        Largest angle of the face, exceeded by a few degrees at most [rad].
     """
     elements, grading = face
     angles, largest = face_ends(zone, elements, grading, False, (-limit, limit))

@@ -1,8 +1,8 @@
-"""Curved quadrilaterals made without a mesh generator: corners on a sheet of paper, then bent.
+"""Curved quadrilaterals without a mesh generator: cells in a parameter plane, and a map.
 
-A sheet holds cells by their corners in two plane parameters and the map that places them in the
-section. Nodes of cells of any order are the images of equally spaced points, so nodes of a curved
-boundary lie on it exactly and the inner ones follow the map.
+A sheet holds cells by their corners in two plane parameters and the map to the section. Nodes
+of cells of any order are images of equally spaced points, so nodes of a curved boundary lie on it
+exactly and the interior ones follow the map.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ class Sheet:
     Attributes
     ----------
     corners : ndarray, shape (n_cells, 4, 2)
-        In order round each cell, either way round.
+        Corners in order around each cell, of either orientation.
     place : callable
-        From parameters to coordinates, both of shape (..., 2) [m].
+        Map from parameters to coordinates, both of shape (..., 2) [m].
     zone : str
-        Part of the body with a material of its own; empty for the body itself.
+        Zone of the body with a material of its own; empty for the body itself.
     """
 
     corners: np.ndarray
@@ -39,17 +39,17 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Body:
-    """A meshed body, of quadrilaterals in the plane or of hexahedra in space.
+    """Meshed body, of quadrilaterals in the plane or of hexahedra in space.
 
     Attributes
     ----------
     points : ndarray, shape (n_points, gdim) [m]
     cells : ndarray of int64, shape (n_cells, (order + 1)**gdim)
-        In gmsh's order of nodes.
+        Nodes in gmsh's order.
     facets : ndarray of int64, shape (n_facets, (order + 1)**(gdim - 1))
-        Of the boundary, in gmsh's order of nodes.
+        Boundary facets, nodes in gmsh's order.
     zones : dict of str to ndarray of int
-        Cells of its zones.
+        Indices of the cells of its zones.
     """
 
     points: np.ndarray
@@ -72,18 +72,18 @@ def ruled(
 ) -> Sheet:
     """Cells between a curve and a straight line.
 
-    Their columns widen or narrow from the given ones on the curve to equal ones on the line.
+    Column widths vary linearly from the given ones on the curve to equal ones on the line.
 
     Parameters
     ----------
     curve : callable
-        Point at a parameter.
+        Point of the curve at a parameter.
     line : ndarray, shape (2, 2)
         Ends of the line, opposite to the first and last of `along` [m].
     along : ndarray
-        Parameters of the curve at the ends of columns, increasing.
+        Parameters of the curve at the column ends, increasing.
     v : ndarray
-        Ends of rows, from 0 on the curve to 1 on the line.
+        Row ends, from 0 on the curve to 1 on the line.
     """
     extent = along[-1] - along[0]
     t, count = (along - along[0]) / extent, len(along) - 1
@@ -100,7 +100,7 @@ def ruled(
 
 
 def mesh_body(sheets: list[Sheet], order: int) -> Body:
-    """Cells of all sheets, joined where their nodes coincide."""
+    """Cells of all sheets, with coinciding nodes merged."""
     nodes = np.concatenate([_nodes(sheet, order) for sheet in sheets])
     points, cells = _joined(nodes)
     zone = np.repeat([sheet.zone for sheet in sheets], [len(sheet.corners) for sheet in sheets])
@@ -111,16 +111,16 @@ def mesh_body(sheets: list[Sheet], order: int) -> Body:
 def tagged_bodies(
     bodies: dict[str, Body], surfaces: dict[str, Callable[[np.ndarray], np.ndarray]]
 ) -> TaggedMesh:
-    """Put meshed bodies together and name their boundary.
+    """Assemble meshed bodies and name their boundary.
 
     Parameters
     ----------
     bodies : dict of str to Body
-        Body 1 first.
+        Bodies by name, body 1 first.
     surfaces : dict of str to callable
-        Body and surface in one name, ``body_surface``. From the coordinates of the nodes of
-        boundary facets, shape (n_facets, nodes, gdim), to whether each facet lies on the surface;
-        a facet belongs to the first surface of its body that claims it.
+        Predicate of each surface, named ``body_surface``: maps the coordinates of the nodes of
+        boundary facets, shape (n_facets, nodes, gdim), to a mask; a facet belongs to the first
+        surface of its body whose predicate is true.
     """
     names = [*bodies, *(zone for body in bodies.values() for zone in body.zones)]
     shift, points, cells, cell_tags, facets, facet_tags = 0, [], [], [], [], []
@@ -163,7 +163,7 @@ def _nodes(sheet: Sheet, order: int) -> np.ndarray:
 
 
 def _joined(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """One point for coinciding nodes: coordinates, and the points of each cell."""
+    """Merge coinciding nodes: coordinates, and the point indices of each cell."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree

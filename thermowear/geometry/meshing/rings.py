@@ -1,11 +1,11 @@
-"""A structured mesh of a body round its contact: a fine patch, then rings that grow outwards.
+"""Structured mesh of a body around its contact: a fine patch, then rings that grow outwards.
 
 The patch below the contact face is a tensor grid. Each ring adds a block under the patch and one
-beside it (on both sides, or on the right only where a plane of symmetry bounds the body on the
-left). Blocks meet on the diagonal. Where cells would become too slender, three of them are joined
-into one across a ring.
+beside it (on both sides, or on the right only if a plane of symmetry bounds the body on the left).
+Blocks meet on the diagonal. Where cells would become too slender, three of them are merged into one
+across a ring.
 
-Lengths along the face are measured along its curve ("along"), depths from the face into the body.
+Lengths along the face are arc lengths ("along"), depths are measured from the face into the body.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ from ..mesh.limits import check_count
 from .quads import Sheet, ruled
 
 _SLENDER = 2.9
-"""Ratio of a ring's width to its cells' size from which three cells are joined."""
+"""Ratio of ring width to cell size above which three cells are merged."""
 
 _TALL = 5.4
-"""Ratio from which they are joined in a narrower ring of their own."""
+"""Ratio above which they are merged in a narrower ring of their own."""
 
 _IN_RING = 500
-"""Cells that a ring may have, for an estimate of how many there will be."""
+"""Number of cells of a ring, for an estimate of their total."""
 
 
 class Outline(Protocol):
-    """A body's shape, seen from its contact face.
+    """Shape of a body relative to its contact face.
 
     Attributes
     ----------
     reach : tuple of float
         `along` at the left and the right end of the body [m].
     depth : float
-        Of the side opposite to the face [m].
+        Depth of the side opposite to the face [m].
     """
 
     @property
@@ -49,12 +49,12 @@ class Outline(Protocol):
         """Points on the face, shape (..., 2) [m]."""
 
     def inside(self, along: np.ndarray, depth: np.ndarray) -> np.ndarray:
-        """Corners of rings; at `reach` and `depth` on the body's boundary, shape (..., 2) [m]."""
+        """Corners of rings; on the body's boundary at `reach` and `depth`, shape (..., 2) [m]."""
 
 
 @dataclass(frozen=True)
 class Levels:
-    """Where rings begin and end: `along` on the left and on the right, depth; shape (n + 1,)."""
+    """Limits of the rings: `along` on the left and on the right, depth; shape (n + 1,)."""
 
     left: np.ndarray
     right: np.ndarray
@@ -64,8 +64,8 @@ class Levels:
 def ring_levels(outline: Outline, face: tuple[float, float], depth: float, growth: float) -> Levels:
     """Rings from a patch to the end of a body, each about `growth` times the one before it.
 
-    The patch ranges over `face` and to `depth`. A left end at `reach` itself is a plane of
-    symmetry.
+    The patch covers `face` and extends to `depth`. A left end equal to that of `reach` is a plane
+    of symmetry.
     """
     middle = face[0] if face[0] == outline.reach[0] else (face[0] + face[1]) / 2
     starts = np.array([middle - face[0], face[1] - middle, depth])
@@ -78,7 +78,7 @@ def ring_levels(outline: Outline, face: tuple[float, float], depth: float, growt
 
 
 def _growing(start: float, end: float, growth: float, largest: float) -> np.ndarray:
-    """Distances from start to end that grow geometrically, by steps up to `largest`."""
+    """Geometric sequence of distances from start to end, with steps up to `largest`."""
     if start == end:
         return np.array([start])
     check_count((end - start) / largest, _IN_RING)
@@ -93,15 +93,15 @@ def _growing(start: float, end: float, growth: float, largest: float) -> np.ndar
 
 
 def ringed(outline: Outline, face: np.ndarray, rows: np.ndarray, levels: Levels) -> list[Sheet]:
-    """The cells of a body.
+    """Cells of a body.
 
     Parameters
     ----------
     outline : Outline
     face : ndarray
-        `along` at the ends of the elements of the patch, increasing.
+        `along` at the element ends of the patch, increasing.
     rows : ndarray
-        Depths at the ends of its rows, from 0 to the depth of the first level.
+        Depths at its row ends, from 0 to the depth of the first level.
     levels : Levels
     """
     inner = outline.inside(face[[0, -1]], rows[[-1, -1]])
@@ -165,19 +165,19 @@ def _linear(ends, s):
 
 
 def _ring_block(inner: np.ndarray, join: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Cells of a block of a ring in (s, t), and t at the ends of its elements on the outside.
+    """Cells of a block of a ring in (s, t), and t at its element ends on the outside.
 
     Parameters
     ----------
     inner : ndarray
-        t at the ends of the elements on the inside.
+        t at the element ends on the inside.
     join : bool
-        Whether three elements become one.
+        True if three elements are merged into one.
     """
     n = len(inner) - 1
     triples = n // 3 if join else 0
     if n % 3 and triples % 2:
-        triples -= 1  # the rest stays in the middle, for the sake of symmetry
+        triples -= 1  # the remainder stays in the middle, for symmetry
     before = (triples + 1) // 2
     rest = n - 3 * triples
     starts = [3 * i for i in range(before)]

@@ -1,6 +1,6 @@
-"""A punch with rounded edges: its section in blocks, and how far it touches.
+"""Punch with rounded edges: block structure of its section, and its contact half-width.
 
-The face, the side and a core meet in a point above each rounding, so that cells follow the
+The face, the side and a core meet at a point above each rounding, so that cells follow the
 rounding and stay well shaped.
 """
 
@@ -29,7 +29,7 @@ def expected_end(flat: float, radius: float, load: float) -> float:
     flat : float
         Half-width of the flat, b [m].
     radius : float
-        Of the rounding, r [m].
+        Radius of the rounding, r [m].
     load : float
         Line load over the contact modulus, P / E* [m].
     """
@@ -56,17 +56,17 @@ class RoundedPunch:
 
     @property
     def end(self) -> float:
-        """Where the contact face ends, x [m]."""
+        """X of the end of the contact face [m]."""
         return self.flat + self.radius * math.sin(_END)
 
     @property
     def end_height(self) -> float:
-        """Height of that point, y [m]."""
+        """Y of the end of the contact face [m]."""
         return self.radius * (1 - math.cos(_END))
 
     @property
     def largest(self) -> float:
-        """Largest half-width of a zone of contact [m]."""
+        """Largest half-width of a contact zone [m]."""
         return self.flat + 0.6 * self.radius
 
     def cells(self, ends: np.ndarray, first: float) -> list[Sheet]:
@@ -75,9 +75,9 @@ class RoundedPunch:
         Parameters
         ----------
         ends : ndarray
-            x at the ends of elements of the contact face; the outermost are put at its ends [m].
+            X at the element ends of the contact face; the outermost are moved to its ends [m].
         first : float
-            Size of the first row above it [m], if the rounding is not smaller.
+            Size of the first row above it [m], bounded by the radius of the rounding.
         """
         width = self.flat + self.radius
         shell = min(max(1.5 * self.radius, 0.4 * width), 0.7 * width, 0.7 * self.height)
@@ -103,7 +103,7 @@ class RoundedPunch:
         return sheets
 
     def _along(self, ends: np.ndarray) -> np.ndarray:
-        """Lengths along the contour at x, the outermost moved to the ends of the face."""
+        """Arc lengths along the contour at x, the outermost moved to the ends of the face."""
         x = np.abs(ends)
         over = np.clip((x - self.flat) / self.radius, 0.0, math.sin(_END))
         along = np.minimum(x, self.flat) + self.radius * np.arcsin(over)
@@ -111,7 +111,7 @@ class RoundedPunch:
         return np.sign(ends) * along
 
     def _side_ends(self, first: float) -> np.ndarray:
-        """Lengths along the contour at the ends of elements beside the contact face."""
+        """Arc lengths along the contour at the element ends beside the contact face."""
         start = self.flat + self.radius * _END
         corner = self.flat + self.radius * math.pi / 2
         up = self.height - self.radius

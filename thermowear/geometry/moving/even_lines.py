@@ -1,8 +1,8 @@
-"""How the lines round a body are divided so that quadrilaterals fit between them.
+"""Division of the boundary lines of a body for a quadrilateral mesh.
 
-The mesh is made of cells twice as long as the edges, which are then divided. So edges go in pairs
-that are about as long; one without its like is halved, and so are those that are much longer than
-their neighbours, round corners, too.
+The mesh is generated with cells twice as long as the edges, then refined. Edges are therefore
+grouped in pairs of similar length; an edge without a similar neighbour is halved, and so are pairs
+much longer than their neighbours, also around corners.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ import numpy as np
 from .skeleton import Line
 
 _UNEVEN = 1.6
-"""Edges whose lengths have a larger ratio make no pair."""
+"""Largest length ratio of the two edges of a pair."""
 _GROWTH = 4.0
-"""Of a pair to its neighbour, at most."""
+"""Largest length ratio of neighbouring pairs."""
 
 Span = tuple[float, float, float]
-"""Start, middle and end of a pair, in edges."""
+"""Start, middle and end of a pair, as edge numbers and fractions."""
 
 
 def even(lines: list[Line]) -> list[np.ndarray]:
-    """Ends of the edges that lines should have, for each line in numbers of its edges."""
+    """Edge ends of the new division of each line, as numbers and fractions of its edges."""
     spans = [_pairs(_sizes(line)) for line in lines]
     while True:
         lengths = [_lengths(line, pairs) for line, pairs in zip(lines, spans, strict=True)]
@@ -42,7 +42,7 @@ def even(lines: list[Line]) -> list[np.ndarray]:
 
 
 def _pairs(lengths: np.ndarray) -> list[Span]:
-    """Neighbours that are about as long, and halves of the others."""
+    """Pairs of neighbours of similar length, and halves of the other edges."""
     found: list[Span] = []
     k = 0
     while k < len(lengths):
@@ -54,7 +54,7 @@ def _pairs(lengths: np.ndarray) -> list[Span]:
 
 
 def _parts(span: Span, divided: np.bool) -> list[Span]:
-    """A pair, or two."""
+    """Pair, or its two halves as pairs."""
     start, middle, end = span
     if not divided:
         return [span]
@@ -62,7 +62,7 @@ def _parts(span: Span, divided: np.bool) -> list[Span]:
 
 
 def _limits(lines: list[Line], lengths: list[np.ndarray]) -> list[np.ndarray]:
-    """How long the pairs of each line may be for their neighbours."""
+    """Largest length of the pairs of each line, given by their neighbours."""
     at = defaultdict(list)
     for line, own in zip(lines, lengths, strict=True):
         for end, length in zip(line.ends, own[[0, -1]], strict=True):
@@ -79,7 +79,7 @@ def _sizes(line: Line) -> np.ndarray:
 
 
 def _lengths(line: Line, spans: list[Span]) -> np.ndarray:
-    """Of pairs, as if each edge were as long as its chord all over [m]."""
+    """Lengths of pairs, with uniform chord length within each edge [m]."""
     so_far = np.concatenate([[0.0], np.cumsum(_sizes(line))])
     start, _, end = np.array(spans).T
     numbers = np.arange(len(so_far))

@@ -1,7 +1,7 @@
-"""A mesh that follows a face that has moved into its body.
+"""Mesh motion of a plane body whose face has moved into it.
 
-Sides that end at the face slide along themselves up to their next corner, all other outlines stay,
-and the inner nodes follow harmonically.
+Sides adjacent to the face slide along themselves up to their next corner, the rest of the
+outline is fixed, and the interior nodes follow by harmonic extension.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..mesh.shapes import stiffness
 from ..mesh.tagged import TaggedMesh
 
 _CORNER = np.cos(np.radians(20.0))
-"""Edges that meet at a sharper turn make a corner."""
+"""Cosine of the largest turn of a smooth outline; sharper turns are corners."""
 _SYMMETRIC = {
     "permc_spec": "MMD_AT_PLUS_A",
     "diag_pivot_thresh": 0.0,
@@ -30,16 +30,16 @@ _SYMMETRIC = {
 
 @dataclass(frozen=True)
 class Side:
-    """What of a body's outline begins at an end of its worn face.
+    """Side: smooth part of a body's outline adjacent to an end of its worn face.
 
     Attributes
     ----------
     nodes : ndarray of int, shape (n,)
-        From the end of the face to the next corner.
+        Nodes from the end of the face to the next corner.
     inward : ndarray, shape (2,)
         Unit vector from the end of the face along the side.
     is_corner : bool
-        Whether face and side meet at an angle; where not, the side is but more of the face.
+        True if face and side meet at an angle; otherwise the side continues the face smoothly.
     """
 
     nodes: np.ndarray
@@ -48,7 +48,7 @@ class Side:
 
 
 class MovableBody:
-    """One body of a plane mesh, whose worn face can be moved.
+    """Body of a plane mesh whose worn face can be moved.
 
     Parameters
     ----------
@@ -70,15 +70,15 @@ class MovableBody:
         self.sides = tuple(self._side(ends) for ends in (self.face[:2], self.face[-2:][::-1]))
 
     def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Directions out of the body that the nodes of the face go along, and which of them stay.
+        """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
 
-        Its ends go along the sides, or stay where the outline goes on smoothly. From the normals
-        the others lean as much less as they are nearer to the other end, and do not cross.
+        Ends of the face move along the sides, or are fixed if the outline continues smoothly. In
+        between, the inclination to the normal varies linearly, so that the paths do not cross.
 
         Parameters
         ----------
         normals : ndarray, shape (n, 2)
-            Outward, at the nodes of the face.
+            Outward normals at the nodes of the face.
 
         Returns
         -------
@@ -92,7 +92,7 @@ class MovableBody:
                 turn[k] = _angle(normals[-k], -side.inward)
         steps = np.linalg.norm(np.diff(self._mesh.points[self.face], axis=0), axis=1)
         part = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
-        return _turned(normals, (1 - part) * turn[0] + part * turn[1]), held
+        return _rotated(normals, (1 - part) * turn[0] + part * turn[1]), held
 
     def displaced(self, displacement: np.ndarray) -> np.ndarray:
         """Coordinates of all nodes of the mesh after the face has moved, shape (n_points, 2) [m].
@@ -100,47 +100,47 @@ class MovableBody:
         Parameters
         ----------
         displacement : ndarray, shape (n, 2)
-            Of the nodes of the face; at its ends along the sides [m].
+            Displacement of the nodes of the face; at its ends along the sides [m].
         """
         return self.followed(self.outlined(displacement))
 
     def outlined(self, displacement: np.ndarray) -> np.ndarray:
-        """Displacement of the outline when the face moves, zero within; shape (n_points, 2) [m].
+        """Displacement of the outline when the face moves, zero inside; shape (n_points, 2) [m].
 
         Parameters
         ----------
         displacement : ndarray, shape (n, 2)
-            Of the nodes of the face; at its ends along the sides [m].
+            Displacement of the nodes of the face; at its ends along the sides [m].
         """
         given = np.zeros_like(self._mesh.points)
         for side, end in zip(self.sides, (displacement[0], displacement[-1]), strict=True):
-            given[side.nodes] = self._slid(side, float(end @ side.inward))
+            given[side.nodes] = self._slide_displacement(side, float(end @ side.inward))
         given[self.face] = displacement
         return given
 
     def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
         """Volume that the body loses by a displacement of its outline [m³].
 
-        By Gauss's theorem on the edges that move alone, as it may be tiny against that of the body.
+        By Gauss's theorem on the moved edges only, as it may be tiny relative to the body's volume.
 
         Parameters
         ----------
         outlined : ndarray, shape (n_points, 2)
-            From `outlined` [m].
+            Displacement of the outline, see `outlined` [m].
         factor : callable
-            From area to volume at points of shape (n, 2); linear in x.
+            Factor from area to volume at points of shape (n, 2); linear in x.
         """
         edges = self._edges[np.any(outlined[self._edges] != 0.0, axis=(1, 2))]
         points = self._mesh.points[edges]
         return enclosed(points, factor) - enclosed(points + outlined[edges], factor)
 
     def followed(self, outlined: np.ndarray) -> np.ndarray:
-        """Coordinates of all nodes of the mesh when the outline has moved, (n_points, 2) [m]."""
+        """Coordinates of all nodes of the mesh after the outline has moved, (n_points, 2) [m]."""
         known = np.unique(self._edges)
         return self._mesh.points + extended(self._mesh, self._cells, known, outlined)
 
-    def _slid(self, side: Side, way: float) -> np.ndarray:
-        """How far the nodes of a side go along it when its first one goes so far [m]."""
+    def _slide_displacement(self, side: Side, way: float) -> np.ndarray:
+        """Displacement of the nodes of a side along it, given that of its first node [m]."""
         points = self._mesh.points[side.nodes]
         if not side.is_corner:
             return np.zeros_like(points)
@@ -151,7 +151,7 @@ class MovableBody:
         return where + before - points
 
     def _side(self, ends: np.ndarray) -> Side:
-        """The side that begins at the first of the two end nodes of the face."""
+        """Side that begins at the first of the two end nodes of the face."""
         points, at = self._mesh.points, defaultdict(list)
         on_face = set(self.face.tolist())
         for edge in self._edges:
@@ -180,16 +180,16 @@ class MovableBody:
 def extended(
     mesh: TaggedMesh, cells: np.ndarray, known: np.ndarray, given: np.ndarray
 ) -> np.ndarray:
-    """A displacement of the nodes of some cells that is harmonic between known ones.
+    """Harmonic extension of a nodal displacement into some cells.
 
     Parameters
     ----------
     mesh : TaggedMesh
     cells : ndarray of bool, shape (n_cells,)
     known : ndarray of int
-        Nodes whose displacement is given.
+        Nodes whose displacement is prescribed.
     given : ndarray, shape (n_points, 2)
-        It, zero elsewhere [m].
+        Prescribed displacement, zero elsewhere [m].
 
     Returns
     -------
@@ -211,7 +211,7 @@ def extended(
 
 
 def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
-    """Edges that only one cell has, their nodes in order with the cell on their left."""
+    """Boundary edges, with ordered nodes and their cell on the left."""
     local = edge_nodes(mesh.cell_type, mesh.order)
     every = cells[:, local].reshape(-1, local.shape[1])
     ends = np.sort(every[:, :2], axis=1)
@@ -227,7 +227,7 @@ def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
 
 
 def enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
-    """What edges (n, n_nodes, 2) add to ``∮ G dy``, G the integral of a factor along x."""
+    """Contribution of edges (n, n_nodes, 2) to ``∮ G dy``, G the integral of a factor along x."""
     order = edges.shape[1] - 1
     t, w = np.polynomial.legendre.leggauss(2 * order + 1)
     knots = np.linspace(-1.0, 1.0, order + 1)
@@ -242,12 +242,12 @@ def enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> f
 
 
 def _angle(first: np.ndarray, second: np.ndarray) -> float:
-    """From one plane vector to another, anticlockwise."""
+    """Angle from one plane vector to another, anticlockwise [rad]."""
     return float(np.arctan2(first[0] * second[1] - first[1] * second[0], first @ second))
 
 
-def _turned(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Plane vectors (n, 2) turned anticlockwise."""
+def _rotated(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Plane vectors (n, 2) rotated anticlockwise."""
     cos, sin = np.cos(angles), np.sin(angles)
     x, y = vectors.T
     return np.column_stack([cos * x - sin * y, sin * x + cos * y])

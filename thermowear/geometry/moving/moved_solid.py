@@ -1,8 +1,8 @@
-"""A mesh in space that follows a face that has moved into its body.
+"""Mesh motion of a body in space whose face has moved into it.
 
-The sides that meet the face at an angle slide along themselves up to their next sharp edge, the
-edges between them likewise, all other outlines stay, and the inner nodes follow: all harmonically,
-first within the edges, then within the sides, then within the body.
+Sides that meet the face at an angle slide along themselves up to their next sharp edge, and so do
+the edges between them; the rest of the boundary is fixed, and the interior nodes follow. All by
+harmonic extension: first in the edges, then in the sides, then in the body.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from ..mesh.tagged import TaggedMesh
 from .patches import Patches
 
 _SETTLED = 1e-12
-"""Of the residual of a harmonic extension."""
+"""Relative residual tolerance of a harmonic extension."""
 
 
 class MovableSolid:
-    """One body of a mesh in space, whose worn face can be moved.
+    """Body of a mesh in space whose worn face can be moved.
 
     Parameters
     ----------
     mesh : TaggedMesh
-        Of hexahedra.
+        Mesh of hexahedra.
     parts : tuple of str
         Names of the body's parts.
     face : ndarray, shape (n, 3)
@@ -44,14 +44,14 @@ class MovableSolid:
         self._patches = Patches(mesh, self._cells, self.face)
 
     def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Directions out of the body that the nodes of the face go along, and which of them stay.
+        """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
 
-        Those where the face ends at a side go along it, those where it goes on smoothly stay.
+        Nodes where the face ends at a side move along it; fixed where it continues smoothly.
 
         Parameters
         ----------
         normals : ndarray, shape (n, 3)
-            Outward, at the nodes of the face.
+            Outward normals at the nodes of the face.
 
         Returns
         -------
@@ -65,12 +65,12 @@ class MovableSolid:
         return every[self.face], np.isin(self.face, self._patches.level())
 
     def outlined(self, displacement: np.ndarray) -> np.ndarray:
-        """Displacement of the outline when the face moves, zero within; shape (n_points, 3) [m].
+        """Displacement of the outline when the face moves, zero inside; shape (n_points, 3) [m].
 
         Parameters
         ----------
         displacement : ndarray, shape (n, 3)
-            Of the nodes of the face; where it ends along the sides [m].
+            Displacement of the nodes of the face; at its rim along the sides [m].
         """
         given = np.zeros_like(self._mesh.points)
         given[self.face] = displacement
@@ -83,15 +83,15 @@ class MovableSolid:
     def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
         """Volume that the body loses by a displacement of its outline [m³].
 
-        By Gauss's theorem on the facets that move alone, as it may be tiny against that of the
-        body.
+        By Gauss's theorem on the moved facets only, as it may be tiny relative to the body's
+        volume.
 
         Parameters
         ----------
         outlined : ndarray, shape (n_points, 3)
-            From `outlined` [m].
+            Displacement of the outline, see `outlined` [m].
         factor : callable
-            From volume to volume at points of shape (n, 3), the same everywhere.
+            Constant volume factor at points of shape (n, 3).
         """
         facets = self._patches.facets
         facets = facets[np.any(outlined[facets] != 0.0, axis=(1, 2))]
@@ -102,7 +102,7 @@ class MovableSolid:
         return (before - after) * float(factor(np.zeros((1, 3)))[0])
 
     def followed(self, outlined: np.ndarray) -> np.ndarray:
-        """Coordinates of all nodes of the mesh when the outline has moved, (n_points, 3) [m]."""
+        """Coordinates of all nodes of the mesh after the outline has moved, (n_points, 3) [m]."""
         given, known = outlined.copy(), np.zeros(len(outlined), dtype=bool)
         known[self._patches.facets] = True
         self._extend(self._mesh.cell_type, self._cells, given, known)
@@ -111,12 +111,12 @@ class MovableSolid:
     def displaced(self, displacement: np.ndarray) -> np.ndarray:
         """Coordinates of all nodes of the mesh after the face has moved, shape (n_points, 3) [m].
 
-        `displacement` as in `outlined`.
+        See `outlined` for `displacement`.
         """
         return self.followed(self.outlined(displacement))
 
     def _extend(self, kind: str, cells: np.ndarray, given: np.ndarray, known: np.ndarray) -> None:
-        """Fill in the displacement of the nodes of cells that is not yet known, harmonically."""
+        """Fill in unknown displacements of the nodes of cells by harmonic extension."""
         free = np.unique(cells[~known[cells]])
         if len(free) == 0:
             return
@@ -130,7 +130,7 @@ class MovableSolid:
         ).tocsr()
         rows = whole[np.searchsorted(nodes, free)]
         inner = rows[:, np.searchsorted(nodes, free)]
-        right = -(rows @ given[nodes])  # free ones are still zero
+        right = -(rows @ given[nodes])  # displacements of free nodes are still zero
         scale = 1.0 / inner.diagonal()
         jacobi = scipy.sparse.linalg.LinearOperator(inner.shape, matvec=lambda v: scale * v.ravel())
         for k in range(given.shape[1]):
@@ -139,7 +139,7 @@ class MovableSolid:
 
 
 def _enclosed(kind: str, order: int, facets: np.ndarray) -> float:
-    """What facets (n, n_nodes, 3) add to ``∮ x·n dS / 3``."""
+    """Contribution of facets (n, n_nodes, 3) to ``∮ x·n dS / 3``."""
     places, weights = gauss_rule(kind, 2 * order + 1)
     points = np.einsum("qk,fki->fqi", shape_functions(kind, order, places), facets)
     tangents = np.einsum("qdk,fki->dfqi", slopes(kind, order, places), facets)

@@ -1,4 +1,4 @@
-"""A worn face divided anew on a B-spline through its nodes; its body keeps its volume."""
+"""Volume-preserving redivision of a worn face on a spline through its nodes."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import scipy
 from .moved import enclosed
 
 _STEPS = 6
-"""Of Newton's method to the volume; it is almost in proportion to the way of the face."""
+"""Newton iterations on the volume, which is nearly proportional to the offset of the face."""
 
 
 @dataclass(frozen=True)
 class NewFace:
-    """A worn face before and after it was divided anew; lengths are those along chords [m].
+    """Worn face before and after redivision; lengths are chord lengths [m].
 
     Attributes
     ----------
@@ -32,23 +32,23 @@ class NewFace:
     place: np.ndarray
 
     def on_curve(self, number: np.ndarray) -> np.ndarray:
-        """Points (n, 2) of the smooth curve that the face is on, by edge plus parameter [m]."""
+        """Points (n, 2) of the smooth curve of the face, by edge number plus parameter [m]."""
         after = np.arange(len(self.place)) / self._order
         return curve(self.former_place, _nodes(self.former))(np.interp(number, after, self.place))
 
     def at(self, former: np.ndarray) -> np.ndarray:
-        """Edge plus parameter of points that are given so on the former face."""
+        """New edge number plus parameter of points given by those on the former face."""
         before, after = (np.arange(len(p)) / self._order for p in (self.former_place, self.place))
         return np.interp(np.interp(former, before, self.former_place), self.place, after)
 
     def carried(self, values: np.ndarray) -> np.ndarray:
-        """Values (n_nodes, …) of the former nodes at the new ones."""
+        """Interpolate nodal values (n_nodes, …) from the former nodes to the new ones."""
         columns = values.reshape(len(values), -1).T
         found = [np.interp(self.place, self.former_place, column) for column in columns]
         return np.column_stack(found).reshape(-1, *values.shape[1:])
 
     def cut(self, edges: np.ndarray, ends: np.ndarray) -> NewFace:
-        """The same with other edges that end at some numbers and fractions of the present ones."""
+        """Copy with other edges, whose ends are numbers and fractions of the present ones."""
         count = np.arange(len(edges) * self._order + 1) / self._order
         number = np.interp(count, np.arange(len(ends)), ends)
         place = np.interp(number, np.arange(len(self.place)) / self._order, self.place)
@@ -70,18 +70,18 @@ def divided(
     sizes: np.ndarray,
     factor: Callable[[np.ndarray], np.ndarray],
 ) -> NewFace:
-    """Divide a face into edges in proportion to the lengths asked for.
+    """Divide a face into edges in proportion to the requested lengths.
 
     Parameters
     ----------
     nodes : ndarray, shape (n_nodes, 2)
-        In order along it [m].
+        Nodes in order along the face [m].
     order : int
-        Of its edges.
+        Order of its edges.
     sizes : ndarray, shape (n_edges,)
-        Lengths that its present edges should have [m].
+        Requested lengths of its present edges [m].
     factor : callable
-        From area to volume at points of shape (n, 2); the volume behind the face stays.
+        Factor from area to volume at points of shape (n, 2); the volume behind the face is kept.
     """
     place = _lengths(nodes)
     wanted = np.concatenate([[0.0], np.cumsum(np.diff(place[::order]) / sizes)])
@@ -105,9 +105,9 @@ def divided(
 
 
 def curve(place: np.ndarray, nodes: np.ndarray) -> scipy.interpolate.Akima1DInterpolator:
-    """A cubic B-spline through nodes (n, 2) at places along it, its knots double (Akima, modified).
+    """Modified Akima interpolation through nodes (n, 2) at chord lengths `place`.
 
-    It does not overshoot: where a face begins to be worn it has a corner.
+    It does not overshoot at the corner where the worn part of a face begins.
     """
     return scipy.interpolate.Akima1DInterpolator(place, nodes, method="makima")
 
@@ -119,10 +119,10 @@ def _edges(nodes: np.ndarray, order: int) -> np.ndarray:
 
 
 def _nodes(edges: np.ndarray) -> np.ndarray:
-    """The inverse of `_edges`."""
+    """Inverse of `_edges`."""
     return np.concatenate([edges[:, :-1].reshape(-1, 2), edges[-1:, -1]])
 
 
 def _lengths(nodes: np.ndarray) -> np.ndarray:
-    """Lengths along chords up to each node [m]."""
+    """Chord lengths up to each node [m]."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1))])

@@ -1,4 +1,4 @@
-"""The boundary of a solid, split at its sharp edges into smooth patches."""
+"""Boundary of a solid, split at its sharp edges into smooth patches."""
 
 from __future__ import annotations
 
@@ -10,30 +10,30 @@ from ..mesh.orders import boundary, slopes
 from ..mesh.tagged import TaggedMesh
 
 _SMOOTH = np.cos(np.radians(20.0))
-"""Facets whose normals make a smaller angle where they meet belong together."""
+"""Cosine of the largest angle between the normals of adjacent facets in one patch."""
 _INWARD = ((1, 1.0), (0, -1.0), (1, -1.0), (0, 1.0))
-"""Parameter that runs from each edge of a quadrilateral into it, and its sense."""
+"""Reference coordinate normal to each edge of a quadrilateral, and its inward sign."""
 
 
 class Patches:
-    """Facets of a body of hexahedra, and the edges between its smooth patches.
+    """Boundary facets of a body of hexahedra, and the edges between its smooth patches.
 
     Parameters
     ----------
     mesh : TaggedMesh
     cells : ndarray of int, shape (n_cells, nodes_per_cell)
-        Of the body.
+        Cells of the body.
     face : ndarray of int, shape (n,)
         Nodes of the face that moves.
 
     Attributes
     ----------
     facets : ndarray of int, shape (n_facets, nodes_per_facet)
-        All of the boundary, their outward normals by the right-hand rule.
+        All boundary facets, with outward normals by the right-hand rule.
     sliding : ndarray of int, shape (n, nodes_per_facet)
-        Those of the patches that meet the face at a sharp edge.
+        Facets of the patches that meet the face at a sharp edge.
     seams : ndarray of int, shape (n, order + 1)
-        Edges between two such patches: both ends, then the nodes between them.
+        Edges between two such patches: both ends, then the interior nodes.
     still : ndarray of int, shape (n,)
         Nodes of all other patches.
     """
@@ -43,7 +43,7 @@ class Patches:
         self.facets = boundary(mesh.cell_type, mesh.order, cells)
         on_face = np.logical_and.reduce(np.isin(self.facets, face), axis=1)
         self._edges = self.facets[:, edge_nodes("quadrilateral", mesh.order)]
-        meeting = _meeting(self._edges)  # edges are numbered through all facets, four a facet
+        meeting = _meeting(self._edges)  # edge number: 4 facet + local edge
         one, other = np.moveaxis(self._normals(meeting), 1, 0)
         smooth = np.einsum("ei,ei->e", one, other) > _SMOOTH
         facet = meeting // 4
@@ -80,11 +80,11 @@ class Patches:
         return nodes, summed / np.linalg.norm(summed, axis=1, keepdims=True)
 
     def level(self) -> np.ndarray:
-        """Nodes where the boundary goes smoothly on beyond the face."""
+        """Nodes where the boundary continues smoothly beyond the face."""
         return np.unique(self._edges.reshape(-1, self._order + 1)[self._level])
 
     def _normals(self, edges: np.ndarray) -> np.ndarray:
-        """Outward unit normals of facets in the middle of edges, shape (..., 3)."""
+        """Outward unit normals of facets at the midpoints of edges, shape (..., 3)."""
         facet, side = np.divmod(edges, 4)
         middles = np.array([(0.5, 0.0), (1.0, 0.5), (0.5, 1.0), (0.0, 0.5)])
         derivatives = slopes("quadrilateral", self._order, middles)[side]
@@ -94,7 +94,7 @@ class Patches:
 
 
 def _meeting(edges: np.ndarray) -> np.ndarray:
-    """Pairs of edges that are one edge of two facets, by their numbers, shape (n, 2)."""
+    """Pairs of edge numbers that are the same edge of two facets, shape (n, 2)."""
     ends = np.sort(edges[..., :2].reshape(-1, 2), axis=1)
     _, number, count = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
     number = number.ravel()

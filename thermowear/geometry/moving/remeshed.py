@@ -1,7 +1,7 @@
-"""A body of a plane mesh that is meshed anew within its worn outline.
+"""Remeshing of a plane body within its worn outline.
 
-The worn face is divided anew on a B-spline through its nodes; all other lines of the body stay, so
-its sides, names and zones do. Cells are of the kind and order that they were.
+The worn face is redivided on a spline through its nodes; all other lines of the body are kept,
+and with them its sides, names and zones. Type and order of the cells are unchanged.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from .new_face import NewFace, divided
 from .skeleton import Line, skeleton
 
 _ALGORITHMS = (6, 8, 5)
-"""Of gmsh: advancing fronts, the same for right angles, Delaunay's. None is always the best."""
+"""gmsh's algorithms: frontal-Delaunay, its variant for quads, Delaunay; the best one varies."""
 _FULL_QUADS = 2
-"""Of gmsh: cells within half as many edges are joined in pairs, then all of them divided."""
+"""Recombination algorithm of gmsh: recombine a mesh of double size, then refine it."""
 _SMOOTHING = 10
 
 
@@ -35,25 +35,25 @@ def meshed_anew(
     sizes: np.ndarray,
     factor: Callable[[np.ndarray], np.ndarray],
 ) -> tuple[TaggedMesh, NewFace]:
-    """Mesh a body anew; only its outline matters, its cells may be folded.
+    """Remesh a body; only its outline is used, its present cells may be inverted.
 
     Parameters
     ----------
     mesh : TaggedMesh
-        Of both bodies.
+        Mesh of both bodies.
     parts : tuple of str
         Names of the body's parts.
     face : ndarray of int, shape (n_nodes,)
         Nodes of its worn face in order along it.
     sizes : ndarray, shape (n_edges,)
-        Lengths that the edges of the face should have [m].
+        Requested lengths of the edges of the face [m].
     factor : callable
-        From area to volume at points of shape (n, 2); the volume stays.
+        Factor from area to volume at points of shape (n, 2); the volume is kept.
 
     Raises
     ------
     ComputationError
-        If gmsh cannot mesh it.
+        If gmsh cannot mesh the body.
     """
     new = divided(mesh.points[face], mesh.order, sizes, factor)
     lines = skeleton(mesh, parts, face)
@@ -65,16 +65,16 @@ def meshed_anew(
         ends = even(lines)
         lines = [line.cut(at) for line, at in zip(lines, ends, strict=True)]
         new = new.cut(lines[k].edges, ends[k])
-    if _cross(lines):  # gmsh would look for a mesh for ever
-        raise ComputationError("the worn face passes through other sides of its body")
+    if _edges_intersect(lines):  # gmsh would not terminate
+        raise ComputationError("remeshing: the worn face intersects other sides of its body")
     found, trouble = [], None
     for algorithm in _ALGORITHMS:
         try:
             found.append(_meshed(mesh, parts, lines, algorithm))
-        except Exception as error:  # what gmsh raises
+        except Exception as error:  # gmsh raises plain Exception
             trouble = error
     if not found:
-        raise ComputationError(f"gmsh could not mesh the worn body anew: {trouble}")
+        raise ComputationError(f"remeshing: gmsh could not mesh the worn body: {trouble}")
     best = max(found, key=lambda body: float(scaled_jacobians(body).min()))
     return _replaced(mesh, parts, best), new
 
@@ -82,7 +82,7 @@ def meshed_anew(
 def _meshed(
     mesh: TaggedMesh, parts: tuple[str, ...], lines: list[Line], algorithm: int
 ) -> TaggedMesh:
-    """A body within its lines."""
+    """Mesh a body within its boundary lines."""
     every = np.concatenate([line.edges.reshape(-1, 2) for line in lines])
     middle, size = every.mean(axis=0), np.ptp(every, axis=0).max()
     scaled = [replace(line, edges=(line.edges - middle) / size) for line in lines]
@@ -106,23 +106,23 @@ def _meshed(
         return _read(model, mesh, tags, lines, corners, (middle, size))
 
 
-def _cross(lines: list[Line]) -> bool:
-    """Whether chords of edges cross each other."""
+def _edges_intersect(lines: list[Line]) -> bool:
+    """Test whether chords of edges intersect."""
     starts = np.concatenate([line.edges[:, 0] for line in lines])
     ends = np.concatenate([line.edges[:, -1] for line in lines])
-    from_start, from_end = (_left(starts, ends, points) for points in (starts, ends))
-    parted = from_start * from_end < 0.0  # the ends of one by the line through another
+    from_start, from_end = (_signed_areas(starts, ends, points) for points in (starts, ends))
+    parted = from_start * from_end < 0.0  # ends of one segment on both sides of another
     return bool(np.any(parted & parted.T))
 
 
-def _left(starts: np.ndarray, ends: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _signed_areas(starts: np.ndarray, ends: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Twice the areas of triangles of segments and points, shape (n_segments, n_points) [m²]."""
     way, to = (ends - starts)[:, None], points - starts[:, None]
     return way[..., 0] * to[..., 1] - way[..., 1] * to[..., 0]
 
 
 def _draw(model, lines: list[Line]) -> list[np.ndarray]:
-    """Add lines and their edges to a gmsh model; the numbers of their corners, line by line."""
+    """Add lines and their edges to a gmsh model; returns the node numbers of each line."""
     points = {
         end: line.edges[i, i] for line in lines for i, end in zip((0, -1), line.ends, strict=True)
     }
@@ -147,7 +147,7 @@ def _draw(model, lines: list[Line]) -> list[np.ndarray]:
 
 
 def _loops(model, lines: list[Line], tag: int) -> list[int]:
-    """The loops of lines round a part, the outer one first."""
+    """Loops of lines around a part, the outer one first."""
     following = {}
     for number, line in enumerate(lines, start=1):
         if tag in line.parts:
@@ -169,7 +169,7 @@ def _loops(model, lines: list[Line], tag: int) -> list[int]:
 def _read(
     model, mesh: TaggedMesh, tags: list[int], lines: list[Line], corners, scale
 ) -> TaggedMesh:
-    """The body as gmsh has meshed it, the nodes of its lines where they were."""
+    """Body as meshed by gmsh, with the nodes of its lines moved back to their exact positions."""
     numbers, places, _ = model.mesh.getNodes()
     position = np.full(int(numbers.max()) + 1, -1)
     position[numbers.astype(int)] = np.arange(len(numbers))
@@ -179,7 +179,7 @@ def _read(
     for number, (line, along) in enumerate(zip(lines, corners, strict=True), start=1):
         drawn = _elements(model, 1, number)
         if not np.array_equal(drawn[:, :2], np.column_stack([along[:-1], along[1:]])):
-            raise ValueError("its outline was divided otherwise")
+            raise ValueError("gmsh has changed the division of the outline")
         drawn = position[drawn]
         given[drawn] = line.edges[:, [0, -1, *range(1, mesh.order)]] - points[drawn]
         known[drawn] = True
@@ -200,15 +200,15 @@ def _read(
 
 
 def _elements(model, dim: int, tag: int) -> np.ndarray:
-    """Nodes of the elements of an entity, which are of one kind."""
+    """Nodes of the elements of an entity, which must have a single type."""
     _, elements, nodes = model.mesh.getElements(dim, tag)
     if len(elements) != 1:
-        raise ValueError("its cells are of several kinds")
+        raise ValueError("the cells have several types")
     return nodes[0].reshape(len(elements[0]), -1).astype(np.int64)
 
 
 def _replaced(mesh: TaggedMesh, parts: tuple[str, ...], body: TaggedMesh) -> TaggedMesh:
-    """The mesh with a body in place of that which had these parts."""
+    """Mesh with a new body in place of the one with these parts."""
     stays = ~np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])
     other = np.zeros(len(mesh.points), dtype=bool)
     other[mesh.cells[stays]] = True

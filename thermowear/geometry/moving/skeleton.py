@@ -1,7 +1,7 @@
-"""The lines that bound the parts of a plane body: its outline, and where its zones meet.
+"""Boundary lines of the parts of a plane body: its outline and the interfaces of its zones.
 
-They are cut into pieces where they meet or turn a corner and where the name of the surface ends.
-Meshed anew between its lines, a body keeps its outline to the last digit.
+They are split where they meet, at corners, and where the name of the surface changes. Remeshing
+within these lines keeps the outline of a body bitwise.
 """
 
 from __future__ import annotations
@@ -15,28 +15,28 @@ from ..mesh.orders import boundary, shape_functions
 from ..mesh.tagged import TaggedMesh
 
 _CORNER = np.cos(np.radians(20.0))
-"""Edges that meet at a sharper turn make a corner."""
+"""Cosine of the largest turn of a smooth line; sharper turns are corners."""
 
 Label = tuple[int, tuple[int, ...], bool]
-"""Tag of the surface or 0, tags of the parts beside it, whether it is the worn face."""
+"""Tag of the surface or 0, tags of the adjacent parts, True if it is the worn face."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """A piece of a skeleton.
+    """Boundary line of one or two parts.
 
     Attributes
     ----------
     ends : tuple of int
-        Numbers of the points at its ends, the same where it is closed.
+        Numbers of the points at its ends, equal if it is closed.
     edges : ndarray, shape (n, order + 1, 2)
         Nodes of its edges, in order along it [m].
     surface : int
-        Tag; 0 where it has no name.
+        Tag of the surface; 0 if it has no name.
     parts : dict of int to bool
-        Tags of the cells beside it, and whether they are to its left.
+        Tags of the adjacent parts, and True for those on its left.
     is_face : bool
-        Whether it is the worn face.
+        True if it is the worn face.
     """
 
     ends: tuple[int, int]
@@ -46,17 +46,17 @@ class Line:
     is_face: bool
 
     def backwards(self) -> Line:
-        """The same line, begun at its end."""
+        """Copy with reversed direction."""
         parts = {part: not left for part, left in self.parts.items()}
         return replace(self, ends=self.ends[::-1], edges=self.edges[::-1, ::-1], parts=parts)
 
     def cut(self, ends: np.ndarray) -> Line:
-        """The same line of other edges.
+        """Copy with another division into edges.
 
         Parameters
         ----------
         ends : ndarray
-            Of the new edges, in numbers and fractions of present ones; none is part of two.
+            Ends of the new edges, as numbers and fractions of present ones; no edge spans two.
         """
         order, start = self.edges.shape[1] - 1, ends[:-1]
         of = np.minimum((start + ends[1:]) / 2, len(self.edges) - 0.5).astype(int)
@@ -65,7 +65,7 @@ class Line:
         listed = self.edges[:, [0, -1, *range(1, order)]]  # both ends first
         values = values.reshape(*along.shape, -1)
         edges = np.einsum("njk,nki->nji", values, listed[of])
-        for side in (0, -1):  # bitwise, where they are ends of present ones
+        for side in (0, -1):  # bitwise equal where they are ends of present edges
             number = ends[: len(of)] if side == 0 else ends[1:]
             whole = number == of - side
             edges[whole, side] = self.edges[of[whole], side]
@@ -73,7 +73,7 @@ class Line:
 
 
 def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list[Line]:
-    """The lines of a body of a plane mesh.
+    """Boundary lines of a body of a plane mesh.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
     cuts = {point for point, keys in at.items() if _is_cut(mesh.points, point, keys, edges, labels)}
     lines, left = [], set(edges)
     while left:
-        # closed lines, which nothing cuts, come last
+        # closed lines without split points come last
         key = next((k for k in edges if k in left and not cuts.isdisjoint(k)), None)
         key = next(k for k in edges if k in left) if key is None else key
         chain = _chain(key, edges, at, cuts, left)
@@ -114,7 +114,7 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
 
 
 def _chain(key, edges, at, cuts: set[int], left: set) -> list[np.ndarray]:
-    """Nodes of the edges of a line that begins with one; they are left no more."""
+    """Nodes of the edges of a line that begins with one; removes them from `left`."""
     point = key[0] if key[0] in cuts or key[1] not in cuts else key[1]
     chain = []
     while key is not None:
@@ -128,7 +128,7 @@ def _chain(key, edges, at, cuts: set[int], left: set) -> list[np.ndarray]:
 
 
 def _edges(mesh: TaggedMesh, tags: list[int]):
-    """Edges at which a part ends by their corners, nodes in order, and the parts beside each."""
+    """Boundary edges of the parts by corners, with ordered nodes, and their adjacent parts."""
     edges: dict[tuple[int, int], np.ndarray] = {}
     beside: dict[tuple[int, int], dict[int, bool]] = defaultdict(dict)
     for tag in tags:
@@ -140,7 +140,7 @@ def _edges(mesh: TaggedMesh, tags: list[int]):
 
 
 def _is_cut(points: np.ndarray, point: int, keys, edges, labels) -> bool:
-    """Whether lines end at a point where edges meet."""
+    """Test whether lines end at a point where edges meet."""
     if len(keys) != 2 or labels[keys[0]] != labels[keys[1]]:
         return True
     if labels[keys[0]][2]:

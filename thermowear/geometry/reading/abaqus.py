@@ -1,8 +1,8 @@
-"""Reading nodes, elements and their sets from an Abaqus input file.
+"""Reader of nodes, elements and their sets from an Abaqus input file.
 
-Understood are ``*NODE``, ``*ELEMENT``, ``*NSET``, ``*ELSET`` and ``*SURFACE``. Parts and assemblies
-are read as if they were one. Cards that make or move nodes and elements are refused, as are other
-files; the rest (materials, steps) is passed over.
+Supported are ``*NODE``, ``*ELEMENT``, ``*NSET``, ``*ELSET`` and ``*SURFACE``. Parts and
+assemblies are read as if they were one. Cards that generate or move nodes and elements, or
+include other files, are rejected; all others (materials, steps) are skipped.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ _CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
 _CORNERS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
 _LINES = {2: "line", 3: "line3"}
 _REFUSED = {
-    "INCLUDE": "takes in another file; a mesh has to be in one file",
-    "MANIFEST": "takes in other files; a mesh has to be in one file",
-    "SYSTEM": "turns the coordinates of nodes; write the nodes as they lie",
+    "INCLUDE": "includes another file; a mesh must be in one file",
+    "MANIFEST": "includes other files; a mesh must be in one file",
+    "SYSTEM": "transforms coordinates; write the nodes in global coordinates",
     **dict.fromkeys(
         ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY"),
-        "makes nodes or elements; write all of them",
+        "generates nodes or elements; write all of them",
     ),
 }
-"""Cards that would change the mesh."""
+"""Unsupported cards that would change the mesh."""
 _MOST_SETS = 10_000
 _READ = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE")
 
 Member = int | str | tuple[int, int, int] | np.ndarray
-"""Of a set: a number, the name of another set, a range (first, last, step), or numbers."""
+"""Member of a set: a number, the name of another set, a range (first, last, step), or numbers."""
 
 
 def read_abaqus(text: str) -> Contents:
@@ -43,17 +43,17 @@ def read_abaqus(text: str) -> Contents:
     Raises
     ------
     ValueError
-        If it is broken, or has cards that would change the mesh.
+        If it is malformed, or has cards that would change the mesh.
     """
     deck = _Deck()
     for keyword, options, lines in _cards(text):
         if keyword in _REFUSED:
             raise ValueError(f"*{keyword} {_REFUSED[keyword]}")
         if keyword == "INSTANCE" and lines:
-            raise ValueError("*INSTANCE moves a part; write the nodes as they lie")
+            raise ValueError("*INSTANCE moves a part; write the nodes in global coordinates")
         if keyword in _READ:
             if options.keys() & {"INPUT", "FILE"}:
-                raise ValueError(f"*{keyword} takes in another file; a mesh has to be in one file")
+                raise ValueError(f"*{keyword} includes another file; a mesh must be in one file")
             getattr(deck, f"read_{keyword.lower()}")(options, lines)
     return deck.result()
 
@@ -77,7 +77,7 @@ def _cards(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]]:
 
 
 class _Deck:
-    """What has been read so far; numbers are those of the file."""
+    """Parser state; numbers are those of the file."""
 
     def __init__(self) -> None:
         self.tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
@@ -89,7 +89,7 @@ class _Deck:
 
     def read_node(self, options, lines) -> None:
         if options.get("SYSTEM", "R").upper() != "R":
-            raise ValueError("*NODE, SYSTEM= is no Cartesian one; write x, y and z")
+            raise ValueError("*NODE, SYSTEM= is not Cartesian; write x, y and z")
         table = _table(lines)[:, :4]
         self.tags.append(_whole(table[:, 0]))
         self.points.append(np.pad(table[:, 1:], ((0, 0), (0, 4 - table.shape[1]))))
@@ -106,7 +106,7 @@ class _Deck:
             count, corners = words - 1, 2
             name = _LINES[count]
         else:
-            raise ValueError(f"elements of type {kind or '?'} are of no use here")
+            raise ValueError(f"elements of type {kind or '?'} are not supported")
         flat = _whole(parsed(",".join(lines), f"*ELEMENT, TYPE={kind}", ","))
         if len(flat) % (count + 1):
             raise ValueError(f"an element of type {kind} does not have {count} nodes")
@@ -141,7 +141,7 @@ class _Deck:
         double = ordered[1:][ordered[1:] == ordered[:-1]]
         if len(double):
             raise ValueError(
-                f"element {double[0]} is there twice; numbers must differ between parts too"
+                f"element {double[0]} is defined twice; numbers must also differ between parts"
             )
         sets = {name: _resolved(name, self.element_sets, elements) for name in self.element_sets}
         blocks = []
@@ -161,7 +161,7 @@ class _Deck:
         return Contents(points, blocks, node_sets)
 
     def _merge(self) -> None:
-        """One block for all cards of a kind."""
+        """Merge the elements of all cards of one type."""
         kinds: dict[str, list[_Elements]] = {}
         for block in self.blocks:
             kinds.setdefault(block.kind, []).append(block)
@@ -176,7 +176,7 @@ class _Deck:
         ]
 
     def _nodes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Numbers and places; a node that is there twice must be at one place."""
+        """Numbers and coordinates; duplicate nodes must have equal coordinates."""
         tags, points = np.concatenate(self.tags), np.concatenate(self.points)
         order = np.argsort(tags, kind="stable")
         again = np.zeros(len(tags), dtype=bool)
@@ -184,7 +184,9 @@ class _Deck:
         moved = again[1:] & np.any(points[order[1:]] != points[order[:-1]], axis=1)
         if moved.any():
             number = tags[order[1:]][moved][0]
-            raise ValueError(f"node {number} is there twice; numbers must differ between parts too")
+            raise ValueError(
+                f"node {number} is defined twice; numbers must also differ between parts"
+            )
         kept = np.sort(order[~again])
         return tags[kept], points[kept]
 
@@ -214,7 +216,7 @@ def _words(line: str) -> list[str]:
 
 
 def _table(lines: list[str]) -> np.ndarray:
-    """Numbers of lines of one card; entries that are left out are 0, shape (n, at least 4)."""
+    """Numbers of the lines of one card; missing entries are 0, shape (n, at least 4)."""
     widths = {line.count(",") for line in lines}
     if len(widths) == 1 and not any(",," in line or ", ," in line for line in lines):
         return parsed(",".join(lines), "*NODE", ",").reshape(len(lines), -1)
@@ -223,9 +225,9 @@ def _table(lines: list[str]) -> np.ndarray:
 
 
 def _whole(values: np.ndarray) -> np.ndarray:
-    """Numbers of nodes or elements."""
+    """Convert numbers of nodes or elements to integers."""
     if not np.all(np.abs(values) < 2**53) or np.any(values != np.rint(values)):
-        raise ValueError("a number of a node or an element is not a whole one")
+        raise ValueError("the number of a node or an element is not an integer")
     return values.astype(np.int64)
 
 
@@ -249,9 +251,9 @@ def _members(options, lines) -> Iterator[Member]:
 
 
 def _resolved(name: str, sets: dict[str, list[Member]], known: np.ndarray) -> np.ndarray:
-    """Numbers of a set that are known; those of a range that are not are left out.
+    """Numbers of a set that exist in the mesh; others in a range are left out.
 
-    A range may be as long as it likes: it costs no more than the numbers that there are.
+    The cost of a range is that of the numbers in the mesh, regardless of its length.
     """
     found: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
     waiting, seen = [name], {name}

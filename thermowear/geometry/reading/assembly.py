@@ -1,4 +1,4 @@
-"""From the contents of a mesh file to a tagged mesh, by the names of bodies and surfaces."""
+"""Conversion of the contents of a mesh file to a tagged mesh, by names of bodies and surfaces."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ _TYPES = {corners: name for name, corners in CORNERS.items()}
 _ORDERS = {(3, 3): 1, (3, 6): 2, (3, 10): 3, (4, 4): 1, (4, 8): 2, (4, 9): 2, (4, 16): 3}
 """Geometric order by numbers of corners and nodes."""
 _FARTHEST, _SMALLEST = 1e6, 1e-8
-"""Distance of nodes from the origin, and size of both bodies, that a solid can have [m]."""
+"""Largest distance of nodes from the origin, and least size of both bodies [m]."""
 
 
 @dataclass(frozen=True)
 class Named:
-    """A part of the case: its name, its name in the file, and the key that says so.
+    """Part of the case: its name, its name in the file, and the key that defines it.
 
-    `body` is the position of the only body it can belong to.
+    `body` is the index of the only body it can belong to.
     """
 
     name: str
@@ -34,21 +34,21 @@ class Named:
 
 
 def assemble(contents: Contents, bodies: list[Named], surfaces: list[Named]) -> TaggedMesh:
-    """Pick the cells of the bodies and the edges of the surfaces.
+    """Select the cells of the bodies and the edges of the surfaces.
 
     Raises
     ------
     CaseError
-        One line, charged to the key at fault.
+        One line, reported at the key at fault.
     """
     found = [_cells_of(contents, body) for body in bodies]
     points = _plane(contents.points, np.concatenate([block.nodes.ravel() for block in found]))
-    _only_one_type(found)
-    _apart(found, bodies)
+    _check_one_type(found)
+    _check_disjoint(found, bodies)
     corners = found[0].corners
     kind, order = _TYPES[corners], _ORDERS[corners, found[0].nodes.shape[1]]
-    points, cells = _completed(points, [block.nodes for block in found], corners)
-    # nodes that both bodies have are doubled, or the bodies would be glued together
+    points, cells = _with_centre_nodes(points, [block.nodes for block in found], corners)
+    # nodes shared by both bodies are duplicated, otherwise the bodies would be tied
     cells = [nodes + i * len(points) for i, nodes in enumerate(cells)]
     points = np.concatenate([points] * len(cells))
     cells = [
@@ -75,22 +75,22 @@ def assemble(contents: Contents, bodies: list[Named], surfaces: list[Named]) -> 
 
 
 def _plane(points: np.ndarray, used: np.ndarray) -> np.ndarray:
-    """Nodes in the plane; those of the bodies must be where a body can be."""
+    """Nodes in the plane, with checks of coordinates and size."""
     places = points[np.unique(used)]
     if not np.isfinite(places).all():
-        raise CaseError("geometry.path: the bodies have nodes without a place")
+        raise CaseError("geometry.path: the coordinates of some nodes of the bodies are not finite")
     farthest = places[np.unravel_index(np.abs(places).argmax(), places.shape)[0]]
     if np.abs(farthest).max() > _FARTHEST:
         where = ", ".join(f"{x:.6g}" for x in farthest)
         raise CaseError(
             f"geometry.path: a node lies at ({where}) m; nodes may lie up to {_FARTHEST:g} m away "
-            "(geometry.length_unit says what 1 in the file stands for)"
+            "(check geometry.length_unit, the length of 1 in the file)"
         )
     extent = np.ptp(places, axis=0).max(initial=0.0)
     if extent < _SMALLEST:
         raise CaseError(
             f"geometry.path: the bodies have a size of {extent:.3g} m; at least {_SMALLEST:g} m "
-            "(geometry.length_unit says what 1 in the file stands for)"
+            "(check geometry.length_unit, the length of 1 in the file)"
         )
     if points.shape[1] == 3 and np.ptp(places[:, 2]) > 1e-9 * extent:
         raise CaseError("geometry.path: the nodes do not lie in a plane z = const")
@@ -98,18 +98,20 @@ def _plane(points: np.ndarray, used: np.ndarray) -> np.ndarray:
 
 
 def _unknown(part: Named, known: list[str], what: str) -> CaseError:
-    names = f"one of: {', '.join(known)}" if known else f"it has no names of {what}"
+    names = f"one of: {', '.join(known)}" if known else f"it names no {what}"
     return CaseError(f"{part.key}: the file has no {what} named {part.in_file!r}; {names}")
 
 
 def _cells_of(contents: Contents, body: Named) -> Block:
-    """The cells of a body, in one block."""
+    """Cells of a body, in one block."""
     blocks = [b for b in contents.blocks if b.dim == 2 and len(b.sets.get(body.in_file, ()))]
     if not blocks:
         raise _unknown(body, contents.names(2), "cells")
     shapes = {(b.corners, b.nodes.shape[1]) for b in blocks}
     if len(shapes) > 1:
-        raise CaseError(f"{body.key}: the cells are mixed, {_listed(shapes)}; one type is possible")
+        raise CaseError(
+            f"{body.key}: mixed cell types, {_describe(shapes)}; only one type is supported"
+        )
     nodes = np.concatenate([b.nodes[b.sets[body.in_file]] for b in blocks])
     shape = shapes.pop()
     if shape not in _ORDERS:
@@ -117,34 +119,34 @@ def _cells_of(contents: Contents, body: Named) -> Block:
     return Block(blocks[0].kind, nodes, {})
 
 
-def _listed(shapes) -> str:
+def _describe(shapes) -> str:
     return " and ".join(f"{_TYPES.get(c, 'cell')}s of {n} nodes" for c, n in sorted(shapes))
 
 
-def _only_one_type(found: list[Block]) -> None:
+def _check_one_type(found: list[Block]) -> None:
     shapes = {(block.corners, block.nodes.shape[1]) for block in found}
     if len(shapes) > 1:
         raise CaseError(
-            f"geometry.bodies: the bodies have different cells, {_listed(shapes)}; "
-            "one type is possible"
+            f"geometry.bodies: different cell types, {_describe(shapes)}; only one type is "
+            "supported"
         )
 
 
-def _apart(found: list[Block], bodies: list[Named]) -> None:
-    """No cell may belong to both bodies, or be there twice."""
+def _check_disjoint(found: list[Block], bodies: list[Named]) -> None:
+    """Reject cells that belong to both bodies or occur twice."""
     cells = np.sort(np.concatenate([b.nodes[:, : b.corners] for b in found]), axis=1)
     double = len(cells) - len(np.unique(cells, axis=0))
     if double:
         raise CaseError(
-            f"geometry.bodies: {double} cells are in {bodies[0].in_file!r} and "
-            f"{bodies[1].in_file!r} both, or twice in one of them"
+            f"geometry.bodies: {double} cells are in both {bodies[0].in_file!r} and "
+            f"{bodies[1].in_file!r}, or twice in one of them"
         )
 
 
-def _completed(
+def _with_centre_nodes(
     points: np.ndarray, cells: list[np.ndarray], corners: int
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Quadrilaterals of eight nodes get the one in the middle that their shape functions mean."""
+    """Add the centre node of eight-node quadrilaterals, as implied by their shape functions."""
     if corners != 4 or cells[0].shape[1] != 8:
         return points, cells
     result = []
@@ -173,13 +175,13 @@ def _edges_of(
 def _members(
     contents: Contents, surface: Named, edges: list[np.ndarray], bodies: list[Named]
 ) -> list[np.ndarray]:
-    """Which boundary edges of each body belong to a surface: to its lines, or its nodes."""
+    """Masks of the boundary edges of each body on a surface, given by its lines or nodes."""
     name = surface.in_file
     lines = [b.nodes[b.sets[name]] for b in contents.blocks if b.dim == 1 and name in b.sets]
     if lines:
         wanted = [_pairs(part) for part in lines]
         own = [_pairs(of_body[:, :2]).ravel() for of_body in edges]
-        _no_line_lost(contents, surface, wanted, np.concatenate(own), bodies)
+        _check_lines(contents, surface, wanted, np.concatenate(own), bodies)
         every = np.concatenate([part.ravel() for part in wanted])
         return [np.isin(of_body, every) for of_body in own]
     if name in contents.node_sets:
@@ -189,9 +191,9 @@ def _members(
 
 
 def _pairs(nodes: np.ndarray) -> np.ndarray:
-    """A number for each two nodes of lines, shape (n_lines, n_pairs).
+    """Unique number of each pair of nodes of lines, shape (n_lines, n_pairs).
 
-    One of them stands for both ends of the line, in whichever order a format lists the nodes.
+    One of them is the pair of end nodes, in whichever order a format lists the nodes.
     """
     one, other = np.triu_indices(nodes.shape[1], 1)
     low, high = (
@@ -201,14 +203,14 @@ def _pairs(nodes: np.ndarray) -> np.ndarray:
     return high * (high - 1) // 2 + low
 
 
-def _no_line_lost(
+def _check_lines(
     contents: Contents,
     surface: Named,
     wanted: list[np.ndarray],
     own: np.ndarray,
     bodies: list[Named],
 ) -> None:
-    """Refuse a surface with lines that bound nothing; those of further bodies are left out."""
+    """Reject a surface with lines off all boundaries; those of further bodies are ignored."""
     lost = [part for lines in wanted for part in lines[~np.isin(lines, own).any(axis=1)]]
     if not lost:
         return
@@ -226,5 +228,5 @@ def _no_line_lost(
     if count:
         raise CaseError(
             f"{surface.key}: {count} of {sum(map(len, wanted))} lines of {surface.in_file!r} are "
-            "on the boundary of no body"
+            "not on the boundary of any body"
         )

@@ -1,7 +1,7 @@
-"""Cells of a body as they are listed in a file: put the right way round, or refused.
+"""Orientation and validity checks of the cells of a body read from a file.
 
-A mesh is sound where no edge has more than two cells, cells that share an edge lie on both sides of
-it, and the map from the unit cell to each cell keeps its orientation everywhere (det J > 0).
+A mesh is valid if no edge has more than two cells, cells that share an edge lie on both sides of
+it, and the map from the unit cell to each cell preserves orientation everywhere (det J > 0).
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from ..mesh.nodes import CORNERS
 from ..mesh.orders import boundary, slopes, turned
 
 _FLAT = 1e-8
-"""Sine of the angle between grid lines below which a cell counts as flat."""
+"""Sine of the angle between grid lines below which a cell is degenerate."""
 _SAME = 1e-7
-"""Of the size of a body: nodes that near to each other lie at one place."""
+"""Distance relative to the size of a body below which nodes coincide."""
 _AT_ONCE = 2000
-"""Cells whose maps are looked at together."""
+"""Number of cells whose Jacobians are computed together."""
 
 
 def oriented(points: np.ndarray, cells: np.ndarray, kind: str, order: int, body: str) -> np.ndarray:
-    """The cells of a body with their nodes counter-clockwise.
+    """Cells of a body with their nodes counter-clockwise.
 
-    Cells may be listed either way round: that changes nothing, and which way is found from the
-    edges that they share, not from their areas, which a tangled mesh has of both signs.
+    Cells may be listed in either orientation, which is found from shared edges instead of signed
+    areas, as a tangled mesh has areas of both signs.
 
     Parameters
     ----------
@@ -33,12 +33,12 @@ def oriented(points: np.ndarray, cells: np.ndarray, kind: str, order: int, body:
     cells : ndarray of int, shape (n_cells, nodes_per_cell)
     kind, order : str, int
     body : str
-        Name in the case, for messages.
+        Name of the body in the case, for messages.
 
     Raises
     ------
     CaseError
-        If the mesh is not sound.
+        If the mesh is invalid.
     """
     reversed_, piece = _sides(points, cells[:, : CORNERS[kind]], body)
     signs = np.where(reversed_, -1.0, 1.0)
@@ -50,20 +50,20 @@ def oriented(points: np.ndarray, cells: np.ndarray, kind: str, order: int, body:
     if tangled.any():
         raise CaseError(
             f"geometry.path: {tangled.sum()} of {len(cells)} cells of {body!r} are tangled or flat "
-            f"(det J <= 0), one {_at(points[cells[np.argmax(tangled)]])}"
+            f"(det J <= 0), one {_position_text(points[cells[np.argmax(tangled)]])}"
         )
     turn = reversed_ ^ mirrored
     cells = cells.copy()
     cells[turn] = cells[turn][:, turned(kind, order)]
-    _no_cracks(points, boundary(kind, order, cells), body)
+    _check_conforming(points, boundary(kind, order, cells), body)
     return cells
 
 
 def _sides(points: np.ndarray, corners: np.ndarray, body: str) -> tuple[np.ndarray, np.ndarray]:
-    """Which cells run the other way round than those they are joined to, and pieces of the body.
+    """Mask of cells oriented oppositely to the cells they are joined to, and connected pieces.
 
-    Two cells that share an edge run along it in opposite directions. Each cell has two nodes in a
-    graph, one for each way round; a component of it holds cells that agree.
+    Two cells that share an edge traverse it in opposite directions. Each cell has two nodes in a
+    graph, one per orientation; a connected component holds consistent orientations.
     """
     count, sides = corners.shape
     ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
@@ -77,7 +77,7 @@ def _sides(points: np.ndarray, corners: np.ndarray, body: str) -> tuple[np.ndarr
         wrong = number[edge] > 2
         raise CaseError(
             f"geometry.path: {np.count_nonzero(number > 2)} edges of {body!r} have three or more "
-            f"cells, one {_at(points[ends[np.argmax(wrong)]])}"
+            f"cells, one {_position_text(points[ends[np.argmax(wrong)]])}"
         )
     shared = np.argsort(edge, kind="stable")
     shared = shared[number[edge[shared]] == 2].reshape(-1, 2)
@@ -90,7 +90,9 @@ def _sides(points: np.ndarray, corners: np.ndarray, body: str) -> tuple[np.ndarr
     _, label = scipy.sparse.csgraph.connected_components(links, directed=False)
     as_listed, turned_round = label.reshape(2, count)
     if np.any(as_listed == turned_round):
-        raise CaseError(f"geometry.path: the cells of {body!r} cannot lie in a plane side by side")
+        raise CaseError(
+            f"geometry.path: the cells of {body!r} cannot be oriented consistently in a plane"
+        )
     _, piece = np.unique(np.minimum(as_listed, turned_round), return_inverse=True)
     return as_listed > turned_round, piece.ravel()
 
@@ -100,8 +102,8 @@ def _jacobians(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Smallest and largest sine of the angle between the grid lines of each cell, and its area.
 
-    At so many places that the polynomial det J is caught between them; at the corners of straight
-    cells it is at its ends.
+    Sampled densely enough to bound the polynomial det J; the extrema of straight cells are at
+    their corners.
     """
     along = np.linspace(0.0, 1.0, 4 * order - 2)
     places = np.stack(np.meshgrid(along, along), axis=-1).reshape(-1, 2)
@@ -120,8 +122,8 @@ def _jacobians(
     return result[0], result[1], result[2]
 
 
-def _no_cracks(points: np.ndarray, edges: np.ndarray, body: str) -> None:
-    """Refuse cells that lie side by side without sharing the nodes, or share but a corner."""
+def _check_conforming(points: np.ndarray, edges: np.ndarray, body: str) -> None:
+    """Reject adjacent cells with duplicate nodes, or joined at a corner only."""
     ends = points[edges[:, :2]]
     near = _SAME * np.ptp(ends.reshape(-1, 2), axis=0).max()
     pairs = scipy.spatial.cKDTree(ends.mean(axis=1)).query_pairs(near, output_type="ndarray")
@@ -130,18 +132,18 @@ def _no_cracks(points: np.ndarray, edges: np.ndarray, body: str) -> None:
     cracks = pairs[apart < 2 * near]
     if len(cracks):
         raise CaseError(
-            f"geometry.path: cells of {body!r} are not joined along {len(cracks)} edges, where "
-            f"nodes are there twice, one {_at(ends[cracks[0, 0]])}; merge such nodes"
+            f"geometry.path: cells of {body!r} are not joined along {len(cracks)} edges with "
+            f"duplicate nodes, one {_position_text(ends[cracks[0, 0]])}; merge these nodes"
         )
     nodes, count = np.unique(edges[:, :2], return_counts=True)
     if count.max() > 2:
         node = nodes[np.argmax(count)]
         raise CaseError(
-            f"geometry.path: cells of {body!r} hang together by a single node "
-            f"{_at(points[node][None])}; join them along an edge, or part them"
+            f"geometry.path: cells of {body!r} are joined by a single node "
+            f"{_position_text(points[node][None])}; join them along an edge, or separate them"
         )
 
 
-def _at(nodes: np.ndarray) -> str:
+def _position_text(nodes: np.ndarray) -> str:
     x, y = nodes.mean(axis=0)
     return f"at x = {x:.6g} m, y = {y:.6g} m"

@@ -1,4 +1,4 @@
-"""Bodies of a mesh file that are made of several cell sets, or have parts by cell sets."""
+"""Bodies of a mesh file that consist of several cell sets, or have parts by cell sets."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .contents import Block, Contents
 
 @dataclass(frozen=True)
 class Union:
-    """A body made of one or more cell sets: its name, their names, and the key that says so."""
+    """Body that consists of one or more cell sets: its name, theirs, and the key with them."""
 
     name: str
     in_file: tuple[str, ...]
@@ -22,12 +22,12 @@ class Union:
 
 
 def joined(contents: Contents, bodies: list[Union]) -> tuple[Contents, list[Named]]:
-    """The contents with one cell set for each body, and the names of those.
+    """Merge the cell sets of each body; returns the contents and the names of the merged sets.
 
     Raises
     ------
     CaseError
-        If the file has none of the cells of a set.
+        If the file has no cells of a set.
     """
     blocks, named = list(contents.blocks), []
     for body in bodies:
@@ -47,21 +47,21 @@ def joined(contents: Contents, bodies: list[Union]) -> tuple[Contents, list[Name
 def divided(
     mesh: TaggedMesh, contents: Contents, bodies: list[Named], sets: list[Named]
 ) -> TaggedMesh:
-    """The mesh with cell sets of its bodies as parts of their own, behind the bodies.
+    """Mesh with cell sets of its bodies as separate parts, listed after the bodies.
 
     Parameters
     ----------
     mesh : TaggedMesh
-        Of the bodies.
+        Mesh of the bodies.
     contents : Contents
-        Its file.
+        Contents of its file.
     bodies, sets : list of Named
-        `Named.body` of a set is the body that it must lie in.
+        `Named.body` of a set is the body that contains it.
 
     Raises
     ------
     CaseError
-        If a set is unknown, does not lie in its body, or shares cells with another one.
+        If a set is unknown, not within its body, or overlaps another one.
     """
     tags, taken = mesh.cell_tags.copy(), np.zeros(len(mesh.cell_tags), dtype=np.int64)
     starts = np.searchsorted(mesh.cell_tags, [1, 2])
@@ -83,8 +83,9 @@ def divided(
         if taken[cells].any():
             other = sets[taken[cells].max() - 1]
             raise CaseError(
-                f"{part.key}: {np.count_nonzero(taken[cells])} cells are in {part.in_file!r} and "
-                f"{other.in_file!r} both; each cell has one material"
+                f"{part.key}: {np.count_nonzero(taken[cells])} cells are in both "
+                f"{part.in_file!r} and "
+                f"{other.in_file!r}; each cell has one material"
             )
         taken[cells] = number
         tags[cells] = len(mesh.bodies) + number
@@ -105,7 +106,7 @@ def _with_union(block: Block, names: tuple[str, ...], union: str) -> Block:
 
 
 def _members(contents: Contents, body: str, name: str) -> np.ndarray:
-    """Which cells of a body, in the order of `assemble`, are in a set."""
+    """Mask of the cells of a body, in the order of `assemble`, that are in a set."""
     return np.concatenate(
         [
             np.isin(block.sets[body], block.sets.get(name, ()))

@@ -1,4 +1,4 @@
-"""What a mesh file holds, whatever its format: nodes, elements, and sets of them by name."""
+"""Contents of a mesh file of any format: nodes, elements, and their named sets."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _SHAPES = {
     "quad9": (2, 4),
     "quad16": (2, 4),
 }
-"""Dimension and corners of the elements that are of use, in the words of meshio."""
+"""Dimension and number of corners of the supported elements, by meshio's names."""
 
 _SHOWN = 40
-"""Characters of a line at fault that a message repeats."""
+"""Number of characters of a faulty line that a message quotes."""
 
 
 @dataclass
@@ -34,11 +34,11 @@ class Block:
     Attributes
     ----------
     kind : str
-        In the words of meshio, such as ``"quad8"``.
+        Meshio's name of the type, such as ``"quad8"``.
     nodes : ndarray of int64, shape (n_elements, n_nodes)
-        Positions among the points, in gmsh's order; of lines in any order.
+        Indices of points, in gmsh's order; of lines in any order.
     sets : dict of str to ndarray of int
-        Elements of each named set.
+        Indices of the elements of each named set.
     """
 
     kind: str
@@ -56,12 +56,12 @@ class Block:
 
 @dataclass
 class Contents:
-    """A mesh file.
+    """Contents of a mesh file.
 
     Attributes
     ----------
     points : ndarray, shape (n_points, 2 or 3)
-        In the file's unit of length.
+        Coordinates in the file's unit of length.
     blocks : list of Block
     node_sets : dict of str to ndarray of int
     """
@@ -76,56 +76,56 @@ class Contents:
         return sorted({name for sets in found for name in sets})
 
     def checked(self) -> Contents:
-        """The same without single nodes as elements; all others are of use.
+        """Copy without point elements, after checks of the others.
 
         Raises
         ------
         ValueError
-            If there are elements of other types, or with nodes that are not there.
+            If there are elements of other types, or with undefined nodes.
         """
         blocks = [block for block in self.blocks if block.kind != "vertex" and len(block.nodes)]
         for block in blocks:
             if block.kind not in _SHAPES:
-                raise ValueError(f"it has cells of type {block.kind}, which are of no use here")
+                raise ValueError(f"cells of type {block.kind} are not supported")
             if block.nodes.ndim != 2 or block.nodes.min() < 0:
-                raise ValueError(f"its cells of type {block.kind} are broken")
+                raise ValueError(f"the connectivity of cells of type {block.kind} is invalid")
             if block.nodes.max() >= len(self.points):
-                raise ValueError(f"cells of type {block.kind} have nodes that are not there")
+                raise ValueError(f"cells of type {block.kind} have undefined nodes")
             ordered = np.sort(block.nodes, axis=1)
             if block.dim == 1 and np.any(ordered[:, 1:] == ordered[:, :-1]):
                 raise ValueError(f"an element of type {block.kind} has a node twice")
         if self.points.ndim != 2 or self.points.shape[1] not in (2, 3):
-            raise ValueError("its nodes need two or three coordinates")
+            raise ValueError("nodes must have two or three coordinates")
         return Contents(self.points, blocks, self.node_sets)
 
 
 def numbering(numbers: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """Where nodes stand in a list of node numbers, as a function of wanted numbers of any shape.
+    """Function that maps node numbers, of any shape, to indices into a list of numbers.
 
     Raises
     ------
     ValueError
-        If a number is there twice; the function raises it if one is not there at all.
+        If a number occurs twice; the function raises it for an unknown number.
     """
     order = np.argsort(numbers, kind="stable")
     ordered = numbers[order]
     double = np.flatnonzero(ordered[1:] == ordered[:-1])
     if len(double):
-        raise ValueError(f"node {ordered[double[0]]} is there twice")
+        raise ValueError(f"node {ordered[double[0]]} is defined twice")
 
     def positions(wanted: np.ndarray) -> np.ndarray:
         at = np.searchsorted(ordered, wanted)
         missing = at == len(ordered)
         missing[~missing] = ordered[at[~missing]] != wanted[~missing]
         if missing.any():
-            raise ValueError(f"node {wanted[missing][0]} of an element is not among the nodes")
+            raise ValueError(f"node {wanted[missing][0]} of an element is not defined")
         return order[at].astype(np.int64)
 
     return positions
 
 
 def shown(line: bytes) -> str:
-    """The beginning of a line, for a message."""
+    """Beginning of a line, for a message."""
     text = line.strip().decode("utf-8", "replace")
     return repr(text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…")
 
@@ -137,9 +137,9 @@ def parsed(text: str, where: str, between: str = " ") -> np.ndarray:
     ----------
     text : str
     where : str
-        For the message.
+        Location, for the message.
     between : str
-        What separates numbers, besides blanks.
+        Separator of numbers, besides blanks.
 
     Raises
     ------
@@ -147,13 +147,13 @@ def parsed(text: str, where: str, between: str = " ") -> np.ndarray:
         If there are other words.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # of a word that is no number
+        warnings.simplefilter("error")  # for words that are not numbers
         try:
             return np.fromstring(text, sep=between) if text.strip() else np.empty(0)
         except (DeprecationWarning, ValueError):
             words = (word[0].strip() for word in re.finditer(f"[^\\s{between}]+", text))
             wrong = next((word for word in words if not _is_number(word)), "")
-    raise ValueError(f"{where} has {shown(wrong.encode())} where a number is due")
+    raise ValueError(f"{where} has {shown(wrong.encode())} where a number is expected")
 
 
 def _is_number(word: str) -> bool:

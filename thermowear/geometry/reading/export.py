@@ -1,4 +1,4 @@
-"""Writing a tagged mesh for other programs; the format follows the file's ending."""
+"""Export of a tagged mesh for other programs; the format follows the file's ending."""
 
 from __future__ import annotations
 
@@ -30,32 +30,32 @@ _MESHIO_CELLS = {
 }
 _QUADRATIC_HEXAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
 _QUADRATIC_HEXAHEDRON += [22, 23, 21, 24, 20, 25, 26]
-"""Where gmsh lists the nodes that meshio, as VTK, wants in this order."""
+"""Permutation from gmsh's node order to that of meshio and VTK."""
 _FORMATS = {".msh": "gmsh22", ".vtu": "vtu", ".xdmf": "xdmf", ".inp": "abaqus"}
 
 
 def check_ending(path: Path) -> None:
-    """Raise a `CaseError` if a file's ending names no known format."""
+    """Raise a `CaseError` if a file's ending is not supported."""
     if path.suffix not in _FORMATS:
-        raise CaseError(f"-o {path}: unknown ending; one of: {', '.join(_FORMATS)}")
+        raise CaseError(f"-o {path}: unknown file ending; must be one of: {', '.join(_FORMATS)}")
 
 
 def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None = None) -> None:
     """Write bodies and named surfaces as physical groups (.msh), sets (.inp) or tags (.vtu, .xdmf).
 
-    Cells of the third order are known to .msh only; elsewhere the second stands for it.
+    Third-order cells are supported in .msh only; other formats get second-order cells.
 
     Parameters
     ----------
     mesh : TaggedMesh
     path : Path
     told : dict of str to ndarray, optional
-        Numbers or vectors at the points, of a mesh that the format knows as it is.
+        Scalars or vectors at the points, if the format supports the mesh unchanged.
 
     Raises
     ------
     CaseError
-        If the ending is not known, or the file cannot be written.
+        If the ending is not supported, or the file cannot be written.
     """
     import meshio
 
@@ -64,7 +64,7 @@ def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None 
         mesh = quadratic(mesh)
     if mesh.cells.shape[1] == len(_QUADRATIC_HEXAHEDRON):
         mesh = replace(mesh, cells=mesh.cells[:, _QUADRATIC_HEXAHEDRON])
-        if path.suffix == ".inp":  # knows no nodes within facets
+        if path.suffix == ".inp":  # supports no nodes inside facets
             mesh = compact(replace(mesh, cells=mesh.cells[:, :20], facets=mesh.facets[:, :8]))
     kinds = mesh.cell_type, FACETS[mesh.cell_type]
     cells = [
@@ -72,7 +72,7 @@ def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None 
         for kind, nodes in zip(kinds, (mesh.cells, mesh.facets), strict=True)
     ]
     n = len(mesh.bodies)
-    # one numbering for both dimensions, so that a tag names one thing in every format
+    # one numbering for both dimensions, so that a tag is unique in every format
     tags = [mesh.cell_tags, mesh.facet_tags + n]
     points = np.pad(mesh.points, ((0, 0), (0, 3 - mesh.points.shape[1])))
     result = meshio.Mesh(points, cells, point_data=told)
@@ -90,7 +90,7 @@ def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None 
     else:
         result.cell_data = {"tag": tags}
     try:
-        # text, and in one file: nothing beside it can be overwritten
+        # text, and in one file: no other file can be overwritten
         keywords = {".msh": {"binary": False}, ".xdmf": {"data_format": "XML"}}.get(path.suffix, {})
         meshio.write(path, result, file_format=_FORMATS[path.suffix], **keywords)
     except OSError as error:

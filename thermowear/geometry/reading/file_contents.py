@@ -1,6 +1,6 @@
-"""Reading a mesh file, of which nothing is believed: neither its ending nor what it says.
+"""Reading of untrusted mesh files: neither ending nor contents are assumed to be valid.
 
-Only meshes are read. A file is looked at before any reader gets it, and no reader carries out
+Only meshes are read. A file is checked before it is passed to a reader, and no reader executes
 commands, opens other files or writes any.
 """
 
@@ -19,12 +19,12 @@ from .gmsh_file import read_gmsh
 from .isolated import read_isolated
 
 _LARGEST = 32 * 2**20
-"""Bytes: half a million nodes as text, more than can be solved in a section; read in seconds."""
+"""Largest size of a file [bytes]: half a million nodes as text, read in seconds."""
 
 
 @dataclass(frozen=True)
 class _Kind:
-    """A format: its name, how its files begin, and its reader."""
+    """Format: its name, its first bytes, and its reader."""
 
     name: str
     heads: tuple[bytes, ...]
@@ -32,22 +32,24 @@ class _Kind:
 
 
 def read_contents(path: Path) -> Contents:
-    """Read a mesh file; its ending tells the format.
+    """Read a mesh file; its ending selects the format.
 
     Raises
     ------
     CaseError
-        One line, charged to ``geometry.path``.
+        One line, reported at ``geometry.path``.
     """
     kind = _KINDS.get(path.suffix.lower())
     if kind is None:
-        raise CaseError(f"geometry.path: {path}: unknown ending; one of: {', '.join(_KINDS)}")
+        raise CaseError(
+            f"geometry.path: {path}: unknown file ending; must be one of: {', '.join(_KINDS)}"
+        )
     try:
-        _look_at(path, kind)
+        _check_file(path, kind)
         contents = kind.read(path).checked()
     except OSError as error:
         raise CaseError(f"geometry.path: {path} cannot be read: {error.strerror}") from None
-    except Exception as error:  # readers raise whatever a broken file leads them to
+    except Exception as error:  # readers raise any exception for a malformed file
         reason = " ".join(str(error).split()) or type(error).__name__
         raise CaseError(f"geometry.path: {path} cannot be read: {reason}") from None
     if not any(block.dim == 2 for block in contents.blocks):
@@ -55,16 +57,16 @@ def read_contents(path: Path) -> Contents:
     return contents
 
 
-def _look_at(path: Path, kind: _Kind) -> None:
-    """Refuse what is no file, too large, or begins as no file of a format does."""
+def _check_file(path: Path, kind: _Kind) -> None:
+    """Reject non-files, files too large, and files without the first bytes of the format."""
     about = os.stat(path)
     if stat.S_ISDIR(about.st_mode):
         raise ValueError("Is a directory")
     if not stat.S_ISREG(about.st_mode):
-        raise ValueError("it is no file but a pipe or a device")
+        raise ValueError("it is a pipe or a device, not a file")
     if about.st_size > _LARGEST:
         raise ValueError(
-            f"it has {about.st_size / 2**20:.0f} MB; a mesh may have {_LARGEST / 2**20:.0f} MB"
+            f"it has {about.st_size / 2**20:.0f} MB; at most {_LARGEST / 2**20:.0f} MB are allowed"
         )
     with path.open("rb") as file:
         head = file.read(4096).removeprefix(b"\xef\xbb\xbf").lstrip()
@@ -72,8 +74,8 @@ def _look_at(path: Path, kind: _Kind) -> None:
         raise ValueError("it is empty")
     if not head.startswith(kind.heads):
         raise ValueError(
-            f"it is no {kind.name}, as it begins with {shown(head.splitlines()[0])}; only meshes "
-            "are read, commands are never carried out"
+            f"it is not a {kind.name}: it begins with {shown(head.splitlines()[0])}; only meshes "
+            "are read, commands are never executed"
         )
 
 
@@ -90,9 +92,9 @@ def _by_libraries(path: Path) -> Contents:
 
 
 _KINDS = {
-    ".msh": _Kind("mesh of gmsh", (b"$MeshFormat", b"$Comments"), _read_gmsh),
-    ".inp": _Kind("input file of Abaqus", (b"*",), _read_abaqus),
-    ".vtu": _Kind("unstructured grid of VTK", (b"<?xml", b"<VTKFile", b"<!--"), _by_libraries),
+    ".msh": _Kind("gmsh mesh", (b"$MeshFormat", b"$Comments"), _read_gmsh),
+    ".inp": _Kind("Abaqus input file", (b"*",), _read_abaqus),
+    ".vtu": _Kind("VTK unstructured grid", (b"<?xml", b"<VTKFile", b"<!--"), _by_libraries),
     ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), _by_libraries),
     ".med": _Kind("MED file", (b"\x89HDF\r\n\x1a\n",), _by_libraries),
 }

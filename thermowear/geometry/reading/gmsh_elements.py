@@ -23,25 +23,25 @@ _CELLS = {
     36: "quad16",
     15: "vertex",
 }
-"""gmsh's numbers of the elements that a plane mesh may have."""
+"""gmsh's numbers of the element types of plane meshes."""
 _NODES = {"line": 2, "triangle": 3, "quad": 4, "vertex": 1} | {
     name: int(re.sub(r"\D", "", name)) for name in _CELLS.values() if name[-1].isdigit()
 }
 _MOST_ENTITIES = 100_000
 _SOLID = {4, 5, 6, 7, 11, 12, 13, 14, 17, 18, 19, 29, 30, 31, 32, 33, 90, 91, 92, 93, 94, 95}
-"""gmsh's numbers of the usual elements in space."""
+"""gmsh's numbers of common element types in space."""
 
 
 @dataclass
 class Elements:
-    """Elements of one type: numbers of nodes, and of the groups of each (-1: none)."""
+    """Elements of one type: node numbers, and the group numbers of each (-1: none)."""
 
     kind: str
     nodes: np.ndarray
     groups: list[np.ndarray]
 
     def named(self, names: dict[tuple[int, int], str], positions) -> Block:
-        """With positions of nodes, and sets by the names of groups."""
+        """Block with node indices instead of numbers, and sets by the names of groups."""
         dim = {"vert": 0, "line": 1}.get(self.kind[:4], 2)
         sets: dict[str, list[np.ndarray]] = {}
         for of_groups in self.groups:
@@ -61,7 +61,7 @@ def _kind(number: int) -> str:
 
 
 def nodes_2(source: Numbers) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers and places of the nodes."""
+    """Numbers and coordinates of the nodes."""
     count = source.one() if source.count is None else source.count
     if isinstance(source, Binary):
         rows = source.records(count, [("tag", "int", 1), ("x", "real", 3)])
@@ -82,9 +82,9 @@ def elements_2(source: Numbers, binary: bool) -> list[Elements]:
             rows = source.integers(count * (1 + max(tags, 0) + _NODES[kind]))
             rows = rows.reshape(max(count, 0), -1)[:, 1:]
         else:
-            kind, tags, rows = _alike(source, left)
+            kind, tags, rows = _uniform_rows(source, left)
         if not 0 < len(rows) <= left:
-            raise ValueError("the section $Elements holds other numbers than it says")
+            raise ValueError("the section $Elements contradicts its number of elements")
         left -= len(rows)
         nodes.setdefault(kind, []).append(rows[:, tags:])
         groups.setdefault(kind, []).append(rows[:, 0] if tags else np.zeros(len(rows), np.int64))
@@ -94,8 +94,8 @@ def elements_2(source: Numbers, binary: bool) -> list[Elements]:
     ]
 
 
-def _alike(source: Numbers, left: int) -> tuple[str, int, np.ndarray]:
-    """Type, number of tags, tags and nodes of the next rows of text that begin alike."""
+def _uniform_rows(source: Numbers, left: int) -> tuple[str, int, np.ndarray]:
+    """Type, number of tags, tags and nodes of the next text rows of equal layout."""
     assert isinstance(source, Text)
     values = source.values[source.at :]
     if len(values) < 3 or not np.isfinite(values[:3]).all():
@@ -116,7 +116,7 @@ def _alike(source: Numbers, left: int) -> tuple[str, int, np.ndarray]:
     return kind, tags, source.integers(count * width).reshape(count, width)[:, 3:]
 
 
-def _not_too_many(count: int) -> None:
+def _check_entity_count(count: int) -> None:
     if count > _MOST_ENTITIES:
         raise ValueError(f"it has more than {_MOST_ENTITIES} entities")
 
@@ -125,7 +125,7 @@ def entities(source: Numbers, minor: int) -> dict[tuple[int, int], list[int]]:
     """Physical groups of the entities, by dimension and number."""
     groups: dict[tuple[int, int], list[int]] = {}
     counts = source.integers(4, "size")
-    _not_too_many(int(counts.sum()))
+    _check_entity_count(int(counts.sum()))
     for dim, count in enumerate(counts):
         for _ in range(count):
             tag = source.one()
@@ -137,11 +137,11 @@ def entities(source: Numbers, minor: int) -> dict[tuple[int, int], list[int]]:
 
 
 def nodes_4(source: Numbers, minor: int) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers and places of the nodes, entity by entity."""
+    """Numbers and coordinates of the nodes, entity by entity."""
     blocks, total = (int(n) for n in source.integers(2, "size"))
     if minor >= 1:
         source.integers(2, "size")
-    _not_too_many(blocks)
+    _check_entity_count(blocks)
     tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
     points: list[np.ndarray] = [np.empty((0, 3))]
     for _ in range(blocks):
@@ -157,7 +157,7 @@ def nodes_4(source: Numbers, minor: int) -> tuple[np.ndarray, np.ndarray]:
             points.append(rows[:, 1:4])
     found = np.concatenate(tags)
     if len(found) != total:
-        raise ValueError(f"the section $Nodes says {total} nodes and has {len(found)}")
+        raise ValueError(f"the section $Nodes announces {total} nodes and has {len(found)}")
     return found, np.concatenate(points)
 
 
@@ -166,7 +166,7 @@ def elements_4(source: Numbers, minor: int, groups) -> list[Elements]:
     blocks, total = (int(n) for n in source.integers(2, "size"))
     if minor >= 1:
         source.integers(2, "size")
-    _not_too_many(blocks)
+    _check_entity_count(blocks)
     result = []
     for _ in range(blocks):
         one, other, number = (int(n) for n in source.integers(3))
@@ -178,5 +178,5 @@ def elements_4(source: Numbers, minor: int, groups) -> list[Elements]:
         result.append(Elements(kind, nodes, of_all))
         total -= count
     if total:
-        raise ValueError("the section $Elements has another number of elements than it says")
+        raise ValueError("the section $Elements contradicts its number of elements")
     return result

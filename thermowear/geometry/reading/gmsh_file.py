@@ -1,8 +1,7 @@
-"""Reading meshes as gmsh writes them: ``.msh`` of the formats 2 and 4, as text or binary.
+"""Reader of gmsh meshes: ``.msh`` of the formats 2 and 4, as text or binary.
 
-gmsh itself takes a file that does not begin as a mesh does for a script and runs its commands, so
-it is never asked to open one. The grammar is in the reference manual of gmsh, section "MSH file
-format".
+gmsh itself executes a file that does not begin as a mesh as a script, so it is never used to
+open one. The grammar is in the reference manual of gmsh, section "MSH file format".
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ def read_gmsh(data: bytes) -> Contents:
     Raises
     ------
     ValueError
-        If it is anything but a mesh, or a broken one.
+        If it is not a mesh, or malformed.
     """
     sections = dict(_sections(data))
     for name in ("MeshFormat", "Nodes", "Elements"):
@@ -55,7 +54,7 @@ def read_gmsh(data: bytes) -> Contents:
 
 
 def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
-    """Name and body of each section; there is nothing else in a mesh."""
+    """Name and body of each section; a mesh contains nothing else."""
     at = 0
     found: set[str] = set()
     while at < len(data):
@@ -67,16 +66,16 @@ def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
             line, number = data[at:].split(b"\n", 1)[0], 1 + data.count(b"\n", 0, at)
             raise ValueError(
                 f"line {number}, {shown(line)}, belongs to no section of a "
-                "mesh; commands are never carried out"
+                "mesh; commands are never executed"
             )
         name = start[1].decode("ascii", "replace")
         if name not in (*_READ, *_PASSED_OVER):
-            raise ValueError(f"the section ${name} is none of a mesh")
+            raise ValueError(f"the section ${name} is not part of a mesh")
         if name in found and name in _READ:
-            raise ValueError(f"the section ${name} is there twice")
+            raise ValueError(f"the section ${name} occurs twice")
         end = data.find(b"$End" + start[1], start.end())
         if end < 0:
-            raise ValueError(f"the section ${name} does not end")
+            raise ValueError(f"the section ${name} has no end")
         if not found - {"Comments"} and name not in ("MeshFormat", "Comments"):
             raise ValueError("it does not begin with $MeshFormat")
         found.add(name)
@@ -86,14 +85,14 @@ def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
 
 @dataclass(frozen=True)
 class _Format:
-    """Main and minor version, and how numbers are written."""
+    """Major and minor version, and encoding of numbers."""
 
     version: int
     minor: int
     order: str
-    """``""`` of text, ``"<"`` or ``">"`` of binary files."""
+    """``""`` for text, ``"<"`` or ``">"`` for binary files."""
     size: int
-    """Bytes of a ``size_t``."""
+    """Number of bytes of a ``size_t``."""
 
     @property
     def binary(self) -> bool:
@@ -114,13 +113,15 @@ def _format(body: bytes) -> _Format:
     words = first.split()
     version, _, minor = words[0].decode("ascii").partition(".") if words else ("", "", "")
     if len(words) != 3 or version not in ("2", "4") or minor[:1] not in ("", "0", "1", "2"):
-        raise ValueError(f"the format {shown(first)} is not read; save it as version 4.1 or 2.2")
+        raise ValueError(
+            f"the format {shown(first)} is not supported; save it as version 4.1 or 2.2"
+        )
     size = int(words[2])
     if words[1] == b"0":
         return _Format(int(version), int(minor[:1] or 0), "", size)
     order = {b"\1\0\0\0": "<", b"\0\0\0\1": ">"}.get(rest[:4])
     if order is None or size not in (4, 8) or (version == "4" and minor[:1] in ("", "0")):
-        raise ValueError("this kind of binary file is not read; save it as version 4.1")
+        raise ValueError("this type of binary file is not supported; save it as version 4.1")
     return _Format(int(version), int(minor[:1] or 0), order, size)
 
 
@@ -131,6 +132,6 @@ def _physical_names(body: bytes) -> dict[tuple[int, int], str]:
     for line in lines:
         entry = _NAME.fullmatch(line)
         if entry is None:
-            raise ValueError(f"{shown(line.encode())} is no physical name")
+            raise ValueError(f"{shown(line.encode())} is not a physical name")
         found[int(entry[1]), int(entry[2])] = entry[3]
     return found

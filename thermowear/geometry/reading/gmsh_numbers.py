@@ -8,14 +8,14 @@ from .contents import parsed
 
 
 class Numbers:
-    """The numbers of a section, taken one after the other."""
+    """Numbers of a section, read sequentially."""
 
     name: str
     count: int | None = None
-    """Number that a binary section of format 2 says as text at its beginning."""
+    """Count that a binary section of format 2 gives as text at its beginning."""
 
     def integers(self, count: int, kind: str = "int") -> np.ndarray:
-        """Next whole numbers, ``"int"`` or ``"size"``, shape (count,)."""
+        """Next integers, ``"int"`` or ``"size"``, shape (count,)."""
         raise NotImplementedError
 
     def reals(self, count: int) -> np.ndarray:
@@ -26,19 +26,19 @@ class Numbers:
         return int(self.integers(1, kind)[0])
 
     def finished(self) -> None:
-        """Raise where something is left over, as a command would be."""
+        """Raise an error if data are left over, such as commands."""
         if self._left_over():
-            raise ValueError(f"the section ${self.name} holds more than it says")
+            raise ValueError(f"the section ${self.name} holds more data than announced")
 
     def _left_over(self) -> bool:
         raise NotImplementedError
 
     def ends_early(self) -> ValueError:
-        return ValueError(f"the section ${self.name} holds fewer numbers than it says")
+        return ValueError(f"the section ${self.name} holds fewer numbers than announced")
 
 
 class Text(Numbers):
-    """As text, separated by blanks."""
+    """Numbers as text, separated by blanks."""
 
     def __init__(self, name: str, body: bytes):
         self.name, self.at = name, 0
@@ -47,7 +47,9 @@ class Text(Numbers):
     def integers(self, count: int, kind: str = "int") -> np.ndarray:
         values = self.reals(count)
         if not np.all(np.abs(values) < 2**53) or np.any(values != np.rint(values)):
-            raise ValueError(f"the section ${self.name} has other numbers where whole ones are due")
+            raise ValueError(
+                f"the section ${self.name} has real numbers where integers are expected"
+            )
         return values.astype(np.int64)
 
     def reals(self, count: int) -> np.ndarray:
@@ -61,7 +63,7 @@ class Text(Numbers):
 
 
 class Binary(Numbers):
-    """Of a byte order (``"<"`` or ``">"``), with a ``size_t`` of so many bytes."""
+    """Binary numbers of a byte order (``"<"`` or ``">"``), with a ``size_t`` of `size` bytes."""
 
     def __init__(self, name: str, body: bytes, order: str, size: int, count: int | None):
         self.name, self.body, self.at, self.count = name, body, 0, count
@@ -74,7 +76,7 @@ class Binary(Numbers):
         return self._take(count, "real").astype(np.float64)
 
     def records(self, count: int, kinds: list[tuple[str, str, int]]) -> np.ndarray:
-        """Next rows of different numbers: name, kind and how many of each."""
+        """Next records: name, type and count of each field."""
         row = np.dtype([(name, self.kinds[kind], (n,)) for name, kind, n in kinds])
         return self._frombuffer(count, row)
 

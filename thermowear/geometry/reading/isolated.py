@@ -1,7 +1,7 @@
-"""Mesh files that libraries read, in a process of its own.
+"""Reading of mesh files by libraries in a separate process.
 
-Readers of XML and HDF5 files may be made to crash, to hang or to take all memory by a file that is
-broken or hostile; a process of their own, with bounds, keeps that from the program.
+Readers of XML and HDF5 files may crash, hang or exhaust the memory on a malformed or hostile
+file; a separate process with resource limits protects the program.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from .contents import Block, Contents
 
 _READER = Path(__file__).with_name("isolated_reader.py")
 _SECONDS = 60
-"""At the longest, however little processor time it takes."""
+"""Largest elapsed time, regardless of processor time."""
 _MEMORY = 2**30
-"""For the libraries and a small file [bytes]; of address space, which is more than is used."""
+"""Address space for the libraries and a small file [bytes], larger than the memory used."""
 _PER_BYTE = 16
-"""Memory that a byte of a file may take."""
+"""Additional memory per byte of a file."""
 _LONGEST = 300
-"""Characters of a reason."""
+"""Largest number of characters of an error message."""
 
 
 def read_isolated(path: Path, ending: str) -> Contents:
@@ -34,7 +34,7 @@ def read_isolated(path: Path, ending: str) -> Contents:
     Raises
     ------
     ValueError
-        If it is broken, refers to other files, or takes more memory or time than a mesh may.
+        If it is malformed, refers to other files, or exceeds the limits of memory or time.
     """
     memory = _MEMORY + _PER_BYTE * path.stat().st_size
     command = [sys.executable, "-P", str(_READER), str(path.resolve()), ending, str(memory)]
@@ -52,9 +52,9 @@ def read_isolated(path: Path, ending: str) -> Contents:
         raise ValueError(f"reading it took more than {_SECONDS} s") from None
     if done.returncode == 1:
         reason = done.stderr.decode("utf-8", "replace").rpartition("\n")[2]
-        raise ValueError(reason[:_LONGEST] or "it is broken")
+        raise ValueError(reason[:_LONGEST] or "it is malformed")
     if done.returncode:
-        raise ValueError("its reader was stopped: the file is broken, or takes too long to read")
+        raise ValueError("its reader was stopped: the file is malformed, or takes too long to read")
     return _unpacked(done.stdout)
 
 

@@ -1,8 +1,8 @@
-"""Program that reads a mesh file with libraries, run by `isolated` in a process of its own.
+"""Program that reads a mesh file with libraries, run by `isolated` in a separate process.
 
-Started by its path, so that nothing of this package is imported. The file may be hostile: memory
-and processor time are bounded, no file can be written, and none but the named one (and an HDF5 file
-beside an .xdmf) is opened. What it finds goes to the standard output as ``.npz``.
+Started by its path, so that this package is not imported. The file may be hostile: memory and
+processor time are limited, no file can be written, and only the named one (and an HDF5 file
+next to an .xdmf) is opened. The result is written to the standard output as ``.npz``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 _SECONDS = 20
-"""Of processor time."""
+"""Largest processor time [s]."""
 _XDMF = {
     "Polyvertex": "vertex",
     "Polyline": "line",
@@ -41,34 +41,34 @@ _MIXED = {
     0x24: ("triangle6", 6),
     0x25: ("quad8", 8),
 }
-"""Type and nodes of cells by their number in mixed topologies, see XdmfTopologyType.cpp."""
+"""Type and number of nodes of cells in mixed topologies, see XdmfTopologyType.cpp."""
 _COUNTED = (1, 2)
-"""Mixed cells whose number of nodes stands behind their type."""
+"""Mixed cells whose number of nodes follows their type."""
 
 
 class _Mesh:
-    """Like a mesh of meshio, as far as it is used here."""
+    """Minimal replacement of a meshio mesh."""
 
     def __init__(self, points, cells, cell_data):
         self.points, self.cells, self.cell_data, self.point_data = points, cells, cell_data, {}
 
 
 def read(path: Path, ending: str) -> dict[str, np.ndarray]:
-    """Arrays that say all of a mesh, see `isolated.read_isolated`."""
+    """Arrays that describe a mesh, see `isolated.read_isolated`."""
     if ending == ".med":
-        _no_links(path)
+        _check_hdf5_links(path)
         from meshio.med import read as reader
 
         mesh = reader(str(path))
         cells = [(block.type, block.data) for block in mesh.cells]
     elif ending == ".vtu":
-        _no_entities(path)
+        _check_xml(path)
         from meshio.vtu import read as reader
 
         mesh = reader(str(path))
         cells = [(block.type, block.data) for block in mesh.cells]
     else:
-        _no_entities(path)
+        _check_xml(path)
         mesh = _read_xdmf(path)
         cells = mesh.cells
     arrays = {"points": np.asarray(mesh.points, dtype=float)}
@@ -100,7 +100,7 @@ def _sets_of_block(mesh, index: int) -> dict[str, np.ndarray]:
 
 
 def _node_sets(mesh) -> dict[str, np.ndarray]:
-    """Sets of nodes of .med."""
+    """Node sets of .med files."""
     values = mesh.point_data.get("point_tags", np.empty(0))
     found: dict[str, list[np.ndarray]] = {}
     for family, names in getattr(mesh, "point_tags", {}).items():
@@ -109,22 +109,24 @@ def _node_sets(mesh) -> dict[str, np.ndarray]:
     return {name: np.concatenate(parts) for name, parts in found.items()}
 
 
-def _no_entities(path: Path) -> None:
-    """Refuse what makes an XML file more than the text that it is."""
+def _check_xml(path: Path) -> None:
+    """Reject XML with entities or included files."""
     from xml.parsers import expat
 
     def refuse(*_) -> None:
-        raise ValueError("it has a document type declaration (<!DOCTYPE>), which no mesh needs")
+        raise ValueError(
+            "it has a document type declaration (<!DOCTYPE>), which is not allowed in a mesh"
+        )
 
     def begin(name: str, _) -> None:
         if name.rpartition(":")[2].rpartition("}")[2] == "include":
-            raise ValueError("it includes another file; a mesh has to be in one file")
+            raise ValueError("it includes another file; a mesh must be in one file")
 
     parser = expat.ParserCreate()
     parser.StartDoctypeDeclHandler = refuse
     parser.StartElementHandler = begin
     data = path.read_bytes()
-    raw = data.find(b"<AppendedData")  # its bytes need not be XML
+    raw = data.find(b"<AppendedData")  # raw bytes, not necessarily XML
     try:
         parser.Parse(data if raw < 0 else data[:raw], raw < 0)
     except expat.ExpatError as error:
@@ -133,8 +135,8 @@ def _no_entities(path: Path) -> None:
         refuse()
 
 
-def _no_links(path: Path) -> None:
-    """Refuse HDF5 files that take data from other files."""
+def _check_hdf5_links(path: Path) -> None:
+    """Reject HDF5 files that refer to data in other files."""
     import h5py
 
     with h5py.File(path, "r") as file:
@@ -149,16 +151,16 @@ def _no_links(path: Path) -> None:
             for name in group:
                 link = group.get(name, getlink=True)
                 if not isinstance(link, h5py.HardLink):
-                    raise ValueError(f"its entry {name!r} is a link; a mesh has to be in one file")
+                    raise ValueError(f"its entry {name!r} is a link; a mesh must be in one file")
                 entry = group[name]
                 if isinstance(entry, h5py.Group):
                     groups.append(entry)
                 elif isinstance(entry, h5py.Dataset) and (entry.external or entry.is_virtual):
-                    raise ValueError(f"its entry {name!r} is kept in another file")
+                    raise ValueError(f"its entry {name!r} is stored in another file")
 
 
 def _read_xdmf(path: Path) -> _Mesh:
-    """The mesh of an XDMF file with one grid, data in it or in an HDF5 file beside it."""
+    """Mesh of an XDMF file with one grid, with data in it or in an HDF5 file next to it."""
     from xml.etree import ElementTree as ET
 
     grids = ET.parse(path).getroot().findall("./Domain/Grid")
@@ -171,7 +173,7 @@ def _read_xdmf(path: Path) -> _Mesh:
     width = {"XY": 2, "XYZ": 3}.get(_type(geometry, "Geometry") or "XYZ", 0)
     points = _item(path, geometry).reshape(-1, width) if width else None
     if points is None:
-        raise ValueError(f"points of the kind {_type(geometry, 'Geometry')} are not supported")
+        raise ValueError(f"points of type {_type(geometry, 'Geometry')} are not supported")
     kind, data = _type(topology, "Topology"), _item(path, topology)
     if kind == "Mixed":
         cells, at = _mixed(data.ravel())
@@ -179,7 +181,7 @@ def _read_xdmf(path: Path) -> _Mesh:
         cells = [(_XDMF[kind], data.reshape(len(data), -1))]
         at = [np.arange(len(data))]
     else:
-        raise ValueError(f"cells of the kind {kind} are not supported in .xdmf")
+        raise ValueError(f"cells of type {kind} are not supported in .xdmf")
     values = {
         str(entry.get("Name")): _item(path, entry)
         for entry in parts["Attribute"]
@@ -188,7 +190,7 @@ def _read_xdmf(path: Path) -> _Mesh:
     of_blocks = {}
     for name, value in values.items():
         if len(value) != sum(map(len, at)):
-            raise ValueError(f"the attribute {name} has another number of values than cells")
+            raise ValueError(f"the attribute {name} must have one value per cell")
         squeezed = value[:, 0] if value.ndim == 2 and value.shape[1] == 1 else value
         of_blocks[name] = [squeezed[members] for members in at]
     return _Mesh(points, cells, of_blocks)
@@ -199,44 +201,44 @@ def _type(entry, tag: str) -> str | None:
 
 
 def _item(path: Path, entry) -> np.ndarray:
-    """Data of an element, in the file or in an HDF5 file beside it."""
+    """Data of an element, in the file or in an HDF5 file next to it."""
     items = entry.findall("DataItem")
     if len(items) != 1 or "Reference" in items[0].attrib:
-        raise ValueError(f"a {entry.tag} needs one DataItem of its own")
+        raise ValueError(f"a {entry.tag} needs exactly one DataItem")
     item = items[0]
     kind = item.get("DataType", item.get("NumberType", "Float"))
     if kind not in ("Float", "Int", "UInt"):
-        raise ValueError(f"data of the type {kind} are not supported")
+        raise ValueError(f"data of type {kind} are not supported")
     shape = [int(word) for word in (item.get("Dimensions") or "").split()]
     text = (item.text or "").strip()
     if item.get("Format", "XML") == "XML":
         with warnings.catch_warnings():
-            warnings.simplefilter("error")  # of words that are no numbers
+            warnings.simplefilter("error")  # for words that are not numbers
             values = np.fromstring(text, float if kind == "Float" else np.int64, sep=" ")
     elif item.get("Format") == "HDF":
-        values = _heavy(path, text)
+        values = _hdf5_dataset(path, text)
     else:
-        raise ValueError(f"data of the format {item.get('Format')} are kept in other files")
+        raise ValueError(f"data of the format {item.get('Format')} are stored in other files")
     if values.size != np.prod(shape, dtype=float):
-        raise ValueError(f"a DataItem of {entry.tag} has other dimensions than it says")
+        raise ValueError(f"a DataItem of {entry.tag} contradicts its dimensions")
     return values.reshape(shape)
 
 
-def _heavy(path: Path, text: str) -> np.ndarray:
-    """A data set of an HDF5 file in the same folder."""
+def _hdf5_dataset(path: Path, text: str) -> np.ndarray:
+    """Data set of an HDF5 file in the same folder."""
     import h5py
 
     name, _, inside = text.partition(":")
     beside = path.parent / name
     if Path(name).name != name or not beside.is_file() or beside.is_symlink():
-        raise ValueError(f"its data are in {name!r}, which is no file beside it")
-    _no_links(beside)
+        raise ValueError(f"its data are in {name!r}, which is not a file in the same folder")
+    _check_hdf5_links(beside)
     with h5py.File(beside, "r") as file:
         return np.asarray(file[inside][()])
 
 
 def _mixed(data: np.ndarray) -> tuple[list[tuple[str, np.ndarray]], list[np.ndarray]]:
-    """Blocks of cells of one type each, and which cells of the file they are."""
+    """Blocks of cells of one type each, and indices of the cells in the file."""
     starts: dict[int, list[int]] = {}
     members: dict[int, list[int]] = {}
     at, cell = 0, 0
@@ -249,13 +251,13 @@ def _mixed(data: np.ndarray) -> tuple[list[tuple[str, np.ndarray]], list[np.ndar
         at += 1
         if number in _COUNTED:
             if values[at : at + 1] != [count]:
-                raise ValueError(f"cells of the type {kind} must have {count} nodes")
+                raise ValueError(f"cells of type {kind} must have {count} nodes")
             at += 1
         starts.setdefault(number, []).append(at)
         members.setdefault(number, []).append(cell)
         at, cell = at + count, cell + 1
     if at != len(values):
-        raise ValueError("the last cell is not complete")
+        raise ValueError("the last cell is incomplete")
     blocks = [
         (_MIXED[n][0], data[np.array(first)[:, None] + np.arange(_MIXED[n][1])])
         for n, first in starts.items()
@@ -263,8 +265,8 @@ def _mixed(data: np.ndarray) -> tuple[list[tuple[str, np.ndarray]], list[np.ndar
     return blocks, [np.array(cells) for cells in members.values()]
 
 
-def _bounded(memory: int) -> None:
-    """From now on, take no more memory [bytes] and processor time, and write no file."""
+def _set_limits(memory: int) -> None:
+    """Limit memory [bytes] and processor time of this process, and forbid writing of files."""
     import resource
 
     for limit, most in (
@@ -279,17 +281,17 @@ def _bounded(memory: int) -> None:
 
 
 def main(path: str, ending: str, memory: str) -> int:
-    """Write the arrays, or one line with the reason why there are none."""
+    """Write the arrays, or one line with the reason of a failure."""
     out = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what libraries print is no result
-    _bounded(int(memory))
+    os.dup2(2, 1)  # output of the libraries goes to stderr
+    _set_limits(int(memory))
     try:
         arrays = read(Path(path), ending)
         packed = io.BytesIO()
         np.savez(packed, allow_pickle=False, **arrays)
     except MemoryError:
-        reason = "it takes more memory than a mesh may"
-    except (Exception, SystemExit) as error:  # readers raise whatever a broken file leads them to
+        reason = "it exceeds the memory limit of a mesh"
+    except (Exception, SystemExit) as error:  # readers raise any exception for a malformed file
         reason = " ".join(str(error).split()) or type(error).__name__
         reason = {"KeyError": f"it has no entry {reason}"}.get(type(error).__name__, reason)
     else:

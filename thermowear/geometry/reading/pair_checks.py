@@ -1,6 +1,6 @@
-"""Two bodies of a mesh file: whether they lie so that their load can press them together.
+"""Checks of the relative position of two bodies of a mesh file.
 
-Only what no elastic contact can be is refused: bodies that overlap or are squeezed by a good part
+Only impossible elastic contacts are rejected: bodies that overlap or are compressed by a large part
 of their own size, that lie on the wrong side of each other, or too far apart.
 """
 
@@ -20,33 +20,33 @@ if TYPE_CHECKING:
     from ...case.tables.schema import Case
 
 _PIECES = 4
-"""Straight pieces that stand for a curved edge, times its order."""
+"""Number of straight segments per curved edge, times its order."""
 _FACING = 0.05
-"""Cosine between a normal and the press from which on a piece counts as facing the other body."""
+"""Least cosine between a normal and the load direction of a segment that faces the other body."""
 _SQUEEZED = 0.2
-"""Of the height of a body: so far, elasticity of small strains says nothing any more."""
+"""Largest compression relative to the height of a body; beyond it small strains are invalid."""
 _MUCH = 0.02
-"""Of the height of a body: so far, it is said."""
+"""Compression relative to the height of a body above which a note is issued."""
 _AT_ONCE = 2000
-"""Places at which faces are compared together."""
+"""Number of points at which faces are compared together."""
 
 
 @dataclass(frozen=True)
 class Faces:
-    """Contact faces compared along the press.
+    """Contact faces compared along the load direction.
 
     Attributes
     ----------
     gap : float
         Smallest distance, negative where the bodies overlap [m].
     width : float
-        Of the range of x in which both faces are [m].
+        Width of the range of x common to both faces [m].
     span : tuple of float
-        That range [m].
+        Range of x common to both faces [m].
     height : float
-        Of the lower one of both bodies [m].
+        Height of the lower one of both bodies [m].
     body : str
-        Its name.
+        Name of this body.
     """
 
     gap: float
@@ -60,12 +60,12 @@ class Faces:
 
 
 def check_pair(mesh: TaggedMesh, case: Case) -> None:
-    """Check how the bodies of a section lie to each other, and how far the load squeezes them.
+    """Check the relative position of the bodies of a section, and their compression by the load.
 
     Raises
     ------
     CaseError
-        If they overlap, lie apart or are squeezed by a good part of their size.
+        If they overlap, are apart, or are compressed by a large part of their size.
     """
     faces = compared(whole_bodies(mesh, case.geometry), case)
     height, overlap = faces.height, -faces.gap
@@ -73,12 +73,12 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
     if overlap > _SQUEEZED * height:
         raise CaseError(
             f"geometry.path: the bodies overlap by {length(overlap)}, {overlap / height:.0%} "
-            f"{of_body}; place the faces where they begin to touch"
+            f"{of_body}; move the faces to initial contact"
         )
     if faces.gap > height:
         raise CaseError(
             f"geometry.path: the bodies lie {length(faces.gap)} apart, more than the height "
-            f"{of_body}; place the faces where they begin to touch"
+            f"{of_body}; move the faces to initial contact"
         )
     approach = case.approach()
     if approach is not None:
@@ -86,30 +86,30 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
     _check_pressure(case, faces)
     if overlap > _MUCH * height:
         note(
-            f"geometry.path: the bodies overlap by {length(overlap)} before they are pressed, "
+            f"geometry.path: the bodies overlap by {length(overlap)} before loading, "
             f"{overlap / height:.1%} {of_body}"
         )
 
 
 def _check_approach(case: Case, faces: Faces, approach: float, of_body: str) -> None:
-    """A given approach must close the gap, and not squeeze a body flat."""
+    """Check that a prescribed approach closes the gap without excessive compression."""
     key = "load.history.approach" if case.load.approach is None else "load.approach"
     if approach - faces.gap > _SQUEEZED * faces.height:
         raise CaseError(
-            f"{key}: {length(approach)} squeezes the bodies by "
+            f"{key}: {length(approach)} compresses the bodies by "
             f"{(approach - faces.gap) / faces.height:.0%} {of_body} "
-            "(is geometry.length_unit right?)"
+            "(check geometry.length_unit)"
         )
     alone = case.heat is None and not case.load.surfaces and case.geometry.initial_shape is None
     if alone and approach < faces.gap:
         raise CaseError(
             f"{key}: {length(approach)} does not close the gap of {length(faces.gap)} between "
-            "the contact faces; nothing would touch"
+            "the contact faces; there would be no contact"
         )
 
 
 def _check_pressure(case: Case, faces: Faces) -> None:
-    """The mean pressure of a given force must be small against the moduli."""
+    """Check that the mean pressure of a prescribed force is small relative to the moduli."""
     force, area = case.force(), _area(case, faces)
     if force is None or area == 0.0:
         return
@@ -122,21 +122,22 @@ def _check_pressure(case: Case, faces: Faces) -> None:
     strain = force / area / moduli[softer]
     if strain > _SQUEEZED:
         raise CaseError(
-            f"load: a mean pressure of {force / area / 1e6:.4g} MPa, if the faces touched along "
-            f"all of their {length(faces.width)}, is {strain:.2g} times the modulus of {softer!r} "
-            "(is geometry.length_unit right?)"
+            f"load: a mean pressure of {force / area / 1e6:.4g} MPa, for contact along "
+            f"the whole {length(faces.width)} of the faces, is {strain:.2g} times the "
+            f"modulus of {softer!r} "
+            "(check geometry.length_unit)"
         )
 
 
 def _area(case: Case, faces: Faces) -> float:
-    """Area that both faces have in common, seen along the press [m²]."""
+    """Area common to both faces, projected along the load direction [m²]."""
     if case.model == "axisymmetric":
         return np.pi * (faces.span[1] ** 2 - faces.span[0] ** 2)
     return faces.width * (case.geometry.thickness_factor or 0.0)
 
 
 def compared(mesh: TaggedMesh, case: Case) -> Faces:
-    """Compare the contact faces along the press, which is -y in a section.
+    """Compare the contact faces along the load direction, which is -y in a section.
 
     Raises
     ------
@@ -149,8 +150,8 @@ def compared(mesh: TaggedMesh, case: Case) -> Faces:
     for facing, name, way in ((down, geometry.contact[0], "down"), (up, geometry.contact[1], "up")):
         if not len(facing):
             raise CaseError(
-                f"geometry.contact: {name!r} does not look {way}; body {geometry.bodies[0]!r} is "
-                f"pressed along -y, so it must lie above {geometry.bodies[1]!r}"
+                f"geometry.contact: {name!r} does not face {way}; body {geometry.bodies[0]!r} is "
+                f"loaded along -y, so it must lie above {geometry.bodies[1]!r}"
             )
     first = max(down[..., 0].min(), up[..., 0].min())
     last = min(down[..., 0].max(), up[..., 0].max())
@@ -172,7 +173,7 @@ def compared(mesh: TaggedMesh, case: Case) -> Faces:
 
 
 def _pieces(mesh: TaggedMesh, surface: str) -> np.ndarray:
-    """Straight pieces of a surface, their body on the left, shape (n, 2 ends, 2) [m]."""
+    """Straight segments of a surface, with their body on the left, shape (n, 2 ends, 2) [m]."""
     facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index(surface) + 1]
     t = np.linspace(0.0, 1.0, 1 + (_PIECES * mesh.order if mesh.order > 1 else 1))
     values = shape_functions("interval", mesh.order, t[:, None])
@@ -187,7 +188,7 @@ def _normals(pieces: np.ndarray) -> np.ndarray:
 
 
 def _highest(height: np.ndarray, across: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Largest height of pieces (n, 2 ends) over places x; NaN where there is none, shape of x."""
+    """Largest height of segments (n, 2 ends) over points x; NaN where there is none, shape of x."""
     order = np.argsort(across, axis=1)
     left, right = np.take_along_axis(across, order, axis=1).T
     low, high = np.take_along_axis(height, order, axis=1).T

@@ -39,7 +39,7 @@ def load(source, overrides: tuple[str, ...] = ()):
 
 
 def __getattr__(name: str) -> Any:
-    """Rooms and entry points are imported when first used: dolfinx takes its time."""
+    """Import packages and entry points on first use, as the import of dolfinx is slow."""
     if name in _LAZY:
         return getattr(importlib.import_module(f".{_LAZY[name]}", __name__), name)
     if name in _ROOMS:

@@ -5,10 +5,10 @@ import sys
 
 
 def run() -> int:
-    """Run the command line, with one thread unless the user says otherwise.
+    """Run the command line with one thread unless ``OMP_NUM_THREADS`` is set.
 
-    Most matrices are small, and threads that wait for one another cost far more than they save
-    where anything else runs (3 s become 16 s, measured). Processes do the work: `mpirun`.
+    Most matrices are small, and the synchronisation of threads costs far more than it saves on a
+    busy machine (16 s instead of 3 s, measured). Parallel runs use processes: `mpirun`.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # before a BLAS is loaded
     try:
@@ -17,12 +17,12 @@ def run() -> int:
 
         deliver_again()
         return main()
-    except KeyboardInterrupt:  # while importing: the command line itself has not begun
+    except KeyboardInterrupt:  # during imports, before the command line has started
         print("error: interrupted", file=sys.stderr)
         return 130
 
 
 if __name__ == "__main__":
-    if not sys.flags.safe_path:  # the current folder, which may be anybody's: after all libraries
+    if not sys.flags.safe_path:  # the current folder may be untrusted: search it after libraries
         sys.path.append(sys.path.pop(0))
     sys.exit(run())

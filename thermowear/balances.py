@@ -1,7 +1,7 @@
-"""The balances that every run must keep: forces, heat, and volume worn off.
+"""Balances that every run must satisfy: equilibrium, heat, and worn volume.
 
-They are computed by other means than the solution, so that an error of either shows. A run that
-does not keep them ends as a failed computation; its results stay readable.
+They are computed independently of the solution, so that errors of either become visible. A run
+that violates them ends as a failed computation; its results stay readable.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from typing import Any
 from .errors import ComputationError
 
 ALLOWED = 1e-6
-"""Largest relative error of a balance."""
+"""Largest relative error allowed of a balance."""
 
 
 @dataclass(frozen=True)
 class Balance:
-    """A balance: its name, what its error is relative to, and what to try where it fails."""
+    """A balance: its name, the reference scale of its error, and a remedy where it fails."""
 
     name: str
     scale: str
@@ -46,16 +46,16 @@ BALANCES = {
         "(mesh.elements) or a smaller wear.update",
     ),
 }
-"""By their key in the summary."""
+"""All balances by the key of their error in the summary."""
 
 
 def holds(error: float) -> bool:
-    """Whether a relative error is small enough; not a number is not."""
+    """Test whether a relative error is within the allowed limit; NaN is not."""
     return abs(error) <= ALLOWED
 
 
 def relative(missing: float, scale: float) -> float:
-    """What is missing of a balance, relative to a scale; infinite where it is not a number."""
+    """Defect of a balance relative to a scale; infinite where it is not a number."""
     if missing == 0.0:
         return 0.0
     error = abs(missing) / scale if scale > 0.0 else math.inf
@@ -63,7 +63,7 @@ def relative(missing: float, scale: float) -> float:
 
 
 def violated(summary: Mapping[str, Any]) -> list[str]:
-    """A line for each balance of a summary that does not hold: which, by how much, what to do."""
+    """One line per violated balance of a summary: its name, error and remedy."""
     return [
         f"the {balance.name} has a relative error of {summary[key]:.1e} of {balance.scale} "
         f"(allowed: {ALLOWED:g}); {balance.remedy}"
@@ -73,13 +73,13 @@ def violated(summary: Mapping[str, Any]) -> list[str]:
 
 
 def judged(summary: Mapping[str, Any]) -> ComputationError | None:
-    """The error of a run whose balances do not hold; None where they do."""
+    """Error of a run with violated balances; None if all hold."""
     found = violated(summary)
     return ComputationError("not balanced: " + "; ".join(found)) if found else None
 
 
 def require(**errors: float) -> None:
-    """Raise the error of balances, by their keys, that do not hold.
+    """Raise an error if any of the balances, given by their keys, is violated.
 
     Raises
     ------

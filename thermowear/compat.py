@@ -1,6 +1,6 @@
-"""The only module that knows how dolfinx differs between 0.9 and 0.11.
+"""Differences between dolfinx 0.9 and 0.11, all in this module.
 
-Each function asks for a feature, not for a version.
+Each function tests for a feature, not for a version.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ def geometry_dofmap(mesh) -> np.ndarray:
 
 
 def coordinate_element(mesh):
-    """The coordinate map of the (single) cell type of a mesh."""
+    """Coordinate element of the (single) cell type of a mesh."""
     geometry = mesh.geometry
     return geometry.cmaps[0] if hasattr(geometry, "cmaps") else geometry.cmap
 
 
 def entities_to_geometry_layout(mesh, facet_dim: int) -> list[np.ndarray]:
-    """Geometry nodes of each local facet, as positions in the cell's list of nodes."""
+    """Geometry nodes of each local facet, as positions in the node list of the cell."""
     layout = coordinate_element(mesh).create_dof_layout()
     count = cpp.mesh.cell_num_entities(mesh.topology.cell_type, facet_dim)
     return [
@@ -48,7 +48,7 @@ def evaluate(expression: fem.Expression, mesh, cells: np.ndarray) -> np.ndarray:
 
 
 def exterior_facet_domain(mesh, facets: np.ndarray) -> np.ndarray:
-    """Integration entities (cell, local facet) of those facets that lie on the boundary."""
+    """Integration entities (cell, local facet) of the facets that lie on the boundary."""
     needs_dim = "dim" in inspect.signature(fem.compute_integration_domains).parameters
     dim = (mesh.topology.dim - 1,) if needs_dim else ()
     return fem.compute_integration_domains(

@@ -1,4 +1,4 @@
-"""The two ways a run can fail, the exit codes that go with them, and how messages stay short."""
+"""Exceptions of failed runs with their exit codes, notes, and shortening of messages."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ import warnings
 from typing import Any
 
 MOST_FAULTS = 50
-"""Lines about one case: a file that is wrong all over needs no more of them."""
+"""Largest number of lines reported for one case file."""
 _LONGEST = 1000  # characters of a line: the longest list of allowed words has about 600
 
 
 class CaseError(Exception):
-    """What the user wrote cannot be run (exit code 1).
+    """Invalid input of the user (exit code 1).
 
     Parameters
     ----------
     faults : list of str
-        One line per fault, each starting with the key's path; of many the first `MOST_FAULTS` are
+        One line per fault, each starting with the key's path; only the first `MOST_FAULTS` are
         kept.
     more : int
-        Faults besides.
+        Number of further faults.
     """
 
     exit_code = 1
@@ -33,31 +33,31 @@ class CaseError(Exception):
 
 
 class ComputationError(Exception):
-    """The computation did not reach an answer (exit code 2)."""
+    """Failed computation (exit code 2)."""
 
     exit_code = 2
 
 
 class UnwritableError(ComputationError):
-    """Results cannot be written any more: a disk is full, or gone."""
+    """Results cannot be written any more, as a disk is full or not available."""
 
 
 class CaseNote(UserWarning):
-    """What is legal in a case, and still odd enough to be said; the command line prints it."""
+    """Warning about valid but unusual input of a case; printed by the command line."""
 
 
 def note(text: str) -> None:
-    """Warn of what is odd about a case, in the name of the caller."""
+    """Warn about unusual input of a case, attributed to the caller of the calling function."""
     warnings.warn(CaseNote(text), stacklevel=3)
 
 
 def quoted(value: Any) -> str:
-    """A value of the user as messages show it: as Python writes it, a long one shortened."""
+    """Representation of a user's value in messages: its ``repr``, shortened if long."""
     return shortened(repr(value), 100)
 
 
 def shortened(text: str, most: int) -> str:
-    """Text of at most about `most` characters: of a longer one the middle is left out."""
+    """Shorten a text to about `most` characters by leaving out its middle."""
     if len(text) <= most:
         return text
     end = most // 3

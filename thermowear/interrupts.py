@@ -1,4 +1,4 @@
-"""Interrupts that are raised inside a destructor, which Python reports and forgets."""
+"""Repeated delivery of interrupts raised inside a destructor, which Python reports and discards."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import sys
 import threading
 
 _LATER = 0.01
-"""When the destructor has been left [s]."""
+"""Delay after which the destructor has returned [s]."""
 
 
 def deliver_again() -> None:
-    """From now on raise such an interrupt once more, a moment later."""
+    """Install a hook that raises an interrupt lost in a destructor again, a moment later."""
     report = sys.unraisablehook
 
     def hook(unraisable) -> None:
         if not isinstance(unraisable.exc_value, KeyboardInterrupt):
             report(unraisable)
             return
-        heard = callable(signal.getsignal(signal.SIGINT))  # workers hear SIGTERM alone
+        heard = callable(signal.getsignal(signal.SIGINT))  # workers handle SIGTERM only
         number = signal.SIGINT if heard else signal.SIGTERM
         main = threading.main_thread().ident
         again = threading.Timer(_LATER, signal.pthread_kill, (main, number))

@@ -1,8 +1,8 @@
-"""Libraries are started without the settings that lie in the current folder.
+"""Protection from settings of libraries in the current folder.
 
-A case may come in a folder of somebody else and be run there. dolfinx and FFCx look for options in
-the current folder, among them arguments of the compiler, which can be any command. Those of the
-user, in the home folder, hold as ever.
+A case may be run inside a folder from another person. dolfinx and FFCx read options from the
+current folder, among them arguments of the compiler, which can run any command. The user's options
+in the home folder remain valid.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ import contextlib
 from pathlib import Path
 
 OWN = Path(__file__).parent
-"""A folder without such files."""
+"""Folder without option files."""
 
 
 def fix_compiler_options() -> None:
-    """Let dolfinx and FFCx read their options, which they do once, from another folder."""
+    """Make dolfinx and FFCx read their options, which they do once, from another folder."""
     with contextlib.chdir(OWN):
         import ffcx
         from dolfinx import jit

@@ -1,4 +1,4 @@
-"""Ranks that agree: sums that are the same everywhere, and errors that reach every rank."""
+"""Consistency of MPI ranks: identical sums, and errors raised on every rank."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 def sum_over_ranks(comm, values):
-    """Sum arrays or numbers over all ranks; every rank gets bitwise the same result."""
+    """Sum arrays or numbers over all ranks; the result is bitwise identical on every rank."""
     if comm.size == 1:
         return values
     total = comm.reduce(np.asarray(values), root=0)
@@ -17,7 +17,7 @@ def sum_over_ranks(comm, values):
 
 
 def on_root(comm, action: Callable[[], Any]) -> Any:
-    """Do something on rank 0 only; its result, or its error, on every rank."""
+    """Run an action on rank 0 only; return its result, or raise its error, on every rank."""
     if comm.size == 1:
         return action()
     result, error = None, None

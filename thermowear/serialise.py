@@ -1,7 +1,7 @@
-"""States of an analysis as plain arrays, from which it goes on as if it had never stopped.
+"""Serialisation of states of an analysis to plain arrays, for an exact restart.
 
-Numbers are kept to the last bit and arrays in their order in memory, as sums depend on it: what is
-computed from a state that was packed and unpacked is bitwise what is computed from the state.
+Numbers are kept to the last bit and arrays in their memory order, as sums depend on it: results
+computed from an unpacked state are bitwise those computed from the original state.
 """
 
 from __future__ import annotations
@@ -21,53 +21,53 @@ _ROWS: dict[str, type] = {}
 
 
 def serialisable(kind: type[Kind]) -> type[Kind]:
-    """Decorator of a dataclass that states of an analysis consist of."""
+    """Decorator that registers a dataclass as a component of serialised states."""
     _STATES[kind.__name__] = kind
     return kind
 
 
 def serialisable_row(kind: type[Kind]) -> type[Kind]:
-    """Decorator of a dataclass of numbers, lists of which are kept by columns."""
+    """Decorator that registers a dataclass of numbers, lists of which are stored by columns."""
     _ROWS[kind.__name__] = kind
     return kind
 
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """A state of an analysis on all ranks.
+    """Serialised state of an analysis on all ranks.
 
     Attributes
     ----------
     outlines : list of str
-        How the arrays of each rank make up its state, as JSON.
+        Structure of each rank's state in terms of its arrays, as JSON.
     arrays : dict of str to ndarray
-        By names that the outlines use.
+        Arrays by the names used in the outlines.
     """
 
     outlines: list[str]
     arrays: dict[str, np.ndarray]
 
     def state(self, rank: int) -> Any:
-        """The state of a rank.
+        """Unpack the state of a rank.
 
         Raises
         ------
         CaseError
-            If this version of the program does not know such states.
+            If the checkpoint was written by an incompatible version of the program.
         """
         try:
             return _unpacked(json.loads(self.outlines[rank]), self.arrays)
         except (LookupError, TypeError, ValueError, AttributeError, StopIteration) as error:
             raise CaseError(
-                f"--resume: the checkpoint is one of another version of thermowear "
+                f"--resume: the checkpoint was written by another version of thermowear "
                 f"({quoted(error)}); --overwrite starts from the beginning"
             ) from None
 
 
 def pack(comm, state: Any) -> Checkpoint | None:
-    """A state that is made of known dataclasses, tuples, lists, dicts, arrays and numbers.
+    """Pack a state made of registered dataclasses, tuples, lists, dicts, arrays and numbers.
 
-    Most of it is the same on all ranks, and kept once.
+    Arrays that are identical on all ranks are stored once.
 
     Returns
     -------
@@ -90,7 +90,7 @@ def pack(comm, state: Any) -> Checkpoint | None:
 
 
 def _same(one: np.ndarray, other: np.ndarray | None) -> bool:
-    """Bitwise, NaN and order in memory included."""
+    """Test two arrays for bitwise equality, including NaN and memory order."""
     return (
         other is not None
         and (one.dtype, one.shape, one.strides) == (other.dtype, other.shape, other.strides)
@@ -99,7 +99,7 @@ def _same(one: np.ndarray, other: np.ndarray | None) -> bool:
 
 
 class _Packing:
-    """Takes arrays out of a state and leaves their names in its outline."""
+    """Extraction of the arrays of a state; its outline refers to them by name."""
 
     def __init__(self) -> None:
         self.arrays: dict[str, np.ndarray] = {}

@@ -1,4 +1,4 @@
-"""Wall time of each phase of a run."""
+"""Wall time by phase of a run."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from contextlib import contextmanager
 
 
 class Phases:
-    """Seconds spent in named phases; a phase within a phase counts for itself only.
+    """Seconds spent in named phases; the time of a nested phase is not added to the outer one.
 
     Parameters
     ----------
     announce : callable, optional
-        Called with the name of each phase that begins.
+        Called with the name of each phase at its beginning.
     """
 
     def __init__(self, announce=None):
@@ -35,7 +35,7 @@ class Phases:
             self._open.pop()
 
     def add(self, name: str, seconds: float) -> None:
-        """Book time that passed before there was a clock (imports)."""
+        """Add time to a phase, such as that of imports before the timer existed."""
         self.seconds[name] = self.seconds.get(name, 0.0) + seconds
 
     def _book(self) -> None:

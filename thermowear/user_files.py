@@ -1,6 +1,6 @@
-"""Files that the user names: only regular ones are read, and only up to a size.
+"""Reading of files named by the user: regular files only, up to a given size.
 
-A pipe or a device may never end, and may never even begin.
+Reading a pipe or a device may block or never end.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ from pathlib import Path
 
 
 def read_text(path: Path, largest: int) -> str:
-    """The text of a file in UTF-8, with or without a byte order mark.
+    """Read a text file in UTF-8, with or without a byte order mark.
 
     Parameters
     ----------
     path : Path
     largest : int
-        Size up to which it is read [bytes].
+        Largest size accepted [bytes].
 
     Raises
     ------
     OSError
-        If it cannot be read, is no regular file, or is larger.
+        If the file cannot be read, is not a regular file, or is larger.
     ValueError
-        If it is not in UTF-8.
+        If the file is not in UTF-8.
     """
     try:
         return read_bytes(path, largest).decode("utf-8-sig")
@@ -34,8 +34,8 @@ def read_text(path: Path, largest: int) -> str:
 
 
 def read_bytes(path: Path, largest: int) -> bytes:
-    """The content of a file; for parameters and errors see `read_text`."""
-    # opened without waiting: a pipe that nobody writes to would block
+    """Read the content of a file; for parameters and errors see `read_text`."""
+    # non-blocking: opening a pipe without a writer would block
     handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     try:
         mode = os.fstat(handle).st_mode

@@ -1,4 +1,4 @@
-"""What happens inside the bodies: elasticity with thermal strain, heat conduction."""
+"""Finite element models of the bodies: elasticity with thermal strain, heat conduction."""
 
 from ..local_settings import fix_compiler_options
 from .bodies import Bodies, distribute
@@ -20,4 +20,4 @@ __all__ = [
     "elasticity",
 ]
 
-fix_compiler_options()  # before anything is compiled
+fix_compiler_options()  # before any form is compiled

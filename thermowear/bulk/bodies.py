@@ -1,4 +1,4 @@
-"""The meshed bodies as dolfinx sees them, spread over the ranks."""
+"""Distributed dolfinx mesh of the bodies, with tags by name."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from ..compat import exterior_facet_domain
 
 @dataclass(frozen=True)
 class Bodies:
-    """A distributed mesh whose cells and facets have names.
+    """Distributed mesh with named cells (bodies) and facets (surfaces).
 
     Attributes
     ----------
     mesh : dolfinx.mesh.Mesh
     cell_tags, facet_tags : dolfinx.mesh.MeshTags
     names : tuple of str
-        Bodies; the tag of a body is its position here, plus one.
+        Names of the bodies; the tag of a body is its position here plus one.
     surfaces : tuple of str
-        Named surfaces; tags likewise.
+        Names of the surfaces; tags likewise.
     checksum : str
-        Of the tagged mesh that they were made from; empty where there is none.
+        Checksum of the tagged mesh that they were made from; empty if there is none.
     """
 
     mesh: dolfinx.mesh.Mesh
@@ -48,18 +48,18 @@ class Bodies:
         return self.facet_tags.find(self.surface_tag(surface))
 
     def surface_measure(self, *surfaces: str) -> ufl.Measure:
-        """Integration over surfaces; all of them share the compiled kernels of a form."""
+        """Measure of integration over surfaces; they share the compiled kernels of a form."""
         facets = np.concatenate([self.facets(surface) for surface in surfaces])
         facets = exterior_facet_domain(self.mesh, facets)
         return ufl.Measure("ds", domain=self.mesh, subdomain_data=[(1, facets)])(1)
 
     def parts_of_cells(self, cells: np.ndarray) -> np.ndarray:
-        """Position in `names` of the part that each local cell belongs to, which has a material."""
+        """Position in `names` of the part (with its own material) of each local cell."""
         tags = self.cell_tags
         return tags.values[np.searchsorted(tags.indices, cells)].astype(np.int64) - 1
 
     def per_body(self, values: dict[str, float]) -> fem.Function:
-        """A function that is constant on each body."""
+        """Piecewise constant function (DG0) with one value per body."""
         space = fem.functionspace(self.mesh, ("Discontinuous Lagrange", 0))
         function = fem.Function(space)
         for name, value in values.items():
@@ -69,7 +69,7 @@ class Bodies:
 
 
 def distribute(tagged, comm) -> Bodies:
-    """Make the distributed mesh from a tagged one.
+    """Create the distributed mesh from a tagged mesh on rank 0.
 
     Parameters
     ----------
@@ -117,14 +117,14 @@ def distribute(tagged, comm) -> Bodies:
 
 
 def _nodes(kind: str, order: int) -> np.ndarray:
-    """Places of a cell's nodes in the order of dolfinx, shape (n_nodes, dim)."""
+    """Reference coordinates of a cell's nodes in the order of dolfinx, shape (n_nodes, dim)."""
     variant = basix.LagrangeVariant.equispaced
     element = basix.create_element(basix.ElementFamily.P, basix.CellType[kind], order, variant)
     return np.asarray(element.points)
 
 
 def _matched(wanted: np.ndarray, listed: np.ndarray) -> np.ndarray:
-    """Where each wanted place is listed."""
+    """Index in `listed` of each of the `wanted` points."""
     return np.array([np.abs(listed - place).sum(axis=1).argmin() for place in wanted])
 
 

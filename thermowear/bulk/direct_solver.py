@@ -1,4 +1,4 @@
-"""A factorised sparse matrix that solves for many right-hand sides."""
+"""Sparse direct solver (MUMPS) for many right-hand sides."""
 
 from __future__ import annotations
 
@@ -8,25 +8,26 @@ import numpy as np
 import scipy.sparse as sp
 
 _ORDERINGS = {2: 2, 3: 4}
-"""By dimension of the mesh. In the plane approximate minimum fill: on 1e4 to 3e5 unknowns twice as
-fast as the choice that MUMPS makes, with as much fill. In space PORD: on 5e4 to 2e5 unknowns 10 to
-20 % faster than minimum fill, with 10 % less of it; Debian's MUMPS has no other. Measured."""
+"""Ordering of MUMPS (ICNTL(7)) by dimension of the mesh. In 2D approximate minimum fill: for 1e4 to
+3e5 unknowns twice as fast as the default of MUMPS, with the same fill. In 3D PORD: for 5e4 to 2e5
+unknowns 10 to 20 % faster than minimum fill, with 10 % less fill; Debian's MUMPS offers no other.
+Measured."""
 _COLUMNS = 128
-"""Right-hand sides that are solved at once: twice as fast as MUMPS's own choice, measured."""
+"""Block size of right-hand sides (ICNTL(27)); twice as fast as the default of MUMPS, measured."""
 
 
 class Factor:
-    """Triangular factors (MUMPS) of a PETSc matrix.
+    """Triangular factorisation (MUMPS) of a PETSc matrix.
 
     Parameters
     ----------
     matrix : petsc4py.PETSc.Mat
         Assembled and distributed by rows.
     symmetry : str
-        What is known of the matrix: ``"definite"`` (symmetric and positive), ``"symmetric"`` or
-        ``"none"``.
+        Known property of the matrix: ``"definite"`` (symmetric positive definite),
+        ``"symmetric"`` or ``"none"``.
     dim : int
-        Of the mesh it comes from.
+        Dimension of the mesh, which selects the ordering.
     """
 
     def __init__(self, matrix: PETSc.Mat, symmetry: str = "definite", dim: int = 2):
@@ -49,12 +50,12 @@ class Factor:
         preconditioner.setUp()
 
     def repeat(self) -> None:
-        """Factorise again after values of the matrix have changed, but not its pattern."""
+        """Repeat the factorisation after a change of values with unchanged sparsity pattern."""
         self._solver.getPC().setUp()
 
     @property
     def negative_pivots(self) -> int:
-        """Number of negative eigenvalues of a symmetric matrix."""
+        """Number of negative pivots (eigenvalues, by Sylvester's law) of a symmetric matrix."""
         return self._factored.getMumpsInfog(12)
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
@@ -63,15 +64,15 @@ class Factor:
         Parameters
         ----------
         loads : ndarray or csr_matrix, shape (n_owned,) or (n_owned, m)
-            The rows this rank owns. Every rank calls. Sparse ones are solved faster.
+            Rows owned by this rank. Every rank calls. Sparse loads are solved faster.
 
         Returns
         -------
         ndarray
-            The solutions, same shape.
+            Solutions, same shape.
         """
         if not isinstance(loads, np.ndarray) and self._comm.size > 1:
-            loads = loads.toarray()  # MUMPS wants sparse ones on one rank
+            loads = loads.toarray()  # MUMPS needs sparse right-hand sides on one rank
         flat = loads if loads.ndim == 2 else loads[:, None]  # a rank may own nothing
         dense = isinstance(flat, np.ndarray)
         right = self._dense(np.asfortranarray(flat)) if dense else self._sparse(flat)
@@ -85,7 +86,7 @@ class Factor:
         return result.reshape(loads.shape, order="F")
 
     def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
-        """Solve with the transposed matrix; dense, shapes as in `solve`."""
+        """Solve with the transposed matrix; dense loads, shapes as in `solve`."""
         self._factored.setMumpsIcntl(9, 0)  # PETSc's own transposed solve takes a single column
         try:
             return self.solve(loads)
@@ -97,7 +98,7 @@ class Factor:
         return PETSc.Mat().createDense(sizes, array=columns, comm=self._comm)
 
     def _sparse(self, loads: sp.csr_matrix) -> PETSc.Mat:
-        """PETSc hands sparse right-hand sides to MUMPS by columns: as a transposed matrix."""
+        """Transposed PETSc matrix of the loads, as PETSc passes sparse columns to MUMPS."""
         columns = loads.tocsc()
         columns.sort_indices()
         indices = (columns.indptr.astype(PETSc.IntType), columns.indices.astype(PETSc.IntType))

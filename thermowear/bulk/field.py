@@ -1,4 +1,4 @@
-"""Function spaces, and fields as plain arrays of the values that a rank owns."""
+"""Function spaces, and fields as plain arrays of the values owned by a rank."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from dolfinx import fem
 
 
 def lagrange_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
-    """Continuous Lagrange space (Lobatto-warped nodes), scalar or of vectors."""
+    """Continuous Lagrange space (Gauss-Lobatto-Legendre warped nodes), scalar or vector-valued."""
     shape = (components,) if components else None
     element = basix.ufl.element("Lagrange", mesh.basix_cell(), degree, shape=shape)
     return fem.functionspace(mesh, element)
 
 
 def reference_element(mesh, degree: int):
-    """The scalar element behind `lagrange_space`, to tabulate."""
+    """Scalar basix element of `lagrange_space`, for tabulation."""
     cell = mesh.basix_cell()
     cell = basix.CellType[cell] if isinstance(cell, str) else cell
     return basix.create_element(
@@ -25,13 +25,13 @@ def reference_element(mesh, degree: int):
 
 
 def basis_element(space: fem.FunctionSpace):
-    """The scalar element of a space, scalar or of vectors, to tabulate."""
+    """Scalar basix element of a scalar or vector-valued space, for tabulation."""
     element = space.ufl_element()
     return (element.sub_elements[0] if space.dofmap.index_map_bs > 1 else element).basix_element
 
 
 def owned(space: fem.FunctionSpace) -> int:
-    """Number of values this rank owns."""
+    """Number of values owned by this rank."""
     return space.dofmap.index_map.size_local * space.dofmap.index_map_bs
 
 
@@ -41,7 +41,7 @@ def total(space: fem.FunctionSpace) -> int:
 
 
 def as_function(space: fem.FunctionSpace, values: np.ndarray, name: str) -> fem.Function:
-    """A dolfinx function from owned values; every rank calls."""
+    """Create a dolfinx function from owned values. Every rank calls."""
     function = fem.Function(space, name=name)
     function.x.array[: len(values)] = values
     function.x.scatter_forward()

@@ -1,4 +1,4 @@
-"""How a mesh stands for a solid: strain, stress and volume of each model.
+"""Kinematic models (axisymmetric, plane strain, plane stress, 3D): strain, stress and volume.
 
 Strains and stresses are always full 3 x 3 tensors in the order (x, y, out of plane), (r, z, θ), or
 (x, y, z).
@@ -16,7 +16,7 @@ from ..compat import coordinate_element
 
 
 class Model(ABC):
-    """What distinguishes one model from another.
+    """Interface of the kinematic models.
 
     Attributes
     ----------
@@ -34,16 +34,16 @@ class Model(ABC):
         center: tuple[float, float] | None = None,
         across: bool = False,
     ) -> np.ndarray:
-        """Velocity of body 1 relative to body 2; the last component is across a section.
+        """Velocity of body 1 relative to body 2; the last component is normal to a section.
 
         Parameters
         ----------
         points : ndarray, shape (n, gdim) [m]
         motion : thermowear.case.tables.schema.Motion
         center : tuple of float, optional
-            x and y of the point, or of the vertical axis, about which body 2 turns [m].
+            x and y of the point, or of the vertical axis, about which body 2 rotates [m].
         across : bool
-            Whether body 1 slides across a plane section and not along x.
+            True if body 1 slides normal to a plane section instead of along x.
 
         Returns
         -------
@@ -52,27 +52,27 @@ class Model(ABC):
 
     @abstractmethod
     def integral(self, mesh, density, measure):
-        """The form of a density over volume (cells) or surface (facets) of the solid."""
+        """Integral form of a density over volume (cells) or surface (facets) of the solid."""
 
     @abstractmethod
     def area_factor(self, points: np.ndarray) -> np.ndarray:
-        """Factor from facets of the mesh to area, at points of shape (n, gdim) [m, or 1 in 3D]."""
+        """Area of the solid per measure of mesh facets at points (n, gdim) [m, or 1 in 3D]."""
 
     @abstractmethod
     def strain(self, mesh, u):
-        """ε(u), 3 x 3."""
+        """Strain tensor ε(u), 3 x 3."""
 
     def strain_across(
         self, values: np.ndarray, slopes: np.ndarray, points: np.ndarray
     ) -> np.ndarray:
-        """Strain across the section due to a first displacement, as numbers; as in `strain`.
+        """Out-of-plane strain due to the first displacement component; numbers, see `strain`.
 
         Parameters
         ----------
         values : ndarray, shape (n, m)
-            m displacements at the points.
+            Values of m displacement fields at the points.
         slopes : ndarray, shape (n, m, 2)
-            Their derivatives along both coordinates [1/m].
+            Derivatives of the fields along both coordinates [1/m].
         points : ndarray, shape (n, 2) [m]
 
         Returns
@@ -82,44 +82,44 @@ class Model(ABC):
         return np.zeros_like(values)
 
     def lame(self, young_modulus: float, poisson_ratio: float) -> tuple[float, float]:
-        """λ and μ of the law ``σ = λ tr ε I + 2 μ ε`` between `strain` and `stress` [Pa]."""
+        """Lamé constants λ, μ of ``σ = λ tr ε I + 2 μ ε`` with `strain` and `stress` [Pa]."""
         E, ν = young_modulus, poisson_ratio
         return E * ν / ((1 + ν) * (1 - 2 * ν)), E / (2 * (1 + ν))
 
     def thermal_modulus(self, young_modulus: float, poisson_ratio: float) -> float:
-        """Stress per prevented thermal strain [Pa]."""
+        """Stress per constrained thermal strain [Pa]."""
         λ, μ = self.lame(young_modulus, poisson_ratio)
         return 3 * λ + 2 * μ
 
     def stress(self, strain, lame, thermal):
-        """σ, 3 x 3 [Pa].
+        """Stress tensor σ, 3 x 3 [Pa].
 
         Parameters
         ----------
         strain : UFL expression
-            From `strain`.
+            Strain tensor, see `strain`.
         lame : tuple of UFL expressions
             λ and μ [Pa].
         thermal : UFL expression or float
-            Thermal modulus times thermal strain, 0 without heat [Pa].
+            Thermal modulus times thermal strain; 0 without heat [Pa].
         """
         λ, μ = lame
         return (λ * ufl.tr(strain) - thermal) * ufl.Identity(3) + 2 * μ * strain
 
     def on_axis(self, x: np.ndarray) -> np.ndarray:
-        """Marks points whose first displacement vanishes by symmetry; x of shape (3, n)."""
+        """Mask of points whose first displacement vanishes by symmetry; x of shape (3, n)."""
         return np.zeros(x.shape[1], dtype=bool)
 
 
 class Axisymmetric(Model):
     """Solids of revolution; coordinates (r, z), displacement (u_r, u_z), no torsion.
 
-    Body 1 turns about the axis.
+    Body 1 rotates about the axis.
 
     Parameters
     ----------
     sector : float
-        Part of the circumference that the solid takes up: forces are of it.
+        Fraction of the circumference taken up by the solid; forces refer to this fraction.
     """
 
     name = "axisymmetric"
@@ -128,7 +128,7 @@ class Axisymmetric(Model):
         self.sector = sector
 
     def sliding(self, points, motion, center=None, across=False):
-        if motion.velocity is not None:  # across the axis, in no direction of the section
+        if motion.velocity is not None:  # circumferential
             speed = np.full(len(points), motion.velocity)
         else:
             speed = motion.angular_velocity * points[:, 0]
@@ -155,14 +155,14 @@ class Axisymmetric(Model):
 
 
 class PlaneStrain(Model):
-    """A long solid cut to a thickness; no strain across it.
+    """Plane strain of a section of given thickness.
 
-    Body 1 slides along x or across the section, or body 2 turns under it about a point of it.
+    Body 1 slides along x or normal to the section, or body 2 rotates about a point of the section.
 
     Parameters
     ----------
     thickness : float
-        Of the whole, twice the modelled one where only half of a symmetric section is meshed [m].
+        Total thickness, doubled where only half of a symmetric section is meshed [m].
     """
 
     name = "plane-strain"
@@ -187,7 +187,7 @@ class PlaneStrain(Model):
 
 
 class PlaneStress(PlaneStrain):
-    """A thin plate; no stress across it. `strain` leaves out the strain across it."""
+    """Plane stress of a thin plate; `strain` omits the out-of-plane component."""
 
     name = "plane-stress"
 
@@ -204,9 +204,9 @@ class PlaneStress(PlaneStrain):
 
 
 class Spatial(Model):
-    """Solids as they are; coordinates (x, y, z).
+    """Three-dimensional solids; coordinates (x, y, z).
 
-    Body 1 slides along x, or body 2 turns under it about a vertical axis.
+    Body 1 slides along x, or body 2 rotates about a vertical axis.
     """
 
     name = "3d"
@@ -225,7 +225,7 @@ class Spatial(Model):
 
 
 def _along_or_round(points: np.ndarray, motion, center) -> np.ndarray:
-    """Velocity of body 1 along x, or over a body 2 that turns anticlockwise from x to y."""
+    """Velocity of body 1 along x, or relative to body 2 rotating anticlockwise (x to y)."""
     velocity = np.zeros((len(points), 3))
     if center is None:
         velocity[:, 0] = motion.velocity
@@ -237,16 +237,16 @@ def _along_or_round(points: np.ndarray, motion, center) -> np.ndarray:
 
 
 def section_model(name: str, thickness: float | None, sector: float = 1.0) -> Model:
-    """The model of a name.
+    """Kinematic model by its name.
 
     Parameters
     ----------
     name : str
         The value of ``model`` in a case file.
     thickness : float or None
-        Of plane models, see `PlaneStrain` [m].
+        Thickness of plane models, see `PlaneStrain` [m].
     sector : float
-        Of axisymmetric models, see `Axisymmetric`.
+        Fraction of the circumference of axisymmetric models, see `Axisymmetric`.
     """
     if name == Axisymmetric.name:
         return Axisymmetric(sector)
@@ -257,11 +257,11 @@ def section_model(name: str, thickness: float | None, sector: float = 1.0) -> Mo
 
 
 def section_measure(mesh, degree: int):
-    """Integration over cells, exact for products of two gradients on straight cells.
+    """Measure of integration over cells, exact for products of two gradients on straight cells.
 
-    Stated because the automatic choice differs between releases and takes 1/r for a polynomial.
-    Straight hexahedra need no more than one point a direction above the degree, the only ones for
-    which it matters.
+    The quadrature degree is given explicitly, as the automatic choice differs between releases and
+    treats 1/r as a polynomial. Straight hexahedra need only one point per direction more than the
+    degree; for other cells the number of points matters little.
     """
     straight = mesh.topology.dim == 3 and coordinate_element(mesh).degree == 1
     return ufl.dx(metadata={"quadrature_degree": 2 * degree + (1 if straight else 2)})

@@ -12,7 +12,7 @@ from .kinematics import Model
 
 
 def surface_area(bodies: Bodies, model: Model, surface: str) -> float:
-    """Area of a surface, as its model counts it [m²]. Every rank calls."""
+    """Area of a surface of the solid according to its kinematic model [m²]. Every rank calls."""
     one = fem.Constant(bodies.mesh, default_scalar_type(1.0))
     form = model.integral(bodies.mesh, one, bodies.surface_measure(surface))
     return bodies.mesh.comm.allreduce(fem.assemble_scalar(compiled(form)), op=MPI.SUM)

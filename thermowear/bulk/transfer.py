@@ -1,4 +1,4 @@
-"""A field of one mesh on another one of the same bodies, moved a little or meshed anew."""
+"""Transfer of a field to another mesh of the same bodies, moved slightly or remeshed."""
 
 from __future__ import annotations
 
@@ -14,23 +14,24 @@ from .field import as_function, reference_element
 
 _STEPS = 20
 _BETWEEN = 0.76
-"""Of the way from the first corner of a cell to its middle."""
+"""Position of the control point, as a fraction of the way from a cell's first corner to its
+midpoint."""
 _AT_ONCE = 2_000_000
-"""Pairs of points and cells that are looked at together."""
+"""Largest number of point-cell pairs searched at once."""
 _ROOM = 1e-6
-"""Of a cell: a point that lies so little outside is looked for in it, too."""
+"""Tolerance of the bounding-box search, relative to the size of a cell."""
 
 
 @dataclass(frozen=True)
 class _Cells:
-    """Cells of one body, of all ranks.
+    """Cells of one body, gathered from all ranks.
 
     Attributes
     ----------
     nodes : ndarray, shape (n_cells, n_nodes, gdim)
-        Of their geometry [m].
+        Coordinates of the geometry nodes [m].
     values : ndarray, shape (n_cells, n_dofs)
-        Of the field.
+        Nodal values of the field.
     """
 
     nodes: np.ndarray
@@ -45,14 +46,14 @@ def transferred(
     new_bodies: Bodies,
     groups: list[tuple[str, ...]],
 ) -> tuple[np.ndarray, float]:
-    """A scalar field at the nodes of another mesh, body by body. Every rank calls.
+    """Interpolate a scalar field to the nodes of another mesh, body by body. Every rank calls.
 
     Parameters
     ----------
     values : ndarray, shape (n_owned,)
-        Of the field.
+        Nodal values of the field.
     old, new : dolfinx.fem.FunctionSpace
-        Of the same degree, on meshes of cells of one kind.
+        Spaces of equal degree on meshes of the same cell type.
     old_bodies, new_bodies : Bodies
     groups : list of tuple of str
         Names of the parts of each body.
@@ -60,9 +61,9 @@ def transferred(
     Returns
     -------
     values : ndarray, shape (n_owned,)
-        At the nodes of the new space.
+        Field at the nodes of the new space.
     error : float
-        Largest difference of both fields between the nodes, at one point of each new cell.
+        Largest difference of the two fields at a point between the nodes of each new cell.
     """
     function = as_function(old, values, "field")
     count, gdim = new.dofmap.index_map.size_local, old.mesh.geometry.dim
@@ -88,13 +89,13 @@ def transferred(
 
 
 def _alike(old: fem.FunctionSpace, new: fem.FunctionSpace) -> bool:
-    """Whether the meshes differ in the places of their nodes alone, on all ranks."""
+    """True if the meshes have equal connectivity on all ranks and differ in node positions only."""
     same = np.array_equal(old.dofmap.list, new.dofmap.list)
     return all(new.mesh.comm.allgather(same))
 
 
 class _Field:
-    """Evaluates fields of a space in its cells.
+    """Evaluation of fields of a space in given cells.
 
     Parameters
     ----------
@@ -115,13 +116,13 @@ class _Field:
         self._simplex = kind in (basix.CellType.triangle, basix.CellType.tetrahedron)
 
     def between_nodes(self, cells: _Cells) -> tuple[np.ndarray, np.ndarray]:
-        """A point of each cell that is no node of any degree, and the values there."""
+        """A point of each cell that is not a node for any degree, and the values there."""
         place = _BETWEEN * self._middle[None]
         shape, values = (e.tabulate(0, place)[0, 0, :, 0] for e in self._elements)
         return np.einsum("k,cki->ci", shape, cells.nodes), cells.values @ values
 
     def at(self, cells: _Cells, points: np.ndarray) -> np.ndarray:
-        """Values at points, in the cell that each lies in, or outside of which it lies least."""
+        """Values at points, evaluated in the containing (or else the nearest) cell."""
         chunk = max(1, _AT_ONCE // len(cells.nodes))
         parts = [self._at(cells, points[i : i + chunk]) for i in range(0, len(points), chunk)]
         return np.concatenate([np.empty(0), *parts])
@@ -151,7 +152,7 @@ class _Field:
         return self._geometry, self._element
 
     def _places(self, nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """Reference coordinates of points in a cell each, by Newton's method."""
+        """Reference coordinates of points in one cell each, by Newton's method."""
         place = np.tile(self._middle, (len(points), 1))
         for _ in range(_STEPS if len(points) else 0):
             table = np.asarray(self._geometry.tabulate(1, place))[..., 0]
@@ -164,7 +165,7 @@ class _Field:
         return place
 
     def _clipped(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The nearest places inside, and how far they are."""
+        """Nearest reference coordinates inside the cell, and the distances to them."""
         inside = np.clip(place, 0.0, 1.0)
         if self._simplex:
             inside = inside / np.maximum(inside.sum(axis=1, keepdims=True), 1.0)
@@ -172,13 +173,13 @@ class _Field:
 
 
 def _cells_of(bodies: Bodies, parts: tuple[str, ...]) -> np.ndarray:
-    """Cells of a body that this rank owns."""
+    """Cells of a body owned by this rank."""
     cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
     return cells[cells < bodies.mesh.topology.index_map(bodies.mesh.topology.dim).size_local]
 
 
 def _gathered(bodies: Bodies, function: fem.Function, parts: tuple[str, ...]) -> _Cells:
-    """The cells of a body and a field in them, from all ranks."""
+    """Gather the cells of a body and a field in them from all ranks."""
     mesh, cells = bodies.mesh, _cells_of(bodies, parts)
     nodes = mesh.geometry.x[geometry_dofmap(mesh)[cells]][..., : mesh.geometry.dim]
     values = function.x.array[function.function_space.dofmap.list[cells]]

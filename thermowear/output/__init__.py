@@ -1,1 +1,1 @@
-"""Results folder, tables, pictures and what the terminal shows. No physics."""
+"""Results folder, tables, pictures, report and console output; no physics."""

@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all."""
+"""Atomic replacement of files."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from pathlib import Path
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A draft beside a file, which takes its place in the end.
+    """Write to a draft beside a file and rename it to the file at the end.
 
-    Until then the file is what it was, whenever the process is killed; where the disk is full, the
-    room that the draft took is free again.
+    Until then the file remains unchanged, even if the process is killed; after an error, such as a
+    full disk, the draft is removed.
     """
     draft = path.with_name(f".{path.name}.part")
     try:
@@ -25,7 +25,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def final_name(path: Path) -> str:
-    """Of the file that a path, if it is a draft, will become."""
+    """Name of the file that a draft will become; the name itself if the path is no draft."""
     name = path.name
     is_draft = name.startswith(".") and name.endswith(".part")
     return name[1:].removesuffix(".part") if is_draft else name

@@ -1,4 +1,4 @@
-"""``checkpoint.npz``: all that a run needs to go on; the last one stands until the next does."""
+"""``checkpoint.npz``: the state for restarting a run, replaced atomically by the next one."""
 
 from __future__ import annotations
 
@@ -23,23 +23,25 @@ _UNREADABLE = (
     *(OSError, ValueError, KeyError, TypeError, AttributeError, EOFError),
     *(MemoryError, NotImplementedError, zipfile.BadZipFile, zlib.error),
 )
-"""What numpy, zip archives and JSON raise at content that is not theirs."""
+"""Exceptions of numpy, zip archives and JSON on invalid content."""
 
 
 def write_checkpoint(folder: Path, about: dict[str, Any], arrays: Mapping[str, np.ndarray]) -> None:
-    """Write beside, wait for the disk, and rename: whenever that ends, one of both is whole.
+    """Write the checkpoint to a draft, synchronise it to disk, and rename it.
+
+    A valid checkpoint exists at any time, the previous or the new one.
 
     Parameters
     ----------
     folder : Path
     about : dict
-        Numbers and text, as JSON has them.
+        Metadata that JSON can represent.
     arrays : mapping of str to ndarray
 
     Raises
     ------
     OSError
-        If the disk does not take it; then the last one stands.
+        If it cannot be written; the previous checkpoint remains.
     """
     head = np.array(json.dumps({"format": FORMAT, _DIGEST: _digest(about, arrays)} | about))
     with replacing(folder / CHECKPOINT) as draft, draft.open("wb") as file:
@@ -50,18 +52,18 @@ def write_checkpoint(folder: Path, about: dict[str, Any], arrays: Mapping[str, n
 
 
 def read_checkpoint(folder: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]] | None:
-    """What `write_checkpoint` was given; None where there is none.
+    """Read metadata and arrays of a checkpoint; None if there is none.
 
     Raises
     ------
     CaseError
-        If it is not one of this program, or not as it was written.
+        If the file is not a checkpoint of this program, or is damaged.
     """
     path = folder / CHECKPOINT
     try:
         with np.load(path, allow_pickle=False) as file:
             if any(entry.compress_type != zipfile.ZIP_STORED for entry in file.zip.infolist()):
-                raise ValueError("its entries are compressed, and may fill the memory")
+                raise ValueError("its entries are compressed and might exhaust the memory")
             arrays = dict(file)
         about = json.loads(str(arrays.pop(_ABOUT)))
         known, digest = about.pop("format"), about.pop(_DIGEST, None)
@@ -73,14 +75,14 @@ def read_checkpoint(folder: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]
         raise CaseError(f"{path}: has format {quoted(known)}; this program reads {FORMAT}")
     if digest != _digest(about, arrays):
         raise CaseError(
-            f"{path}: is damaged, its content is not what was written; "
+            f"{path}: is damaged, as its checksum does not match its content; "
             "--overwrite starts from the beginning"
         )
     return about, arrays
 
 
 def _digest(about: dict[str, Any], arrays: Mapping[str, np.ndarray]) -> str:
-    """SHA-256 of all that a checkpoint holds."""
+    """SHA-256 checksum of the content of a checkpoint."""
     found = hashlib.sha256(json.dumps(about, sort_keys=True).encode())
     for name in sorted(arrays):
         values = np.asarray(arrays[name])
@@ -90,7 +92,7 @@ def _digest(about: dict[str, Any], arrays: Mapping[str, np.ndarray]) -> str:
 
 
 def _wait_for_disk(folder: Path) -> None:
-    """Until the new name of a file in a folder is on disk too."""
+    """Synchronise a folder, so that a renamed file in it is on disk."""
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)

@@ -1,4 +1,4 @@
-"""What the person at the terminal sees while a run goes on."""
+"""Console output: progress of a run, summary, and verification checks."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from rich.console import Console
 from rich.table import Table
 
 from ..balances import BALANCES, holds
+from .quantities import PHASES
 
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
 
 
 class Terminal(Console):
-    """Standard output; a reader that goes away (``| head``) does not end a run."""
+    """Standard output; a closed pipe (``| head``) does not end a run."""
 
     def on_broken_pipe(self) -> None:
         self.quiet = True
@@ -24,7 +25,7 @@ class Terminal(Console):
 
 
 class Progress:
-    """One live line on a terminal, plain lines otherwise.
+    """Progress as one live line on a terminal, as plain lines otherwise.
 
     Parameters
     ----------
@@ -49,32 +50,32 @@ class Progress:
             self._console.print(self._unsaid, highlight=False)
 
     def phase(self, name: str) -> None:
-        """A phase begins."""
+        """Show the phase that begins."""
         if self._status is not None:
-            self._status.update(name)
+            self._status.update(PHASES.get(name, name))
 
     def step(self, number: int, row, distance: float) -> None:
-        """A step of a transient run was accepted."""
+        """Show an accepted step of a transient run."""
         text = (
             f"t = {row.time:.4g} s   step {number}   largest pressure "
-            f"{row.max_pressure / 1e6:.4g} MPa   distance from steady {distance:.2e}"
+            f"{row.max_pressure / 1e6:.4g} MPa   distance from the steady state {distance:.2e}"
         )
         self._say(text)
 
     def load_step(self, number: int, row) -> None:
-        """An increment of a fretting analysis was accepted."""
+        """Show an accepted increment of a fretting analysis."""
         sticking = row.stick_area / row.contact_area if row.contact_area else 0.0
         self._say(
             f"t = {row.time:.4g} s   increment {number}   tangential force "
-            f"{row.tangential_force:.4g} N   {sticking:.0%} of the contact sticks"
+            f"{row.tangential_force:.4g} N   stick area {sticking:.0%} of the contact"
         )
 
     def note(self, text: str) -> None:
-        """Something the user should know."""
+        """Print a note for the user."""
         self._console.print(f"note: {text}", highlight=False, markup=False, soft_wrap=True)
 
     def _say(self, text: str) -> None:
-        """The newest state: on the live line, or as a line from time to time."""
+        """Show the latest state on the live line, or print a line every few seconds."""
         self._unsaid = text
         if self._status is not None:
             self._status.update(text)
@@ -85,11 +86,11 @@ class Progress:
 
 
 _LEAST = 1e-3
-"""Smallest error that is told as a number [%]: those of quadrature alone are far below."""
+"""Smallest error estimate shown as a number [%]; errors of quadrature are far below."""
 
 
 def print_summary(console: Console, summary: dict, seconds: dict[str, float]) -> None:
-    """The numbers that matter and where the time went."""
+    """Print the main results and the wall time by phase."""
     numbers = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
     for label, value in _highlights(summary):
         numbers.add_row(label, value)
@@ -98,13 +99,13 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
     times.add_column("phase")
     times.add_column("seconds", justify="right")
     for name, value in seconds.items():
-        times.add_row(name, f"{value:.3f}")
+        times.add_row(PHASES.get(name, name), f"{value:.3f}")
     times.add_row("total", f"{sum(seconds.values()):.3f}")
     console.print(times)
 
 
 def print_discretisations(console: Console, summary: dict, keys: tuple[str, ...]) -> None:
-    """Numbers of a case on a coarser, its own and a finer discretisation, side by side."""
+    """Print results on a coarser, the given and a finer discretisation side by side."""
     coarser, finer = (summary[f"{name}_discretisation"] for name in ("coarser", "finer"))
     shown = {"coarser": coarser, "this case": summary, "finer": finer}
     table = Table(box=None, padding=(0, 2, 0, 0))
@@ -122,7 +123,7 @@ def print_discretisations(console: Console, summary: dict, keys: tuple[str, ...]
 
 
 def print_checks(console: Console, checks: list) -> None:
-    """A line for each `thermowear.verification.Check`, the sources, and the count."""
+    """Print a line per `thermowear.verification.Check`, the sources, and the count."""
     head = ("id", "quantity", "computed", "reference", "error", "allowed", "verdict")
     rows = [head] + [
         (c.id, c.quantity, f"{c.computed:.7g}", f"{c.reference:.7g}", f"{c.error:.1e}")
@@ -151,10 +152,10 @@ def _highlights(summary: dict):
     yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
     low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
     yield "pressure", f"{low:.5g} … {high:.5g} MPa{_within(summary, 'pressure', 'max_pressure')}"
-    yield "approach of the holder, towards body 2", f"{summary['approach_m'] * 1e6:.5g} µm"
+    yield "approach of the holder towards body 2", f"{summary['approach_m'] * 1e6:.5g} µm"
     if summary["shape_range_m"] > 0:
         shape = f"{summary['shape_range_m'] * 1e6:.5g} µm{_within(summary, 'shape')}"
-        yield "shape, highest to lowest", shape
+        yield "peak-to-valley of the worn shape", shape
     if summary["max_temperature_K"] is not None:
         hottest = f"{summary['max_temperature_K'] - 273.15:.5g} °C"
         yield "highest temperature", f"{hottest}{_within(summary, 'temperature')}"
@@ -165,17 +166,17 @@ def _highlights(summary: dict):
         yield "heat through surfaces", f"{summary['prescribed_heat_W']:.6g} W"
     if summary.get("peak_temperature_K") is not None:
         peak, time = summary["peak_temperature_K"] - 273.15, summary["peak_temperature_time_s"]
-        yield "hottest face on the way", f"{peak:.5g} °C at {time:.5g} s"
+        yield "peak surface temperature", f"{peak:.5g} °C at {time:.5g} s"
     if summary.get("max_cell_peclet_number") is not None:
         peclet = f"cell Péclet number up to {summary['max_cell_peclet_number']:.3g}"
-        yield "heat carried along", f"{summary['heat_advection']}, {peclet}"
+        yield "heat advection", f"{summary['heat_advection']}, {peclet}"
     if summary.get("heat_carried_out_W") is not None:
-        yield "heat carried out", f"{summary['heat_carried_out_W']:.6g} W"
+        yield "heat removed by advection", f"{summary['heat_carried_out_W']:.6g} W"
     if summary.get("rigid_wear_velocity_m_per_s") is not None:
         yield "steady wear rate", f"{summary['rigid_wear_velocity_m_per_s'] * 1e9:.5g} nm/s"
     if summary.get("dissipated_energy_J") is not None:
         yield "tangential force", f"{summary['tangential_force_N']:.6g} N"
-        yield "energy dissipated", f"{summary['dissipated_energy_J'] * 1e3:.5g} mJ"
+        yield "dissipated energy", f"{summary['dissipated_energy_J'] * 1e3:.5g} mJ"
     if "time_s" in summary:
         yield "time, steps", f"{summary['time_s']:.6g} s, {summary['steps']}"
     if summary.get("cycles"):
@@ -188,13 +189,13 @@ def _highlights(summary: dict):
     if summary.get("critical_speed_factor_with_wear") is not None:
         yield "critical speed with wear", _critical(summary, "_with_wear")
     if summary.get("growth_rate_per_s") is not None:
-        yield "disturbances", _growing(summary)
+        yield "pressure perturbations", _growing(summary)
     if summary.get("distance_from_steady") is not None:
-        yield "distance from steady", f"{summary['distance_from_steady']:.2e}"
+        yield "distance from the steady state", f"{summary['distance_from_steady']:.2e}"
 
 
 def _within(summary: dict, *quantities: str) -> str:
-    """Estimated discretisation error of a quantity, the largest of several; "" without any."""
+    """Largest estimated discretisation error of some quantities, as text; "" without any."""
     keys = (f"{quantity}_error_estimate_relative" for quantity in quantities)
     known = [summary[key] for key in keys if summary.get(key) is not None]
     if not known:
@@ -204,17 +205,17 @@ def _within(summary: dict, *quantities: str) -> str:
 
 
 def _critical(summary: dict, which: str) -> str:
-    """A critical speed, and how far the case is from it."""
+    """Critical speed, and the speed of the case relative to it."""
     part = 1 / summary[f"critical_speed_factor{which}"]
     speed = summary[f"critical_speed{which}_m_per_s"]
     turning = summary[f"critical_angular_velocity{which}_rad_per_s"]
-    said = f"{turning:.4g} rad/s" if speed is None else f"{speed * 1e3:.4g} mm/s"
-    return f"{said}: this case runs at {part:.3g} of it"
+    critical = f"{turning:.4g} rad/s" if speed is None else f"{speed * 1e3:.4g} mm/s"
+    return f"{critical}; this case: {part:.3g} times the critical speed"
 
 
 def _growing(summary: dict) -> str:
-    """What becomes of a disturbance."""
+    """Growth or decay of the least stable pressure perturbation."""
     rate, swing = summary["growth_rate_per_s"], summary["growth_frequency_rad_per_s"]
-    word = "grow" if rate > 0 else "die out"
-    swinging = f", swinging with a period of {2 * pi / swing:.4g} s" if swing > 0 else ""
-    return f"{word} e-fold in {1 / abs(rate):.4g} s{swinging}"
+    word = "grow" if rate > 0 else "decay"
+    kind = f", oscillatory with period {2 * pi / swing:.4g} s" if swing > 0 else ""
+    return f"{word} with time constant {1 / abs(rate):.4g} s{kind}"

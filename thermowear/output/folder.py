@@ -1,4 +1,4 @@
-"""The results folder: made once, never someone else's, readable at every moment."""
+"""Results folder of a run: readable at any time; files of other origin are never changed."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _OURS = re.compile(
 )
 
 _BEGUN = ("history.csv", "heat.csv", "loads.csv", "cycles.csv")
-"""Tables to which a run adds as it goes."""
+"""Tables to which a run appends rows."""
 _ROWS = {
     "HistoryRow": ("history.csv", HISTORY),
     "HeatRow": ("heat.csv", HEAT),
@@ -45,18 +45,17 @@ _ROWS = {
 
 
 class ResultsFolder:
-    """Writes one run.
+    """Writer of the results of one run.
 
     Parameters
     ----------
     path : Path
-        Made if it does not exist.
+        Folder, created if it does not exist.
     tables : dict
-        The case with every default written out.
+        Case with all default values.
     ranks : int
     overwrite : bool
-        Allow a folder with earlier results, which are removed. Files that are not results of this
-        program are left alone.
+        Allow a folder with earlier results, which are removed. Other files remain.
 
     Raises
     ------
@@ -73,7 +72,7 @@ class ResultsFolder:
             "versions": versions(),
         }
         self._rows: dict[str, RowWriter] = {}
-        self._made = not os.path.exists(path)  # unlike Path.exists, no error at odd names
+        self._made = not os.path.exists(path)  # Path.exists raises an error for invalid names
         try:
             path.mkdir(parents=True, exist_ok=True)
             self._lock = Lock(path)
@@ -84,7 +83,7 @@ class ResultsFolder:
             raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
 
     def _claim(self, overwrite: bool) -> None:
-        """Remove what is there, if that is allowed."""
+        """Remove earlier results if `overwrite` allows it."""
         path = self.path
         present = [entry for entry in path.iterdir() if is_ours(entry)]
         if any(path.iterdir()) and not overwrite:
@@ -94,13 +93,13 @@ class ResultsFolder:
         whole = [entry for entry in present if final_name(entry) == entry.name]
         if whole and not (path / "run.json").is_file():
             raise CaseError(
-                f"-o {path}: holds {whole[0].name} but no run.json, so it is no results "
-                "folder; use another"
+                f"-o {path}: contains {whole[0].name} but no run.json, so it is not a results "
+                "folder; use another folder"
             )
         for entry in present:
             if entry.name == FRAMES:
                 remove_frames(entry)
-            elif entry.name != "run.json":  # replaced at the end: until then the folder is ours
+            elif entry.name != "run.json":  # replaced later; it marks the folder as ours
                 entry.unlink()
 
     def step(self, row) -> None:
@@ -108,7 +107,7 @@ class ResultsFolder:
         self._add(row, "history.csv", HISTORY)
 
     def heat(self, row) -> None:
-        """Append the heat of a step."""
+        """Append the heat quantities of a step."""
         self._add(row, "heat.csv", HEAT)
 
     def load_step(self, row) -> None:
@@ -120,13 +119,13 @@ class ResultsFolder:
         self._add(row, "cycles.csv", CYCLES)
 
     def restore(self, rows: Sequence) -> None:
-        """Begin a table with rows that were known before; those that it has are given up."""
+        """Start a table anew with rows of the checkpoint, discarding its present rows."""
         if rows:
             name, table = _ROWS[type(rows[0]).__name__]
             self._rows[name] = RowWriter(self.path / name, table, rows)
 
     def checkpoint(self, about: dict, arrays: dict) -> None:
-        """Keep a state from which the run can go on."""
+        """Write a state from which the run can be resumed."""
         write_checkpoint(self.path, about, arrays)
 
     def _add(self, row, name: str, table: dict) -> None:
@@ -135,11 +134,11 @@ class ResultsFolder:
         self._rows[name].add(row)
 
     def output(self, time: float, interface, friction=None, track=None) -> None:
-        """Write the interface at an output time, how it sticks and slips, and a worn track."""
+        """Write interface, stick-slip state and worn track at an output time."""
         self._points(time, interface, friction, track)
 
     def frame(self, frame) -> None:
-        """Keep a `thermowear.simulation.Frame` for an animation."""
+        """Write a `thermowear.simulation.Frame` for an animation."""
         write_frame(self.path / FRAMES, frame)
 
     def _points(self, time: float | None, interface, friction, track) -> None:
@@ -171,12 +170,12 @@ class ResultsFolder:
         self._lock.release()
 
     def abandon(self) -> None:
-        """Take back what was written, for a case that turns out wrong before it is computed.
+        """Remove the files of a run whose case proves invalid before anything is computed.
 
-        Where something was computed, it is kept.
+        Computed results are kept.
         """
         if any((self.path / name).is_file() for name in (CHECKPOINT, *_BEGUN)):
-            self.close("failed", "the case turned out to be wrong on the way")
+            self.close("failed", "the case proved invalid during the run")
             return
         for name in ("case.resolved.toml", "run.json"):
             (self.path / name).unlink(missing_ok=True)
@@ -197,16 +196,16 @@ class ResultsFolder:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether a file is a result of this program; a report is known by what it says in its head."""
+    """Test whether a file is a result of this program; a report is recognised by its head."""
     if path.name == "report.html":
         return is_report(path)
     return bool(_OURS.fullmatch(final_name(path)))
 
 
 def finite(summary: dict[str, Any]) -> dict[str, Any]:
-    """A summary as JSON can hold it: null where a number is not finite.
+    """Replace numbers of a summary that are not finite by null, for JSON.
 
-    What it was stands in ``not_finite``, by the paths of the keys.
+    The table ``not_finite`` describes them by the paths of their keys.
     """
     others: dict[str, str] = {}
 
@@ -216,7 +215,7 @@ def finite(summary: dict[str, Any]) -> dict[str, Any]:
         if isinstance(value, list | tuple):
             return [cleared(f"{path}.{k}", inner) for k, inner in enumerate(value)]
         if isinstance(value, float) and not math.isfinite(value):
-            size = "too large for a number, or without bound"
+            size = "overflow or unbounded"
             others[path] = "not a number" if math.isnan(value) else f"{value:+f}: {size}"
             return None
         return value
@@ -226,7 +225,7 @@ def finite(summary: dict[str, Any]) -> dict[str, Any]:
 
 
 def now() -> str:
-    """The time of day, for `run.json`."""
+    """Current date and time (UTC) in ISO format, for `run.json`."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 

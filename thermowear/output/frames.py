@@ -1,4 +1,4 @@
-"""``frames/``: states on the way, for animations and for ParaView (``frames.pvd``)."""
+"""``frames/``: intermediate states for animations and for ParaView (``frames.pvd``)."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ _FRAME = re.compile(r"fields_\d{5,}\.vtu|(interface|track)_\d{5,}\.csv")
 
 @dataclass(frozen=True)
 class FrameFiles:
-    """Where a state on the way is kept; see `thermowear.simulation.Frame`.
+    """Files of an intermediate state; see `thermowear.simulation.Frame`.
 
     Attributes
     ----------
     time : float
-        [s]
+        Time of the state [s].
     number : int
     place : Path
-        The folder of the frames.
+        Folder of the frames.
     """
 
     time: float
@@ -46,7 +46,7 @@ class FrameFiles:
 
     @property
     def track(self) -> Path:
-        """There in a reciprocating analysis only."""
+        """Table of the worn track, in reciprocating analyses only."""
         return self.place / f"track_{self.number:05d}.csv"
 
     @property
@@ -55,15 +55,15 @@ class FrameFiles:
 
 
 def write_frame(place: Path, frame) -> None:
-    """Write a frame in single precision, which pictures do not tell from double.
+    """Write a frame in single precision, sufficient for pictures.
 
-    The index names a frame only while all of its files are there. Frames that are given up, those
-    of a later step that an earlier run has reached, and what a killed run has left are removed.
+    The index lists a frame only while all of its files exist. Frames that are no longer needed,
+    frames of later steps of an earlier run, and remains of a killed run are removed.
 
     Parameters
     ----------
     place : Path
-        Made with the first frame.
+        Folder, created with the first frame.
     frame : thermowear.simulation.Frame
     """
     place.mkdir(exist_ok=True)
@@ -79,12 +79,12 @@ def write_frame(place: Path, frame) -> None:
 
 
 def frame_files(place: Path) -> list[FrameFiles]:
-    """The frames of a folder in the order of time; none if there is no such folder.
+    """Frames of a folder in the order of time; empty if there is no such folder.
 
     Raises
     ------
     ValueError
-        If the index is not one of this program.
+        If the index is not a valid index of frames.
     """
     index = place / _INDEX
     if not index.is_file():
@@ -99,13 +99,13 @@ def frame_files(place: Path) -> list[FrameFiles]:
 
 
 def keep_indexed(place: Path) -> None:
-    """Remove what a run that was killed has left beside the frames of the index."""
+    """Remove files of a killed run that are not listed in the index."""
     if place.is_dir():
         _remove_others(place, frame_files(place))
 
 
 def remove_frames(place: Path) -> None:
-    """Remove what `write_frame` has written, and the folder if nothing else is in it."""
+    """Remove the files written by `write_frame`, and the folder if it is empty then."""
     _remove_others(place, [])
     for name in (_INDEX, f".{_INDEX}.part"):
         (place / name).unlink(missing_ok=True)
@@ -114,7 +114,7 @@ def remove_frames(place: Path) -> None:
 
 
 def _remove_others(place: Path, frames: list[FrameFiles]) -> None:
-    """Remove files of frames, whole or half written, that are none of these."""
+    """Remove files of frames, complete or partial, that belong to none of the given frames."""
     kept = {path for frame in frames for path in frame.files}
     for path in place.iterdir():
         if path not in kept and _FRAME.fullmatch(final_name(path)):
@@ -122,7 +122,7 @@ def _remove_others(place: Path, frames: list[FrameFiles]) -> None:
 
 
 def _write_index(place: Path, frames: list[FrameFiles]) -> None:
-    """Name the frames, in a file that ParaView opens."""
+    """Write the list of frames as a ParaView collection."""
     root = ET.Element("VTKFile", type="Collection", version="0.1")
     collection = ET.SubElement(root, "Collection")
     for frame in frames:
@@ -133,7 +133,7 @@ def _write_index(place: Path, frames: list[FrameFiles]) -> None:
 
 
 def _single(fields):
-    """Fields in single precision."""
+    """Convert fields to single precision."""
     names = ("points", "displacement", "von_mises", "temperature")
     values = {name: getattr(fields, name) for name in names}
     short = {name: v.astype(np.float32) for name, v in values.items() if v is not None}

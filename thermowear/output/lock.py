@@ -1,4 +1,4 @@
-"""One run at a time in a folder."""
+"""Lock of a results folder against simultaneous runs."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from ..errors import CaseError
 
 
 class Lock:
-    """Keeps other runs out of a folder; it goes with the process, however that ends.
+    """Exclusive lock of a folder, released when the process ends in any way.
 
     Parameters
     ----------
     path : Path
-        Of the folder.
+        Folder to lock.
 
     Raises
     ------
     CaseError
-        If another run is in it.
+        If another run has locked the folder.
     """
 
     def __init__(self, path: Path):
@@ -30,6 +30,6 @@ class Lock:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise CaseError(f"-o {path}: another run is being computed in it") from None
+            raise CaseError(f"-o {path}: in use by another run") from None
         except OSError:  # a file system without locks
             return

@@ -1,4 +1,4 @@
-"""Names, units and labels of everything that is written or drawn: one table for all of it."""
+"""Names, units and labels of all columns that are written or drawn, and of the phases of a run."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quantity:
-    """A column of a results file and how it is drawn.
+    """Column of a results file, with the label and unit of its plots.
 
     Attributes
     ----------
     header : str
         Column name with its SI unit.
     label : str
-        For axes, without the unit.
+        Axis label without the unit.
     unit : str
-        In which it is drawn.
+        Unit of plots.
     scale, offset : float
-        Drawn value = scale · SI value + offset.
+        Plotted value = scale · SI value + offset.
     """
 
     header: str
@@ -32,7 +32,7 @@ class Quantity:
         return f"{self.label} [{self.unit}]"
 
     def drawn(self, values):
-        """Values in the unit of drawings."""
+        """Convert SI values to the unit of plots."""
         return self.scale * values + self.offset
 
 
@@ -45,7 +45,7 @@ INTERFACE = {
     "y": Quantity("y_m", "y", "mm", 1e3),
     "z": Quantity("z_m", "z", "mm", 1e3),
     "s": Quantity("s_m", "position along the contact", "mm", 1e3),
-    "weight": Quantity("weight_m2", "area of the point", "mm²", 1e6),
+    "weight": Quantity("weight_m2", "area weight", "mm²", 1e6),
     "pressure": Quantity("pressure_Pa", "contact pressure", "MPa", 1e-6),
     "gap": Quantity("gap_m", "gap", "µm", 1e6),
     "shape": Quantity("shape_m", "shape of the unloaded face", "µm", 1e6),
@@ -63,10 +63,12 @@ PROFILE = {
     **{name: INTERFACE[name] for name in ("x", "y", "z", "s")},
     **{f"normal_{axis}": Quantity(f"normal_{axis}", f"normal, {axis}", "1") for axis in "xyz"},
     "shape": INTERFACE["shape"],
-    "shape_along_press": Quantity("shape_along_press_m", "shape along the press", "µm", 1e6),
+    "shape_along_press": Quantity(
+        "shape_along_press_m", "shape along the load direction", "µm", 1e6
+    ),
     "wear_rate": Quantity("wear_rate_m_per_s", "normal wear rate", "nm/s", 1e9),
     "wear_rate_along_press": Quantity(
-        "wear_rate_along_press_m_per_s", "wear rate along the press", "nm/s", 1e9
+        "wear_rate_along_press_m_per_s", "wear rate along the load direction", "nm/s", 1e9
     ),
 }
 
@@ -80,7 +82,7 @@ HISTORY = {
     "max_temperature": _celsius("max_temperature_K", "largest temperature"),
     "approach": Quantity("approach_m", "approach", "µm", 1e6),
     "step": Quantity("step_s", "time step", "s"),
-    "error": Quantity("error", "error of the step", "1"),
+    "error": Quantity("error", "time step error", "1"),
 }
 
 HEAT = {
@@ -88,13 +90,13 @@ HEAT = {
     "speed": Quantity("speed_m_per_s", "sliding speed", "m/s"),
     "normal_force": Quantity("normal_force_N", "normal force", "N"),
     "friction_power": Quantity("friction_power_W", "friction power", "kW", 1e-3),
-    "heat_in": Quantity("heat_in_J", "heat put in so far", "kJ", 1e-3),
+    "heat_in": Quantity("heat_in_J", "heat input", "kJ", 1e-3),
     "heat_stored": Quantity("heat_stored_J", "heat stored", "kJ", 1e-3),
     "heat_lost": Quantity("heat_lost_J", "heat lost", "kJ", 1e-3),
-    "balance_error": Quantity("balance_relative_error", "imbalance of heat", "1"),
+    "balance_error": Quantity("balance_relative_error", "heat balance error", "1"),
     **{
         f"{which}_temperature_{body}": _celsius(
-            f"{which}_temperature_{body}_K", f"{label} temperature of the face, body {body}"
+            f"{which}_temperature_{body}_K", f"{label} surface temperature, body {body}"
         )
         for which, label in (("max", "largest"), ("mean", "mean"))
         for body in (1, 2)
@@ -109,8 +111,8 @@ FRICTION = {
     "pressure": INTERFACE["pressure"],
     "shear": Quantity("shear_Pa", "shear traction on body 1", "MPa", 1e-6),
     "slip": Quantity("slip_m", "slip of body 1", "µm", 1e6),
-    "dissipated": Quantity("dissipated_J_per_m2", "energy dissipated", "J/m²"),
-    "status": Quantity("status", "0 open, 1 stick, 2 slip", "1"),
+    "dissipated": Quantity("dissipated_J_per_m2", "dissipated energy", "J/m²"),
+    "status": Quantity("status", "status (0 open, 1 stick, 2 slip)", "1"),
 }
 
 LOADS = {
@@ -123,8 +125,8 @@ LOADS = {
     ),
     "max_pressure": HISTORY["max_pressure"],
     "contact_area": HISTORY["contact_area"],
-    "stick_area": Quantity("stick_area_m2", "area that sticks", "mm²", 1e6),
-    "dissipated": Quantity("dissipated_J", "energy dissipated", "mJ", 1e3),
+    "stick_area": Quantity("stick_area_m2", "stick area", "mm²", 1e6),
+    "dissipated": Quantity("dissipated_J", "dissipated energy", "mJ", 1e3),
     "iterations": Quantity("iterations", "Newton iterations", "1"),
     "cycle": Quantity("cycle", "cycle", "1"),
     "wear_volume_1": HISTORY["wear_volume_1"],
@@ -135,12 +137,12 @@ TRACK = {name: INTERFACE[name] for name in ("x", "wear_2", "wear_rate_2")}
 
 MODES = {
     "mode": Quantity("mode", "mode", "1"),
-    "speed_factor": Quantity("speed_factor", "factor of the speed", "1"),
+    "speed_factor": Quantity("speed_factor", "speed factor", "1"),
     "growth_rate": Quantity("growth_rate_per_s", "growth rate", "1/s"),
     "frequency": Quantity("frequency_rad_per_s", "angular frequency", "rad/s"),
     **{name: INTERFACE[name] for name in ("x", "y", "z", "s")},
-    "pressure": Quantity("pressure", "pressure of the disturbance", "1"),
-    "pressure_imaginary": Quantity("pressure_imaginary", "pressure, imaginary part", "1"),
+    "pressure": Quantity("pressure", "pressure perturbation", "1"),
+    "pressure_imaginary": Quantity("pressure_imaginary", "perturbation, imaginary part", "1"),
 }
 
 CYCLES = {
@@ -153,6 +155,17 @@ CYCLES = {
     "max_wear_2": Quantity("max_wear_2_m", "largest wear depth, body 2", "µm", 1e6),
     "contact_area": LOADS["contact_area"],
     "max_pressure": LOADS["max_pressure"],
-    "jump": Quantity("jump", "cycles of the jump", "1"),
-    "error": Quantity("error", "error of the jump", "1"),
+    "jump": Quantity("jump", "cycle-jump length", "1"),
+    "error": Quantity("error", "cycle-jump error", "1"),
 }
+
+PHASES = {
+    "import": "import of libraries",
+    "pair": "pairing of the contact faces",
+    "bodies": "output of the bodies",
+    "move meshes": "mesh motion",
+    "carry temperatures over": "transfer of temperatures",
+    "coarser and finer": "coarser and finer discretisation",
+    "write": "writing of results",
+}
+"""Labels of phases of a run, where they differ from the name in the summary."""

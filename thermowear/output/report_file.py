@@ -1,4 +1,4 @@
-"""Where a report is written: never over a file of someone else's, never half."""
+"""Atomic writing of a report, never over a file of other origin."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pathlib import Path
 from ..errors import CaseError
 
 _GENERATOR = re.compile(rb'<meta name="generator" content="thermowear"')
-_HEAD = 1000  # bytes within which a report names its generator
+_HEAD = 1000  # bytes at the beginning of a report that contain its generator tag
 
 
 def is_report(path: Path) -> bool:
-    """Whether a file is a report that this program wrote."""
+    """Test whether a file is a report written by this program."""
     try:
         with path.open("rb") as file:
             return _GENERATOR.search(file.read(_HEAD)) is not None
@@ -22,16 +22,16 @@ def is_report(path: Path) -> bool:
 
 
 def put(path: Path, page: str) -> None:
-    """Write beside and rename, so that a reader never sees half a page.
+    """Write a page to a draft and rename it, so that readers never see a partial page.
 
     Raises
     ------
     CaseError
-        If something else is there, or nothing can be written.
+        If another file has that name, or the page cannot be written.
     """
     if os.path.lexists(path) and not is_report(path):
         raise CaseError(
-            f"{path}: exists and is no report of this program; move it away or rename it"
+            f"{path}: exists and is not a report of this program; move it away or rename it"
         )
     draft = path.with_name(f".{path.name}.part")
     try:

@@ -1,4 +1,4 @@
-"""Results folders whose run goes on."""
+"""Results folders of resumed runs."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from .checkpoint import read_checkpoint
 from .folder import ResultsFolder, now, versions
 from .frames import FRAMES, keep_indexed
 
-_ANEW = "--overwrite starts it from the beginning"
+_ANEW = "--overwrite starts the run from the beginning"
 
 
 class ResumedFolder(ResultsFolder):
-    """A folder with the results of a run that was stopped.
+    """Results folder of a stopped run that is resumed.
 
     Parameters
     ----------
     path : Path
     tables : dict
-        The case with every default written out.
+        Case with all default values.
     ranks : int
     time : float
-        From which the run goes on [s].
+        Time at which the run is resumed [s].
 
     Raises
     ------
@@ -41,7 +41,7 @@ class ResumedFolder(ResultsFolder):
         super().__init__(path, tables, ranks, overwrite=True)
 
     def _claim(self, overwrite: bool) -> None:
-        """Take it as it is, and remember how often it was taken."""
+        """Keep the results in the folder, and record that the run was resumed."""
         resumes = [*self._before.get("resumes", []), {"at": now(), "from_s": self._time}]
         self._run |= {"started": self._before["started"], "resumes": resumes}
         try:
@@ -50,19 +50,19 @@ class ResumedFolder(ResultsFolder):
             raise CaseError(f"--resume: {error}; {_ANEW}") from None
 
     def abandon(self) -> None:
-        """Be as if nobody had tried to go on."""
+        """Restore the state of the folder before the attempt to resume."""
         self._run = self._before
         self._write_run()
         self._lock.release()
 
 
 def read_run(path: Path) -> dict[str, Any]:
-    """How far the run of a folder has come.
+    """Read the record ``run.json`` of a run.
 
     Raises
     ------
     CaseError
-        If there is none.
+        If there is no run in the folder.
     """
     try:
         found = json.loads((path / "run.json").read_text("utf-8"))
@@ -74,12 +74,12 @@ def read_run(path: Path) -> dict[str, Any]:
 
 
 def is_finished(path: Path, case: Case) -> bool:
-    """Whether the run of a folder has come to the end of a case.
+    """Test whether the run of a folder has completed a case.
 
     Raises
     ------
     CaseError
-        If there is no run, or it was one of another mesh.
+        If there is no run, or it used another mesh.
     """
     ended = read_run(path)["status"] == "done" and (path / "summary.json").is_file()
     if not ended or not irrelevant_changes_only(load(path / "case.resolved.toml"), case):
@@ -91,7 +91,7 @@ def is_finished(path: Path, case: Case) -> bool:
 
 
 def _mesh_of(path: Path) -> str | None:
-    """Checksum of the mesh of a finished run, where it was read from a file."""
+    """Checksum of the mesh file of a finished run; None without a mesh file."""
     try:
         summary = json.loads((path / "summary.json").read_text("utf-8"))
     except (OSError, ValueError, RecursionError):
@@ -102,42 +102,45 @@ def _mesh_of(path: Path) -> str | None:
 def last_checkpoint(
     path: Path, case: Case, ranks: int
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]] | None:
-    """The checkpoint from which a case can go on; None where nothing was computed yet.
+    """Checkpoint from which a case can be resumed; None if nothing was computed yet.
 
     Raises
     ------
     CaseError
-        If it is not one of this case on so many ranks, or none although there are results.
+        If it belongs to another case or number of ranks, or is missing although results exist.
     """
     found = read_checkpoint(path)
     if found is None:
         if (path / "summary.json").is_file():
-            raise CaseError(f"-o {path}: its run has left no checkpoint; {_ANEW}")
+            raise CaseError(f"-o {path}: contains results but no checkpoint; {_ANEW}")
         return None
     about = found[0]
     changed = forbidden_changes(load(about["case"]), case, about["time"])
     if changed:
         first, *others = changed
         also = "".join(f", {change.key} differs too" for change in others)
-        raise CaseError(f"--resume: not the case of the run: {first}{also}; undo that, or {_ANEW}")
+        raise CaseError(
+            f"--resume: the case differs from that of the run: {first}{also}; "
+            f"undo the change, or {_ANEW}"
+        )
     if about["ranks"] != ranks:
         raise CaseError(
-            f"--resume: the checkpoint was made by {about['ranks']} processes, not by {ranks}; "
+            f"--resume: the checkpoint was written by {about['ranks']} processes, not by {ranks}; "
             f"use mpirun -n {about['ranks']}, or {_ANEW}"
         )
     return found
 
 
 def about_checkpoint(case: Case, time: float, outlines: list[str]) -> dict[str, Any]:
-    """What a checkpoint says of itself.
+    """Metadata of a checkpoint.
 
     Parameters
     ----------
     case : Case
     time : float
-        Of the run [s].
+        Simulated time [s].
     outlines : list of str
-        What the arrays of each process mean.
+        Structure of each process's state, see `thermowear.serialise.Checkpoint`.
     """
     return {
         "case": as_plain(case),

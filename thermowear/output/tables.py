@@ -21,7 +21,7 @@ def name_at(stem: str, time: float | None) -> str:
 
 
 def write_points(path: Path, table: dict[str, Quantity], points) -> None:
-    """Write a row a contact point.
+    """Write one row per contact point.
 
     Parameters
     ----------
@@ -35,14 +35,14 @@ def write_points(path: Path, table: dict[str, Quantity], points) -> None:
 
 
 class RowWriter:
-    """``history.csv`` or ``loads.csv``, a row a step, on disk as soon as it is known.
+    """Writer of ``history.csv`` and similar tables, one row per step, written immediately.
 
     Parameters
     ----------
     path : Path
     table : dict of str to Quantity
     rows : iterable, optional
-        That it begins with: each a `thermowear.simulation.HistoryRow` or `LoadRow`.
+        Initial rows, such as `thermowear.simulation.HistoryRow` or `LoadRow`.
     """
 
     def __init__(self, path: Path, table: dict[str, Quantity], rows: Iterable = ()):
@@ -51,7 +51,7 @@ class RowWriter:
         _write(path, table, map(self._values, rows))
 
     def add(self, row) -> None:
-        """Append a row; nothing of it where the disk is full."""
+        """Append a row; if the disk is full, no part of it is kept."""
         whole = self._path.stat().st_size
         try:
             with self._path.open("a", encoding="utf-8", newline="") as file:
@@ -65,14 +65,14 @@ class RowWriter:
 
 
 def read(path: Path, table: dict[str, Quantity]) -> dict[str, np.ndarray]:
-    """Columns of a CSV file by the names of its table, in SI.
+    """Read the columns of a CSV file by the names of its table, in SI.
 
-    A last row that was not written to its end is left out.
+    An incomplete last row is ignored.
 
     Raises
     ------
     ValueError
-        If the file is not such a table.
+        If the file does not have the columns of the table.
     """
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(line for line in file if line.endswith("\n")))

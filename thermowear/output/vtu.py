@@ -1,4 +1,4 @@
-"""``fields.vtu``: the bodies for ParaView and for pictures."""
+"""``fields.vtu``: fields of the bodies for ParaView and for pictures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _CELLS = {3: "triangle", 4: "quad", 8: "hexahedron"}
 
 
 def write_fields(path: Path, fields) -> None:
-    """Write the fields on small linear cells, discontinuous between the cells of the mesh.
+    """Write the fields on linear subcells, discontinuous between the cells of the mesh.
 
     Parameters
     ----------

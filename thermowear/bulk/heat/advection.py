@@ -1,8 +1,8 @@
-"""Heat that a moving body carries along, in a frame in which its geometry stands still.
+"""Advection of heat by a moving body, in a frame in which its geometry is at rest.
 
 The velocity is the curl of a stream function with the nodes of the mesh: it is tangent to curved
-faces wherever their nodes lie on the path of the body, and free of divergence, so that no heat is
-lost or made there, however fast the body moves.
+faces whose nodes lie on the path of the body, and divergence-free, so that no heat is lost or
+generated there at any speed.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ from ..field import reference_element
 from ..kinematics import Model, section_measure
 
 _RESOLVED = 1.0
-"""Cell Péclet number up to which a mesh follows what is carried along, without stabilisation."""
+"""Largest cell Péclet number at which no stabilisation is needed."""
 
 
 @dataclass(frozen=True)
 class Passage:
-    """A body that passes through the frame as a rigid body does.
+    """Rigid-body motion of a body through the frame.
 
     Attributes
     ----------
     parts : tuple of str
-        The body and its zones.
+        Names of the body and its zones.
     center : tuple of float or None
-        About which it turns; None: it moves along x [m].
+        Centre of rotation; None for motion along x [m].
     speed : float
-        Along x [m/s], or anticlockwise [rad/s].
+        Velocity along x [m/s], or anticlockwise angular velocity [rad/s].
     spread : bool
-        Whether it is so fast that it has the same temperature all along its path.
+        True in the limit of high speed, with uniform temperature along each path.
     """
 
     parts: tuple[str, ...]
@@ -69,17 +69,17 @@ class Passage:
 
 @dataclass(frozen=True)
 class Advection:
-    """What a moving body adds to conduction.
+    """Advection terms of a moving body.
 
     Attributes
     ----------
     carried : UFL form
-        Heat carried along, of a trial and a test function: its sum over the test functions is what
-        leaves with the body [W/K]. What comes in is at ambient temperature.
+        Bilinear form of the advected heat: its sum over the test functions is the heat that
+        leaves with the body [W/K]. Entering material is at ambient temperature.
     peclet : float
         Largest cell Péclet number ``|v| h/(2 κ degree)``.
     upwind : UFL expression
-        What stabilisation adds to the test function.
+        Addition to the test function by stabilisation (SUPG).
     """
 
     carried: ufl.Form
@@ -88,7 +88,7 @@ class Advection:
 
     @property
     def stabilised(self) -> bool:
-        """Whether some cells are too large for what they carry."""
+        """True if some cells exceed the Péclet number that needs no stabilisation."""
         return self.peclet > _RESOLVED
 
 
@@ -100,21 +100,21 @@ def advection(
     conductivities: dict[str, float],
     capacities: dict[str, float],
 ) -> Advection:
-    """The forms of a passage. Every rank calls.
+    """Forms of the advection by a passing body. Every rank calls.
 
-    Where cells are too large, upwind test functions (SUPG, Brooks and Hughes, Comput. Methods Appl.
-    Mech. Eng. 32 (1982) 199) keep the temperature free of oscillations. From degree 2 on they are
-    consistent, so that the order of convergence stays; degree 1 has no second derivatives.
+    At high cell Péclet numbers, upwind test functions (SUPG, Brooks and Hughes, Comput. Methods
+    Appl. Mech. Eng. 32 (1982) 199) prevent oscillations of the temperature. From degree 2 on they
+    are consistent, so that the order of convergence is kept; degree 1 has no second derivatives.
 
     Parameters
     ----------
     bodies : Bodies
     model : Model
     space : dolfinx.fem.FunctionSpace
-        Of the temperature.
+        Temperature space.
     passage : Passage
     conductivities, capacities : dict of str to float
-        By part [W/(m K)] and [J/(m³ K)], of what passes at least.
+        By part [W/(m K)] and [J/(m³ K)], at least for the moving parts.
     """
     mesh, degree = bodies.mesh, space.ufl_element().degree
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
@@ -129,7 +129,7 @@ def advection(
 
     upwind = 0 * δT
     flow = ρc * ufl.dot(v, ufl.grad(T))
-    if peclet > _RESOLVED:  # the delay of a cell fades as it comes to resolve what passes
+    if peclet > _RESOLVED:  # the stabilisation vanishes with the cell Péclet number
         delay = crossing / (2 * degree) * ufl.min_value(1, number / 3)
         upwind = delay * ufl.dot(v, ufl.grad(δT))
         flow = flow * δT + (flow - k * ufl.div(ufl.grad(T))) * upwind
@@ -142,7 +142,7 @@ def advection(
 
 
 def _velocity(mesh, passage: Passage):
-    """UFL vector [m/s]."""
+    """Velocity of the passing body as a UFL vector [m/s]."""
     ψ = passage.stream(mesh)
     ψ.x.array[:] *= passage.speed
     v = [ψ.dx(1), -ψ.dx(0)]
@@ -150,13 +150,13 @@ def _velocity(mesh, passage: Passage):
 
 
 def _crossing(mesh, v):
-    """Time in which a cell is crossed [s]: in the unit cell all speeds are per crossing."""
+    """Transit time through a cell [s], from the velocity in the reference cell."""
     speed = ufl.dot(ufl.inv(ufl.Jacobian(mesh)), v)
     return 1 / ufl.sqrt(ufl.max_value(ufl.dot(speed, speed), 1e-30))
 
 
 def _largest(bodies: Bodies, passage: Passage, number) -> float:
-    """Largest value of an expression at the midpoints of the cells that pass."""
+    """Largest value of an expression at the midpoints of the moving cells."""
     mesh, cells = bodies.mesh, passage.cells(bodies)
     middle = reference_element(mesh, 1).points.mean(axis=0, keepdims=True)
     expression = fem.Expression(number, middle)

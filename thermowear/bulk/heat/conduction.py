@@ -1,6 +1,6 @@
-"""The conducting bodies, one of which may pass by and carry heat along.
+"""Heat conduction in the bodies, with optional advection by a moving body.
 
-The unknown is the rise over the ambient temperature.
+The unknown is the temperature rise over ambient.
 """
 
 from __future__ import annotations
@@ -21,41 +21,41 @@ from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 
 _HIDDEN = 1e-8
-"""Part of the flows between a node and its neighbours that counts as heat turned over where there
-is no other: rounding errors are 1e-8 of that."""
+"""Fraction of the flows between neighbouring nodes that serves as scale of the heat balance where
+no other heat flows; rounding errors are 1e-8 of these flows."""
 
 
 @dataclass(frozen=True)
 class Conduction:
-    """The conducting bodies, factorised.
+    """Heat conduction problem of the bodies with factorised matrix.
 
     Attributes
     ----------
     space : dolfinx.fem.FunctionSpace
-        Temperature rise over the ambient [K].
+        Space of the temperature rise over ambient [K].
     conductivity : petsc4py.PETSc.Mat
         Conduction, cooling and advection, without given temperatures and without `bath` [W/K].
     cooling : petsc4py.PETSc.Mat
-        The cooling part alone: its row sums times the rise give the heat carried off [W/K].
+        Cooling term alone: its row sums times the rise give the heat removed [W/K].
     carried : petsc4py.PETSc.Mat or None
-        The advection part alone, likewise [W/K].
+        Advection term alone, likewise [W/K].
     capacity : petsc4py.PETSc.Mat or None
-        Heat stored per rise, where the materials say [J/K].
+        Heat capacity matrix, if given by the materials [J/K].
     bath : petsc4py.PETSc.Mat
         See `conduction`.
     fixed : ndarray of bool, shape (n_owned,)
-        Where the temperature is given.
+        Mask of prescribed temperatures.
     given : ndarray, shape (n_owned,)
-        The rise in the fixed values, zero elsewhere [K].
+        Prescribed rise in the fixed values, zero elsewhere [K].
     factor : Factor or EvenFactor
-        Of conductivity and bath, with given temperatures.
+        Factorisation of conductivity plus bath, with prescribed temperatures eliminated.
     lifted : ndarray, shape (n_owned,)
-        Heat into the free values that holds the given temperatures [W].
+        Nodal heat on the free values equivalent to the prescribed temperatures [W].
     advection : Advection or None
     even : EvenPaths or None
-        Of a body that passes so fast that heat is spread along its way.
+        Paths of a fast moving body, along which the temperature is uniform.
     symmetric : bool
-        Whether the factorised matrix is.
+        True if the factorised matrix is symmetric.
     """
 
     space: fem.FunctionSpace
@@ -73,25 +73,25 @@ class Conduction:
     symmetric: bool
 
     def respond(self, heat: np.ndarray | sp.csr_matrix) -> np.ndarray:
-        """Rise [K] due to nodal heat [W] alone, given temperatures at ambient; columns allowed."""
+        """Rise [K] due to nodal heat [W] alone, homogeneous in prescribed values; by columns."""
         return self.factor.solve(self._free(heat))
 
     def sense(self, weights: np.ndarray) -> np.ndarray:
-        """The adjoint, by columns: its product with any heat is that of weights and `respond`."""
+        """Adjoint of `respond` by columns: ``sense(w)·q = w·respond(q)`` for any heat q."""
         if self.symmetric:
             return self.respond(weights)
         return self._free(self.factor.solve_transposed(self._free(weights)))
 
     def solve(self, heat: np.ndarray) -> np.ndarray:
-        """Rise [K] due to nodal heat [W] and the given temperatures."""
+        """Rise [K] due to nodal heat [W] and prescribed temperatures."""
         return self.given + self.respond(heat + self.lifted)
 
     def holding(self, given: np.ndarray) -> Conduction:
-        """The same bodies with other given rises (n_owned,), zero in the free values [K]."""
+        """Copy with other prescribed rises (n_owned,), zero in the free values [K]."""
         return replace(self, given=given, lifted=-multiply(self.conductivity, given))
 
     def per_ambient(self) -> np.ndarray:
-        """Nodal heat per rise of the surroundings, and of what comes in, (n_owned,) [W/K]."""
+        """Nodal heat per rise of ambient and of entering material, (n_owned,) [W/K]."""
         ones = np.ones(len(self.fixed))
         heat = multiply(self.cooling, ones)
         return heat if self.carried is None else heat + multiply(self.carried, ones)
@@ -99,20 +99,20 @@ class Conduction:
     def storing(self, step: float) -> Conduction:
         """Conduction at the end of an implicit Euler step of time [s].
 
-        Its nodal heat is that of the bodies themselves and what `stored` gives of the state before,
-        over the step.
+        Its nodal heat is that of the bodies plus `stored` of the previous state divided by the
+        step.
 
         Raises
         ------
         ComputationError
-            If the heat capacity is not known.
+            If the heat capacity is not given.
         """
         if self.capacity is None:
-            raise ComputationError("heat: density and specific heat of the bodies are not known")
+            raise ComputationError("heat: density and specific heat of the bodies are not given")
         return self.plus(self.capacity, 1 / step, self.symmetric)
 
     def plus(self, matrix: PETSc.Mat, times: float, symmetric: bool) -> Conduction:
-        """So many times a matrix of the same pattern added to the conductivity; factorises it."""
+        """Add a multiple of a matrix of the same pattern to the conductivity, and factorise."""
         sum_ = self.conductivity.copy()
         sum_.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         return replace(
@@ -124,14 +124,14 @@ class Conduction:
         )
 
     def stored(self, rise: np.ndarray) -> np.ndarray:
-        """Heat stored by nodes [J], owned rows; its sum over all ranks is that of the bodies."""
+        """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None
         return multiply(self.capacity, rise)
 
     def rounding(self, rise: np.ndarray) -> float:
-        """Least heat flow that a balance of a rise (n_owned,) can be relative to [W].
+        """Smallest meaningful scale of the heat balance of a rise (n_owned,) [W].
 
-        Bodies of one temperature turn over nothing but rounding errors.
+        In bodies of uniform temperature all heat flows are rounding errors.
         """
         size = float(np.abs(self.conductivity.getDiagonal().getArray()) @ np.abs(rise))
         return _HIDDEN * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
@@ -143,16 +143,16 @@ class Conduction:
         storage: np.ndarray | None = None,
         ambient: float = 0.0,
     ) -> tuple[float, float, float]:
-        """Heat that leaves by cooling, by given temperatures, and with a body that passes [W].
+        """Heat removed by cooling, by prescribed temperatures, and by advection [W].
 
         Parameters
         ----------
         rise, heat : ndarray, shape (n_owned,)
-            A state and the nodal heat, of the contact and of `per_ambient`, that goes with it.
+            A state and its nodal heat, from the contact and from `per_ambient`.
         storage : ndarray, shape (n_owned,), optional
-            Rate of what the nodes store, see `stored` [W].
+            Rate of the nodal stored heat, see `stored` [W].
         ambient : float, optional
-            Rise of the surroundings [K].
+            Rise of the ambient temperature [K].
 
         Returns
         -------
@@ -172,7 +172,7 @@ class Conduction:
         storage: np.ndarray | None = None,
         ambient: float = 0.0,
     ) -> float:
-        """Magnitude of what crosses cooled surfaces and those with a given temperature [W].
+        """Sum of the magnitudes of heat through cooled and prescribed-temperature surfaces [W].
 
         Parameters as in `losses`.
         """
@@ -181,19 +181,19 @@ class Conduction:
         return float(sum_over_ranks(self.space.mesh.comm, size))
 
     def _into_given(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
-        """Heat into the values with a given temperature [W]."""
+        """Heat into the values with a prescribed temperature [W]."""
         if not self._holds:
             return np.zeros(0)
         return (heat - multiply(self.conductivity, rise))[self.fixed]
 
     @cached_property
     def _holds(self) -> bool:
-        """Whether any rank has a given temperature; every rank calls."""
+        """True if any rank has a prescribed temperature. Every rank calls."""
         return any(self.space.mesh.comm.allgather(bool(self.fixed.any())))
 
     @cached_property
     def _per_rise(self) -> tuple[np.ndarray, np.ndarray]:
-        """Heat that leaves by cooling, and carried along, per nodal rise [W/K]."""
+        """Heat removed by cooling and by advection per nodal rise [W/K]."""
         nothing = np.zeros(len(self.fixed))
         return (
             _column_sums(self.cooling),
@@ -201,7 +201,7 @@ class Conduction:
         )
 
     def _free(self, heat):
-        """Nodal heat without that into given temperatures."""
+        """Nodal heat with zeros in the values with a prescribed temperature."""
         if sp.issparse(heat):
             return (sp.diags(~self.fixed, dtype=float) @ heat).tocsr()
         free = np.array(heat, dtype=float)
@@ -217,7 +217,7 @@ def factorised(
     symmetric: bool,
     even: EvenPaths | None,
 ) -> Factor | EvenFactor:
-    """Of conductivity and bath, rows and columns of given temperatures eliminated."""
+    """Factorise conductivity plus bath, rows and columns of prescribed temperatures eliminated."""
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     known = "definite" if symmetric else "none"
@@ -229,7 +229,7 @@ def factorised(
 
 
 def _column_sums(matrix: PETSc.Mat) -> np.ndarray:
-    """By owned columns; every rank calls."""
+    """Column sums of a matrix, owned columns. Every rank calls."""
     sums, ones = matrix.createVecs()
     ones.set(1.0)
     matrix.multTranspose(ones, sums)

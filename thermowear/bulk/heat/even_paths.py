@@ -1,7 +1,7 @@
-"""Bodies so fast that their temperature is the same all along each path that their points take.
+"""Uniform temperature along the paths of material points, the limit of a fast moving body.
 
-One unknown stands for all the values on a path: exact, where a large conductivity along the path
-would only come near it and would cost digits of the heat balance.
+One unknown stands for all values on a path. This is exact, whereas a large conductivity along the
+path would be an approximation and would cost digits of the heat balance.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from ..field import owned
 from .advection import Passage
 
 _APART = 1e-9
-"""Paths nearer to each other are the same; relative to how far they extend."""
+"""Tolerance for identifying paths, relative to the range of their coordinates."""
 
 
 class EvenPaths:
-    """Which values of a temperature are one and the same. Every rank calls.
+    """Map between nodal temperatures and one unknown per path. Every rank calls.
 
-    The unknowns of a rank are its values of bodies that do not pass; rank 0 has those of all the
-    paths besides.
+    The unknowns of a rank are its values outside the moving body; rank 0 also has those of all
+    paths.
 
     Parameters
     ----------
     bodies : Bodies
     space : dolfinx.fem.FunctionSpace
-        Of the temperature; the mesh has rows of cells along the paths.
+        Temperature space; the mesh has rows of cells along the paths.
     passage : Passage
     """
 
@@ -48,7 +48,7 @@ class EvenPaths:
         self._path, self._paths = _numbered(self._comm, places)
 
     def whole(self, fixed: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Given temperatures, shape (n_owned,), all along the paths that meet them."""
+        """Extend prescribed temperatures (n_owned,) to whole paths (mean on each path)."""
         met = self._summed(fixed[:, None].astype(float))[:, 0]
         mean = self._summed((fixed * given)[:, None])[:, 0] / np.maximum(met, 1)
         fixed, given = fixed.copy(), given.copy()
@@ -57,7 +57,7 @@ class EvenPaths:
         return fixed, given
 
     def factor(self, matrix: PETSc.Mat, fixed: np.ndarray, symmetry: str) -> EvenFactor:
-        """Factorise a matrix of all values, those that are `fixed` eliminated; see `Factor`."""
+        """Factorise a matrix of all values with `fixed` values eliminated; see `Factor`."""
         join = self._joining(matrix)
         small = matrix.ptap(join)
         first = small.getOwnershipRange()[0]
@@ -66,7 +66,7 @@ class EvenPaths:
         return EvenFactor(self, Factor(small, symmetry, dim=self._dim))
 
     def joined(self, loads: np.ndarray | sp.csr_matrix):
-        """Loads on the unknowns from those on the values, by columns."""
+        """Loads on the unknowns from loads on the nodal values, by columns."""
         if sp.issparse(loads) and self._comm.size > 1:
             loads = sp.csr_matrix(loads).toarray()
         own, paths = loads[self._others], self._summed(loads)
@@ -75,7 +75,7 @@ class EvenPaths:
         return (sp.vstack if sp.issparse(loads) else np.vstack)([own, paths])
 
     def spread(self, unknowns: np.ndarray) -> np.ndarray:
-        """The values from the unknowns, by columns."""
+        """Nodal values from the unknowns, by columns."""
         count = len(self._others)
         paths = self._comm.bcast(unknowns[count:], root=0)
         values = np.empty((count + len(self._passing), unknowns.shape[1]), order="F")
@@ -84,14 +84,14 @@ class EvenPaths:
         return values
 
     def _summed(self, loads):
-        """Loads of whole paths, by columns; the same on every rank."""
+        """Loads summed over each path, by columns; identical on every rank."""
         n = len(self._path)
         sums = sp.csr_matrix((np.ones(n), (self._path, np.arange(n))), (self._paths, n))
         paths = sums @ loads[self._passing]
         return sum_over_ranks(self._comm, paths)
 
     def _joining(self, matrix: PETSc.Mat) -> PETSc.Mat:
-        """Values by unknowns, a one in each row."""
+        """Prolongation matrix from unknowns to nodal values, a single one in each row."""
         others, rows = len(self._others), matrix.getLocalSize()[0]
         size = others + (self._paths if self._comm.rank == 0 else 0)
         starts = np.cumsum([0, *self._comm.allgather(size)])
@@ -106,7 +106,7 @@ class EvenPaths:
 
 
 class EvenFactor:
-    """A factorised matrix, solved for values that are even along paths; as `Factor`."""
+    """Factorised matrix for values that are uniform along paths; interface of `Factor`."""
 
     def __init__(self, paths: EvenPaths, factor: Factor):
         self._paths = paths
@@ -127,13 +127,13 @@ class EvenFactor:
 
 
 def _numbered(comm, places: np.ndarray) -> tuple[np.ndarray, int]:
-    """Number of the path of each place, and how many there are.
+    """Path number of each point, and the number of paths.
 
     Parameters
     ----------
     comm : mpi4py.MPI.Comm
     places : ndarray, shape (n, 2)
-        Stream function and height.
+        Stream function and height of each point.
     """
     everywhere = np.vstack(comm.allgather(places))
     steps = [_steps(values) for values in everywhere.T]
@@ -143,7 +143,7 @@ def _numbered(comm, places: np.ndarray) -> tuple[np.ndarray, int]:
 
 
 def _steps(values: np.ndarray) -> np.ndarray:
-    """Number of each value from the lowest; those that differ by rounding have the same."""
+    """Rank of each value in ascending order; values equal up to rounding have the same rank."""
     order = np.argsort(values)
     higher = np.diff(values[order]) > _APART * np.ptp(values)
     step = np.empty(len(values), dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Assembling the heat equation: conduction, cooling, storage, and heat carried along."""
+"""Assembly of the heat equation: conduction, cooling, storage and advection."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from .even_paths import EvenPaths
 
 @dataclass(frozen=True)
 class ThermalMaterial:
-    """Conductivity [W/(m K)] and, where it is known, the heat capacity of a volume [J/(m³ K)]."""
+    """Conductivity [W/(m K)] and optional volumetric heat capacity [J/(m³ K)]."""
 
     conductivity: float
     capacity: float | None = None
 
     def times(self, factor: float) -> ThermalMaterial:
-        """So many times the material in the same place."""
+        """Material with conductivity and heat capacity scaled by a factor."""
         capacity = None if self.capacity is None else factor * self.capacity
         return ThermalMaterial(factor * self.conductivity, capacity)
 
@@ -44,26 +44,26 @@ def conduction(
     bath: PETSc.Mat,
     passage: Passage | None = None,
 ) -> Conduction:
-    """Assemble and factorise.
+    """Assemble the heat conduction problem and factorise it.
 
     Parameters
     ----------
     bodies : Bodies
     model : Model
     space : dolfinx.fem.FunctionSpace
-        Scalar.
+        Scalar space of the temperature rise.
     materials : dict of str to ThermalMaterial
-        By part.
+        Materials by part.
     cooling : dict of str to float
         Heat transfer coefficients by surface [W/(m² K)].
     given : dict of str to float
-        Rise over the ambient by surface [K].
+        Prescribed rise over ambient by surface [K].
     bath : petsc4py.PETSc.Mat
-        Added to the factorised matrix only: what the contact faces give to a heat bath at ambient
-        temperature. It keeps the matrix of an otherwise insulated body regular; the interface takes
-        it out again.
+        Heat transfer from the contact faces to a heat bath at ambient temperature, added to the
+        factorised matrix only. It keeps the matrix of an otherwise insulated body regular; the
+        interface problem subtracts it again.
     passage : Passage, optional
-        Of a body that moves through the frame.
+        Motion of a body through the frame.
     """
     mesh, degree = bodies.mesh, space.ufl_element().degree
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
@@ -119,21 +119,21 @@ def _assembled(form) -> PETSc.Mat:
 
 
 def conducting(bodies: Bodies, model: Model, conductivities: dict[str, float], degree: int):
-    """Bilinear form of conduction, as a function of a trial and a test function [W K]."""
+    """Bilinear form of conduction, as a function of trial and test functions [W K]."""
     mesh, k = bodies.mesh, bodies.per_body(conductivities)
     measure = section_measure(mesh, degree)
     return lambda T, δT: model.integral(mesh, k * ufl.inner(ufl.grad(T), ufl.grad(δT)), measure)
 
 
 def transferring(bodies: Bodies, model: Model, coefficients: dict[str, float]) -> list[Callable]:
-    """Bilinear forms ``∫ h T δT dS``, as functions of both: one of all surfaces of equal h.
+    """Bilinear forms ``∫ h T δT dS`` as functions of T and δT, one per distinct value of h.
 
     Parameters
     ----------
     bodies : Bodies
     model : Model
     coefficients : dict of str to float
-        h by surface [W/(m² K)].
+        Heat transfer coefficient h by surface [W/(m² K)].
     """
     mesh = bodies.mesh
 
@@ -148,7 +148,7 @@ def transferring(bodies: Bodies, model: Model, coefficients: dict[str, float]) -
 def given_rises(
     bodies: Bodies, space: fem.FunctionSpace, given: dict[str, float], even: EvenPaths | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Which owned values are fixed, and to what: linear in the rises that are given by surface."""
+    """Mask of fixed owned values, and their rises, linear in the rises given by surface [K]."""
     count = owned(space)
     fixed, values = np.zeros(count, dtype=bool), np.zeros(count)
     for surface, rise in given.items():

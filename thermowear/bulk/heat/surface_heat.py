@@ -1,4 +1,4 @@
-"""Heat through named surfaces of the bodies."""
+"""Prescribed heat flux through named surfaces of the bodies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..kinematics import Model
 def surface_heat(
     bodies: Bodies, model: Model, space: fem.FunctionSpace, surface: str, flux: float
 ) -> np.ndarray:
-    """Nodal heat of an even flux into the body through a surface [W], owned rows.
+    """Nodal heat of a uniform flux into the body through a surface [W], owned rows.
 
     Every rank calls.
 
@@ -23,10 +23,10 @@ def surface_heat(
     bodies : Bodies
     model : Model
     space : dolfinx.fem.FunctionSpace
-        Of the temperature.
+        Temperature space.
     surface : str
     flux : float
-        [W/m²]
+        Heat flux into the body [W/m²].
     """
     δT, q = ufl.TestFunction(space), fem.Constant(bodies.mesh, default_scalar_type(flux))
     form = model.integral(bodies.mesh, q * δT, bodies.surface_measure(surface))

@@ -1,9 +1,9 @@
-"""Conductivity and thermal expansion that change with temperature.
+"""Temperature-dependent conductivity and thermal expansion.
 
 The flux ``k(T) grad T`` is ``k0 grad Θ`` with Kirchhoff's integral ``Θ(T) = ∫ k dT/k0``. Θ is
-interpolated between the nodes as the temperature itself is, so that conduction is ``K Θ(T)`` with
-the matrix of a constant conductivity, and its tangent ``K diag(k/k0)``: exact for heat that flows
-straight, and of the order of the elements (the product approximation of Christie, Griffiths,
+interpolated between the nodes like the temperature itself, so that conduction is ``K Θ(T)`` with
+the matrix of a constant conductivity, and its tangent ``K diag(k/k0)``: exact for one-dimensional
+heat flow, and of the order of the elements (the product approximation of Christie, Griffiths,
 Mitchell and Sanz-Serna, IMA J. Numer. Anal. 1 (1981) 253). Thermal strain is interpolated likewise.
 """
 
@@ -32,7 +32,7 @@ _SAME = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
 
 
 class Factor(Protocol):
-    """How many times its value at ambient a property is at a temperature [K]."""
+    """Property as a function of temperature [K], relative to its value at ambient."""
 
     def value(self, x: np.ndarray) -> np.ndarray: ...
 
@@ -43,15 +43,15 @@ class Factor(Protocol):
 
 @dataclass(frozen=True)
 class VaryingConductivity:
-    """Of one part of a body.
+    """Temperature-dependent conductivity of one part of a body.
 
     Attributes
     ----------
     matrix : petsc4py.PETSc.Mat
-        Conduction of the part at its constant conductivity [W/K].
+        Conductivity matrix of the part at its constant conductivity [W/K].
     factor : Factor
     ambient : float
-        [K]
+        Ambient temperature [K].
     """
 
     matrix: PETSc.Mat
@@ -63,22 +63,22 @@ class VaryingConductivity:
         return self.factor.integral(self.ambient, self.ambient + rise) - rise
 
     def slope(self, rise: np.ndarray) -> np.ndarray:
-        """Its derivative."""
+        """Derivative of `excess` with respect to the rise."""
         return self.factor.value(self.ambient + rise) - 1
 
 
 @dataclass(frozen=True)
 class VaryingExpansion:
-    """Of one part of a body.
+    """Temperature-dependent thermal expansion of one part of a body.
 
     Attributes
     ----------
     part : str
     matrix : petsc4py.PETSc.Mat
-        Nodal forces of the part at its constant expansion [N/K].
+        Matrix of nodal forces of the part at its constant expansion [N/K].
     factor : Factor
     ambient : float
-        [K]
+        Ambient temperature [K].
     """
 
     part: str
@@ -87,18 +87,18 @@ class VaryingExpansion:
     ambient: float
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
-        """Rise that would strain as much more at constant expansion, at the nodes [K]."""
+        """Additional rise at the nodes that causes the same strain at constant expansion [K]."""
         return (self.factor.value(self.ambient + rise) - 1) * rise
 
     def slope(self, rise: np.ndarray) -> np.ndarray:
-        """Its derivative."""
+        """Derivative of `excess` with respect to the rise."""
         T = self.ambient + rise
         return self.factor.value(T) - 1 + self.factor.slope(T) * rise
 
 
 @dataclass(frozen=True)
 class VaryingConduction(Conduction):
-    """Conduction whose conductivity changes: what it inherits is that at ambient.
+    """Conduction with temperature-dependent conductivity; the base class describes it at ambient.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class VaryingConduction(Conduction):
     parts: tuple[VaryingConductivity, ...]
 
     def tangent(self, rise: np.ndarray, step: float | None = None) -> Conduction:
-        """Linear conduction of small changes of a rise, over a step of time [s] if there is one.
+        """Linearised conduction at a rise, within a time step [s] if one is given.
 
         Every rank calls.
         """
@@ -122,7 +122,7 @@ class VaryingConduction(Conduction):
         return self.plus(change, 1.0, symmetric=not self.parts and self.symmetric)
 
     def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:
-        """Nodal heat that a tangent in a reference needs to hold a rise [W]."""
+        """Difference of tangent (at a reference) and nonlinear conduction of a rise [W]."""
         tangents = ((p.matrix, p.slope(reference) * rise - p.excess(rise)) for p in self.parts)
         return _products(len(rise), tangents)
 
@@ -133,7 +133,7 @@ class VaryingConduction(Conduction):
         return super().turnover(rise, heat + self._held_back(rise), storage, ambient)
 
     def _held_back(self, rise: np.ndarray) -> np.ndarray:
-        """Nodal heat that flows off as it would not at constant conductivity [W]."""
+        """Negative of the nodal heat flow in excess of that at constant conductivity [W]."""
         return -_products(len(rise), ((part.matrix, part.excess(rise)) for part in self.parts))
 
 
@@ -145,7 +145,7 @@ def varying_conduction(
     factors: Mapping[str, Factor],
     ambient: float,
 ) -> VaryingConduction:
-    """Let conductivities change; parameters as in `conduction`, factors by part."""
+    """Add temperature-dependent conductivities; parameters as in `conduction`, factors by part."""
     mesh, space = bodies.mesh, conducting.space
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
     measure = section_measure(mesh, space.ufl_element().degree)
@@ -163,7 +163,7 @@ def varying_conduction(
 def varying_expansion(
     elastic: Elasticity, space: fem.FunctionSpace, factors: Mapping[str, Factor], ambient: float
 ) -> tuple[VaryingExpansion, ...]:
-    """Expansions that change, from factors by part."""
+    """Temperature-dependent expansions from factors by part."""
     return tuple(
         VaryingExpansion(name, elastic.thermal_load(space, only=name), factor, ambient)
         for name, factor in factors.items()
@@ -176,7 +176,7 @@ def straining_rise(
     bodies: Bodies,
     parts: tuple[VaryingExpansion, ...],
 ) -> ufl.core.expr.Expr:
-    """Rise that strains as much at constant expansion, from the true one (n_owned,) [K]."""
+    """Rise that causes the same strain at constant expansion, from the true rise (n_owned,) [K]."""
     result = as_function(space, rise, "rise")
     for part in parts:
         more = as_function(space, part.excess(rise), "more")
@@ -187,13 +187,13 @@ def straining_rise(
 def thermal_forces(
     load: PETSc.Mat, parts: tuple[VaryingExpansion, ...], rise: np.ndarray
 ) -> np.ndarray:
-    """Nodal forces of a rise (n_owned,), owned rows [N]."""
+    """Nodal forces of a temperature rise (n_owned,), owned rows [N]."""
     each = [(load, rise), *((part.matrix, part.excess(rise)) for part in parts)]
     return _products(load.getLocalSize()[0], each)
 
 
 def _columns(matrix: PETSc.Mat, scales: np.ndarray) -> PETSc.Mat:
-    """``matrix diag(scales)``; every rank calls."""
+    """Scale the columns of a matrix: ``matrix diag(scales)``. Every rank calls."""
     scaled, right = matrix.copy(), matrix.createVecRight()
     right.setArray(scales)
     scaled.diagonalScale(R=right)
@@ -201,7 +201,7 @@ def _columns(matrix: PETSc.Mat, scales: np.ndarray) -> PETSc.Mat:
 
 
 def _products(rows: int, pairs: Iterable[tuple[PETSc.Mat, np.ndarray]]) -> np.ndarray:
-    """Sum of matrices times values, owned rows."""
+    """Sum of matrix-vector products, owned rows."""
     result = np.zeros(rows)
     for matrix, values in pairs:
         x, y = matrix.createVecs()

@@ -22,7 +22,7 @@ from ..kinematics import Model, section_measure
 
 @dataclass(frozen=True)
 class ElasticMaterial:
-    """Isotropic: Young's modulus [Pa], Poisson ratio, thermal expansion [1/K]."""
+    """Isotropic material: Young's modulus [Pa], Poisson ratio, thermal expansion [1/K]."""
 
     young_modulus: float
     poisson_ratio: float
@@ -31,22 +31,22 @@ class ElasticMaterial:
 
 @dataclass(frozen=True)
 class Elasticity:
-    """The elastic bodies, factorised.
+    """Elasticity problem of the bodies with factorised stiffness.
 
     Attributes
     ----------
     bodies : Bodies
     model : Model
     space : dolfinx.fem.FunctionSpace
-        Displacement [m].
+        Displacement space [m].
     stiffness : petsc4py.PETSc.Mat
-        Without supports: its residual holds the support reactions.
+        Stiffness without supports: its residual contains the support reactions.
     fixed : ndarray of bool, shape (n_owned,)
-        Values held at zero.
+        Mask of values held at zero.
     factor : Factor
-        Of the supported stiffness.
+        Factorisation of the supported stiffness.
     lame : tuple of dolfinx.fem.Function
-        λ, μ of the model and its thermal modulus times α, constant on each body [Pa, Pa/K].
+        λ, μ and thermal modulus times α of the model, constant on each body [Pa, Pa/K].
     """
 
     bodies: Bodies
@@ -64,22 +64,22 @@ class Elasticity:
         return self.model.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
 
     def virtual_work(self, u, δu, degree: int):
-        """Form of the work of the stress of one displacement on the strain of another [J].
+        """Form of the virtual work of the stress of u on the strain of δu [J].
 
-        `degree` is that of the polynomials for which the quadrature is meant.
+        `degree` is the polynomial degree for which the quadrature is exact.
         """
         measure = section_measure(self.bodies.mesh, degree)
         return _virtual_work(self.bodies.mesh, self.model, self.lame, u, δu, measure)
 
     def thermal_work(self, rise, δu, degree: int):
-        """Form of the work of thermal stress of a temperature rise on a displacement [J]."""
+        """Form of the work of the thermal stress of a temperature rise on the strain of δu [J]."""
         mesh = self.bodies.mesh
         ε = self.model.strain(mesh, δu)
         measure = section_measure(mesh, degree)
         return self.model.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
-        """Displacements [m] under nodal loads [N], owned rows, one or several columns."""
+        """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
         if sp.issparse(loads):
             return self.factor.solve((sp.diags(~self.fixed, dtype=float) @ loads).tocsr())
         supported = np.array(loads, dtype=float)
@@ -87,14 +87,14 @@ class Elasticity:
         return self.factor.solve(supported)
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Forces of the supports on the bodies [N], owned rows; zero where nothing is fixed."""
+        """Support reactions [N], owned rows; zero in the free values."""
         x, y = self.stiffness.createVecs()
         x.setArray(displacement)
         self.stiffness.mult(x, y)
         return np.where(self.fixed, y.getArray() - loads, 0.0)
 
     def owned_by(self, *parts: str) -> np.ndarray:
-        """Which owned nodes belong to parts of bodies, shape (n_owned / gdim,)."""
+        """Mask of the owned nodes that belong to parts of bodies, shape (n_owned / gdim,)."""
         tags = self.bodies.cell_tags
         cells = np.concatenate([tags.find(self.bodies.body_tag(part)) for part in parts])
         nodes = np.unique(self.space.dofmap.list[cells])
@@ -110,7 +110,10 @@ class Elasticity:
     def thermal_load(
         self, temperature_space: fem.FunctionSpace, only: str | None = None
     ) -> PETSc.Mat:
-        """G: nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV``, of all or one part [N/K]."""
+        """Matrix of nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K].
+
+        Over all bodies, or over the part `only`.
+        """
         mesh, modulus = self.bodies.mesh, self.lame[2]
         if only is not None:
             modulus = self.bodies.per_body({only: 1.0})
@@ -133,7 +136,7 @@ def elasticity(
     symmetric: tuple[str, ...] = (),
     rollers: tuple[str, ...] = (),
 ) -> Elasticity:
-    """Assemble and factorise.
+    """Assemble the stiffness and factorise it.
 
     Parameters
     ----------
@@ -142,13 +145,13 @@ def elasticity(
     degree : int
         Polynomial degree of the displacement.
     materials : dict of str to ElasticMaterial
-        By body.
+        Materials by body.
     clamped : list of str
-        Surfaces held in all directions. Every body needs one.
+        Surfaces fixed in all directions; every body needs one.
     symmetric : tuple of str
-        Surfaces on a plane of symmetry x = const.: the first displacement vanishes.
+        Surfaces on a plane of symmetry x = const.: the first displacement component vanishes.
     rollers : tuple of str
-        Surfaces whose second displacement vanishes.
+        Surfaces whose second displacement component vanishes.
     """
     mesh = bodies.mesh
     space = lagrange_space(mesh, degree, mesh.geometry.dim)
@@ -163,7 +166,7 @@ def elasticity(
 
 
 def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
-    """A copy of a stiffness with rows and columns of fixed values eliminated. Every rank calls."""
+    """Copy of a stiffness with rows and columns of fixed values eliminated. Every rank calls."""
     result = stiffness.copy()
     first = stiffness.getOwnershipRange()[0]
     rows = (np.flatnonzero(fixed) + first).astype(PETSc.IntType)
@@ -189,18 +192,18 @@ def _lame(bodies: Bodies, model: Model, materials: dict[str, ElasticMaterial]):
 
 
 def fixed_values(bodies: Bodies, model: Model, space, clamped, guided) -> np.ndarray:
-    """Which owned values of a space the supports and planes or axis of symmetry hold at zero.
+    """Mask of the owned values fixed by supports, symmetry planes and the axis of symmetry.
 
     Parameters
     ----------
     bodies : Bodies
     model : Model
     space : dolfinx.fem.FunctionSpace
-        Of vectors.
+        Vector-valued space.
     clamped : sequence of str
-        Surfaces held in all directions.
+        Surfaces fixed in all directions.
     guided : dict of int to sequence of str
-        Surfaces by the component that they hold.
+        Surfaces by the component that they fix.
     """
     mesh = bodies.mesh
     tdim = mesh.topology.dim

@@ -1,10 +1,10 @@
-"""A linear problem improved by the surplus of the next degree, with the factor that is at hand.
+"""Hierarchical error estimate: correction of a linear problem by the surplus of the next degree.
 
-The factor solves the problem on its own space; the surplus is nearly orthogonal to it in energy,
-and its matrix well conditioned. One step of conjugate gradients, preconditioned by solving on the
-surplus, on the space, and on the surplus again, finds four fifths and more of what a solution of
-the next degree would change: an estimate of the error (Bank and Smith, SIAM J. Numer. Anal. 30
-(1993) 921: hierarchical bases).
+The existing factorisation solves the problem on its own space; the surplus is nearly orthogonal to
+that space in energy, and its matrix is well conditioned. One step of conjugate gradients,
+preconditioned by block Gauss-Seidel (surplus, space, surplus), yields at least four fifths of the
+change that a solution of the next degree would bring: an estimate of the error (Bank and Smith,
+SIAM J. Numer. Anal. 30 (1993) 921: hierarchical bases).
 """
 
 from __future__ import annotations
@@ -24,25 +24,25 @@ from ..direct_solver import Factor
 from ..field import owned
 from .elasticity import supported
 
-_TOLERANCE = 1e-2  # of solutions on the surplus in space, where a factor would cost too much
+_TOLERANCE = 1e-2  # of iterative solutions on the surplus in 3D; a factorisation costs too much
 
 
 class EnrichedProblem:
-    """A symmetric positive problem on a space and its surplus.
+    """Symmetric positive definite problem on a space and its surplus.
 
-    A field is an array of the owned values of the space and then of the surplus.
+    A field is an array of the owned values of the space, followed by those of the surplus.
 
     Parameters
     ----------
     space, surplus : dolfinx.fem.FunctionSpace
         See `surplus.surplus_space`.
     forms, regular : sequence of callable
-        Terms of the bilinear form, of a trial and a test function each. Those that are `regular`
-        stand in corrections only, for what holds a body that nothing else does.
+        Terms of the bilinear form, each a function of trial and test functions. Terms in `regular`
+        enter corrections only; they regularise bodies without supports.
     solve : callable
-        Solves for corrections on the space alone, under loads (n_owned,).
+        Solver for corrections on the space alone, for loads (n_owned,).
     fixed : tuple of ndarray of bool
-        Values of the space and of the surplus that are given, and stay as they are.
+        Masks of prescribed values of the space and of the surplus, which remain unchanged.
     """
 
     def __init__(
@@ -70,11 +70,11 @@ class EnrichedProblem:
         self._block = _SurplusBlock(terms, fixed[1], space.mesh.topology.dim)
 
     def field(self, values: np.ndarray) -> np.ndarray:
-        """A field from values of the space (n_owned,), without surplus."""
+        """Field with given values of the space (n_owned,) and zero surplus."""
         return np.concatenate([values, np.zeros(owned(self.surplus))])
 
     def function(self, field: np.ndarray):
-        """The field as a UFL expression, until the next one is asked for."""
+        """Field as a UFL expression, valid until the next call."""
         count = owned(self.space)
         parts = field[:count], field[count:]
         for function, values in zip(self._values, parts, strict=True):
@@ -83,27 +83,27 @@ class EnrichedProblem:
         return self._values[0] + self._values[1]
 
     def loads(self, form: Callable) -> np.ndarray:
-        """Loads of a linear form, which is a function of its test function."""
+        """Load vector of a linear form, given as a function of its test function."""
         tests = ufl.TestFunction(self.space), ufl.TestFunction(self.surplus)
         return np.concatenate([assembled(compiled(form(test))) for test in tests])
 
     def residual(self, field: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """What a field leaves of loads."""
+        """Residual of a field under loads, zero in fixed values."""
         self.function(field)
         forces = np.concatenate([_sum(terms) for terms in self._actions])
         return np.where(self._free, loads - forces, 0.0)
 
     def correction(self, residual: np.ndarray) -> np.ndarray:
-        """Change of a field that takes away most of what it leaves of loads. Every rank calls."""
+        """Change of a field by one preconditioned step for a residual. Every rank calls."""
         way, energy = self._improved(residual)
         return way if energy <= 0.0 else self._product(way, residual) / energy * way
 
     def approximate(self, loads: np.ndarray) -> np.ndarray:
-        """A field near to the solution under loads, linear and symmetric in them."""
+        """Approximate solution for loads: the preconditioner, linear and symmetric."""
         return self._improved(loads)[0]
 
     def _improved(self, loads: np.ndarray) -> tuple[np.ndarray, float]:
-        """The field of `approximate`, and its energy: twice the work of the loads that hold it.
+        """Field of `approximate`, and its energy norm squared.
 
         With the blocks K of the space, S of the surplus and C between them, and loads f and g: the
         solutions ``S a = g``, ``K u = f - Cᵀ a`` and ``S d = g - C u - S a`` give the field
@@ -124,7 +124,7 @@ class EnrichedProblem:
         return field, energy
 
     def _forces(self, field: np.ndarray, part: int) -> np.ndarray:
-        """Loads on the space (0) or on the surplus (1) that hold a correction."""
+        """Forces of a correction on the space (0) or on the surplus (1)."""
         self.function(field)
         forces = _sum([*self._actions[part], *self._regular[part]])
         count = owned(self.space)
@@ -140,7 +140,7 @@ def _sum(terms: Sequence[fem.Form]) -> np.ndarray:
 
 
 class _SurplusBlock:
-    """The sum of bilinear forms on the surplus; solved by a factor, in space by iteration."""
+    """Sum of bilinear forms on the surplus; solved directly in 2D, iteratively in 3D."""
 
     def __init__(self, forms: Sequence, fixed: np.ndarray, dim: int):
         matrix = assemble_matrix(compiled(forms[0]))
@@ -152,7 +152,7 @@ class _SurplusBlock:
         self._iteration = None if dim == 2 else _conjugate_gradients(self._matrix)
 
     def solve(self, loads: np.ndarray) -> np.ndarray:
-        """Surplus under loads (n_owned,). Every rank calls."""
+        """Solve for the surplus under loads (n_owned,). Every rank calls."""
         if self._factor is not None:
             return self._factor.solve(loads)
         assert self._iteration is not None
@@ -162,7 +162,7 @@ class _SurplusBlock:
         return x.getArray().copy()
 
     def forces(self, surplus: np.ndarray) -> np.ndarray:
-        """Loads that hold a surplus which vanishes where it is fixed. Every rank calls."""
+        """Forces of a surplus that vanishes in fixed values. Every rank calls."""
         x, b = self._matrix.createVecs()
         x.setArray(surplus)
         self._matrix.mult(x, b)

@@ -1,4 +1,4 @@
-"""Forces spread evenly over named surfaces, and pressures on them."""
+"""Uniformly distributed forces and pressures on named surfaces."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .elasticity import Elasticity
 
 
 def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callable:
-    """Form of the work of a force on a surface, as a function of the displacement [J].
+    """Form of the work of a force distributed over a surface, as a function of displacement [J].
 
     Parameters
     ----------
     elastic : Elasticity
     surface : str
     force : ndarray, shape (gdim,)
-        Of the whole ring, or of the thickness [N].
+        Total force on the ring or over the thickness [N].
     """
     mesh, measure = elastic.bodies.mesh, elastic.bodies.surface_measure(surface)
     area = surface_area(elastic.bodies, elastic.model, surface)
@@ -32,7 +32,7 @@ def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callab
 
 
 def pressure_work(elastic: Elasticity, surface: str, pressure: float) -> Callable:
-    """The same of a pressure [Pa], along the inward normal."""
+    """Form of the work of a pressure [Pa] along the inward normal; see `surface_work`."""
     mesh, measure = elastic.bodies.mesh, elastic.bodies.surface_measure(surface)
     traction = -fem.Constant(mesh, PETSc.ScalarType(pressure)) * ufl.FacetNormal(mesh)
     return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)

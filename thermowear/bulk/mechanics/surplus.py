@@ -1,10 +1,10 @@
-"""What the next degree adds to a space of Lagrange elements: its hierarchical surplus.
+"""Hierarchical surplus of the next degree over a space of Lagrange elements.
 
-The polynomials of degree k + 1 that vanish at the nodes of degree k. On an edge with Gauss-Lobatto
-nodes that is one function, ``(1 - s²) P'_k(s)``, so that the surplus is continuous from cell to
-cell, and orthogonal in energy to what an interval of degree k can do (Szabó and Babuška, Finite
-Element Analysis (1991), 6.1). On hexahedra only its products with linear functions of the other
-directions are taken: the others are of higher total degree, and ten times as much work.
+It consists of the polynomials of degree k + 1 that vanish at the nodes of degree k. On an edge with
+Gauss-Lobatto nodes that is one function, ``(1 - s²) P'_k(s)``, so that the surplus is continuous
+between cells, and in 1D orthogonal in energy to the polynomials of degree k (Szabó and Babuška,
+Finite Element Analysis (1991), 6.1). On hexahedra only its products with linear functions of the
+other directions are used: the others have a higher total degree and cost ten times as much.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _ZERO = 1e-10
 
 
 def surplus_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
-    """The surplus of `field.lagrange_space` of a degree, scalar or of vectors."""
+    """Surplus space over `field.lagrange_space` of a degree, scalar or vector-valued."""
     cell = mesh.basix_cell()
     element = _element(basix.CellType[cell] if isinstance(cell, str) else cell, degree)
     if components:
@@ -32,7 +32,7 @@ def surplus_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
 
 @cache
 def _element(cell: basix.CellType, degree: int):
-    """The scalar element; its values are moments on edges, and inside facets and cells."""
+    """Scalar element; its degrees of freedom are moments on edges, facets and cells."""
     geometry, topology = np.asarray(basix.geometry(cell)), basix.topology(cell)
     edges_only = cell == basix.CellType.hexahedron
     dim = len(topology) - 1
@@ -65,9 +65,9 @@ def _element(cell: basix.CellType, degree: int):
 
 
 def _vanishing(cell: basix.CellType, degree: int, inside: bool) -> np.ndarray:
-    """Polynomials of degree k + 1 that vanish at the nodes of degree k, by orthonormal ones.
+    """Polynomials of degree k + 1 that vanish at the nodes of degree k, in an orthonormal basis.
 
-    Those `inside` vanish on the boundary of the cell, too.
+    If `inside`, they vanish on the boundary of the cell too.
     """
     low, high = (
         basix.create_element(basix.ElementFamily.P, cell, k, basix.LagrangeVariant.gll_warped)
@@ -84,7 +84,7 @@ def _vanishing(cell: basix.CellType, degree: int, inside: bool) -> np.ndarray:
 
 @cache
 def _moments(kind: basix.CellType, degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points in an edge, a facet or a cell and, by functions of it, weights of moments there."""
+    """Quadrature points in an edge, facet or cell, and the weights of each moment there."""
     points, weights = _quadrature(kind, 2 * degree + 2)
     values = basix.tabulate_polynomials(_LEGENDRE, kind, degree + 1, points)
     return points, _vanishing(kind, degree, inside=True) @ values * weights
@@ -96,14 +96,14 @@ def _quadrature(cell: basix.CellType, degree: int) -> tuple[np.ndarray, np.ndarr
 
 
 def _placed(kind: basix.CellType, corners: np.ndarray, local: np.ndarray) -> np.ndarray:
-    """Points of an edge or a facet in the cell whose corners these are."""
+    """Map local points of an edge or facet with given corners to the cell."""
     units = np.asarray(basix.geometry(kind))
     along = [np.flatnonzero((units == unit).all(axis=1))[0] for unit in np.eye(units.shape[1])]
     return corners[0] + local @ (corners[along] - corners[0])
 
 
 def _products(cell: basix.CellType, degree: int) -> np.ndarray:
-    """The surplus along each direction times linear functions of the others, orthonormalised."""
+    """Surplus along each direction times linear functions of the others, orthonormalised."""
     line = basix.CellType.interval
     inner = _vanishing(line, degree, inside=True)
     points, weights = _quadrature(cell, 2 * degree + 4)

@@ -1,4 +1,4 @@
-"""Pictures of a results folder, made from its files alone."""
+"""Pictures of a results folder, drawn from its files."""
 
 from .make import make_animation, make_pictures
 

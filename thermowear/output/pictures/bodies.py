@@ -1,6 +1,6 @@
-"""The two bodies with temperature and stress; run as a process of its own.
+"""Temperature and stress of the two bodies; run in a separate process.
 
-pyvista renders the bodies off-screen, matplotlib puts scales and labels round them.
+pyvista renders the bodies off-screen, matplotlib adds scales and labels.
 """
 
 from __future__ import annotations
@@ -13,17 +13,18 @@ import pyvista
 from matplotlib.figure import Figure
 
 from .. import tables
+from ..coordinates import in_model, model_of
 from ..quantities import INTERFACE
 from .solids import draw_solids
 from .windows import FLAT, Extent, around_contact, color_limits, is_small, whole, within
 
-_DEFORMED_PART = 0.06  # of the bodies' size: how far the largest displacement is drawn
-_PIXELS = 1400  # of the longer side of a rendered picture
-_BEHIND = 1e-3  # of the bodies' size: how far body 1 is set back
+_DEFORMED_PART = 0.06  # largest displacement drawn, relative to the size of the bodies
+_PIXELS = 1400  # longer side of a rendered picture
+_BEHIND = 1e-3  # offset of body 1 away from the viewer, relative to the size of the bodies
 
 
 def draw_bodies(folder: Path) -> None:
-    """``bodies.png`` (fields on the unloaded bodies) and ``deformed.png``."""
+    """Draw ``bodies.png`` (fields on the undeformed bodies) and ``deformed.png``."""
     grid = pyvista.read(folder / "fields.vtu")
     grid.points = grid.points * 1e3
     grid["von Mises stress [MPa]"] = grid["von_mises_Pa"] / 1e6
@@ -36,7 +37,8 @@ def draw_bodies(folder: Path) -> None:
         draw_solids(folder / "bodies.png", grid, fields, "", _middle(folder))
     else:
         table = tables.read(folder / "interface.csv", INTERFACE)
-        _draw(folder / "bodies.png", grid, fields, "", around_contact([table]))
+        axes = tuple(in_model(INTERFACE[name], model_of(folder)).axis for name in "xy")
+        _draw(folder / "bodies.png", grid, fields, axes, contact=around_contact([table]))
     largest = float(np.linalg.norm(grid["displacement_m"], axis=1).max()) * 1e3
     size = float(np.ptp(grid.points, axis=0).max())
     factor = _round(_DEFORMED_PART * size / largest) if largest > 0 else 1.0
@@ -45,19 +47,19 @@ def draw_bodies(folder: Path) -> None:
     if in_space:
         draw_solids(folder / "deformed.png", grid, fields, note, _middle(folder))
     else:
-        _draw(folder / "deformed.png", grid, fields, note)
+        _draw(folder / "deformed.png", grid, fields, axes, note)
 
 
 def _middle(folder: Path) -> float:
-    """Where along y the middle of the contact face is [mm]."""
+    """Middle of the contact face along y [mm]."""
     y = tables.read(folder / "interface.csv", INTERFACE)["y"] * 1e3
     return float((y.min() + y.max()) / 2)
 
 
-def _draw(path: Path, grid, fields: list[tuple[str, str]], note: str, contact=None) -> None:
-    """One panel a field, side by side, and another for the surroundings of a small contact.
+def _draw(path: Path, grid, fields, axes: tuple[str, ...], note: str = "", contact=None) -> None:
+    """Draw one panel per field side by side, and further panels around a small contact.
 
-    That one is beside the panel of a single field, else below.
+    The latter is beside the panel of a single field, else below the others.
     """
     windows = [whole(grid.points)]
     if contact is not None and is_small(contact, grid.points):
@@ -77,13 +79,15 @@ def _draw(path: Path, grid, fields: list[tuple[str, str]], note: str, contact=No
     for row, extent in zip(panels.T if beside else panels, windows, strict=True):
         for axis, (name, colors) in zip(row, fields, strict=True):
             _panel(figure, axis, grid, name, colors, extent)
+            axis.set_xlabel(axes[0])
+            axis.set_ylabel(axes[1])
     if note:
         figure.suptitle(note, fontsize=11)
     figure.savefig(path, bbox_inches="tight")
 
 
 def _panel(figure, axis, grid, name: str, colors: str, extent: Extent) -> None:
-    """A window on a field with its own range of colours."""
+    """Draw a window of a field with its own colour range."""
     x, y = grid.points[:, 0], grid.points[:, 1]
     inside = (x >= extent[0]) & (x <= extent[1]) & (y >= extent[2]) & (y <= extent[3])
     limits = color_limits(grid[name][inside])
@@ -102,15 +106,13 @@ def _panel(figure, axis, grid, name: str, colors: str, extent: Extent) -> None:
         extend="max" if over else "neither",
         location="bottom" if flat else "right",
     )
-    axis.set_xlabel("x [mm]")
-    axis.set_ylabel("y [mm]")
     axis.spines[["top", "right"]].set_visible(False)
 
 
 def _render(grid, name: str, colors: str, limits, extent: Extent) -> np.ndarray:
-    """Picture of a plane grid in a window.
+    """Render a plane grid in a window.
 
-    Body 1 lies a little behind body 2: what has been worn off it does not show.
+    Body 1 is offset slightly behind body 2, so that the material worn off body 1 is hidden.
     """
     width, height = extent[1] - extent[0], extent[3] - extent[2]
     scale = _PIXELS / max(width, height)
@@ -139,7 +141,7 @@ def _render(grid, name: str, colors: str, limits, extent: Extent) -> np.ndarray:
 
 
 def _round(value: float) -> float:
-    """The next smaller of 1, 2, 5 times a power of ten."""
+    """Round down to 1, 2 or 5 times a power of ten."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * max(k for k in (1, 2, 5) if k * power <= value * (1 + 1e-12)))
 

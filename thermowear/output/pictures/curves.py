@@ -1,4 +1,4 @@
-"""Curves along the contact and over time, by matplotlib."""
+"""Curves along the contact and over time (matplotlib)."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import tables
+from ..coordinates import in_model, model_of
 from ..quantities import HISTORY, INTERFACE, LOADS, Quantity
 
 STYLE = {key: value for key, value in mpl.rcParamsDefault.items() if key != "backend"} | {
@@ -21,26 +22,26 @@ STYLE = {key: value for key, value in mpl.rcParamsDefault.items() if key != "bac
     "lines.linewidth": 1.6,
     "legend.frameon": False,
 }
-"""All settings, so that none comes from a ``matplotlibrc`` that lies in the current folder."""
+"""Complete settings, so that none is taken from a ``matplotlibrc`` in the current folder."""
 BODIES = ("tab:blue", "tab:orange")
 
 
 def from_zero(axis: Axes) -> None:
-    """Let the values of an axis begin at zero, and end above the largest, of even curves too."""
+    """Let an axis begin at zero and end above the largest value, also for constant curves."""
     axis.set_ylim(0.0, 1.05 * axis.dataLim.y1 or None)
 
 
 def draw_interface(folder: Path) -> None:
-    """``interface.png``: pressure, temperatures and shape along the contact."""
+    """Draw ``interface.png``: pressure, temperatures and shape along the contact."""
     data = tables.read(folder / "interface.csv", INTERFACE)
     hot = np.isfinite(data["temperature_1"]).all()
     panels = [["pressure"], *([["temperature_1", "temperature_2"]] if hot else [])]
-    if np.ptp(data["shape"]) > 1e-12:  # less is rounding: flat faces that have not worn
+    if np.ptp(data["shape"]) > 1e-12:  # smaller ranges are rounding errors of flat unworn faces
         panels.append(["shape"])
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 2.3 * len(panels)), layout="constrained", dpi=150)
         axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
-        place = abscissa(data)
+        place = abscissa(data, model_of(folder))
         for axis, names in zip(axes, panels, strict=True):
             for name, color, line in zip(names, BODIES, ("-", "--"), strict=False):
                 drawn = INTERFACE[name].drawn(data[name])
@@ -56,7 +57,7 @@ def draw_interface(folder: Path) -> None:
 
 
 def draw_wear(folder: Path) -> None:
-    """``wear.png``: pressure and worn depth along the contact at output times and at the end."""
+    """Draw ``wear.png``: pressure and wear depth along the contact at the output times."""
     steps = {"history.csv": HISTORY, "loads.csv": LOADS}
     ends = [
         float(tables.read(folder / name, table)["time"][-1])
@@ -69,7 +70,7 @@ def draw_wear(folder: Path) -> None:
     for path in folder.glob("interface_*.csv"):
         files[float(path.stem.removeprefix("interface_"))] = path
     states = {time: tables.read(path, INTERFACE) for time, path in sorted(files.items())}
-    final = states[max(states)]
+    final, model = states[max(states)], model_of(folder)
     bodies = [name for name in ("wear_1", "wear_2") if final[name].max() > 0]
     if not bodies:
         return
@@ -80,7 +81,7 @@ def draw_wear(folder: Path) -> None:
         axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         for axis, name in zip(axes, panels, strict=True):
             for (time, data), color in zip(states.items(), colors, strict=True):
-                label, place = abscissa(data)
+                label, place = abscissa(data, model)
                 axis.plot(
                     place, INTERFACE[name].drawn(data[name]), color=color, label=f"{time:.4g} s"
                 )
@@ -93,7 +94,7 @@ def draw_wear(folder: Path) -> None:
 
 
 def draw_history(folder: Path) -> None:
-    """``history.png``: largest pressure over time, and worn volume where there is any."""
+    """Draw ``history.png``: largest pressure and, with wear, worn volume over time."""
     if not (folder / "history.csv").is_file():
         return
     data = tables.read(folder / "history.csv", HISTORY)
@@ -119,13 +120,13 @@ def draw_history(folder: Path) -> None:
         figure.savefig(folder / "history.png")
 
 
-def abscissa(data: dict[str, np.ndarray]) -> tuple[str, np.ndarray]:
-    """Label and values of the horizontal axis: x where the face is nearly flat, else the arc."""
+def abscissa(data: dict[str, np.ndarray], model: str = "") -> tuple[str, np.ndarray]:
+    """Label and values of the horizontal axis: x (or r) on nearly flat faces, else arc length."""
     flat = np.ptp(data["y"]) <= 0.1 * np.ptp(data["x"])
     quantity = INTERFACE["x" if flat else "s"]
-    return quantity.axis, quantity.drawn(data["x" if flat else "s"])
+    return in_model(quantity, model).axis, quantity.drawn(data["x" if flat else "s"])
 
 
 def wrapped(quantity: Quantity) -> str:
-    """Label of a narrow axis, in two lines."""
+    """Axis label in two lines."""
     return f"{quantity.label}\n[{quantity.unit}]"

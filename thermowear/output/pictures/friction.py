@@ -1,4 +1,4 @@
-"""Sticking, slipping and its wear: along the contact, over a load history, over its cycles."""
+"""Stick, slip and fretting wear along the contact, over the load history, and over cycles."""
 
 from __future__ import annotations
 
@@ -10,23 +10,25 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import tables
+from ..coordinates import model_of
 from ..quantities import CYCLES, FRICTION, LOADS
 from .curves import BODIES, STYLE, abscissa, from_zero
 
 
 def draw_friction(folder: Path) -> None:
-    """``friction.png``: shear between the limits of friction, and slip, at the output times."""
+    """Draw ``friction.png``: shear with its Coulomb limits, and slip, at the output times."""
     if not (folder / "friction.csv").is_file():
         return
     paths = sorted(folder.glob("friction_*.csv"), key=_time)
     states = {f"{_time(path):.4g} s": path for path in paths} | {"end": folder / "friction.csv"}
     data = {name: tables.read(path, FRICTION) for name, path in states.items()}
     colors = mpl.colormaps["viridis"](np.linspace(0.85, 0.0, len(data)))
+    model = model_of(folder)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 5.6), layout="constrained", dpi=150)
         upper, lower = figure.subplots(2, sharex=True)
         for (name, table), color in zip(data.items(), colors, strict=True):
-            label, place = abscissa(table)
+            label, place = abscissa(table, model)
             upper.plot(place, FRICTION["shear"].drawn(table["shear"]), color=color, label=name)
             slipping = np.where(table["pressure"] > 0, table["slip"], np.nan)
             lower.plot(place, FRICTION["slip"].drawn(slipping), color=color)
@@ -45,7 +47,7 @@ def draw_friction(folder: Path) -> None:
 
 
 def draw_loads(folder: Path) -> None:
-    """``loads.png``: tangential force over tangential displacement, and dissipated energy."""
+    """Draw ``loads.png``: tangential force over displacement, and dissipated energy."""
     if not (folder / "loads.csv").is_file():
         return
     data = tables.read(folder / "loads.csv", LOADS)
@@ -63,7 +65,7 @@ def draw_loads(folder: Path) -> None:
 
 
 def draw_cycles(folder: Path) -> None:
-    """``cycles.png``: largest wear depth and worn volume of both bodies over the cycles."""
+    """Draw ``cycles.png``: largest wear depth and worn volume of both bodies over the cycles."""
     if not (folder / "cycles.csv").is_file():
         return
     data = tables.read(folder / "cycles.csv", CYCLES)

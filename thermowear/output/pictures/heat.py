@@ -1,4 +1,4 @@
-"""Temperatures that are followed in time: how hot the faces get, and from what."""
+"""Surface temperatures, friction power and pressure over time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .curves import BODIES, STYLE, from_zero, wrapped
 
 
 def draw_heat(folder: Path) -> None:
-    """``heat.png``: temperatures of both faces, friction power and largest pressure over time."""
+    """Draw ``heat.png``: surface temperatures, friction power and largest pressure over time."""
     if not (folder / "heat.csv").is_file():
         return
     heat = tables.read(folder / "heat.csv", HEAT)
@@ -33,7 +33,7 @@ def draw_heat(folder: Path) -> None:
                 name = f"{which}_temperature_{body}"
                 drawn = HEAT[name].drawn(heat[name])
                 hot.plot(time, drawn, line, color=color, label=f"body {body}, {word}")
-        hot.set_ylabel("temperature\nof the faces [°C]")
+        hot.set_ylabel("surface\ntemperature [°C]")
         hot.legend(ncols=2)
         for axis, (table, data, name, color) in zip(others, below, strict=True):
             axis.plot(table["time"].drawn(data["time"]), table[name].drawn(data[name]), color=color)

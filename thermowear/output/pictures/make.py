@@ -1,4 +1,4 @@
-"""Draw everything there is to draw in a results folder."""
+"""Draw all pictures of a results folder."""
 
 from __future__ import annotations
 
@@ -21,27 +21,29 @@ from .profile import draw_profile
 from .track import draw_track
 
 _TIMEOUT = 180.0  # seconds for the rendering process
-_LONG = 1800.0  # for that of an animation
+_LONG = 1800.0  # seconds for the rendering process of an animation
 
 
 def make_pictures(folder: Path) -> list[str]:
-    """Draw the curves here, the bodies and their animation in processes of their own.
+    """Draw the curves in this process, the bodies and their animation in separate processes.
 
-    Rendering needs graphics libraries that can take a process down with them; whatever happens
-    there, the curves are drawn and the caller goes on.
+    Rendering uses graphics libraries that may crash a process; the curves are drawn and the caller
+    continues in any case.
 
     Returns
     -------
     list of str
-        What could not be drawn and why, and which balances do not hold, one line each.
+        Missing pictures with reasons, and violated balances, one line each.
 
     Raises
     ------
     CaseError
-        If the folder holds no results.
+        If the folder contains no results.
     """
     if not (folder / "interface.csv").is_file():
-        raise CaseError(f"{folder}: holds no interface.csv; not a results folder of a finished run")
+        raise CaseError(
+            f"{folder}: contains no interface.csv; not a results folder of a finished run"
+        )
     if is_surface(folder):
         draw_interface_maps(folder)
         draw_wear_maps(folder)
@@ -66,29 +68,29 @@ def make_pictures(folder: Path) -> list[str]:
 
 
 def _summary(folder: Path) -> dict:
-    """The summary of a run; empty where there is none."""
+    """Read the summary of a run; empty if there is none."""
     path = folder / "summary.json"
     return json.loads(path.read_bytes()) if path.is_file() else {}
 
 
 def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
-    """Draw the states on the way of a run with ``analysis.frames``.
+    """Draw the intermediate states of a run with ``analysis.frames``.
 
     Parameters
     ----------
     folder : Path
-        Of results.
+        Results folder.
     path : Path
-        Ends in ``.gif`` or ``.mp4``.
+        File to write, ``.gif`` or ``.mp4``.
     fps : float
-        Frames a second.
+        Frames per second.
 
     Raises
     ------
     CaseError
-        If there are no frames, or if an MP4 is wanted without ffmpeg.
+        If there are no frames, or ffmpeg is missing for an MP4.
     ComputationError
-        If it cannot be drawn.
+        If drawing fails.
     """
     check_film(folder, path)
     reason = _animate(folder, path, fps)
@@ -97,20 +99,20 @@ def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
 
 
 def _animate(folder: Path, path: Path, fps: float) -> str:
-    """Draw an animation; the reason why not, empty on success."""
+    """Draw an animation; returns the reason of a failure, empty on success."""
     return _render(
         "animation.make", str(folder.resolve()), str(path.resolve()), str(fps), timeout=_LONG
     )
 
 
 def _render(module: str, *arguments: str, timeout: float = _TIMEOUT) -> str:
-    """Draw with a module that renders; the reason why not, empty on success."""
+    """Run a rendering module in a process; returns the reason of a failure, empty on success."""
     command = [sys.executable, "-m", f"{__package__}.{module}", *arguments]
     package_root = str(Path(__file__).parents[3])
     path = os.pathsep.join(filter(None, [package_root, os.environ.get("PYTHONPATH")]))
     environment = os.environ | {"PYTHONPATH": path, "PYVISTA_OFF_SCREEN": "true"}
     for name in [k for k in environment if k.startswith(("OMPI_", "PMIX_", "PRTE_", "PMI_"))]:
-        del environment[name]  # the renderer is no rank of a parallel run
+        del environment[name]  # the renderer is not a rank of the parallel run
     reason = ""
     for prefix in _displays():
         try:
@@ -134,7 +136,7 @@ def _render(module: str, *arguments: str, timeout: float = _TIMEOUT) -> str:
 
 
 def _displays() -> list[list[str]]:
-    """Ways to start the renderer, likeliest first: some builds of VTK need an X server."""
+    """Command prefixes to try, most promising first: some builds of VTK need an X server."""
     direct: list[list[str]] = [[]]
     virtual = [["xvfb-run", "-a"]] if shutil.which("xvfb-run") else []
     return direct + virtual if os.environ.get("DISPLAY") else virtual + direct

@@ -1,4 +1,4 @@
-"""Maps of a contact face in space, seen from above, by matplotlib."""
+"""Maps of a contact face of a 3D model, seen from above (matplotlib)."""
 
 from __future__ import annotations
 
@@ -15,30 +15,32 @@ from ..quantities import HISTORY, INTERFACE, Quantity
 from .curves import STYLE
 
 COLORS = {"pressure": "viridis", "temperature": "inferno", "shape": "cividis", "wear": "magma_r"}
-_LONGER = 4.6  # inches of the face's longer side
+_LONGER = 4.6  # longer side of the face [inches]
 _LINES = 8
 _FLAT = 1e-12  # m
-_FLATTEST = 100.0  # degrees: a triangle at the rim that is flatter fills a bay of the face
+_FLATTEST = (
+    100.0  # largest angle of a boundary triangle [degrees]; larger ones lie outside the face
+)
 
 
 def is_surface(folder: Path) -> bool:
-    """Whether the contact points of a results folder have no order along a line."""
+    """Test whether the contact points of a results folder form a surface, not a line."""
     return bool(np.isnan(tables.read(folder / "interface.csv", INTERFACE)["s"]).all())
 
 
 def draw_interface_maps(folder: Path) -> None:
-    """``interface.png``: pressure, temperatures and shape over the face."""
+    """Draw ``interface.png``: pressure, temperatures and shape over the face."""
     data = tables.read(folder / "interface.csv", INTERFACE)
     names = ["pressure"]
     if np.isfinite(data["temperature_1"]).all():
         names += ["temperature_1", "temperature_2"]
-    if np.ptp(data["shape"]) > _FLAT:  # flat faces that have not worn have nothing to show
+    if np.ptp(data["shape"]) > _FLAT:  # not for flat unworn faces
         names.append("shape")
     _draw(folder / "interface.png", data, names)
 
 
 def draw_wear_maps(folder: Path) -> None:
-    """``wear.png``: depth worn off each body at the end of a running-in."""
+    """Draw ``wear.png``: wear depth of each body at the end of a transient analysis."""
     if not (folder / "history.csv").is_file():
         return
     data = tables.read(folder / "interface.csv", INTERFACE)
@@ -46,11 +48,11 @@ def draw_wear_maps(folder: Path) -> None:
     if not names:
         return
     end = tables.read(folder / "history.csv", HISTORY)["time"][-1]
-    _draw(folder / "wear.png", data, names, f"worn after {end:.4g} s")
+    _draw(folder / "wear.png", data, names, f"wear after {end:.4g} s")
 
 
 def _draw(path: Path, data: dict[str, np.ndarray], names: list[str], title: str = "") -> None:
-    """A map of each quantity, two in a row."""
+    """Draw a map of each quantity, two per row."""
     x, y = (INTERFACE[axis].drawn(data[axis]) for axis in "xy")
     triangles = triangulated(x, y)
     columns = min(2, len(names))
@@ -73,7 +75,7 @@ def _draw(path: Path, data: dict[str, np.ndarray], names: list[str], title: str 
 
 
 def _map(figure, axis, triangles: Triangulation, quantity: Quantity, drawn, colors: str) -> None:
-    """Colours, with lines of equal value where they differ."""
+    """Draw colours, with contour lines if the values differ."""
     colored = axis.tripcolor(triangles, drawn, shading="gouraud", cmap=colors)
     figure.colorbar(colored, ax=axis, label=quantity.axis, shrink=0.9)
     if np.ptp(drawn) > 1e-6 * np.abs(drawn).max():
@@ -85,10 +87,11 @@ def _map(figure, axis, triangles: Triangulation, quantity: Quantity, drawn, colo
 
 
 def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
-    """Triangles between points that leave out what lies in the bays of their outline.
+    """Triangulate points of a face that need not be convex.
 
-    Delaunay's triangles fill the hull. Between the points of a grid those at the rim have an angle
-    of 90° opposite to it; a triangle that fills a bay spans it and is much flatter.
+    The Delaunay triangulation fills the convex hull. Triangles at the boundary of a grid of points
+    have an angle of 90° opposite to the boundary; triangles outside a concave boundary are much
+    flatter, and are masked.
     """
     result = Triangulation(x, y)
     corners = np.stack([x, y], axis=1)[result.triangles]

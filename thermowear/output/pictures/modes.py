@@ -1,4 +1,4 @@
-"""Shapes of the disturbances of a stability analysis."""
+"""Mode shapes of a stability analysis."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import tables
+from ..coordinates import model_of
 from ..quantities import INTERFACE, MODES
 from .curves import STYLE, abscissa
 from .maps import is_surface, triangulated
 
-_TITLE = 38  # letters over a map
+_TITLE = 38  # characters per line of a title
 _LEVELS = np.linspace(-1.0, 1.0, 21)
 
 
 def draw_modes(folder: Path) -> None:
-    """``mode.png``: the disturbance that grows fastest, and those that stay at a speed."""
+    """Draw ``mode.png``: the fastest growing mode, and the modes at critical speeds."""
     if not (folder / "mode.csv").is_file():
         return
     data = tables.read(folder / "mode.csv", MODES)
@@ -30,11 +31,11 @@ def draw_modes(folder: Path) -> None:
     if not modes:
         return
     with mpl.rc_context(STYLE):
-        draw = _maps if is_surface(folder) else _curves
-        draw(modes).savefig(folder / "mode.png")
+        figure = _maps(modes) if is_surface(folder) else _curves(modes, model_of(folder))
+        figure.savefig(folder / "mode.png")
 
 
-def _curves(modes: list[dict]) -> Figure:
+def _curves(modes: list[dict], model: str) -> Figure:
     growing = [[mode] for mode in modes if not _stays(mode)]
     staying = [mode for mode in modes if _stays(mode)]
     groups = [*growing, *([staying] if staying else [])]
@@ -42,10 +43,10 @@ def _curves(modes: list[dict]) -> Figure:
     axes = figure.subplots(len(groups), sharex=True, squeeze=False)[:, 0]
     for axis, group in zip(axes, groups, strict=True):
         for mode in group:
-            label, place = abscissa(mode)
+            label, place = abscissa(mode, model)
             axis.plot(place, mode["pressure"], label=_told(mode))
             if mode["frequency"][0] > 0:
-                later = "a quarter of a period later"
+                later = "a quarter period later"
                 axis.plot(place, -mode["pressure_imaginary"], "--", label=later)
         axis.axhline(0.0, color="0.6", linewidth=0.8)
         axis.set_ylabel(f"{MODES['pressure'].label}\n[{MODES['pressure'].unit}]")
@@ -55,7 +56,7 @@ def _curves(modes: list[dict]) -> Figure:
 
 
 def _maps(modes: list[dict]) -> Figure:
-    """On a surface: a map each, seen from above."""
+    """Draw a map of each mode, for 3D models."""
     columns = min(len(modes), 2)
     rows = -(-len(modes) // columns)
     figure = Figure(figsize=(3.6 * columns, 3.2 * rows), layout="constrained", dpi=150)
@@ -83,11 +84,11 @@ def _stays(mode: dict) -> bool:
 
 
 def _told(mode: dict) -> str:
-    """What a mode does, at which speed."""
+    """Describe a mode: kind, and its growth rate or critical speed."""
     factor, rate, frequency = (mode[k][0] for k in ("speed_factor", "growth_rate", "frequency"))
-    at = "at the given speed" if factor == 1.0 else f"at {factor:.4g} times the speed"
-    if _stays(mode):
-        return f"stays {at}"
-    words = [f"grows e-fold in {1 / rate:.3g} s"] if factor == 1.0 else []
-    words += [f"swings with a period of {2 * pi / frequency:.3g} s"] if frequency > 0 else []
-    return f"{', '.join(words)} {at}"
+    kind = (
+        f"oscillatory mode, period {2 * pi / frequency:.3g} s" if frequency else "stationary mode"
+    )
+    if factor == 1.0 and rate != 0:
+        return f"{kind}, growth rate {rate:.3g} 1/s at the given speed"
+    return f"{kind}, critical speed factor {factor:.4g}"

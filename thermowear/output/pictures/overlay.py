@@ -1,4 +1,4 @@
-"""Several runs in one picture: how a quantity along the contact depends on what was varied."""
+"""Curves of several runs along the contact in one picture."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import tables
+from ..coordinates import model_of
 from ..quantities import INTERFACE, PROFILE, Quantity
 from .curves import STYLE, abscissa
 
@@ -20,21 +21,21 @@ _FILES: dict[str, tuple[str, dict[str, Quantity]]] = {
 }
 
 _SINGULAR, _MOST = 3.0, 0.9
-"""A peak is cut off where it is so many times higher than what most points have: singular corners
-of unworn faces would leave nothing to see of the rest."""
+"""Peaks are clipped if they exceed the first factor times the quantile of the second: pressure
+singularities at corners of unworn faces would hide all other values."""
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One of the panels of a picture.
+    """Panel of a picture.
 
     Attributes
     ----------
     quantity : str
-        A column of ``interface.csv`` or ``profile.csv``, by its name in `quantities`.
+        Column of ``interface.csv`` or ``profile.csv``, by its name in `quantities`.
     title : str
     from_zero : bool
-        Whether the axis begins at zero.
+        True if the axis begins at zero.
     """
 
     quantity: str
@@ -43,15 +44,15 @@ class Panel:
 
 
 def draw_overlay(runs: Mapping[str, Path], panels: Sequence[Panel], path: Path) -> None:
-    """Draw the same quantities of several runs.
+    """Draw quantities of several runs for comparison.
 
     Parameters
     ----------
     runs : dict of str to Path
-        Results folders by what is said of them in the legend.
+        Results folders by their legend entry.
     panels : sequence of Panel
     path : Path
-        Of the picture.
+        Picture to write.
     """
     colors = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(runs)))
     styles = ("-", "--", "-.", ":")
@@ -63,7 +64,7 @@ def draw_overlay(runs: Mapping[str, Path], panels: Sequence[Panel], path: Path) 
             highest = []
             for k, (label, folder) in enumerate(runs.items()):
                 data = tables.read(folder / name, table)
-                where, place = abscissa(data)
+                where, place = abscissa(data, model_of(folder))
                 drawn = table[panel.quantity].drawn(data[panel.quantity])
                 axis.plot(place, drawn, styles[k % 4], color=colors[k], label=label)
                 highest.append((np.nanmax(drawn), np.nanquantile(drawn, _MOST)))

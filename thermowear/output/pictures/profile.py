@@ -1,4 +1,4 @@
-"""The worn shape of faces that are not level: along the normal and along the press."""
+"""Worn shape of inclined or curved faces, along the normal and along the load direction."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import tables
+from ..coordinates import model_of
 from ..quantities import PROFILE
 from .curves import STYLE, abscissa
 
 _SAME = 1e-3
-"""On a level face both shapes are one."""
+"""Relative difference below which both shapes coincide, as on a level face."""
 _EVEN = 1e-2
-"""Rates that differ by less along the face have no range to speak of."""
+"""Smallest range of wear rates along the face, relative to their size."""
 _PAIRS = (
     ("shape", "shape_along_press", "height of the unloaded face"),
     ("wear_rate", "wear_rate_along_press", "wear rate"),
@@ -23,7 +24,7 @@ _PAIRS = (
 
 
 def draw_profile(folder: Path) -> None:
-    """``profile.png``: worn shape and wear rates of a face that is not level."""
+    """Draw ``profile.png``: worn shape and wear rates of a face that is not level."""
     if not (folder / "profile.csv").is_file():
         return
     data = tables.read(folder / "profile.csv", PROFILE)
@@ -33,9 +34,10 @@ def draw_profile(folder: Path) -> None:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 2.6 * len(pairs)), layout="constrained", dpi=150)
         axes = figure.subplots(len(pairs), sharex=True, squeeze=False)[:, 0]
-        label, place = abscissa(data)
+        label, place = abscissa(data, model_of(folder))
         for axis, (along_normal, along_press, what) in zip(axes, pairs, strict=True):
-            for name, line, how in ((along_normal, "-", "normal"), (along_press, "--", "press")):
+            kinds = ((along_normal, "-", "normal"), (along_press, "--", "load direction"))
+            for name, line, how in kinds:
                 axis.plot(place, PROFILE[name].drawn(data[name]), line, label=f"along the {how}")
             axis.set_ylabel(f"{what}\n[{PROFILE[along_normal].unit}]")
         axes[0].legend()

@@ -1,4 +1,4 @@
-"""Bodies in space, cut in the middle of the contact so that their inside shows."""
+"""Pictures of 3D bodies, clipped in the middle of the contact to show their interior."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from matplotlib.figure import Figure
 from .windows import color_limits
 
 PIXELS = (1400, 1100)
-_FROM = (0.55, -1.0, 0.6)  # where the camera is, as seen from the bodies
+_FROM = (0.55, -1.0, 0.6)  # direction of the camera from the bodies
 _APART = 1e-6  # of the bodies' size
 _BEHIND = 1e-3
-_EDGE = 40.0  # degrees between faces that meet at a drawn edge
+_EDGE = 40.0  # smallest angle between faces at a drawn edge [degrees]
 
 
 def draw_solids(path, grid, fields: list[tuple[str, str]], note: str, y: float) -> None:
-    """One panel a field, side by side.
+    """Draw one panel per field, side by side.
 
     Parameters
     ----------
     path : Path
     grid : pyvista.UnstructuredGrid
-        Of volume cells, with the fields [mm].
+        Volume cells with the fields [mm].
     fields : list of tuple of str
         Names and colour maps.
     note : str
         Title, may be empty.
     y : float
-        What lies before it is cut off [mm].
+        Position of the cutting plane; the part with smaller y is removed [mm].
     """
     parts = cut(grid, y)
     values = {name: np.concatenate([part[name] for part in parts]) for name, _ in fields}
@@ -50,15 +50,15 @@ def draw_solids(path, grid, fields: list[tuple[str, str]], note: str, y: float) 
 
 
 def cut(grid, y: float) -> list:
-    """Surfaces of what lies behind a plane across y, of body 2 and of body 1.
+    """Surfaces of the bodies behind a plane normal to y, of body 2 and of body 1.
 
-    Body 1 is set a little further back: what has been worn off it does not show.
+    Body 1 is offset slightly backwards, so that the material worn off body 1 is hidden.
     """
     size = float(np.ptp(grid.points, axis=0).max())
     surfaces = []
     for body in (2, 1):
         part = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == body))
-        # the samples of neighbouring cells coincide: what lies between them is no surface
+        # merge coinciding samples of neighbouring cells, so that interior faces are no surface
         whole = part.clean(tolerance=_APART * size)
         surface = whole.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, y, 0.0)).extract_surface()
         surface.points[:, 1] += (2 - body) * _BEHIND * size
@@ -67,7 +67,7 @@ def cut(grid, y: float) -> list:
 
 
 def render(surfaces: list, name: str, colors: str, limits) -> np.ndarray:
-    """Picture of surfaces and their edges."""
+    """Render surfaces and their edges."""
     plotter = pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
     plotter.set_background("white")  # type: ignore[arg-type]
     for surface in surfaces:

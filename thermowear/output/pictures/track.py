@@ -1,4 +1,4 @@
-"""Worn profiles of bodies that slide to and fro: of the one that moves, and of its track."""
+"""Wear profiles of reciprocating analyses, of the moving body and of the track."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .curves import STYLE
 
 
 def draw_track(folder: Path) -> None:
-    """``track.png``: depths of both bodies along x, body 1 in the middle of its stroke."""
+    """Draw ``track.png``: wear depths of both bodies, body 1 in the middle of its stroke."""
     if not (folder / "track.csv").is_file():
         return
     times = [path.stem.removeprefix("track_") for path in folder.glob("track_*.csv")]

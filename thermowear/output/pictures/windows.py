@@ -1,4 +1,4 @@
-"""What of the bodies a picture shows, and in which range of colours."""
+"""Windows and colour ranges of pictures of the bodies."""
 
 from __future__ import annotations
 
@@ -7,24 +7,24 @@ from collections.abc import Sequence
 import numpy as np
 
 FLAT = 0.55
-"""Height over width: windows lower than that have their scale of colours below."""
-_SMALL = 0.15  # of the bodies' size: contacts smaller than that get windows of their own
-_AROUND = 3.0  # sizes of the contact that such a window shows
+"""Aspect ratio (height over width) below which the colour bar is placed below a window."""
+_SMALL = 0.15  # size of a contact relative to the bodies, below which it gets its own window
+_AROUND = 3.0  # width of that window relative to the size of the contact
 _MARGIN = 0.02
-_LEAST = 99.5  # percent of the samples that colours must tell apart
+_LEAST = 99.5  # percentile of the samples at the end of the colour range
 
 Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]
 
 
 def whole(points: np.ndarray) -> Extent:
-    """A window on all points, shape (n, 2 or 3) [mm]."""
+    """Window of all points, shape (n, 2 or 3) [mm]."""
     (x0, y0), (x1, y1) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     margin = _MARGIN * max(x1 - x0, y1 - y0)
     return x0 - margin, x1 + margin, y0 - margin, y1 + margin
 
 
 def around_contact(interfaces: Sequence[dict[str, np.ndarray]]) -> Extent | None:
-    """What lies around all points that press in one of the states, where there are any.
+    """Window around all points in contact in any of the states; None without contact.
 
     Parameters
     ----------
@@ -44,23 +44,23 @@ def around_contact(interfaces: Sequence[dict[str, np.ndarray]]) -> Extent | None
 
 
 def is_small(contact: Extent, points: np.ndarray) -> bool:
-    """Whether a contact has its own window, as it is small on bodies with these points."""
+    """True if a contact is small relative to bodies with these points, and gets its own window."""
     return bool(contact[1] - contact[0] < _AROUND * _SMALL * np.ptp(points[:, 0]))
 
 
 def within(contact: Extent, points: np.ndarray) -> Extent:
-    """The window, not wider than bodies with these points."""
+    """Limit the window to the width of bodies with these points."""
     x = points[:, 0]
     return max(contact[0], x.min()), min(contact[1], x.max()), *contact[2:]
 
 
 def color_limits(values: np.ndarray) -> tuple[float, float]:
-    """Colour range without the few samples beside singular edges."""
+    """Colour range without the few samples near singular edges."""
     low, high = float(values.min()), float(np.percentile(values, _LEAST))
     return (low, high) if high > low else (low - 0.5, low + 0.5)
 
 
 def common_limits(states: Sequence[np.ndarray]) -> tuple[float, float]:
-    """Colour range of several states."""
+    """Common colour range of several states."""
     lows, highs = zip(*(color_limits(values) for values in states), strict=True)
     return min(lows), max(highs)

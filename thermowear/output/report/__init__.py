@@ -1,4 +1,4 @@
-"""One page for the mail: ``report.html``, made from the files of a results folder alone."""
+"""``report.html``: a self-contained page made from the files of a results folder."""
 
 from ..report_file import is_report
 from .write import write_report

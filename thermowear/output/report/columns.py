@@ -1,4 +1,4 @@
-"""Tables of results as a page shows them: few rows, the units of drawings."""
+"""Tables of results for the report: few rows, in the units of plots."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..coordinates import in_model
 from ..quantities import (
     CYCLES,
     FRICTION,
@@ -24,7 +25,7 @@ from .engineering import multiple, number, split_key
 
 _ROWS = 20
 _EXTREMES = {
-    "shape": Quantity("shape_range_m", "shape, highest to lowest", "µm", 1e6),
+    "shape": Quantity("shape_range_m", "peak-to-valley of the worn shape", "µm", 1e6),
     "wear_1": Quantity("max_wear_1_m", "deepest wear, body 1", "µm", 1e6),
     "wear_2": Quantity("max_wear_2_m", "deepest wear, body 2", "µm", 1e6),
     "shear": Quantity("max_shear_Pa", "largest shear", "MPa", 1e-6),
@@ -39,7 +40,7 @@ Columns = dict[str, np.ndarray]  # by header, in SI
 
 @dataclass(frozen=True)
 class Table:
-    """Text for a table.
+    """Table of a report as text.
 
     Attributes
     ----------
@@ -55,12 +56,12 @@ class Table:
 
 
 def read_columns(path: Path) -> Columns:
-    """All columns of a CSV file; a last line that is being written does not count.
+    """Read all columns of a CSV file; an incomplete last line is ignored.
 
     Raises
     ------
     ValueError
-        If the file is no table of numbers.
+        If the file is not a table of numbers.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -68,34 +69,37 @@ def read_columns(path: Path) -> Columns:
         values = np.array([[float(cell) for cell in row] for row in rows])
         return dict(zip(head, values.reshape(len(rows), len(head)).T, strict=True))
     except ValueError:
-        raise ValueError(f"{path}: is no table of numbers with headers") from None
+        raise ValueError(f"{path}: is not a table of numbers with headers") from None
 
 
-def shown_table(caption: str, columns: Columns, source: str) -> Table:
-    """At most twenty rows, first and last among them, of the columns that hold something."""
+def shown_table(caption: str, columns: Columns, source: str, model: str) -> Table:
+    """Table of at most twenty rows, including first and last, of the columns with content.
+
+    Labels name the coordinates as the kinematic model does.
+    """
     total = len(next(iter(columns.values()), ()))
     chosen = np.unique(np.linspace(0, total - 1, min(total, _ROWS)).round().astype(int))
     full = {h: v for h, v in columns.items() if (np.isfinite(v) & (v != 0)).any()}
-    heads = [_quantity(header, values) for header, values in full.items()]
+    heads = [in_model(_quantity(header, values), model) for header, values in full.items()]
     drawn = [head.drawn(values[chosen]) for head, values in zip(heads, full.values(), strict=True)]
     rows = [[number(float(value)) for value in row] for row in zip(*drawn, strict=True)]
     note = f"{len(chosen)} of {total} rows of {source}" if len(chosen) < total else f"from {source}"
     if len(full) < len(columns):
-        note += "; columns without content are left out"
+        note += "; empty columns are left out"
     return Table(caption, note, heads, rows)
 
 
 def output_times(folder: Path, end: float | None) -> Columns:
-    """What the tables of the output times come to, a row a time; empty without output times.
+    """Extremes and totals at the output times, one row per time; empty without output times.
 
     Parameters
     ----------
     folder : Path
     end : float or None
-        Time of the tables without a time in their names [s].
+        Final time, to which the tables without a time in their names belong [s].
     """
     states: dict[float, dict[str, float]] = {}
-    for path in sorted(folder.iterdir(), reverse=True):  # pressure before friction
+    for path in sorted(folder.iterdir(), reverse=True):  # interface before friction
         at_a_time = _AT_A_TIME.fullmatch(path.name)
         if at_a_time:
             time = float(at_a_time[2])
@@ -113,7 +117,7 @@ def output_times(folder: Path, end: float | None) -> Columns:
 
 
 def _totals(stem: str, points: Columns) -> dict[str, float]:
-    """Extremes over the contact points and sums weighted with their areas."""
+    """Extremes over the contact points, and integrals over the contact."""
     if not points.get("weight_m2", np.empty(0)).size:
         return {}
     w = points["weight_m2"]
@@ -145,7 +149,7 @@ _OF_FRICTION = {
 
 
 def _quantity(header: str, values: np.ndarray) -> Quantity:
-    """How a column is drawn; one that is not known, in the unit that fits it."""
+    """Label and unit of a column; an unknown column gets a unit that suits its size."""
     if header in _KNOWN:
         return _KNOWN[header]
     name, si = split_key(header)

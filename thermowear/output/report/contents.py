@@ -1,4 +1,4 @@
-"""What a report says, read from the files of a results folder."""
+"""Contents of a report, read from the files of a results folder."""
 
 from __future__ import annotations
 
@@ -16,36 +16,36 @@ from .glance import table_lines
 from .verdict import Verdict, verdict
 
 CAPTIONS = {
-    "bodies": "The bodies: von Mises stress, and temperature where there is heat.",
-    "deformed": "The bodies as they deform, magnified.",
-    "interface": "Along the contact: pressure, temperatures of a hot run, shape of the worn face.",
-    "profile": "The worn shape.",
-    "wear": "Pressure and worn depth along the contact at the output times and at the end.",
-    "track": "Worn depths of both bodies along x, body 1 in the middle of its stroke.",
+    "bodies": "Von Mises stress of the bodies, and their temperature if the case has heat.",
+    "deformed": "Deformed bodies, displacements magnified.",
+    "interface": "Pressure, temperatures and shape of the worn face along the contact.",
+    "profile": "Worn shape.",
+    "wear": "Pressure and wear depth along the contact at the output times and at the end.",
+    "track": "Wear depths of both bodies along x, body 1 in the middle of its stroke.",
     "history": "Largest pressure and worn volume over time.",
-    "heat": "Temperatures of both faces, friction power and largest pressure over time.",
-    "friction": "Shear between the limits of friction, and slip, at the output times.",
-    "loads": "Tangential force over displacement, and energy dissipated over time.",
+    "heat": "Surface temperatures of both bodies, friction power and largest pressure over time.",
+    "friction": "Shear traction with its Coulomb limits, and slip, at the output times.",
+    "loads": "Tangential force over displacement, and dissipated energy over time.",
     "cycles": "Largest wear depth and worn volume over the cycles.",
-    "mode": "Disturbances of the pressure: what grows fastest, and what stays at which speed.",
+    "mode": "Pressure perturbations: the fastest growing mode and the modes at critical speeds.",
 }
 TABLES = {
-    "history": "History, a row a step",
-    "heat": "Heat, a row a step",
-    "cycles": "Cycles, a row a computed one",
-    "loads": "History of loads, a row an increment",
+    "history": "History, one row per step",
+    "heat": "Heat, one row per step",
+    "cycles": "Cycles, one row per computed cycle",
+    "loads": "Load history, one row per increment",
     "interface": "Contact at the end",
     "profile": "Worn shape at the end",
     "friction": "Friction at the end",
     "track": "Track at the end",
-    "mode": "Disturbances of the pressure",
+    "mode": "Pressure perturbations",
 }
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture as text in base 64."""
+    """Picture of a report, encoded as base64 text."""
 
     name: str
     caption: str
@@ -54,7 +54,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Contents:
-    """All that stands in a report.
+    """Contents of a report.
 
     Attributes
     ----------
@@ -64,14 +64,14 @@ class Contents:
     groups : dict of str to list of Figure
     pictures : list of Picture
     drawable : bool
-        Whether there is something to draw pictures from.
+        True if there are results to draw pictures from.
     tables : list of Table
     case : list of tuple of str
         Name and content of each table of the case.
     case_text : str
-        All of ``case.resolved.toml``.
+        Full text of ``case.resolved.toml``.
     run : list of tuple of str
-        How and with what it was computed.
+        Record of the run: status, times, versions.
     folder : Path
     """
 
@@ -94,13 +94,15 @@ def read_contents(folder: Path) -> Contents:
     Raises
     ------
     CaseError
-        If it is no results folder, or a file in it is not what it should be.
+        If the folder is not a results folder, or a file in it is invalid.
     """
     try:
         run = _object(folder / "run.json")
         versions = run.get("versions")
         if not isinstance(versions, dict) or "thermowear" not in versions:
-            raise CaseError(f"{folder}: its run.json is not of this program; not a results folder")
+            raise CaseError(
+                f"{folder}: its run.json was not written by this program; not a results folder"
+            )
         summary_file, case_file = folder / "summary.json", folder / "case.resolved.toml"
         summary = _object(summary_file) if summary_file.is_file() else {}
         text, case = _toml(case_file) if case_file.is_file() else ("", {})
@@ -111,14 +113,14 @@ def read_contents(folder: Path) -> Contents:
             groups=key_figures(summary),
             pictures=list(_pictures(folder)),
             drawable=(folder / "interface.csv").is_file(),
-            tables=list(_tables(folder, summary)),
+            tables=list(_tables(folder, summary, str(summary.get("model") or case.get("model")))),
             case=table_lines(case, "case"),
             case_text=text,
             run=table_lines(run, "run"),
             folder=folder,
         )
     except (FileNotFoundError, NotADirectoryError):
-        raise CaseError(f"{folder}: holds no run.json; not a results folder") from None
+        raise CaseError(f"{folder}: contains no run.json; not a results folder") from None
     except OSError as error:
         raise CaseError(f"{folder}: cannot be read: {error.strerror}") from None
     except ValueError as error:
@@ -129,19 +131,19 @@ def _object(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_bytes())
     except ValueError as error:
-        raise CaseError(f"{path}: is no JSON: {error}") from None
+        raise CaseError(f"{path}: is not valid JSON: {error}") from None
     if not isinstance(content, dict):
-        raise CaseError(f"{path}: holds no table of keys")
+        raise CaseError(f"{path}: is not a JSON object")
     return content
 
 
 def _toml(path: Path) -> tuple[str, dict[str, Any]]:
-    """A TOML file as text and as tables."""
+    """Read a TOML file as text and as tables."""
     try:
         text = path.read_text(encoding="utf-8")
         return text, tomllib.loads(text)
     except ValueError as error:
-        raise CaseError(f"{path}: is no TOML: {error}") from None
+        raise CaseError(f"{path}: is not valid TOML: {error}") from None
 
 
 def _pictures(folder: Path):
@@ -152,11 +154,12 @@ def _pictures(folder: Path):
             yield Picture(name, caption, base64.b64encode(content).decode("ascii"))
 
 
-def _tables(folder: Path, summary: dict[str, Any]):
+def _tables(folder: Path, summary: dict[str, Any], model: str):
     times = output_times(folder, summary.get("time_s"))
     if times:
-        caption = "Output times: largest values and sums over the contact"
-        yield shown_table(caption, times, "the tables of each time")
+        caption = "Output times: extremes and totals over the contact"
+        yield shown_table(caption, times, "the tables of each time", model)
     for stem, caption in TABLES.items():
         if (folder / f"{stem}.csv").is_file():
-            yield shown_table(caption, read_columns(folder / f"{stem}.csv"), f"{stem}.csv")
+            columns = read_columns(folder / f"{stem}.csv")
+            yield shown_table(caption, columns, f"{stem}.csv", model)

@@ -1,4 +1,4 @@
-"""SI numbers as engineers write them: 50 MPa, 44.6 µm, 2199.11 kN."""
+"""Formatting of SI numbers in engineering units: 50 MPa, 44.6 µm, 2199.11 kN."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _MULTIPLES: dict[str, tuple[tuple[float, str, float], ...]] = {
     "rad": ((1.0, "rad", 1.0), (1e-3, "mrad", 1e3), (0.0, "µrad", 1e6)),
     "rad/s": ((1e-3, "rad/s", 1.0), (0.0, "nrad/s", 1e9)),
 }
-"""For an SI unit: from which size [SI] on, which unit, and how many of it are one SI unit."""
+"""Engineering units by SI unit: smallest size [SI], unit, and scale from the SI unit."""
 
 _IN_KEYS = {
     **{unit: unit for unit in ("Pa", "N", "m", "s", "K", "W", "J", "rad", "Hz", "kg")},
     **{"Nm": "N m", "m2": "m²", "m3": "m³"},
 }
-"""SI units as the keys of results spell them."""
+"""SI units by their spelling in the keys of results."""
 
 
 def split_key(key: str) -> tuple[str, str]:
@@ -43,29 +43,29 @@ def split_key(key: str) -> tuple[str, str]:
 
 
 def multiple(si: str, size: float) -> tuple[str, float]:
-    """The unit for numbers up to a size [SI], and how many of it are one SI unit."""
+    """Engineering unit for numbers up to a size [SI], and its scale from the SI unit."""
     for least, unit, scale in _MULTIPLES.get(si, ((0.0, si, 1.0),)):
         if abs(size) >= least:
             return unit, scale
-    return si, 1.0  # where the size is no number
+    return si, 1.0  # the size is not a number
 
 
 def number(value: float) -> str:
-    """Six digits; whole numbers in groups of three; a dash for what is no number."""
+    """Format a number with six digits, integers in groups of three; a dash if not finite."""
     if isinstance(value, int):
         return f"{value:,}".replace(",", "\u202f")
     return f"{value + 0.0:.6g}" if math.isfinite(value) else NOTHING
 
 
 def quantity(value: Any, si: str) -> str:
-    """A value of ``summary.json``, whatever it is, in the unit that fits its size.
+    """Format any value of ``summary.json`` in the unit that suits its size.
 
     Parameters
     ----------
     value : object
-        What JSON can hold.
+        Any value of a JSON file.
     si : str
-        The SI unit of its numbers; may be empty.
+        SI unit of its numbers; may be empty.
     """
     if isinstance(value, dict):
         return ", ".join(_entry(key, inner, si) for key, inner in value.items()) or NOTHING
@@ -82,7 +82,7 @@ def _entry(key: str, value: Any, si: str) -> str:
 
 
 def _text(value: Any, si: str, scale: float) -> str:
-    """One value times a scale; lists within lists, such as intervals, in brackets."""
+    """Format one value times a scale; nested lists, such as intervals, in brackets."""
     if _many(value):
         return f"[{', '.join(_text(part, si, scale) for part in value)}]"
     if isinstance(value, dict):
@@ -97,7 +97,7 @@ def _text(value: Any, si: str, scale: float) -> str:
 
 
 def _numbers(value: Any) -> Iterator[float]:
-    """The finite numbers in a value and in its lists."""
+    """Iterate over the finite numbers in a value and in its lists."""
     if _many(value):
         for part in value:
             yield from _numbers(part)

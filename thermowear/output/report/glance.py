@@ -1,4 +1,4 @@
-"""Files of tables at a glance: ``case.resolved.toml`` and ``run.json``, a line a table."""
+"""Compact listing of ``case.resolved.toml`` and ``run.json``, one line per table."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _POWERS = str.maketrans({"2": "²", "3": "³", "^": None})
 
 
 def table_lines(tables: dict[str, Any], name: str, above: str = "") -> list[tuple[str, str]]:
-    """Name and content of each table that holds something, such as ``bodies.punch``.
+    """Name and content of each table with entries, such as ``bodies.punch``.
 
     Parameters
     ----------
     tables : dict
         Nested tables of a file.
     name : str
-        Of what stands in no table.
+        Name for the keys outside any table.
     above : str
         Path of the tables within the file.
     """
@@ -33,7 +33,7 @@ def table_lines(tables: dict[str, Any], name: str, above: str = "") -> list[tupl
 
 
 def _shown(value: Any) -> str:
-    """A value of a case file; a quantity such as ``"0.02 m"`` in the unit that fits it."""
+    """Format a value of a case file; quantities such as ``"0.02 m"`` in a unit that suits them."""
     if isinstance(value, list):
         return ", ".join(map(_shown, value))
     written = _QUANTITY.fullmatch(value) if isinstance(value, str) else None

@@ -1,4 +1,4 @@
-"""How a run ended, in one line."""
+"""Status of a run in one line."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from .engineering import number
 
 @dataclass(frozen=True)
 class Verdict:
-    """A line, and ``good``, ``bad`` or ``unsure``."""
+    """Status line, with the mark ``good``, ``bad`` or ``unsure``."""
 
     text: str
     mark: str
 
 
 def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Verdict:
-    """Read ``run.json`` and the time that a run has come to.
+    """Status line from ``run.json`` and the time reached.
 
     Parameters
     ----------
     run, summary : dict
-        The summary is empty where the run ended without one.
+        Contents of the files; the summary is empty if the run ended without one.
     """
     status, why = run.get("status"), run.get("message")
     reached = f" {_reached(summary)}"
@@ -34,9 +34,9 @@ def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Verdict:
     if status == "interrupted":
         return Verdict(f"Interrupted{_when(run)}.{reached}", "unsure")
     if status == "running":
-        text = "Still computing when this was written, or ended without a word."
+        text = "Still running when this report was written, or killed."
         return Verdict(f"{text}{reached}", "unsure")
-    return Verdict(f"Ended as: {status}.{reached}", "unsure")
+    return Verdict(f"Unknown status: {status}.{reached}", "unsure")
 
 
 def _reached(summary: dict[str, Any]) -> str:
@@ -44,12 +44,12 @@ def _reached(summary: dict[str, Any]) -> str:
         return "There is no summary."
     time = summary.get("time_s")
     if not isinstance(time, int | float):
-        return "The figures are those of what was reached."
+        return "The figures are those of the last state computed."
     return f"The figures are those of the state at {number(float(time))} s."
 
 
 def _when(run: dict[str, Any]) -> str:
-    """When it ended, and how long it took."""
+    """Time of the end, and duration."""
     try:
         start, end = (datetime.fromisoformat(run[key]) for key in ("started", "finished"))
         return f" {end:%Y-%m-%d %H:%M} {end.tzname()} after {(end - start).total_seconds():g} s"

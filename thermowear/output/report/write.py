@@ -1,4 +1,4 @@
-"""From a results folder to its ``report.html``."""
+"""Writing of ``report.html`` from a results folder."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0
 
 
 def write_report(folder: Path) -> Path:
-    """Write ``report.html``: one file, with its pictures and its style within.
+    """Write ``report.html``, one file with embedded pictures and style.
 
     Parameters
     ----------
@@ -23,12 +23,12 @@ def write_report(folder: Path) -> Path:
     Returns
     -------
     Path
-        Of the report.
+        Path of the report.
 
     Raises
     ------
     CaseError
-        If the folder holds no results, or a ``report.html`` that is not of this program.
+        If the folder has no results, or a ``report.html`` of other origin.
     """
     path = folder / "report.html"
     put(path, page(read_contents(folder)))
@@ -36,7 +36,7 @@ def write_report(folder: Path) -> Path:
 
 
 def page(contents: Contents) -> str:
-    """The contents as HTML; all text is escaped."""
+    """Render the contents as HTML; all text is escaped."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -51,7 +51,7 @@ def page(contents: Contents) -> str:
 
 
 def _printable(value: object) -> object:
-    """Text without what no page may hold; a dash for None."""
+    """Text without characters that are invalid in HTML; a dash for None."""
     if value is None:
         return NOTHING
     return _UNPRINTABLE.sub("\ufffd", value) if type(value) is str else value

@@ -1,4 +1,4 @@
-"""Results of a sweep: a folder of variants, one table, two pictures."""
+"""Results of a parameter sweep: folders of the variants, one table, two pictures."""
 
 from .folder import SweepFolder, is_sweep
 from .keys import swept

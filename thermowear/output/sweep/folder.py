@@ -1,4 +1,4 @@
-"""The folder of a sweep: a results folder for each variant, and one table of all of them."""
+"""Folder of a sweep: one results folder per variant, and one table of all variants."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from .keys import Swept
 
 _OURS = re.compile(r"sweep\.csv|shapes\.png|sweep\.png|run\.json")
 _VARIANT = re.compile(r"\d{3,}")
-_INTERVAL = 1.0  # seconds between two states of the table on disk
+_INTERVAL = 1.0  # seconds between two updates of the table on disk
 
 
 class SweepFolder:
-    """Writes one sweep.
+    """Writer of the results of one sweep.
 
     Parameters
     ----------
     path : Path
-        Made if it does not exist.
+        Folder, created if it does not exist.
     over : dict of str to list of str
-        Values by key, as they were written.
+        Values by key, as given by the user.
     keys : sequence of Swept
     overwrite : bool
-        Allow a folder with an earlier sweep, whose results are removed; nothing else is touched.
+        Allow a folder with an earlier sweep, whose results are removed; other files remain.
 
     Raises
     ------
@@ -69,17 +69,17 @@ class SweepFolder:
         return self.path / f"{number:03d}"
 
     def add(self, number: int, status: str, summary: dict[str, Any] | None, seconds: float) -> None:
-        """A variant has ended.
+        """Record the end of a variant.
 
         Parameters
         ----------
         number : int
-            From 1.
+            Number of the variant, from 1.
         status : str
-            ``done``, or what went wrong.
+            ``done``, or a description of the failure.
         summary : dict or None
         seconds : float
-            That it took.
+            Wall time.
         """
         numbers = {
             name: value
@@ -109,7 +109,8 @@ class SweepFolder:
         ours = [entry for entry in self.path.iterdir() if _OURS.fullmatch(entry.name)]
         if not is_sweep(self.path) and ours:
             raise CaseError(
-                f"-o {self.path}: holds {ours[0].name} but is no folder of a sweep; use another"
+                f"-o {self.path}: contains {ours[0].name} but is not a folder of a sweep; "
+                "use another folder"
             )
         for entry in ours:
             entry.unlink()
@@ -121,7 +122,7 @@ class SweepFolder:
                     folder.rmdir()
 
     def _write_table(self) -> None:
-        """``sweep.csv``, a row a variant; those that have not ended have no numbers."""
+        """Write ``sweep.csv``, one row per variant; unfinished variants have no numbers."""
         names = list(dict.fromkeys(name for _, row in self._rows.values() for name in row))
         draft = self.path / ".sweep.csv.part"
         with draft.open("w", encoding="utf-8", newline="") as file:
@@ -142,7 +143,7 @@ class SweepFolder:
 
 
 def is_sweep(folder: Path) -> bool:
-    """Whether a folder holds a sweep."""
+    """Test whether a folder contains a sweep."""
     try:
         run = json.loads((folder / "run.json").read_text("utf-8"))
     except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""Swept keys: their columns in SI, and how pictures name them."""
+"""Swept keys: their columns in SI, and their labels in pictures."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _SIGNS = {"degC": "°C", "um": "µm", "^2": "²", "^3": "³", "**2": "²", "**3"
 
 @dataclass(frozen=True)
 class Swept:
-    """A key that a sweep goes over, with its value in each variant.
+    """Swept key with its value in each variant.
 
     Attributes
     ----------
     key : str
-        Its path.
+        Path of the key.
     header : str
         Column name, with the SI unit of a quantity.
     values : tuple of float or str
-        In SI, or as it was written.
+        Values in SI, or as given by the user.
     """
 
     key: str
@@ -36,16 +36,17 @@ class Swept:
 
 @dataclass(frozen=True)
 class Axis:
-    """A swept key in a picture.
+    """Swept key in a picture.
 
     Attributes
     ----------
     key : str
     label : str
-        With the unit in which the values were written.
+        Key with the unit of the given values.
     numbers : tuple of float or None
-        The different values; None where they are words.
+        Distinct values; None if they are not numeric.
     words : tuple of str
+        Distinct values as text.
     """
 
     key: str
@@ -55,15 +56,15 @@ class Axis:
 
 
 def swept(key: str, written: Sequence[str], tables: Sequence[dict[str, Any]]) -> Swept:
-    """Column of a key.
+    """Swept key with its column of values.
 
     Parameters
     ----------
     key : str
     written : sequence of str
-        As it was written for each variant.
+        Value given for each variant.
     tables : sequence of dict
-        The case of each variant with its defaults written out.
+        Case of each variant with all default values.
     """
     resolved = [_found(table, key) for table in tables]
     if all(isinstance(value, int | float) and not isinstance(value, bool) for value in resolved):
@@ -77,17 +78,17 @@ def swept(key: str, written: Sequence[str], tables: Sequence[dict[str, Any]]) ->
 
 
 def axis(key: str, written: Sequence[str], values: Sequence[float | str], header: str) -> Axis:
-    """How pictures show a key: in its unit if all values have the same, else in SI.
+    """Label and values of a key in pictures: in the given unit if it is common, else in SI.
 
     Parameters
     ----------
     key : str
     written : sequence of str
-        The different values, as they were written.
+        Distinct values as given by the user.
     values : sequence of float or str
-        The same in SI.
+        Distinct values in SI.
     header : str
-        Of the column.
+        Header of the column.
     """
     found = [_QUANTITY.fullmatch(text) for text in written]
     words = tuple("\n".join(wrap(re.sub("[{}\"']", "", text).strip(), _LONG)) for text in written)
@@ -103,7 +104,7 @@ def axis(key: str, written: Sequence[str], values: Sequence[float | str], header
 
 
 def _found(table: dict[str, Any], key: str) -> Any:
-    """The value at a path; None where there is none."""
+    """Value at the path of a key; None if there is none."""
     found: Any = table
     for part in key.split("."):
         found = found.get(part.strip()) if isinstance(found, dict) else None
@@ -111,7 +112,7 @@ def _found(table: dict[str, Any], key: str) -> Any:
 
 
 def _in_si(text: Any) -> tuple[float, str] | None:
-    """Number and SI unit of a quantity of a resolved case; None of anything else."""
+    """Number and SI unit of a quantity of a resolved case; None if it is not a quantity."""
     match = _QUANTITY.fullmatch(text) if isinstance(text, str) else None
     if match is None or match[2] is None:
         return None
@@ -121,7 +122,7 @@ def _in_si(text: Any) -> tuple[float, str] | None:
 
 
 def _converted(text: str) -> tuple[float, str] | None:
-    """Of wear coefficients, which a resolved case has in the unit they were given in."""
+    """Number and SI unit of a wear coefficient, which a resolved case keeps in its given unit."""
     from ...case.values.units import parse
 
     try:
@@ -133,7 +134,7 @@ def _converted(text: str) -> tuple[float, str] | None:
 
 
 def _in_name(unit: str) -> str:
-    """A unit as part of a column name: ``W/m^2/K`` is ``W_per_m2_K``."""
+    """Unit as part of a column name: ``W/m^2/K`` becomes ``W_per_m2_K``."""
     above, *below = unit.replace("^", "").replace("**", "").replace("*", " ").split("/")
     name = "".join(above.split())
     return f"{name}_per_{'_'.join('_'.join(below).split())}" if below else name

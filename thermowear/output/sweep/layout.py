@@ -1,4 +1,4 @@
-"""Which swept key is shown how: by colour, by the kind of line, or in a column of its own."""
+"""Assignment of swept keys to colours, line styles and columns of panels."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ LINES = ("-", "--", "-.", ":")
 _FEW = 6
 _MOST_COLUMNS = 6
 _WIDE = 30.0
-"""Numbers are shown on a logarithmic axis if the largest is so many times the smallest, and if they
-lie more evenly there."""
+"""Smallest ratio of largest to smallest value for a logarithmic axis; the values must also be more
+evenly spaced on it."""
 
 
 @dataclass(frozen=True)
 class Layout:
-    """The parts that the swept keys play in a picture.
+    """Assignment of the swept keys in a picture.
 
     Attributes
     ----------
     record : Record
     colored : int
-        Number of the key that is shown by colour, or along the axis of numbers.
+        Index of the key shown by colour, or along the horizontal axis.
     lined : int or None
-        Of the key that is shown by the kind of line.
+        Index of the key shown by line style.
     columns : list of (str, ndarray of bool)
-        The variants in each column of panels, and its title.
+        Title of each column of panels, and mask of its variants.
     """
 
     record: Record
@@ -42,16 +42,16 @@ class Layout:
 
     @property
     def axis(self) -> Axis:
-        """Of the key that is shown by colour."""
+        """Axis of the key shown by colour."""
         return self.record.axes[self.colored]
 
     @property
     def continuous(self) -> bool:
-        """Whether colours are those of a scale, rather than of words in a legend."""
+        """True if colours form a continuous scale instead of entries of a legend."""
         return self.axis.numbers is not None and len(self.axis.words) > _FEW
 
     def color(self, place: int):
-        """Of a value of the coloured key."""
+        """Colour of a value of the coloured key, by its index."""
         if self.continuous:
             assert self.axis.numbers is not None
             return self.scale().to_rgba(np.array(self.axis.numbers[place]))
@@ -61,22 +61,22 @@ class Layout:
         return mpl.colormaps["viridis"](0.85 * order[place] / max(len(order) - 1, 1))
 
     def scale(self) -> ScalarMappable:
-        """Of the colours, for a colour bar."""
+        """Colour scale for a colour bar."""
         assert self.axis.numbers is not None
         low, high = min(self.axis.numbers), max(self.axis.numbers)
         norm = LogNorm(low, high) if is_wide(self.axis.numbers) else Normalize(low, high)
         return ScalarMappable(norm, "viridis")
 
     def line(self, places: np.ndarray) -> str:
-        """Kind of line of a variant, from its places."""
+        """Line style of a variant, from its value indices."""
         return "-" if self.lined is None else LINES[places[self.lined]]
 
 
 def lay_out(record: Record) -> Layout:
-    """Give each key its part.
+    """Assign the swept keys to visual channels.
 
-    The one with the most numbers is shown by colour, the next with few values by the kind of line;
-    each combination of what is left has a column of panels.
+    The numeric key with most values is shown by colour, the next key with few values by line style;
+    each combination of the remaining keys gets a column of panels.
     """
     sizes = [len(axis.words) for axis in record.axes]
     order = sorted(range(len(sizes)), key=lambda k: (record.axes[k].numbers is None, -sizes[k]))
@@ -92,7 +92,7 @@ def lay_out(record: Record) -> Layout:
 
 
 def is_wide(numbers) -> bool:
-    """Whether numbers are better shown on a logarithmic axis."""
+    """Test whether numbers suit a logarithmic axis better than a linear one."""
     if len(numbers) < 3 or min(numbers) <= 0 or max(numbers) < _WIDE * min(numbers):
         return False
     linear, logarithmic = (np.diff(np.sort(x)) for x in (numbers, np.log(numbers)))

@@ -1,4 +1,4 @@
-"""Legends below the panels of a picture."""
+"""Legends below the panels of a figure."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 _LINE = 0.22  # inches
-_SHORT = 14  # characters: several entries go side by side
+_SHORT = 14  # characters of an entry, up to which several entries stand side by side
 _ABREAST = 4
 
 
@@ -18,7 +18,7 @@ def add_legend(figure: Figure, place: str, title: str, handles: Sequence[Artist]
 
 
 def tallest(legends: Iterable[Sequence[Artist]]) -> float:
-    """Height of the tallest of legends that stand side by side [inches]."""
+    """Height of the tallest of several legends side by side [inches]."""
     return max((_LINE * (1.5 + _rows(handles)) for handles in legends), default=0.0)
 
 

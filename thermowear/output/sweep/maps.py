@@ -1,4 +1,4 @@
-"""``shapes.png`` of faces in space: a map of the worn shape of each variant."""
+"""``shapes.png`` of 3D models: a map of the worn shape of each variant."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LEVELS = 12
 
 
 def draw_shape_maps(record: Record, path: Path) -> None:
-    """Draw the shapes of up to a dozen variants, in one scale; of more, evenly chosen ones."""
+    """Draw maps of up to twelve variants with a common scale; of more, evenly spaced ones."""
     count = min(len(record.folders), _MOST)
     chosen = np.unique(np.linspace(0, len(record.folders) - 1, count).round().astype(int))
     data = [tables.read(record.folders[k] / "interface.csv", INTERFACE) for k in chosen]

@@ -1,4 +1,4 @@
-"""``sweep.png``: the numbers that matter against the swept key."""
+"""``sweep.png``: key figures over the swept key."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import tables
+from ..coordinates import in_model, model_of
 from ..pictures.curves import STYLE
 from ..quantities import INTERFACE, Quantity
 from .layout import LINES, Layout, is_wide
@@ -16,24 +17,22 @@ from .legend import add_legend, tallest
 from .record import Record
 
 _SAME = 1e-6
-"""Numbers that differ by less, relative to their size, are one."""
+"""Relative difference below which numbers are considered equal."""
 _MARKED = 25
 _LISTED = 24  # entries of a legend
 _NUMBERS = {
     "max_pressure_Pa": Quantity("", "largest pressure", "MPa", 1e-6),
-    "place": Quantity("", "place of the largest pressure, x", "mm", 1e3),
+    "place": Quantity("", "position of the largest pressure, x", "mm", 1e3),
     "max_temperature_K": Quantity("", "highest temperature", "°C", 1.0, -273.15),
-    "peak_temperature_K": Quantity(
-        "", "highest temperature of the faces on the way", "°C", 1.0, -273.15
-    ),
-    "heat_carried_out_W": Quantity("", "heat carried out", "W"),
-    "shape_range_m": Quantity("", "range of the worn shape", "µm", 1e6),
-    "rigid_wear_velocity_m_per_s": Quantity("", "wear rate along the press", "nm/s", 1e9),
+    "peak_temperature_K": Quantity("", "peak surface temperature", "°C", 1.0, -273.15),
+    "heat_carried_out_W": Quantity("", "heat removed by advection", "W"),
+    "shape_range_m": Quantity("", "peak-to-valley of the worn shape", "µm", 1e6),
+    "rigid_wear_velocity_m_per_s": Quantity("", "wear rate along the load direction", "nm/s", 1e9),
     "friction_power_W": Quantity("", "friction power", "W"),
     "wear_volume_1_m3": Quantity("", "worn volume, body 1", "mm³", 1e9),
     "wear_volume_2_m3": Quantity("", "worn volume, body 2", "mm³", 1e9),
     "contact_area_m2": Quantity("", "contact area", "mm²", 1e6),
-    "guide_force_N": Quantity("", "force on the guide", "N"),
+    "guide_force_N": Quantity("", "guide force", "N"),
     "approach_m": Quantity("", "approach", "µm", 1e6),
     "critical_speed_m_per_s": Quantity("", "critical speed", "m/s"),
     "critical_speed_with_wear_m_per_s": Quantity("", "critical speed with wear", "m/s"),
@@ -42,13 +41,14 @@ _NUMBERS = {
         "", "critical speed with wear", "rad/s"
     ),
     "growth_rate_per_s": Quantity("", "growth rate", "1/s"),
-    "dissipated_energy_J": Quantity("", "energy dissipated", "mJ", 1e3),
+    "dissipated_energy_J": Quantity("", "dissipated energy", "mJ", 1e3),
 }
 
 
 def draw_numbers(layout: Layout, path: Path) -> None:
-    """Draw what varies, and say what does not."""
+    """Draw the quantities that vary, and list those that do not in the title."""
     record, numbers = layout.record, _numbers(layout.record)
+    shown = {name: in_model(q, model_of(record.folders[0])) for name, q in _NUMBERS.items()}
     varying = {name: values for name, values in numbers.items() if _varies(values)}
     same = {name: values[0] for name, values in numbers.items() if name not in varying}
     if not varying:
@@ -60,8 +60,8 @@ def draw_numbers(layout: Layout, path: Path) -> None:
         figure = Figure(figsize=size, layout="constrained", dpi=150)
         axes = figure.subplots(down, across, sharex=True, squeeze=False)
         for axis, (name, values) in zip(axes.ravel(), varying.items(), strict=False):
-            _draw(axis, layout, _NUMBERS[name].drawn(values))
-            axis.set_ylabel(f"{_NUMBERS[name].label}\n[{_NUMBERS[name].unit}]")
+            _draw(axis, layout, shown[name].drawn(values))
+            axis.set_ylabel(f"{shown[name].label}\n[{shown[name].unit}]")
         for axis in axes.ravel()[len(varying) :]:
             axis.set_visible(False)
         for axis in axes.ravel()[: len(varying)][-across:]:
@@ -73,12 +73,15 @@ def draw_numbers(layout: Layout, path: Path) -> None:
             add_legend(figure, "outside lower center", title, handles)
             figure.set_figheight(size[1] + tallest([handles]))
         if same:
-            figure.suptitle(f"the same in all: {_listed(same)}", fontsize="small")
+            listed = (
+                f"{shown[k].label} {shown[k].drawn(v):.6g} {shown[k].unit}" for k, v in same.items()
+            )
+            figure.suptitle(f"constant: {'; '.join(listed)}", fontsize="small")
         figure.savefig(path)
 
 
 def _draw(axis, layout: Layout, values: np.ndarray) -> None:
-    """A line for each combination of the other keys."""
+    """Draw a line per combination of the other keys."""
     record = layout.record
     others = _others(layout)
     across = layout.axis.numbers or tuple(range(len(layout.axis.words)))
@@ -104,13 +107,13 @@ def _draw(axis, layout: Layout, values: np.ndarray) -> None:
 
 
 def _others(layout: Layout) -> list[int]:
-    """Keys with several values beside the one along the axis."""
+    """Indices of the other keys with several values."""
     axes = layout.record.axes
     return [k for k in range(len(axes)) if k != layout.colored and len(axes[k].words) > 1]
 
 
 def _numbers(record: Record) -> dict[str, np.ndarray]:
-    """Numbers of the summaries that exist in all variants, and where the pressure is largest."""
+    """Numbers present in all variants, and the position of the largest pressure."""
     found = record.numbers | {"place": np.array([_place(f) for f in record.folders])}
     known = {name: found[name] for name in _NUMBERS if name in found}
     return {
@@ -125,10 +128,3 @@ def _place(folder: Path) -> float:
 
 def _varies(values: np.ndarray) -> bool:
     return bool(np.ptp(values) > _SAME * np.abs(values).max())
-
-
-def _listed(same: dict[str, float]) -> str:
-    return "; ".join(
-        f"{_NUMBERS[name].label} {_NUMBERS[name].drawn(value):.6g} {_NUMBERS[name].unit}"
-        for name, value in same.items()
-    )

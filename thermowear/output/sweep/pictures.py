@@ -1,4 +1,4 @@
-"""Pictures of a sweep, from its files alone."""
+"""Pictures of a sweep, drawn from its files."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ def draw_sweep(folder: Path) -> list[str]:
     Returns
     -------
     list of str
-        What could not be drawn and why, one line each.
+        Reasons for missing pictures, one line each.
 
     Raises
     ------
     ValueError
-        If the folder holds no sweep.
+        If the folder contains no sweep.
     """
     record = read_sweep(folder)
     if not record.folders:
-        return [f"{folder}: no variant was computed to its end"]
+        return [f"{folder}: no variant was completed, so nothing is drawn"]
     layout = lay_out(record)
     if is_surface(record.folders[0]):
         draw_shape_maps(record, folder / "shapes.png")

@@ -1,4 +1,4 @@
-"""A sweep read back from its files."""
+"""Reading of a sweep from its files."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .keys import Axis, axis
 
 @dataclass(frozen=True)
 class Record:
-    """The variants of a sweep that were computed to their end.
+    """Completed variants of a sweep.
 
     Attributes
     ----------
     axes : tuple of Axis
-        The swept keys.
+        Swept keys.
     places : ndarray of int, shape (n, n_axes)
-        Which of its values each variant has of each key.
+        Index of the value of each key in each variant.
     folders : list of Path
-        One a variant.
+        Results folder of each variant.
     numbers : dict of str to ndarray, shape (n,)
-        Columns of ``sweep.csv`` beside the swept keys.
+        Columns of ``sweep.csv`` other than the swept keys.
     """
 
     axes: tuple[Axis, ...]
@@ -36,19 +36,19 @@ class Record:
     numbers: dict[str, np.ndarray]
 
     def only(self, chosen: np.ndarray) -> Record:
-        """Some of the variants."""
+        """Subset of the variants by a mask."""
         folders = [folder for folder, takes in zip(self.folders, chosen, strict=True) if takes]
         numbers = {name: values[chosen] for name, values in self.numbers.items()}
         return Record(self.axes, self.places[chosen], folders, numbers)
 
 
 def read_sweep(folder: Path) -> Record:
-    """Read a sweep.
+    """Read the completed variants of a sweep.
 
     Raises
     ------
     ValueError
-        If the folder holds none.
+        If the folder contains no sweep.
     """
     over = json.loads((folder / "run.json").read_text("utf-8"))["over"]
     with (folder / "sweep.csv").open(encoding="utf-8", newline="") as file:
@@ -70,11 +70,11 @@ def read_sweep(folder: Path) -> Record:
         folders = [folder / f"{int(row[0]):03d}" for row in rows]
         return Record(axes, places, folders, numbers).only(done)
     except (IndexError, KeyError) as error:
-        raise ValueError(f"{folder}: run.json and sweep.csv do not go together") from error
+        raise ValueError(f"{folder}: run.json and sweep.csv are not of the same sweep") from error
 
 
 def _different(rows: list[list[str]], column: int, place: np.ndarray) -> Sequence[float | str]:
-    """The values of a key, one for each that was written."""
+    """Distinct values of a key, in the order given by the user."""
     first = [int(np.argmax(place == k)) for k in range(place.max() + 1)]
     cells = [rows[k][column] for k in first]
     try:

@@ -1,4 +1,4 @@
-"""``shapes.png``: pressures and worn shapes of all variants along the contact."""
+"""``shapes.png``: pressure and worn shape of all variants along the contact."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .. import tables
+from ..coordinates import model_of
 from ..pictures.curves import STYLE, abscissa
 from ..quantities import INTERFACE
 from .layout import LINES, Layout
 from .legend import add_legend, tallest
 
 _SINGULAR, _MOST = 3.0, 0.9
-"""A peak that is so many times higher than what most points have is cut off."""
+"""Peaks are clipped if they exceed the first factor times the quantile of the second."""
 _SAME = 1e-6
-"""Curves that are nearer to each other, relative to their highest value, are one."""
+"""Relative difference below which curves are considered identical."""
 
 
 def draw_shapes(layout: Layout, path: Path) -> None:
-    """Draw the shape of each variant, and the pressure that goes with it."""
+    """Draw shape and pressure of each variant."""
     data = [tables.read(f / "interface.csv", INTERFACE) for f in layout.record.folders]
     names = ["pressure", "shape"] if any(np.ptp(d["shape"]) > 0 for d in data) else ["pressure"]
     same = {name for name in names if alike([d[name] for d in data])}
@@ -35,7 +36,7 @@ def draw_shapes(layout: Layout, path: Path) -> None:
         for column, (title, chosen) in enumerate(layout.columns):
             axes[0, column].set_title(title, fontsize="medium")
             for k in np.flatnonzero(chosen):
-                where, place = abscissa(data[k])
+                where, place = abscissa(data[k], model_of(layout.record.folders[k]))
                 places = layout.record.places[k]
                 for axis, name in zip(axes[:, column], names, strict=True):
                     axis.plot(
@@ -49,7 +50,7 @@ def draw_shapes(layout: Layout, path: Path) -> None:
         for row, name in zip(axes, names, strict=True):
             row[0].set_ylabel(f"{INTERFACE[name].label}\n[{INTERFACE[name].unit}]")
             if name in same:
-                row[0].text(0.5, 0.05, "the same in all", ha="center", transform=row[0].transAxes)
+                row[0].text(0.5, 0.05, "identical", ha="center", transform=row[0].transAxes)
         _cut(axes[0, 0], [INTERFACE["pressure"].drawn(d["pressure"]) for d in data])
         if layout.continuous:
             figure.colorbar(layout.scale(), ax=axes, label=layout.axis.label, pad=0.01)
@@ -59,7 +60,7 @@ def draw_shapes(layout: Layout, path: Path) -> None:
 
 
 def legends(layout: Layout) -> dict[str, list[Line2D]]:
-    """What colours and lines stand for, by the key."""
+    """Legend entries of colours and line styles, by key."""
     found, used = {}, sorted(set(layout.record.places[:, layout.colored]))
     if not layout.continuous and len(used) > 1:
         found[layout.axis.key] = [
@@ -75,7 +76,7 @@ def legends(layout: Layout) -> dict[str, list[Line2D]]:
 
 
 def alike(curves: list[np.ndarray]) -> bool:
-    """Whether several curves are one."""
+    """Test whether all curves coincide."""
     first, *others = curves
     if not others or any(len(curve) != len(first) for curve in others):
         return False
@@ -84,7 +85,7 @@ def alike(curves: list[np.ndarray]) -> bool:
 
 
 def _cut(axis, curves: list[np.ndarray]) -> None:
-    """Leave room for what most points have: singular corners of unworn faces have no end."""
+    """Limit the axis to the usual values, as pressure is singular at corners of unworn faces."""
     usual = max(float(np.nanquantile(curve, _MOST)) for curve in curves)
     peak = max(float(np.nanmax(curve)) for curve in curves)
     axis.set_ylim(bottom=0, top=1.5 * usual if usual > 0 and peak > _SINGULAR * usual else None)

@@ -1,4 +1,4 @@
-"""Animations of a results folder whose analysis has kept frames."""
+"""Animations of a results folder with frames."""
 
 from .make import FPS, check_film, draw_animation, has_frames
 

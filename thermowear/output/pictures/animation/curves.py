@@ -1,4 +1,4 @@
-"""Panels of an animation with fixed axes: curves along the contact, and the way so far."""
+"""Panels of an animation with fixed axes: curves along the contact, and time histories."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from ...quantities import HISTORY, INTERFACE, Quantity
 from ..curves import BODIES, abscissa, wrapped
 from .states import Film, State
 
-_ROOM = 1.06  # of the largest value: where an axis ends
+_ROOM = 1.06  # end of an axis relative to the largest value
 _SINGULAR, _MOST = 3.0, 0.9
-"""A peak is cut off where it is so many times higher than what most points have."""
+"""Peaks are clipped if they exceed the first factor times the quantile of the second."""
 _FAINT = {"color": "0.6", "linewidth": 1.2}
 
 Curve = Callable[[State], tuple[np.ndarray, np.ndarray]]
 
 
 class PressureCurve:
-    """Contact pressure along the face; in grey at the start and at the end."""
+    """Contact pressure along the face, with its start and end in grey."""
 
     def __init__(self, film: Film):
         self._film = film
 
     def prepare(self, _, axis) -> None:
-        """Draw what stays."""
+        """Draw the static elements."""
         states, self._curve = self._film.states, _along("pressure")
         ends = {"--": (states[0], "start"), "-": (states[-1], self._name_of_end())}
         for style, (state, name) in ends.items():
@@ -36,11 +36,11 @@ class PressureCurve:
         axis.set_ylim(0.0, _ROOM * max(top(self._curve(state)[1]) for state in states))
         axis.set_xlim(_span(self._curve(state)[0] for state in states))
         axis.set_ylabel(wrapped(INTERFACE["pressure"]))
-        axis.set_xlabel(abscissa(states[-1].interface)[0])
+        axis.set_xlabel(abscissa(states[-1].interface, self._film.model)[0])
         _legend(axis)
 
     def show(self, state: State) -> None:
-        """Replace what changes."""
+        """Update the panel to a state."""
         self._line.set_data(*self._curve(state))
 
     def _name_of_end(self) -> str:
@@ -48,7 +48,7 @@ class PressureCurve:
 
 
 class WearCurves:
-    """Depth worn off each body that wears, downwards, in grey at the end."""
+    """Wear depth of each wearing body, downwards, with its end in grey."""
 
     def __init__(self, film: Film):
         self._film = film
@@ -61,11 +61,11 @@ class WearCurves:
 
     @property
     def shows_something(self) -> bool:
-        """Whether a body wears at all."""
+        """True if any body wears."""
         return bool(self._curves)
 
     def prepare(self, _, axis) -> None:
-        """Draw what stays."""
+        """Draw the static elements."""
         states, values, places = self._film.states, [], []
         for (name, curve), (color, line) in zip(self._curves.items(), self._styles(), strict=True):
             axis.plot(*curve(states[-1]), label="_" if self._lines else "end", **_FAINT)
@@ -77,33 +77,33 @@ class WearCurves:
         deepest = max(v.max() for v in values)
         axis.set_ylim(_ROOM * deepest, (1 - _ROOM) * deepest)
         axis.set_xlim(_span(places))
-        axis.set_ylabel(f"depth worn off\n[{INTERFACE['wear_1'].unit}]")
-        axis.set_xlabel(abscissa(states[-1].interface)[0])
+        axis.set_ylabel(f"wear depth\n[{INTERFACE['wear_1'].unit}]")
+        axis.set_xlabel(abscissa(states[-1].interface, self._film.model)[0])
         _legend(axis)
 
     def show(self, state: State) -> None:
-        """Replace what changes."""
+        """Update the panel to a state."""
         for name, curve in self._curves.items():
             self._lines[name].set_data(*curve(state))
 
     def _styles(self) -> list[tuple[str, str]]:
-        """Colour and kind of line by the body: two that wear alike both show."""
+        """Colour and line style by body, so that coinciding curves are both visible."""
         kinds = tuple(zip(BODIES, ("-", "--"), strict=True))
         return [kinds[int(name[-1]) - 1] for name in self._curves]
 
 
 class Course:
-    """The way of the largest temperature or pressure, with a mark at the present time."""
+    """History of the largest temperature or pressure, with a mark at the current time."""
 
     def __init__(self, film: Film):
         self._name = "max_temperature" if _is_hot(film) else "max_pressure"
         self._time, self._values = film.course["time"], film.course[self._name]
         self._even = film.even
-        if not film.even:  # a logarithmic axis has no start
+        if not film.even:  # a logarithmic axis cannot start at zero
             self._time, self._values = self._time[1:], self._values[1:]
 
     def prepare(self, _, axis) -> None:
-        """Draw what stays."""
+        """Draw the static elements."""
         quantity: Quantity = HISTORY[self._name]
         self._drawn = quantity.drawn(self._values)
         axis.plot(self._time, self._drawn, color="0.45")
@@ -118,14 +118,14 @@ class Course:
         (self._dot,) = axis.plot([], [], "o", color="tab:red", markersize=6, clip_on=False)
 
     def show(self, state: State) -> None:
-        """Replace what changes."""
+        """Update the panel to a state."""
         time = max(state.time, self._time[0])
         self._mark.set_xdata([time, time])
         self._dot.set_data([time], [np.interp(time, self._time, self._drawn)])
 
 
 def top(values: np.ndarray) -> float:
-    """Where an axis for a state ends: singular corners of unworn faces are cut off."""
+    """End of the axis for a state, with singular corners of unworn faces clipped."""
     pressed = values[values > 0]
     if not len(pressed):
         return 1.0
@@ -134,7 +134,7 @@ def top(values: np.ndarray) -> float:
 
 
 def _legend(axis) -> None:
-    """Above the panel, where no curve passes."""
+    """Place the legend above the panel, outside the curves."""
     if len(axis.get_legend_handles_labels()[0]) > 1:
         where = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.0}
         axis.legend(fontsize="small", ncols=4, handlelength=1.5, **where)
@@ -145,7 +145,7 @@ def _is_hot(film: Film) -> bool:
 
 
 def _along(name: str) -> Curve:
-    """A column of ``interface.csv`` along the contact, in the units of drawings."""
+    """Column of ``interface.csv`` along the contact, in the units of plots."""
     quantity = INTERFACE[name]
     return lambda state: (
         abscissa(state.interface)[1],
@@ -154,7 +154,7 @@ def _along(name: str) -> Curve:
 
 
 def _of_body_2(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Its depths along the contact, or along the whole track where body 1 slides to and fro."""
+    """Wear depths of body 2 along the contact, or along the track if body 1 reciprocates."""
     if state.track is None:
         return _along("wear_2")(state)
     x, depth = (INTERFACE[name].drawn(state.track[name]) for name in ("x", "wear_2"))
@@ -162,6 +162,6 @@ def _of_body_2(state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _span(places) -> tuple[float, float]:
-    """From the first to the last place."""
+    """Range of all positions."""
     every = np.concatenate(list(places))
     return float(every.min()), float(every.max())

@@ -1,4 +1,4 @@
-"""Draw the animation of a results folder; run as a process of its own."""
+"""Draw the animation of a results folder; run in a separate process."""
 
 from __future__ import annotations
 
@@ -19,23 +19,26 @@ FPS = 8.0
 
 
 def has_frames(folder: Path) -> bool:
-    """Whether a results folder has states on the way."""
+    """Test whether a results folder has frames."""
     return bool(frame_files(folder / FRAMES))
 
 
 def check_film(folder: Path, path: Path) -> None:
-    """Refuse what cannot be drawn.
+    """Check that an animation can be drawn and written.
 
     Raises
     ------
     CaseError
+        If the file type, the folders, the frames or ffmpeg are not suitable.
     """
     if path.suffix not in (GIF, MP4):
         raise CaseError(f"-o {path}: ends in {path.suffix or 'nothing'}; must end in .gif or .mp4")
     if not path.parent.is_dir():
         raise CaseError(f"-o {path}: there is no folder {path.parent}")
     if not (folder / "interface.csv").is_file():
-        raise CaseError(f"{folder}: holds no interface.csv; not a results folder of a finished run")
+        raise CaseError(
+            f"{folder}: contains no interface.csv; not a results folder of a finished run"
+        )
     if not has_frames(folder):
         raise CaseError(f"{folder}: has no frames; run the case with --set analysis.frames=60")
     if path.suffix == MP4:
@@ -43,16 +46,16 @@ def check_film(folder: Path, path: Path) -> None:
 
 
 def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
-    """Draw bodies, pressure and depth while they wear.
+    """Draw the evolution of bodies, pressure and wear depth.
 
     Parameters
     ----------
     folder : Path
-        Of results whose analysis has kept frames.
+        Results folder with frames.
     path : Path
-        Ends in ``.gif`` or ``.mp4``.
+        File to write, ``.gif`` or ``.mp4``.
     fps : float
-        Frames a second.
+        Frames per second.
     """
     film = read_film(folder)
     scene = _in_space(film) if is_surface(folder) else _in_a_plane(film)

@@ -1,4 +1,4 @@
-"""The colours of a GIF, which has no more than 256."""
+"""Colour palette of a GIF, limited to 256 colours."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from PIL import Image
 
 from ..curves import BODIES
 
-_MOST = 255  # and one for what stays as it is
+_MOST = 255  # one more is reserved for unchanged pixels
 _LINES = ("black", "0.45", "0.6", "tab:red", *BODIES)
-_BLENDS = 6  # of a line with white, at its edges
+_BLENDS = 6  # blends of a line with white, for antialiased edges
 
 
 def common_palette(pictures: list[np.ndarray], scale: str) -> np.ndarray:
-    """Colours of lines, and those that come nearest to a scale of colours and to pictures.
+    """Palette of the line colours and the best approximation of a colour map and of pictures.
 
     Parameters
     ----------

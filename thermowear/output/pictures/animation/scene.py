@@ -1,4 +1,4 @@
-"""One picture of an animation: which panels it has, and what they show at a time."""
+"""Picture of an animation: its layout and panels."""
 
 from __future__ import annotations
 
@@ -14,33 +14,35 @@ from .states import Film, State
 
 _DPI = 100
 _WIDTH, _HEIGHT = 9.0, 5.6  # inches
-_FLAT = 0.4  # height over width: flatter bodies lie above the curves, others stand beside them
-_SCALE = 1.5  # inches that the scale of colours and the labels of the bodies take
+_FLAT = (
+    0.4  # aspect ratio of the bodies below which they are placed above the curves, else beside them
+)
+_SCALE = 1.5  # width of colour bar and labels of the bodies [inches]
 _STYLE = STYLE | {"font.size": 9}
 
 
 class Panel(Protocol):
-    """What draws in a part of the picture."""
+    """Interface of the panels of the picture."""
 
     def prepare(self, figure: Figure, axis) -> None:
-        """Draw what stays."""
+        """Draw the static elements."""
 
     def show(self, state: State) -> None:
-        """Replace what changes."""
+        """Update the panel to a state."""
 
 
 class Scene:
-    """A figure whose layout and axes stay as they are, from the first frame to the last.
+    """Figure with a fixed layout and fixed axes for all frames.
 
     Parameters
     ----------
     film : Film
     bodies : Panel
-        Which has a `shape`, height over width, and `colors`, the name of its colour map.
+        Panel with `shape`, its height over width, and `colors`, the name of its colour map.
     beside : list of Panel
-        Along the contact: one or two.
+        One or two panels of curves along the contact.
     course : Panel
-        Over time.
+        Panel over time.
     """
 
     def __init__(self, film: Film, bodies, beside: list[Panel], course: Panel):
@@ -61,7 +63,7 @@ class Scene:
         self._figure.set_layout_engine("none")
 
     def picture(self, state: State) -> np.ndarray:
-        """Colours of the pixels at a time, shape (height, width, 3)."""
+        """Pixels of the picture of a state, shape (height, width, 3)."""
         self._fill(state)
         self._canvas.draw()
         return np.asarray(self._canvas.buffer_rgba())[..., :3].copy()
@@ -70,16 +72,16 @@ class Scene:
         with mpl.rc_context(_STYLE):
             for panel in self._panels.values():
                 panel.show(state)
-            self._time.set_text(f"after {duration(state.time)}")
+            self._time.set_text(f"t = {duration(state.time)}")
 
 
 def duration(time: float) -> str:
-    """A time in seconds with three digits."""
+    """Format a time in seconds with three digits."""
     return f"{float(f'{time:.3g}'):g} s"
 
 
 def _plan(beside: int, shape: float) -> tuple[list[Any], dict[str, Any]]:
-    """Places of the panels and their sizes, by height over width of the bodies."""
+    """Positions of the panels and their sizes, by height over width of the bodies."""
     curves = [f"beside {k}" for k in range(beside)]
     if shape < _FLAT:
         tall = np.clip(shape * (_WIDTH - _SCALE), 1.2, 2.2)

@@ -1,4 +1,4 @@
-"""The bodies in section, in one range of colours for all frames, by matplotlib."""
+"""Section of 2D bodies with one colour range for all frames (matplotlib)."""
 
 from __future__ import annotations
 
@@ -9,17 +9,19 @@ from matplotlib.colors import Normalize
 from matplotlib.tri import Triangulation
 from scipy.spatial import cKDTree
 
+from ...coordinates import in_model
+from ...quantities import INTERFACE
 from ..windows import Extent, around_contact, common_limits, is_small, whole, within
 from .states import Film, State, field_of, read_fields
 
-_SCALE = 0.05  # width of the scale of colours, over that of the panel
-_SAME = 1e-5  # of the bodies' size: points so near to each other are one
+_SCALE = 0.05  # width of the colour bar relative to the panel
+_SAME = 1e-5  # tolerance for identical points, relative to the size of the bodies
 
 
 class Section:
-    """A panel with plane bodies where they are, body 1 behind body 2.
+    """Panel with deformed 2D bodies, body 1 drawn behind body 2.
 
-    What has been worn off body 1 then does not show.
+    The material worn off body 1 is thus hidden.
 
     Parameters
     ----------
@@ -36,6 +38,7 @@ class Section:
         self.limits = common_limits(seen)
         self._over = max(values.max() for values in seen) > self.limits[1] * (1 + 1e-9)
         self.colors = "inferno" if film.hot else "viridis"
+        self._axes = [in_model(INTERFACE[name], film.model).axis for name in "xy"]
         self._drawn: list = []
 
     @property
@@ -45,13 +48,13 @@ class Section:
         return (upper - lower) / (right - left)
 
     def prepare(self, figure, axis) -> None:
-        """Draw what stays."""
+        """Draw the static elements."""
         self._axis = axis
         axis.set_xlim(self.window[:2])
         axis.set_ylim(self.window[2:])
         axis.set_aspect("equal", anchor="W")
-        axis.set_xlabel("x [mm]")
-        axis.set_ylabel("y [mm]")
+        axis.set_xlabel(self._axes[0])
+        axis.set_ylabel(self._axes[1])
         axis.grid(visible=False)
         figure.colorbar(
             ScalarMappable(Normalize(*self.limits), self.colors),
@@ -61,7 +64,7 @@ class Section:
         )
 
     def show(self, state: State) -> None:
-        """Replace what changes."""
+        """Update the panel to a state."""
         while self._drawn:
             self._drawn.pop().remove()
         points, triangles, body, values = self._fields[id(state)]
@@ -91,9 +94,9 @@ class Section:
 
 
 def outline(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Edges of triangles that have no other one beside them, shape (k, 2).
+    """Boundary edges of triangles, shape (k, 2).
 
-    Triangles of different cells share no points: edges are the same where their middles are.
+    Triangles of different cells share no points, so that edges are identified by their midpoints.
     """
     edges = np.concatenate([triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
     middles = points[edges].mean(axis=1)
@@ -108,14 +111,14 @@ def _inside(points: np.ndarray, window: Extent) -> np.ndarray:
 
 
 def _near(points: np.ndarray, window: Extent) -> np.ndarray:
-    """Like `_inside`, with a margin of the window's own size."""
+    """Mask as of `_inside`, with a margin of the size of the window."""
     left, right, lower, upper = window
     wide, tall = right - left, upper - lower
     return _inside(points, (left - wide, right + wide, lower - tall, upper + tall))
 
 
 def _window(film: Film, points: np.ndarray) -> Extent:
-    """On the whole bodies, or on the surroundings of a contact that is small on them."""
+    """Window of the whole bodies, or around a small contact."""
     contact = around_contact([state.interface for state in film.states])
     if contact is not None and is_small(contact, points):
         return within(contact, points)

@@ -1,4 +1,4 @@
-"""Bodies in space, cut as in the pictures of the end, and maps of their contact face."""
+"""Panels of 3D models: clipped bodies, and maps of their contact face."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .states import Film, State, field_of
 
 
 class Solid:
-    """A panel with the bodies as they were meshed; the camera does not move.
+    """Panel with the undeformed bodies and a fixed camera.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Solid:
         )
 
     def prepare(self, figure, axis) -> None:
-        """Draw what stays."""
+        """Draw the static elements."""
         axis.set_axis_off()
         figure.colorbar(
             ScalarMappable(Normalize(*self.limits), self.colors),
@@ -48,7 +48,7 @@ class Solid:
         self._image = axis.imshow(blank, interpolation="antialiased")
 
     def show(self, state: State) -> None:
-        """Replace what changes."""
+        """Update the panel to a state."""
         self._image.set_data(render(self._surfaces(state), "shown", self.colors, self.limits))
 
     def _surfaces(self, state: State) -> list:
@@ -60,7 +60,7 @@ class Solid:
 
 
 class FaceMap:
-    """A quantity over the contact face, in one range of colours for all frames."""
+    """Map of a quantity over the contact face with one colour range for all frames."""
 
     def __init__(self, film: Film, name: str):
         self._name = name
@@ -71,7 +71,7 @@ class FaceMap:
         self._drawn: list = []
 
     def prepare(self, figure, axis) -> None:
-        """Draw what stays."""
+        """Draw the static elements."""
         self._axis = axis
         axis.set_aspect("equal")
         axis.set_xlim(self._window[:2])
@@ -83,7 +83,7 @@ class FaceMap:
         figure.colorbar(scale, ax=axis, label=INTERFACE[self._name].axis.replace(" [", "\n["))
 
     def show(self, state: State) -> None:
-        """Replace what changes."""
+        """Update the panel to a state."""
         while self._drawn:
             self._drawn.pop().remove()
         x, y, values = (INTERFACE[q].drawn(state.interface[q]) for q in ("x", "y", self._name))
@@ -96,7 +96,7 @@ class FaceMap:
 
 
 def face_maps(film: Film) -> list[Panel]:
-    """Pressure, and depth worn off the body that loses most."""
+    """Maps of the pressure, and of the wear depth of the body with the deeper wear."""
     depths = {name: film.states[-1].interface[name].max() for name in ("wear_1", "wear_2")}
     deepest = max(depths, key=lambda name: depths[name])
     return [

@@ -1,4 +1,4 @@
-"""The frames of a results folder, with its end."""
+"""Frames of a results folder, with its final state."""
 
 from __future__ import annotations
 
@@ -10,27 +10,28 @@ import meshio
 import numpy as np
 
 from ... import tables
+from ...coordinates import model_of
 from ...frames import FRAMES, frame_files
 from ...quantities import CYCLES, HISTORY, INTERFACE, LOADS, TRACK
 
 _CORNERS = {"triangle": [[0, 1, 2]], "quad": [[0, 1, 2], [0, 2, 3]]}
-_STEADY = 1e-2  # distance from the steady state at which the end stands for it
+_STEADY = 1e-2  # distance from the steady state up to which the final state is called steady
 
 
 @dataclass(frozen=True)
 class State:
-    """What is known at one time.
+    """State of the results at one time.
 
     Attributes
     ----------
     time : float
-        [s]
+        Time [s].
     interface : dict of str to ndarray
         Columns of ``interface.csv``.
     track : dict of str to ndarray or None
-        Columns of ``track.csv``, of a reciprocating analysis.
+        Columns of ``track.csv``, in reciprocating analyses.
     file : Path
-        With the fields.
+        File of the fields.
     """
 
     time: float
@@ -41,25 +42,29 @@ class State:
 
 @dataclass(frozen=True)
 class Film:
-    """All states, the last one is the end of the run.
+    """All states of an animation; the last one is the end of the run.
 
     Attributes
     ----------
     states : list of State
     title : str
-        Of the case.
+        Title of the case.
+    model : str
+        Kinematic model of the case.
     course : dict of str to ndarray
         Columns of ``history.csv``, or of ``cycles.csv`` or ``loads.csv``.
     even : bool
-        Whether time is shown evenly: where loads or temperatures have a course of their own;
-        running-in is fast at first and then ever slower.
+        True for a linear time axis, with prescribed loads or temperatures in time; running-in
+        without them slows down and is shown on a logarithmic axis.
     hot : bool
-        Whether the faces have temperatures.
+        True if the case has temperatures.
     ends_steady : bool
+        True if the final state is close to the steady state.
     """
 
     states: list[State]
     title: str
+    model: str
     course: dict[str, np.ndarray]
     even: bool
     hot: bool
@@ -67,12 +72,12 @@ class Film:
 
 
 def read_film(folder: Path) -> Film:
-    """Read all but the fields.
+    """Read all data of an animation except the fields.
 
     Raises
     ------
     ValueError
-        If a file is not what its name says.
+        If a file does not have the expected columns.
     """
     states = [
         State(f.time, tables.read(f.interface, INTERFACE), _track(f.track), f.fields)
@@ -88,6 +93,7 @@ def read_film(folder: Path) -> Film:
     return Film(
         states=states,
         title=_title(folder),
+        model=model_of(folder),
         course=course,
         even=name != "history.csv" or (folder / "heat.csv").is_file(),
         hot=bool(np.isfinite(last["temperature_1"]).all()),
@@ -96,13 +102,13 @@ def read_film(folder: Path) -> Film:
 
 
 def read_fields(state: State, hot: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Fields of plane bodies as triangles, each corner a point of its own cell.
+    """Read the fields of 2D bodies as triangles; cells share no points.
 
     Returns
     -------
     tuple of ndarray
-        Points where they are now, shape (n, 2) [mm]; triangles, shape (m, 3); numbers of their
-        bodies, shape (m,); values at the points, see `field_label`.
+        Displaced points, shape (n, 2) [mm]; triangles, shape (m, 3); body of each triangle, shape
+        (m,); values at the points, see `field_of`.
     """
     mesh = meshio.read(state.file)
     block, body = mesh.cells[0], mesh.cell_data["body"][0]
@@ -115,7 +121,7 @@ def read_fields(state: State, hot: bool) -> tuple[np.ndarray, np.ndarray, np.nda
 
 
 def field_of(hot: bool) -> tuple[str, str, float, float]:
-    """Label, name, scale and offset of the field that is shown."""
+    """Label, name, scale and offset of the displayed field."""
     if hot:
         return "temperature [°C]", "temperature_K", 1.0, -273.15
     return "von Mises stress [MPa]", "von_mises_Pa", 1e-6, 0.0

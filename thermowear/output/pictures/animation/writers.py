@@ -1,4 +1,4 @@
-"""Pictures one after the other in a file: GIF by Pillow, MP4 by ffmpeg."""
+"""Writers of animations: GIF by Pillow, MP4 by ffmpeg."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ from ....errors import CaseError
 from ...atomic_write import replacing
 
 GIF, MP4 = ".gif", ".mp4"
-_REST = 1.5  # s: how long the end is shown
+_REST = 1.5  # duration of the last frame [s]
 
 
 def ffmpeg() -> str:
-    """Where ffmpeg is.
+    """Path of the ffmpeg program.
 
     Raises
     ------
     CaseError
+        If ffmpeg is not installed.
     """
     found = shutil.which("ffmpeg")
     if found is None:
@@ -34,15 +35,15 @@ def ffmpeg() -> str:
 
 
 def write_gif(path: Path, pictures: Iterator[np.ndarray], fps: float, palette: np.ndarray) -> None:
-    """Write a GIF; with the same colours in all pictures nothing flickers.
+    """Write a GIF with one palette for all pictures, which avoids flicker.
 
     Parameters
     ----------
     path : Path
-        Replaced once the film is whole.
+        File to write, replaced when the animation is complete.
     pictures : iterator of ndarray of uint8, shape (height, width, 3)
     fps : float
-        Pictures a second.
+        Pictures per second.
     palette : ndarray of uint8, shape (k, 3)
     """
     colors = Image.new("P", (1, 1))
@@ -58,23 +59,25 @@ def write_gif(path: Path, pictures: Iterator[np.ndarray], fps: float, palette: n
             format="GIF",
             save_all=True,
             append_images=frames[1:],
-            duration=[round(100 * seconds) * 10 for seconds in shown],  # it counts hundredths
+            duration=[
+                round(100 * seconds) * 10 for seconds in shown
+            ],  # GIF times are in hundredths of a second
             loop=0,
         )
 
 
 def write_mp4(path: Path, pictures: Iterator[np.ndarray], fps: float) -> None:
-    """Write an MP4, as `write_gif` does.
+    """Write an MP4; parameters as in `write_gif`.
 
     Raises
     ------
     CaseError
-        If there is no ffmpeg.
+        If ffmpeg is not installed.
     OSError
-        If ffmpeg does not take the pictures.
+        If ffmpeg fails.
     """
     first = next(pictures)
-    height, width = (n - n % 2 for n in first.shape[:2])  # the encoder wants even numbers
+    height, width = (n - n % 2 for n in first.shape[:2])  # the encoder needs even numbers
     stream = f"-f rawvideo -pix_fmt rgb24 -s {width}x{height} -r {fps:g} -i -".split()
     rest = [
         "-vf",
@@ -88,7 +91,7 @@ def write_mp4(path: Path, pictures: Iterator[np.ndarray], fps: float) -> None:
         command = [ffmpeg(), "-y", "-loglevel", "error", *stream, *rest, str(draft)]
         encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said)
         assert encoder.stdin is not None
-        with suppress(BrokenPipeError):  # it says itself why it has gone
+        with suppress(BrokenPipeError):  # its error message is reported below
             for picture in chain([first], pictures):
                 encoder.stdin.write(picture[:height, :width].tobytes())
             encoder.stdin.close()

@@ -221,7 +221,7 @@ def test_ctrl_c_leaves_a_checkpoint_of_the_last_step(uninterrupted, tmp_path):
     last = tables(folder)["history.csv"][1][-1, 0]
     assert time_reached == pytest.approx(last, rel=1e-14)
     done = assert_resumes("cold", folder, whole)
-    assert f"goes on from {time_reached:g} s" in done.stdout
+    assert f"resumed from {time_reached:g} s" in done.stdout
     run = json.loads((folder / "run.json").read_text())
     assert [resume["from_s"] for resume in run["resumes"]] == [time_reached]
 
@@ -337,7 +337,7 @@ def test_two_runs_in_one_folder_are_refused(tmp_path):
         for more in ("--resume", "--overwrite"):
             done = completed("cold", folder, *slow, more)
             assert done.returncode == 1
-            assert "another run" in done.stderr
+            assert "in use by another run" in done.stderr
         assert process.poll() is None
     finally:
         process.kill()
@@ -369,7 +369,7 @@ def test_two_ranks_go_on_with_their_parts(tmp_path):
     assert on(2, folder, "--set=analysis.max_steps=8").returncode == 2
     refused = completed("heat", folder, *short, "--resume")
     assert refused.returncode == 1
-    assert "made by 2 processes" in refused.stderr
+    assert "written by 2 processes" in refused.stderr
     done = on(2, folder, "--resume")
     assert done.returncode == 0, done.stderr
     ours, theirs = tables(folder), tables(whole)

@@ -170,7 +170,7 @@ def test_a_table_begins_with_known_rows_and_ends_with_a_whole_one(tmp_path):
 
 def test_a_folder_is_locked_as_long_as_a_run_lives(tmp_path):
     first = Lock(tmp_path)
-    with pytest.raises(tw.CaseError, match="another run"):
+    with pytest.raises(tw.CaseError, match="in use by another run"):
         Lock(tmp_path)
     first.release()
     Lock(tmp_path)

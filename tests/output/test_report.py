@@ -271,8 +271,8 @@ ENDS = {
     "done": ({}, "good", "Finished"),
     "failed": ({"message": "no step is small enough"}, "bad", "Stopped: no step is small enough."),
     "interrupted": ({}, "unsure", "Interrupted"),
-    "running": ({}, "unsure", "Still computing"),
-    "paused": ({}, "unsure", "Ended as: paused."),
+    "running": ({}, "unsure", "Still running"),
+    "paused": ({}, "unsure", "Unknown status: paused."),
 }
 
 
@@ -333,7 +333,7 @@ def test_a_history_is_sampled(total, copy):
     half_a_row = "17.5,3"  # of a run that is writing
     text = "\n".join([head, *rows, half_a_row])
     (folder / "history.csv").write_text(text, encoding="utf-8")
-    _, shown = report(folder).table("History, a row a step")
+    _, shown = report(folder).table("History, one row per step")
     times = [float(row[0]) for row in shown]
     assert len(times) == min(total, 20)
     assert times[0] == 0.25
@@ -352,7 +352,7 @@ def test_columns_that_are_not_known(copy):
     lines = (folder / "history.csv").read_text(encoding="utf-8").splitlines()
     more = [f"{lines[0]},tilt_rad,film_m", *(f"{line},0.5,nan" for line in lines[1:])]
     (folder / "history.csv").write_text("\n".join(more) + "\n", encoding="utf-8")
-    heads, rows = report(folder).table("History, a row a step")
+    heads, rows = report(folder).table("History, one row per step")
     assert heads[-1] == "tilt [mrad]"
     assert rows[0][-1] == "500"
 
@@ -430,8 +430,8 @@ def test_a_run_that_left_nothing_but_its_case(copy):
     page = report(folder)
     assert page.text["h1"] == ["Annular punch turning on a plate, running-in"]
     assert "There is no summary." in page.text["p"][0]
-    assert page.text["h3"] == ["History, a row a step"]
-    assert "before there was anything to draw" in "".join(page.text["p"])
+    assert page.text["h3"] == ["History, one row per step"]
+    assert "ended before there were results to draw" in "".join(page.text["p"])
     (folder / "case.resolved.toml").unlink()
     (folder / "history.csv").unlink()
     assert report(folder).text["h1"] == [RUNNING_IN]
@@ -485,7 +485,7 @@ def test_a_page_of_someone_else_stays(mine, copy, refused):
     folder = copy(HERTZ)
     (folder / "report.html").write_bytes(mine)
     line = refused(folder)
-    assert f"{folder / 'report.html'}: exists and is no report of this program" in line
+    assert f"{folder / 'report.html'}: exists and is not a report of this program" in line
     assert (folder / "report.html").read_bytes() == mine
 
 
@@ -493,10 +493,10 @@ def test_a_folder_or_a_link_of_someone_else_stays(copy, refused):
     """requirement: neither a folder of that name nor a link to nowhere is replaced."""
     folder = copy(HERTZ)
     (folder / "report.html").mkdir()
-    assert "no report of this program" in refused(folder)
+    assert "not a report of this program" in refused(folder)
     (folder / "report.html").rmdir()
     (folder / "report.html").symlink_to("nowhere.html")
-    assert "no report of this program" in refused(folder)
+    assert "not a report of this program" in refused(folder)
     assert (folder / "report.html").is_symlink()
 
 

@@ -151,7 +151,7 @@ def test_a_sweep_replaces_only_a_sweep(tmp_path):
     other = tmp_path / "run"
     other.mkdir()
     (other / "run.json").write_text('{"status": "done"}')
-    with pytest.raises(CaseError, match="no folder of a sweep"):
+    with pytest.raises(CaseError, match="not a folder of a sweep"):
         SweepFolder(other, {"a": ["1"]}, keys, overwrite=True)
     assert not is_sweep(other)
 

@@ -1,1 +1,1 @@
-"""Commands and entry points: run, sweep, shape, verify."""
+"""Command line and entry points: run, sweep, shape, verify."""

@@ -1,4 +1,4 @@
-"""The words of the command line: commands, options and their help."""
+"""Parser of the command line: commands, options and help texts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parser() -> argparse.ArgumentParser:
-    """All commands and their options; what is chosen has the name of its `command`."""
+    """Parser of all commands and options; the parsed result has the name of its `command`."""
     result = _Parser(prog="thermowear", description="Thermo-mechanical sliding wear of two bodies.")
     result.add_argument("--version", action="version", version=f"thermowear {__version__}")
     commands = result.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
@@ -24,15 +24,15 @@ def parser() -> argparse.ArgumentParser:
     _add_case(run)
     run.add_argument("-o", "--output", metavar="DIR", type=Path, help="default: results/<case>")
     existing = run.add_mutually_exclusive_group()
-    existing.add_argument("--overwrite", action="store_true", help="replace results that are there")
+    existing.add_argument("--overwrite", action="store_true", help="replace existing results")
     existing.add_argument(
-        "--resume", action="store_true", help="go on with the run that was stopped there"
+        "--resume", action="store_true", help="continue the run that was stopped in DIR"
     )
     run.add_argument("--no-pictures", dest="pictures", action="store_false")
     run.add_argument(
         "--accuracy",
         action="store_true",
-        help="repeat the case one degree coarser and finer, and print all three side by side",
+        help="repeat the case one degree lower and higher, and print all three side by side",
     )
 
     sweep = _command(commands, "sweep", "compute all combinations of values of keys")
@@ -42,18 +42,18 @@ def parser() -> argparse.ArgumentParser:
         metavar="KEY=V1,V2,...",
         action="append",
         required=True,
-        help="a key and its values, such as load.force='1 kN,2 kN'; may be given several times",
+        help="a key and its values, such as load.force='1 kN,2 kN'; can be repeated",
     )
     sweep.add_argument(
         "-o", "--output", metavar="DIR", type=Path, help="default: results/<case>-sweep"
     )
-    sweep.add_argument("--overwrite", action="store_true", help="replace results that are there")
+    sweep.add_argument("--overwrite", action="store_true", help="replace existing results")
     sweep.add_argument("--no-pictures", dest="pictures", action="store_false")
     sweep.add_argument(
         "--processes",
         metavar="N",
         type=_positive,
-        help="for variants that share no factors; default: as many as there are cores",
+        help="for variants that share no factorisations; default: number of cores",
     )
 
     _command(commands, "cases", "list the starter cases")
@@ -74,25 +74,27 @@ def parser() -> argparse.ArgumentParser:
     shape = _command(commands, "shape", "write the steady worn shape of a contact face")
     _add_case(shape)
     shape.add_argument("-o", "--output", metavar="FILE", type=Path, required=True)
-    shape.add_argument("--body", metavar="NAME", help="whose face; default: the held body's")
+    shape.add_argument(
+        "--body", metavar="NAME", help="body whose face is shaped; default: the body in the holder"
+    )
     shape.add_argument("--overwrite", action="store_true")
 
-    verify = _command(commands, "verify", "hold the program against known solutions")
+    verify = _command(commands, "verify", "verify against reference solutions")
     verify.add_argument("ids", metavar="ID", nargs="*", help="default: all but the slow ones")
     verify.add_argument(
-        "--slow", action="store_true", help="with those that take more than two minutes"
+        "--slow", action="store_true", help="include cases that take more than two minutes"
     )
-    verify.add_argument("--json", action="store_true", help="print a list of the checks")
+    verify.add_argument("--json", action="store_true", help="print the checks as JSON")
 
-    plot = _command(commands, "plot", "draw the pictures of a results folder again")
+    plot = _command(commands, "plot", "redraw the pictures of a results folder")
     plot.add_argument("folder", metavar="DIR", type=Path)
 
-    animate = _command(commands, "animate", "draw a run that has kept analysis.frames")
+    animate = _command(commands, "animate", "animate a run with analysis.frames")
     animate.add_argument("folder", metavar="DIR", type=Path)
     animate.add_argument(
         "-o", "--output", metavar="FILE", type=Path, help=".gif or .mp4; default: DIR/animation.gif"
     )
-    animate.add_argument("--fps", metavar="N", type=_rate, default=8.0, help="frames a second")
+    animate.add_argument("--fps", metavar="N", type=_rate, default=8.0, help="frames per second")
 
     report = _command(commands, "report", "write report.html of a results folder")
     report.add_argument("folder", metavar="DIR", type=Path)

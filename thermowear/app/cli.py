@@ -1,7 +1,7 @@
-"""The command line: words to calls, errors to exit codes, nothing else.
+"""Command line: dispatch of commands, and conversion of errors to exit codes.
 
-Exit codes: 0 done, 1 the case or the command line is wrong, 2 the computation failed,
-130 interrupted (what was computed is kept).
+Exit codes: 0 done, 1 invalid case or command line, 2 failed computation, 130 interrupted
+(computed results are kept).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ..errors import CaseError, CaseNote, ComputationError
 from .arguments import parser
 
 _INTERRUPTED = 130
-_HEARD = 1.0  # s; a launcher may drop what a process said just before it ended with an error
+_HEARD = 1.0  # s; a launcher may drop messages written just before a process ends with an error
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -46,7 +46,7 @@ def _main(arguments: list[str] | None) -> int:
 
 
 def _shown(otherwise):
-    """A way to show warnings: what is odd about a case as a note, all else as before."""
+    """Hook for warnings that prints a `CaseNote` as a note and leaves others unchanged."""
 
     def show(message, category, *where) -> None:
         if issubclass(category, CaseNote):
@@ -70,10 +70,11 @@ def _complain(code: int, *lines: str) -> int:
 
 
 def _speaks() -> bool:
-    """Whether this process is the one of a parallel run that reports errors.
+    """True if this process of a parallel run reports errors.
 
-    MPI is started if a launcher began several processes: its end then waits for all of them.
-    Without it, a silent rank that ends first makes the launcher stop the one about to speak.
+    MPI is initialised if a launcher started several processes, so that finalisation waits for all
+    of them. Otherwise a silent rank that ends first could make the launcher kill the one that
+    reports.
     """
     if "mpi4py.MPI" not in sys.modules and _launched_processes() == 1:
         return True
@@ -156,12 +157,12 @@ def _shape(chosen) -> int:
     shaped = shape(chosen.case, chosen.body, tuple(chosen.overrides))
     write_shape(shaped, chosen.output)
     deepest = 1e6 * shaped.design.depth.max()
-    print(f"wrote {chosen.output}: face of {shaped.body}, up to {deepest:.4g} µm to be taken off")
+    print(f"wrote {chosen.output}: face of {shaped.body}, up to {deepest:.4g} µm to be removed")
     return 0
 
 
 def _guard(path: Path, overwrite: bool) -> None:
-    if os.path.exists(path) and not overwrite:  # unlike Path.exists, no error at odd names
+    if os.path.exists(path) and not overwrite:  # Path.exists raises an error for invalid names
         raise CaseError(f"{path}: exists; use --overwrite or another name")
 
 
@@ -204,7 +205,7 @@ def _verify(chosen) -> int:
 
     unknown = [name for name in chosen.ids if name not in CASES]
     if unknown:
-        raise CaseError(f"verify {unknown[0]}: no such case; one of: {', '.join(CASES)}")
+        raise CaseError(f"verify {unknown[0]}: unknown case; one of: {', '.join(CASES)}")
     left_out = [] if chosen.ids or chosen.slow else [name for name in CASES if name in SLOW]
     names = chosen.ids or [name for name in CASES if name not in left_out]
     checks = [check for name in names for check in all_checks(name, CASES[name])]
@@ -214,15 +215,16 @@ def _verify(chosen) -> int:
         print_checks(Terminal(highlight=False), checks)
     if left_out:
         print(
-            f"note: left out as slow: {', '.join(left_out)} (--slow, or by name)", file=sys.stderr
+            f"note: slow cases not computed: {', '.join(left_out)} (use --slow or their names)",
+            file=sys.stderr,
         )
     return 0 if all(check.passed for check in checks) else ComputationError.exit_code
 
 
 def _run(chosen) -> int:
-    """The one command that runs on many ranks: an error anywhere ends all of them.
+    """Run a case, the only command on several MPI ranks.
 
-    Errors of the case and of the computation are raised on all ranks alike.
+    Case and computation errors are raised on all ranks; any other error aborts all ranks.
     """
     began = time.perf_counter()
     signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -1,4 +1,4 @@
-"""A case on a coarser and on a finer discretisation beside its own: ``run --accuracy``."""
+"""Comparison of a case with a coarser and a finer discretisation: ``run --accuracy``."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ COMPARED = (
     "shape_error_estimate_relative",
     "temperature_error_estimate_relative",
 )
-"""Keys of the summary that are shown side by side."""
+"""Keys of the summary that are compared."""
 _LOWEST, _HIGHEST = 1, 10
 
 
 def neighbours(case: Case) -> dict[str, tuple[str, ...]]:
-    """Changes of a case that make it coarser and finer, by what it becomes.
+    """Overrides of a case for a coarser and a finer discretisation.
 
-    One polynomial degree lower and higher, and of the pressure space likewise where it is given;
-    where there is no such degree, half and twice the elements.
+    One polynomial degree lower and higher, also of the pressure space if its degree is given; half
+    and twice the number of elements at the limits of the degree.
     """
     return {"coarser": _changed(case, -1), "finer": _changed(case, 1)}
 
@@ -49,9 +49,9 @@ def _changed(case: Case, by: int) -> tuple[str, ...]:
 
 
 def side_by_side(path: Path, overrides: tuple[str, ...], comm) -> dict[str, dict[str, Any]]:
-    """Numbers of the neighbours of a case file, as its summary keeps them. Every rank calls.
+    """Compute the coarser and finer discretisations for the summary of a case. Every rank calls.
 
-    A neighbour that cannot be computed has the reason in the place of its numbers.
+    If one of them cannot be computed, its entry contains the reason instead of numbers.
     """
     from ..simulation import run
 

@@ -1,4 +1,4 @@
-"""A run from the command line: case in, results folder and pictures out, on any number of ranks."""
+"""Run of a case from the command line, with results folder and pictures, on any number of ranks."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .discretisations import COMPARED, side_by_side
 
 
 class Recorder(Observer):
-    """Passes what happens to the results folder and to a terminal, on rank 0."""
+    """Observer that writes to the results folder and to the console, on rank 0."""
 
     def __init__(self, comm, folder, progress: Progress | None = None):
         self._comm = comm
@@ -72,7 +72,7 @@ class Recorder(Observer):
 
 
 class SavingRecorder(Recorder):
-    """Also keeps the states from which a run of a case can go on."""
+    """Recorder that also writes checkpoints."""
 
     def __init__(self, comm, folder, progress: Progress | None, case: Case):
         super().__init__(comm, folder, progress)
@@ -90,26 +90,26 @@ class SavingRecorder(Recorder):
 
 
 def run_session(chosen, comm, import_seconds: float) -> int:
-    """Compute the case of a parsed ``run`` command; every rank calls.
+    """Compute the case of a parsed ``run`` command. Every rank calls.
 
     Raises
     ------
     CaseError, ComputationError
-        On every rank alike.
+        On all ranks.
     """
     case = on_root(comm, lambda: load(chosen.case, tuple(chosen.overrides)))
     path = chosen.output or Path("results") / chosen.case.stem
-    plain = False if comm.size > 1 else None  # a launcher's pseudo-terminal ends in a file
+    plain = False if comm.size > 1 else None  # a launcher's pseudo-terminal is no real one
     console = Terminal(highlight=False, quiet=comm.rank != 0, force_terminal=plain)
     if chosen.resume and on_root(comm, lambda: is_finished(path, case)):
-        text = f"{path}: the run has come to its end, nothing is left to compute"
+        text = f"{path}: the run is complete, nothing is left to compute"
         console.print(text, markup=False, soft_wrap=True)
         return 0
     saved = _saved(comm, path, case) if chosen.resume else None
     folder = _on_root_kept(comm, lambda: _folder(path, case, comm.size, chosen, saved))
     if chosen.resume:
         since = "the beginning" if saved is None else f"{saved.progress.time:g} s"
-        console.print(f"goes on from {since}")
+        console.print(f"resumed from {since}")
     try:
         with Progress(console) as progress:
             shown = progress if comm.rank == 0 else None
@@ -132,16 +132,16 @@ def run_session(chosen, comm, import_seconds: float) -> int:
         console.print(f"results in {path}")
         if result.stopped is not None:
             raise result.stopped
-    except CaseError:  # found while meshing: nothing was computed, and the next try needs the place
+    except CaseError:  # found before computing: the folder must be free for the next attempt
         if folder is not None:
             _writing(folder.abandon)
         raise
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
-        with suppress(UnwritableError):  # the disk may be what went wrong
+        with suppress(UnwritableError):  # the disk may be the cause
             _close(folder, "interrupted" if interrupted else "failed", str(error))
         if isinstance(error, UnwritableError) and (path / CHECKPOINT).is_file():
-            room = "with more room, --resume goes on from the last checkpoint"
+            room = "free disk space, then --resume continues from the last checkpoint"
             raise UnwritableError(f"{error}; {room}") from None
         raise
     _close(folder, "done")
@@ -149,7 +149,7 @@ def run_session(chosen, comm, import_seconds: float) -> int:
 
 
 def _saved(comm, path: Path, case: Case) -> Saved | None:
-    """What the run of a folder can go on with; None where it begins anew. Every rank calls."""
+    """State of the last checkpoint; None if the run starts from the beginning. Every rank calls."""
     found = on_root(comm, lambda: last_checkpoint(path, case, comm.size))
     if found is None:
         return None
@@ -158,14 +158,14 @@ def _saved(comm, path: Path, case: Case) -> Saved | None:
 
 
 def _folder(path: Path, case: Case, ranks: int, chosen, saved: Saved | None) -> ResultsFolder:
-    """The folder of a run that begins, or goes on with what was saved."""
+    """Results folder of a new run, or of a run resumed from a saved state."""
     if saved is None:
         return ResultsFolder(path, as_plain(case), ranks, chosen.overwrite or chosen.resume)
     return ResumedFolder(path, as_plain(case), ranks, saved.progress.time)
 
 
 def _on_root_kept(comm, action):
-    """Like `on_root`, but the result stays on rank 0; None elsewhere."""
+    """Run an action on rank 0 as `on_root`, but return its result there only; None elsewhere."""
     kept = []
     on_root(comm, lambda: kept.append(action()))
     return kept[0] if kept else None
@@ -177,7 +177,7 @@ def _close(folder: ResultsFolder | None, status: str, message: str = "") -> None
 
 
 def _writing(action) -> None:
-    """Turn a disk that does not take the results into a failed computation."""
+    """Run a writing action; an error of the disk becomes a failed computation."""
     try:
         action()
     except OSError as error:

@@ -1,4 +1,4 @@
-"""The steady worn shape as a design: ``thermowear shape``."""
+"""Steady worn shape as the design of a contact face: ``thermowear shape``."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from ..geometry.cad.step_section import write_section
 
 _FORMATS = (".csv", *CARRIERS)
 _IN_TIME = ("transient", "initial")
-"""Keys of heat that a steady state has no use for."""
+"""Keys of heat that do not apply to a steady state."""
 
 
 @dataclass(frozen=True)
 class Shaped:
-    """A design of a body.
+    """Design of a body with the case that it was computed from.
 
     Attributes
     ----------
     case : Case
-        The steady analysis that it comes from.
+        Steady analysis of the design.
     body : str
     design : Design
     """
@@ -40,18 +40,18 @@ class Shaped:
 
 
 def check_format(path: Path) -> None:
-    """Raise a `CaseError` if the ending of a file names no format of designs."""
+    """Raise a `CaseError` if the file extension is not that of a format for designs."""
     if path.suffix not in _FORMATS:
         raise CaseError(f"-o {path}: unknown ending; one of: {', '.join(_FORMATS)}")
 
 
 def steady_case(source: Case | str | Path, overrides: tuple[str, ...] = ()) -> Case:
-    """The steady analysis of a case, of faces as they are drawn, whatever analysis it names.
+    """Steady analysis of a case with nominal faces, for any type of analysis in the case.
 
     Raises
     ------
     CaseError
-        If it is wrong, or there can be no steady state.
+        If the case is invalid, or has no steady state.
     """
     case = source if isinstance(source, Case) else load(source, overrides)
     tables: dict[str, Any] = as_plain(case) | {"analysis": {"type": "steady"}}
@@ -64,21 +64,21 @@ def steady_case(source: Case | str | Path, overrides: tuple[str, ...] = ()) -> C
 def shape(
     source: Case | str | Path, body: str | None = None, overrides: tuple[str, ...] = ()
 ) -> Shaped:
-    """The shape that one contact face needs so that there is no running-in.
+    """Initial shape of one contact face with which there is no running-in.
 
     Parameters
     ----------
     source : Case, str or Path
-        Or the path of a case file.
+        Case, or path of a case file.
     body : str, optional
-        Whose face takes the shape, body 1 by default; it need not be the one that wears.
+        Body whose face is shaped, body 1 by default; it need not be the wearing body.
     overrides : tuple of str
-        ``KEY=VALUE`` each.
+        Changes of keys, ``KEY=VALUE`` each.
 
     Raises
     ------
     CaseError
-        If the case is wrong, or no shape of this body lasts.
+        If the case is invalid, or no shape of this body persists.
     ComputationError
         If there is no steady state.
     """
@@ -89,8 +89,8 @@ def shape(
         raise CaseError(f"--body {body}: not a body of this case; one of: {', '.join(bodies)}")
     if body == bodies[1] and _passes(case):
         raise CaseError(
-            f"--body {body}: it slides past under {bodies[0]}, so that no shape of it stays in the "
-            f"contact; give the shape to {bodies[0]}"
+            f"--body {body}: slides past under {bodies[0]}, so that its shape does not stay in the "
+            f"contact; use --body {bodies[0]}"
         )
     from mpi4py import MPI
 
@@ -103,12 +103,12 @@ def shape(
 
 
 def write_shape(shaped: Shaped, path: Path) -> None:
-    """Write a design; the ending of the file tells the format.
+    """Write a design in the format given by the file extension.
 
     Raises
     ------
     CaseError
-        If the ending is not known, or the file cannot be written.
+        If the extension is not known, or the file cannot be written.
     """
     check_format(path)
     case, design = shaped.case, shaped.design
@@ -126,13 +126,13 @@ def write_shape(shaped: Shaped, path: Path) -> None:
         turn = 2 * math.pi * (geometry.sector if design.body == 1 else 1.0)
         write_section(mesh, design, face, path, turn=turn)
     else:
-        assert isinstance(geometry, PlaneGeometry)  # the case has been checked
+        assert isinstance(geometry, PlaneGeometry)  # guaranteed by validation
         half = bool(geometry.symmetry)
         write_section(mesh, design, face, path, thick=geometry.thickness, half=half)
     add_table(design, path)
 
 
 def _passes(case: Case) -> bool:
-    """Whether body 2 moves on under body 1; about its own axis it stays in the contact."""
+    """True if the material of body 2 moves through the contact (not if it rotates on its axis)."""
     geometry = case.geometry
     return case.model != "axisymmetric" and not geometry.slides_across

@@ -1,6 +1,6 @@
-"""A sweep: many variants of a case, those that share factors one after the other.
+"""Parameter sweep: variants of a case, grouped by shared factorisations.
 
-What needs dolfinx is imported where it is used: a process that only hands out work does without.
+Modules that need dolfinx are imported in functions, as the distributing process does not need them.
 """
 
 from __future__ import annotations
@@ -30,26 +30,26 @@ if TYPE_CHECKING:
 def sweep(
     case: Case | str | Path, over: Mapping[str, Sequence[Any]]
 ) -> list[tuple[dict[str, Any], Result | ComputationError]]:
-    """Compute all combinations of values of keys of a case, in this process.
+    """Compute all combinations of values of keys of a case in this process.
 
     Parameters
     ----------
     case : Case, str or Path
-        Or the path of a case file.
+        Case, or path of a case file.
     over : mapping of str to sequence
-        Values by the path of their key, as in a case file: ``{"load.force": ["1 kN", "2 kN"]}``.
+        Values by key path, as in a case file: ``{"load.force": ["1 kN", "2 kN"]}``.
 
     Returns
     -------
     list of (dict, Result or ComputationError)
-        The values by key, and what came out; in the place of a variant that failed, why it did.
+        Values by key with the result, or the error of a failed variant.
 
     Raises
     ------
     CaseError
-        If any variant is wrong; then none is computed.
+        If any variant is invalid; then none is computed.
     KeyboardInterrupt
-        If a request to stop was noted during a variant; no further one is computed.
+        If a stop was requested during a variant; no further one is computed.
     """
     from ..simulation.analyses.sweep import Series, groups
 
@@ -73,14 +73,14 @@ def sweep(
 
 @dataclass(frozen=True)
 class Job:
-    """A variant to be computed, by whichever process."""
+    """Variant to be computed by any process."""
 
     number: int
     case: Case
     path: Path
 
     def __reduce__(self):
-        """Quantities belong to the unit registry of a process: another one reads them anew."""
+        """Pickle the case as plain tables, as quantities belong to a process's unit registry."""
         return _job, (self.number, as_plain(self.case), self.path)
 
 
@@ -90,7 +90,7 @@ def _job(number: int, tables: dict[str, Any], path: Path) -> Job:
 
 @dataclass(frozen=True)
 class Ended:
-    """How a variant ended: ``done``, or what went wrong; no summary where there is none."""
+    """Outcome of a variant: ``done`` or a description of the failure, and its summary if any."""
 
     number: int
     status: str
@@ -104,9 +104,9 @@ def run_sweep(chosen) -> int:
     Raises
     ------
     CaseError
-        If any variant is wrong; then none is computed.
+        If any variant is invalid; then none is computed.
     ComputationError
-        If any of them failed; the others are computed and written out.
+        If any variant failed; the others are computed and written.
     """
     over = parse_over(chosen.over)
     found = variants(chosen.case, over, tuple(chosen.overrides))
@@ -130,7 +130,7 @@ def run_sweep(chosen) -> int:
 
 
 def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, report) -> None:
-    """Groups that share nothing go to processes of their own, if there are several."""
+    """Compute groups of variants with shared factorisations, in parallel processes if several."""
     start_petsc()
     from ..simulation.analyses.sweep import groups
 
@@ -145,7 +145,7 @@ def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, r
 
 
 def compute(jobs: list[Job], tell: Callable[[Ended], None]) -> None:
-    """Compute variants that share factors, and write their folders."""
+    """Compute variants that share factorisations, and write their folders."""
     start_petsc()
     from ..simulation.analyses.sweep import Series
 
@@ -173,7 +173,7 @@ def _computed(series, job: Job) -> Ended:
         except BaseException as error:
             problem = error
         folder.close(_status(problem).partition(":")[0], _message(problem))
-    except (CaseError, OSError) as error:  # the folder; an interrupt still ends the sweep
+    except (CaseError, OSError) as error:  # of the folder; an interrupt still ends the sweep
         problem = problem if isinstance(problem, KeyboardInterrupt) else error
     return Ended(job.number, _status(problem), summary, time.perf_counter() - began)
 
@@ -188,14 +188,14 @@ def _status(problem: BaseException | None) -> str:
 
 
 def _message(problem: BaseException | None) -> str:
-    """For the run's own record: where an error that nobody expected came from."""
+    """Message for the record of the run, with the traceback of unexpected errors."""
     if problem is None or isinstance(problem, CaseError | ComputationError | KeyboardInterrupt):
         return str(problem or "")
     return "".join(traceback.format_exception(problem))
 
 
 class _Report:
-    """Passes what ends to the folder of the sweep and to the terminal."""
+    """Reporting of finished variants to the folder of the sweep and to the console."""
 
     def __init__(self, folder: SweepFolder, found: list[Variant]):
         self._folder = folder
@@ -205,7 +205,7 @@ class _Report:
         self._began = time.perf_counter()
 
     def ended(self, ended: Ended) -> None:
-        """A variant has ended."""
+        """Record a finished variant."""
         self._ended[ended.number] = ended.status
         self._folder.add(ended.number, ended.status, ended.summary, ended.seconds)
         self._console.print(
@@ -216,13 +216,13 @@ class _Report:
         )
 
     def lost(self, jobs: list[Job], why: str) -> None:
-        """The process that computed some variants has died."""
+        """Record variants whose process has died as failed."""
         for job in jobs:
             if job.number not in self._ended:
                 self.ended(Ended(job.number, f"failed: {why}", None, 0.0))
 
     def failures(self) -> str:
-        """What went wrong, in one line; empty where nothing did."""
+        """Failures in one line; empty if all variants succeeded."""
         failed = {k: status for k, status in sorted(self._ended.items()) if status != "done"}
         if not failed:
             return ""
@@ -231,7 +231,7 @@ class _Report:
         return f"{count}; {self._name(first)}: {status.removeprefix('failed: ')}"
 
     def close(self, pictures: bool, status: str, message: str) -> None:
-        """Write down how it ended, and draw it."""
+        """Record the end of the sweep, and draw its pictures."""
         self._folder.close(status, message, time.perf_counter() - self._began)
         if pictures and any(status == "done" for status in self._ended.values()):
             draw_sweep(self._folder.path)

@@ -1,4 +1,4 @@
-"""Variants of a case: all combinations of values of keys, checked before anything runs."""
+"""Variants of a case: all combinations of values of keys, validated before anything is computed."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _QUOTES = "\"'"
 
 @dataclass(frozen=True)
 class Variant:
-    """One combination of values.
+    """Case for one combination of values.
 
     Attributes
     ----------
     number : int
-        From 1.
+        Number of the variant, from 1.
     values : dict of str to str
-        By key, as they were written.
+        Values by key, as given by the user.
     case : Case
     """
 
@@ -42,21 +42,21 @@ def variants(
     over: Mapping[str, Sequence[Any]],
     overrides: tuple[str, ...] = (),
 ) -> list[Variant]:
-    """All combinations of values of keys; the last key changes fastest.
+    """Validate all combinations of values of keys; the last key varies fastest.
 
     Parameters
     ----------
     source : str, Path or dict
-        A case file, or its tables.
+        Case file, or its tables.
     over : mapping of str to sequence
-        Values by the path of their key, as in `parse_over`.
+        Values by key path, as from `parse_over`.
     overrides : tuple of str
-        ``KEY=VALUE``, the same in all variants.
+        Changes ``KEY=VALUE`` of all variants.
 
     Raises
     ------
     CaseError
-        One line per fault, with the variant; what is wrong with all of them is said once.
+        One line per fault with its variant; faults common to all variants are reported once.
     """
     found: list[Variant] = []
     faults: dict[str, list[str]] = {}
@@ -82,11 +82,12 @@ def _lines(faults: dict[str, list[str]], count: int) -> list[str]:
 
 
 def parse_over(texts: Sequence[str]) -> dict[str, list[str]]:
-    """Keys and their values from ``KEY=V1,V2,...``; commas within brackets or quotes do not count.
+    """Parse ``KEY=V1,V2,...``; commas within brackets or quotes do not separate values.
 
     Raises
     ------
     CaseError
+        If a text is malformed, or a key is repeated.
     """
     over: dict[str, list[str]] = {}
     for text in texts:
@@ -96,13 +97,13 @@ def parse_over(texts: Sequence[str]) -> dict[str, list[str]]:
         if not equals or not key or not all(listed):
             raise CaseError(f"--over {text}: must be KEY=V1,V2,..., such as mesh.degree=4,6,8")
         if key in over:
-            raise CaseError(f"--over {text}: {key} is there twice")
+            raise CaseError(f"--over {text}: {key} is given twice")
         over[key] = listed
     return over
 
 
 def _split(text: str) -> list[str]:
-    """Parts between commas that are not within brackets or quotes."""
+    """Split at commas that are not within brackets or quotes."""
     parts, closing, quote = [""], [], ""
     for character in text:
         if quote:
@@ -121,7 +122,7 @@ def _split(text: str) -> list[str]:
 
 
 def written(value: Any) -> str:
-    """A value as it would be written in a case file."""
+    """Format a value as in a case file."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Mapping):

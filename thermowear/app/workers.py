@@ -1,4 +1,4 @@
-"""Processes that work off a list of tasks and tell how far they are."""
+"""Pool of processes that compute tasks and report their progress."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 
 from ..interrupts import deliver_again
 
-_SPAWN = get_context("spawn")  # a copy of a process that has started MPI would not work
-_PATIENCE = 60.0  # seconds that interrupted workers have to write down what they have
+_SPAWN = get_context("spawn")  # fork does not work after MPI was initialised
+_PATIENCE = 60.0  # seconds for interrupted workers to write their results
 
 
 def work_off(
@@ -21,22 +21,23 @@ def work_off(
     told: Callable[[Any], None],
     lost: Callable[[Any, str], None],
 ) -> None:
-    """Let processes do tasks, each process one at a time.
+    """Distribute tasks to processes, one task per process at a time.
 
-    Ctrl-C (and SIGTERM) here becomes SIGTERM there: what they tell after it still arrives.
+    An interrupt (Ctrl-C, SIGTERM) of this process is passed on to the workers as SIGTERM; their
+    last messages are still received.
 
     Parameters
     ----------
     tasks : sequence
-        That can be pickled.
+        Tasks that can be pickled.
     processes : int
     work : callable
-        Does a task in a process of its own; called with it and with what tells something. A
-        function of a module.
+        Function of a module that computes a task in a worker process; called with the task and a
+        function that sends a message.
     told : callable
-        Called here with each thing told.
+        Called in this process with each message.
     lost : callable
-        Called here with a task whose process has died, and why.
+        Called in this process with a task whose process has died, and the reason.
     """
     waiting = list(tasks)
     workers = {}
@@ -58,9 +59,9 @@ def work_off(
 
 
 def start_petsc() -> None:
-    """Start PETSc so that signals are Python's: Ctrl-C, ``| head``.
+    """Initialise PETSc with Python's signal handlers (Ctrl-C, ``| head``).
 
-    Its options are not read from ``.petscrc`` in the current folder: one of them writes any file.
+    Options in a ``.petscrc`` of the current folder are ignored, as one of them can write any file.
     """
     import petsc4py
 
@@ -68,12 +69,12 @@ def start_petsc() -> None:
 
 
 class _Worker:
-    """A process and the pipe to it."""
+    """Worker process and the pipe to it."""
 
     def __init__(self, work):
         self.pipe, other = _SPAWN.Pipe()
         self.process = _SPAWN.Process(target=_serve, args=(other, work))
-        # Ctrl-C is for us alone: the new process inherits the mask; here it comes in afterwards
+        # only this process handles Ctrl-C: the new one inherits the mask; here it is delayed
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             self.process.start()
@@ -93,7 +94,7 @@ class _Worker:
 
 
 def _hear(workers, worker: _Worker, told, lost) -> bool:
-    """Pass on what a worker tells; whether it is ready for another task."""
+    """Forward a message of a worker; returns True if it is ready for another task."""
     try:
         message = worker.pipe.recv()
     except EOFError:
@@ -107,7 +108,7 @@ def _hear(workers, worker: _Worker, told, lost) -> bool:
 
 
 def _go_on(workers, worker: _Worker, waiting: list, work) -> None:
-    """Give a worker, or a new one in the place of a dead one, another task."""
+    """Assign another task to a worker, or to a new worker that replaces a dead one."""
     if not worker.process.is_alive():
         del workers[worker.pipe]
         if waiting:
@@ -132,9 +133,9 @@ def _let_finish(workers, told) -> None:
 
 
 def _serve(pipe, work) -> None:
-    """Do tasks until there are no more; in a process of its own."""
+    """Main loop of a worker process: compute tasks until there are no more."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # one that was held back is ignored
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # a pending one is ignored
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     deliver_again()
     try:
@@ -146,7 +147,7 @@ def _serve(pipe, work) -> None:
 
 
 def _send(pipe, message) -> None:
-    """Send the whole of a message, whatever signals come."""
+    """Send a complete message, with SIGTERM blocked."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})
     try:
         pipe.send(message)

@@ -1,4 +1,4 @@
-"""Demo cases in motion: runs that keep states on the way, and what `animate` makes of them.
+"""Animations of demo cases, drawn by `animate` from runs with `analysis.frames`.
 
 `gallery.py` computes and draws them.
 """
@@ -15,16 +15,16 @@ HERE = Path(__file__).resolve().parent
 
 @dataclass(frozen=True)
 class Film:
-    """A run to look at.
+    """Animated run.
 
     Attributes
     ----------
     case : str
         Stem of the demo case.
     title, text : str
-        What the gallery says.
+        Title and description in the gallery.
     frames : int
-        The most states that it has.
+        Largest number of states.
     """
 
     case: str
@@ -34,7 +34,7 @@ class Film:
 
     @property
     def name(self) -> str:
-        """Of the file."""
+        """Stem of the file."""
         return f"{self.case}-film"
 
     @property
@@ -46,25 +46,25 @@ class Film:
 FILMS = (
     Film(
         "annular_punch_deep",
-        "A ring that is worn away",
-        "The pressure is steady soon; then the ring gets lower and its face cooler, as the way to "
-        "the cooled top gets shorter.",
+        "Deep wear of a ring",
+        "The pressure becomes steady early; then the height of the ring falls, and its face "
+        "becomes cooler, as the distance to the cooled top decreases.",
     ),
     Film(
         "block_on_ring",
-        "A groove of the ring's radius",
-        "From a line to a groove 2.7 mm wide, under ever less pressure.",
+        "Wear of a groove with the radius of the ring",
+        "From a line contact to a groove of 2.7 mm width, with decreasing pressure.",
     ),
     Film(
         "disk_brake_stop",
-        "A stop",
-        "The disk is hottest before it stands; then the heat spreads.",
+        "Stop of a disk brake",
+        "The temperature of the disk is highest before the stop; then the heat spreads.",
     ),
 )
 
 
 def draw_film(film: Film, results: Path, path: Path) -> None:
-    """Compute a run into a folder below `results`; its film goes to a file.
+    """Compute a run into a folder below `results`, and write its animation to a file.
 
     Raises
     ------

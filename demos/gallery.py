@@ -1,9 +1,9 @@
-"""The gallery of the demo cases: computes all of them and writes README.md with pictures.
+"""Gallery of the demo cases: computes all cases and writes README.md with pictures.
 
     make gallery                                    # or
     scripts/env python3 demos/gallery.py [-o DIR]   # results go to DIR/NAME, by default demos/out
 
-What it says of a case is the first paragraph of the comment at the head of its file.
+The description of a case is the first paragraph of the comment at the head of its file.
 """
 
 from __future__ import annotations
@@ -32,47 +32,55 @@ CHOICES = (
     ("bodies",),
     ("mode", "heat", "track", "cycles", "wear", "friction", "profile", "interface"),
 )
-SIDES = (1100, 1000, 900, 800, 700, 600, 500)  # pixels of the longer side of a picture
-LARGEST = 120_000  # bytes of a picture
-FLAT = 1e-12  # m: rounding, not a worn shape
+SIDES = (
+    1100,
+    1000,
+    900,
+    800,
+    700,
+    600,
+    500,
+)  # longer side of a picture [pixels], in the order of trial
+LARGEST = 120_000  # largest size of a picture [bytes]
+FLAT = 1e-12  # smaller shapes are rounding errors [m]
 KEYS = {
     "critical_speed_m_per_s": "critical speed",
     "critical_speed_with_wear_m_per_s": "with wear",
     "critical_angular_velocity_rad_per_s": "critical speed",
     "critical_angular_velocity_with_wear_rad_per_s": "with wear",
     "max_pressure_Pa": "largest pressure",
-    "shape_range_m": "worn shape, highest to lowest",
-    "wear_volume_1_m3": "worn off body 1",
-    "wear_volume_2_m3": "worn off body 2",
+    "shape_range_m": "peak-to-valley of the worn shape",
+    "wear_volume_1_m3": "worn volume of body 1",
+    "wear_volume_2_m3": "worn volume of body 2",
     "max_temperature_K": "highest temperature",
-    "dissipated_energy_J": "energy dissipated",
+    "dissipated_energy_J": "dissipated energy",
 }
 HEAD = """# Demo cases
 
-Each picture shows what the command above it computes; `scripts/env COMMAND…` runs a command where
-all packages are. The cases explain their keys: change them. This page is made by `make gallery`.
+Each picture shows results of the command above it; `scripts/env COMMAND…` runs a command with all
+packages. The case files explain their keys and can be modified. `make gallery` makes this page.
 """
 
-COMPARISONS = """# One thing varied
+COMPARISONS = """# Comparisons
 
-Runs of the cases above with some keys changed; `slides.py` says which.
+Runs of the cases above with some keys changed, as defined in `slides.py`.
 """
 
-MOTION = """# In motion
+MOTION = """# Animations
 
-Runs of the cases above that keep states on the way, each as far from the last as the steps go.
+Runs of the cases above with `analysis.frames`, which keeps states at equal numbers of steps.
 """
 
 SWEEPS = """# Distortion by heat
 
-Sweeps of the cases above over the speed: one command each computes all variants, and what they
-share once. The steady pressure does not know the speed. The worn shape does: it bends in proportion
-to the speed, as the friction heat does.
+Sweeps of the cases above over the speed: one command computes all variants, with shared set-up.
+The steady pressure does not depend on the speed. The worn shape changes in proportion to the speed,
+as the friction heat does.
 """
 
 
 def main() -> int:
-    """Compute the cases and write the page."""
+    """Compute all cases and write the page."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-o", "--output", metavar="DIR", type=Path, default=HERE / "out")
     results = parser.parse_args().output
@@ -97,7 +105,7 @@ def main() -> int:
 
 
 def compute(case: Path, folder: Path) -> int:
-    """Run a case in a process of its own; its exit code."""
+    """Run a case in a separate process; returns its exit code."""
     command = [sys.executable, "-m", "thermowear", "run", str(case), "-o", str(folder)]
     return subprocess.run([*command, "--overwrite"], check=False).returncode
 
@@ -115,11 +123,11 @@ def write_gallery(
     Parameters
     ----------
     place : Path
-        Where they are written; pictures of earlier galleries are removed.
+        Folder to write to; pictures of earlier galleries are removed.
     cases : list of Path
     results : Path
-        Holds a results folder for each case, named like it, a picture for each slide and study,
-        and a GIF for each film.
+        Folder with a results folder per case (of the same name), a picture per slide and study,
+        and a GIF per film.
     slides : sequence of Slide
     studies : sequence of Study
     films : sequence of Film
@@ -144,7 +152,7 @@ def write_gallery(
 def leading_text(case_text: str) -> str:
     """First paragraph of the comment at the head of a case file, as one line.
 
-    It ends where the comment does, or at a line of it that is empty.
+    It ends with the comment or at its first empty line.
     """
     words = []
     for line in case_text.splitlines():
@@ -156,7 +164,7 @@ def leading_text(case_text: str) -> str:
 
 
 def command_of(study: Study) -> list[str]:
-    """The command that computes a study, as an indented block: an option a line."""
+    """Command that computes a study, as an indented block with one option per line."""
     options = [("--over", study.over), *(("--set", text) for text in study.sets)]
     lines = [f"python3 -m thermowear sweep demos/{study.case}.toml"]
     lines += [f"    {name} {shlex.quote(value)}" for name, value in options]
@@ -164,12 +172,12 @@ def command_of(study: Study) -> list[str]:
 
 
 def figures(summary: dict) -> str:
-    """Key figures of a summary that say something, in one line."""
+    """Key figures of a summary that exist and are not zero, in one line."""
     worn = bool(summary["wear_coefficient_per"])
     found = {key: summary.get(key) for key in KEYS if worn or key != "shape_range_m"}
     if abs(found.get("shape_range_m") or 0.0) < FLAT:
         found["shape_range_m"] = None
-    if summary.get("peak_temperature_K") is not None:  # on the way, not at the end
+    if summary.get("peak_temperature_K") is not None:  # during the run
         found["max_temperature_K"] = summary["peak_temperature_K"]
     said = [f"{KEYS[key]} {_rounded(figure_text(key, v))}" for key, v in found.items() if v]
     line = " · ".join(said)
@@ -177,9 +185,9 @@ def figures(summary: dict) -> str:
 
 
 def small_png(source: Path) -> bytes:
-    """A picture with fewer pixels, so many that it has `LARGEST` bytes at most.
+    """Picture reduced to at most `LARGEST` bytes by fewer pixels.
 
-    Fewer colours would save more, but draw bands into fields.
+    Fewer colours would save more, but cause colour bands in fields.
     """
     with Image.open(source) as picture:
         opaque = picture.convert("RGB")
@@ -193,7 +201,7 @@ def small_png(source: Path) -> bytes:
 
 
 def _entry(case: Path, folder: Path, pictures: Path) -> str:
-    """The part of the page for a case; its pictures are put in their place."""
+    """Section of the page for a case; copies its pictures."""
     text = case.read_text(encoding="utf-8")
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     lines = [f"## {tomllib.loads(text)['title']}", "", *textwrap.wrap(leading_text(text), 100), ""]
@@ -207,7 +215,7 @@ def _entry(case: Path, folder: Path, pictures: Path) -> str:
 
 
 def _film(film: Film, results: Path, pictures: Path) -> str:
-    """The part of the page for a film, which is put in its place."""
+    """Section of the page for a film; copies the film."""
     shown = f"pictures/{film.name}.gif"
     shutil.copyfile(results / f"{film.name}.gif", pictures / f"{film.name}.gif")
     sets = " ".join(f"--set {shlex.quote(text)}" for text in film.sets)
@@ -218,7 +226,7 @@ def _film(film: Film, results: Path, pictures: Path) -> str:
 
 
 def _rounded(text: str) -> str:
-    """Four digits of a number with its unit."""
+    """Round a number with unit to four digits."""
     value, _, unit = text.partition(" ")
     return f"{float(f'{float(value):.4g}'):.12g} {unit}"
 

@@ -1,6 +1,6 @@
-"""One thing varied: pictures of several runs of a case, as in Páczelt and Mróz's lectures.
+"""Comparisons of several runs of a case, as in Páczelt and Mróz's lectures.
 
-`gallery.py` draws them. Each run is one of a demo case with some keys changed.
+`gallery.py` draws them. Each run is a demo case with some keys changed.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ HERE = Path(__file__).resolve().parent
 
 @dataclass(frozen=True)
 class Slide:
-    """A picture of several runs.
+    """Picture comparing several runs.
 
     Attributes
     ----------
     name, title, text : str
-        Of the picture's file, and what the gallery says.
+        Stem of the picture file, title and description in the gallery.
     case : str
         Stem of the demo case.
     runs : dict of str to tuple of str
-        Overrides of the case by what is said of them in the legend; ``{previous}`` in them stands
-        for the results folder of the run before.
+        Overrides of the case by legend entry; ``{previous}`` in them stands for the results folder
+        of the previous run.
     panels : tuple of Panel
     """
 
@@ -40,7 +40,7 @@ class Slide:
 
 
 COLD = "motion.angular_velocity=1e-6 rad/s"
-"""So slow that there is no friction heat."""
+"""Override for a speed without noticeable friction heat."""
 
 PRESSURE, SHAPE = Panel("pressure", from_zero=True), Panel("shape")
 ALONG, RATE = Panel("shape_along_press"), Panel("wear_rate", from_zero=True)
@@ -51,18 +51,19 @@ _FROM = "geometry.initial_shape={previous}/profile.csv"
 SLIDES = (
     Slide(
         "block_on_disk-friction",
-        "Friction bends the worn shape of a block on a disk, and not its pressure (special case 3)",
-        "On a symmetric arc the steady pressure does not know the friction, and goes with the "
-        "cosine of the angle. The worn shapes, along the normal and along the press, do. Cold.",
+        "Influence of friction on a block on a disk (special case 3)",
+        "On a symmetric arc the steady pressure is proportional to the cosine of the angle and "
+        "does not depend on friction. The worn shapes along the normal and along the load "
+        "direction do. Without heat.",
         "block_on_disk",
         {f"mu = {mu}": (f"contact.friction={mu}", COLD) for mu in (0.05, 0.15, 0.3, 0.45)},
         (PRESSURE, SHAPE, ALONG),
     ),
     Slide(
         "block_on_disk-heat",
-        "Friction heat bends it too (special case 3)",
-        "The faster the disk turns the more the heated bodies bulge, and the block wears to match: "
-        "another shape under the same pressure. Clockwise is the mirror image.",
+        "Influence of friction heat on a block on a disk (special case 3)",
+        "The thermal bulge of the bodies grows with the speed of the disk, and the block wears to "
+        "a different shape under the same pressure. Clockwise rotation gives the mirror image.",
         "block_on_disk",
         {
             "cold": (COLD,),
@@ -73,8 +74,9 @@ SLIDES = (
     ),
     Slide(
         "ring_segment_on_disk-senses",
-        "A ring segment, by the sense of rotation (special case 4)",
-        "Pressure before any wear and in the steady state, and the worn shape along the press.",
+        "Influence of the sense of rotation on a ring segment (special case 4)",
+        "Pressure of the unworn faces and in the steady state, and worn shape along the load "
+        "direction.",
         "ring_segment_on_disk",
         {
             "unworn, anticlockwise": ('analysis={type="initial"}',),
@@ -86,7 +88,8 @@ SLIDES = (
     Slide(
         "drum_brake-senses",
         "Leading and trailing shoe of a drum brake (special case 7)",
-        "Both follow the long-shoe law; the same moment presses the leading shoe much harder.",
+        "Both pressures follow the long-shoe law; for the same moment the pressure of the leading "
+        "shoe is much larger.",
         "drum_brake",
         {
             "leading (clockwise)": (),
@@ -96,9 +99,10 @@ SLIDES = (
     ),
     Slide(
         "pivoted_block-senses",
-        "Which way the strip runs (special case 5)",
-        "Running towards the pivot friction presses the block on, away from it friction lifts it "
-        "off; the law of wear makes the pressure a straight line, a root or a parabola.",
+        "Influence of the direction of the strip on a pivoted block (special case 5)",
+        "Friction increases the pressure if the strip runs towards the pivot and reduces it in the "
+        "other direction; the exponent of the wear law determines whether the pressure is linear, "
+        "a root or a parabola.",
         "pivoted_block",
         {
             "towards the pivot, b = 1": ("motion.velocity=50 mm/s",),
@@ -112,18 +116,18 @@ SLIDES = (
     ),
     Slide(
         "punch_on_strip-friction",
-        "How far friction tilts a block (special case 6)",
-        "The more friction pulls at the face below the pin, the more the leading edge carries; in "
-        "the end the trailing edge lifts off.",
+        "Influence of friction on a tilting block (special case 6)",
+        "With increasing friction on the face below the pin the load moves to the leading edge; "
+        "finally the trailing edge lifts off.",
         "punch_on_strip_tilting",
         {f"mu = {mu}": (f"contact.friction={mu}",) for mu in (0.1, 0.3, 0.5, 0.9)},
         (PRESSURE, SHAPE),
     ),
     Slide(
         "annular_punch-exponents",
-        "The law of wear decides the pressure, heat only the shape (special case 8)",
-        "Rates that grow as p^b: the steady pressure goes with r^(-1/b) whatever the bodies are "
-        "made of. Friction heat turns the worn face round, and leaves the pressure alone.",
+        "Influence of wear law and heat on a ring (special case 8)",
+        "For wear rates proportional to p^b the steady pressure is proportional to r^(-1/b) for "
+        "any materials. Friction heat inverts the worn shape and does not change the pressure.",
         "annular_punch",
         {
             f"b = {b:g}{', cold' if cold else ', hot'}": (
@@ -138,9 +142,9 @@ SLIDES = (
     ),
     Slide(
         "annular_punch-story",
-        "One ring, three steady shapes (special case 8)",
-        "Worn in under 100 MPa by a law with b = 2; then under 50 MPa with b = 1; then so fast "
-        "that friction heats it. Each time it runs in from the shape before.",
+        "Successive steady shapes of one ring (special case 8)",
+        "Running-in under 100 MPa with b = 2, then under 50 MPa with b = 1, then with friction "
+        "heat at higher speed, each from the previous worn shape.",
         "annular_punch",
         {
             "b = 2, 100 MPa": (
@@ -158,7 +162,7 @@ SLIDES = (
 
 
 def draw_slide(slide: Slide, results: Path, path: Path) -> None:
-    """Compute the runs of a slide into folders below `results`, and draw them to a file.
+    """Compute the runs of a slide into folders below `results`, and draw them into a file.
 
     Raises
     ------

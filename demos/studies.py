@@ -1,8 +1,8 @@
 """Distortion by heat: sweeps of the demo cases over the speed.
 
-`gallery.py` computes and draws them. The steady pressure does not know the speed; the worn shape
-bends in proportion to it, as friction heat does. The critical speeds of thermoelastic instability
-are 1.5 times the highest ones or more.
+`gallery.py` computes and draws them. The steady pressure does not depend on the speed; the worn
+shape changes in proportion to it, as friction heat does. The critical speeds of thermoelastic
+instability are at least 1.5 times the highest speeds.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ HERE = Path(__file__).resolve().parent
 
 @dataclass(frozen=True)
 class Study:
-    """A sweep and the picture of its worn shapes.
+    """Sweep with the picture of its worn shapes.
 
     Attributes
     ----------
     name, title, text : str
-        Of the picture's file, and what the gallery says.
+        Stem of the picture file, title and description in the gallery.
     case : str
         Stem of the demo case.
     key : str
-        What is swept.
+        Swept key.
     values : tuple of str
     sets : tuple of str
-        Overrides that are the same in all variants.
+        Overrides of all variants.
     """
 
     name: str
@@ -58,34 +58,33 @@ HOT_DRUM = (
     'heat={advection="spread", conductance="1e4 W/(m^2 K)", partition=0.05, ambient="20 degC", '
     'cooling={drum_rim="60 W/(m^2 K)", drum_inside="60 W/(m^2 K)", shoe_inside="20 W/(m^2 K)"}}',
 )
-"""Heat data of the drum brake, chosen by us; the drum is so fast that it is as hot all round."""
+"""Heat data of the drum brake (our choice), with the high-speed limit of advection in the drum."""
 
 STUDIES = (
     Study(
         "punch_on_strip-speeds",
-        "A punch on a strip, by its speed (special case 1)",
-        "Friction heat makes both bodies bulge, and the punch wears hollow to match, by 0.16 µm in "
-        "the middle for each mm/s. Which of its ends is higher, and by how much, friction alone "
-        "decides.",
+        "Influence of speed on a punch on a strip (special case 1)",
+        "Friction heat makes both bodies bulge, and the punch wears to a concave shape, by 0.16 µm "
+        "in the middle per mm/s. The height difference of its ends depends on friction only.",
         "punch_on_strip",
         "motion.velocity",
         ("0.001 mm/s", *(f"{v} mm/s" for v in (1.5, 3, 4.5, 6, 7.5, 9))),
     ),
     Study(
         "block_on_disk-speeds",
-        "A block on a disk, by its speed (special case 3)",
-        "Cold, friction bends the worn shape to one side. Heat makes the block bulge, and it wears "
-        "hollow, by 0.83 µm for each rad/s, the same on both sides.",
+        "Influence of speed on a block on a disk (special case 3)",
+        "Without heat, friction skews the worn shape. Friction heat makes the block bulge, and it "
+        "wears to a concave shape, by 0.83 µm per rad/s, symmetrically.",
         "block_on_disk",
         TURNING,
         ("1e-6 rad/s", *(f"{v} rad/s" for v in (0.2, 0.4, 0.6, 0.8, 1.0, 1.2))),
     ),
     Study(
         "drum_brake-speeds",
-        "A shoe in a drum, by the drum's speed (special case 7)",
-        "Cold, the middle of the lining wears most. Heated, the drum grows inwards from its held "
-        "rim, and the shoe straightens: the ends wear most. The heat data are ours, and the drum "
-        "so fast that it is as hot all round.",
+        "Influence of speed on a shoe in a drum (special case 7)",
+        "Without heat, the middle of the lining wears most. Heated, the drum expands inwards from "
+        "its fixed rim, and the shoe straightens: the ends wear most. The heat data are our "
+        "choice, with the high-speed limit of advection in the drum.",
         "drum_brake",
         TURNING,
         ("-1e-6 rad/s", *(f"{v} rad/s" for v in (-0.3, -0.6, -0.9, -1.2, -1.5, -1.8))),
@@ -93,18 +92,18 @@ STUDIES = (
     ),
     Study(
         "annular_punch-speeds",
-        "A ring on a plate, by its speed (special case 8)",
-        "Cold, the inner edge is 40 µm high, where the pressure is largest. Friction heat is the "
-        "same all over the face; it cups ring and plate alike, and turns the worn shape round.",
+        "Influence of speed on a ring on a plate (special case 8)",
+        "Without heat, the inner edge, where the pressure is largest, is 40 µm high. Friction heat "
+        "is uniform over the face; it bends ring and plate, and inverts the worn shape.",
         "annular_punch",
         TURNING,
         ("1e-6 rad/s", *(f"{v} rad/s" for v in (0.015, 0.03, 0.045, 0.06, 0.075, 0.09))),
     ),
     Study(
         "disk_brake-speeds",
-        "Brake pads on a disk, by its speed (special case 9)",
-        "The soft pads bulge where they are hot, and wear hollow: at 6 rad/s almost five times as "
-        "much as cold. The iron disk hardly bends.",
+        "Influence of speed on brake pads on a disk (special case 9)",
+        "The soft pads bulge by heat and wear to a concave shape: at 6 rad/s almost five times as "
+        "much as without heat. The iron disk hardly deforms.",
         "disk_brake",
         TURNING,
         ("1e-6 rad/s", *(f"{v} rad/s" for v in (1, 2, 3, 4, 5, 6))),
@@ -113,7 +112,7 @@ STUDIES = (
 
 
 def draw_study(study: Study, results: Path, path: Path) -> None:
-    """Compute a sweep into a folder below `results`; its picture of the shapes goes to a file.
+    """Compute a sweep into a folder below `results`, and copy its picture of the shapes to a file.
 
     Raises
     ------

@@ -64,8 +64,8 @@ def test_figures_say_what_there_is(gallery):
         "max_temperature_K": None,
         "wear_coefficient_per": {"punch": "pressure"},
     }
-    worn = "Largest pressure 175 MPa · worn shape, highest to lowest 39.94 µm"
-    assert gallery.figures(summary) == f"{worn} · worn off body 1 15610 mm³"
+    worn = "Largest pressure 175 MPa · peak-to-valley of the worn shape 39.94 µm"
+    assert gallery.figures(summary) == f"{worn} · worn volume of body 1 15610 mm³"
     summary |= {"wear_coefficient_per": {}, "wear_volume_1_m3": 0.0, "max_temperature_K": 368.15}
     assert gallery.figures(summary) == "Largest pressure 175 MPa · highest temperature 95 °C"
     summary |= {"peak_temperature_K": 373.15, "shape_range_m": 4e-19}

@@ -24,7 +24,7 @@ settings.load_profile("explore" if EXPLORES else "fixed")
 
 
 def examples(number: int) -> int:
-    """So many random examples in `make verify`, a quarter of them in `make test`."""
+    """Set the number of random examples: all in `make verify`, a quarter in `make test`."""
     return number if EXPLORES else number // 4
 
 
@@ -102,13 +102,13 @@ def at(interface, radii, values):
 
 @pytest.fixture(scope="session")
 def hot_steady():
-    """The demo: hot, steady, degree 8."""
+    """Result of the hot steady demo, degree 8."""
     return tw.run(tw.load(HOT))
 
 
 @pytest.fixture(scope="session")
 def running_in():
-    """The demo of running-in: cold, degree 8."""
+    """Result of the running-in demo without heat, degree 8."""
     return tw.run(tw.load(COLD_RUNNING_IN))
 
 

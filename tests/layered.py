@@ -1,4 +1,4 @@
-"""A mesh file with a pad of two materials on a block, as a user of gmsh makes it."""
+"""Mesh file of a pad of two materials on a block, made with gmsh as by a user."""
 
 from __future__ import annotations
 

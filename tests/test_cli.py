@@ -1,4 +1,4 @@
-"""The command line: commands, exit codes, and files that are never harmed."""
+"""Command line: commands, exit codes, and protection of files."""
 
 from __future__ import annotations
 
@@ -373,7 +373,7 @@ def test_plot_of_a_broken_table(content, refused):
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory) -> Path:
-    """A results folder, as a whole run of the program leaves it."""
+    """Results folder of a complete run of the program."""
     place = tmp_path_factory.mktemp("run")
     file = place / "ring.toml"
     file.write_text(starter_text("annular-punch"), encoding="utf-8")

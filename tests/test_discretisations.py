@@ -1,4 +1,4 @@
-"""A case beside its coarser and finer neighbours."""
+"""Comparison of a case with a coarser and a finer discretisation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The demos' summaries, the same on every release of dolfinx and on every machine.
+"""Reference values of the demo summaries, for all releases of dolfinx and all machines.
 
 After a change that is meant to change them: ``scripts/env python3 -m tests.test_golden``.
 """

@@ -1,4 +1,4 @@
-"""A case is run in a folder with files that libraries take for settings, or for modules."""
+"""Runs in a folder with files that libraries could read as settings or modules."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SMALL = ("--set=mesh.degree=2", "--set=mesh.elements=2")
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
-    """A folder of files each of which would leave a mark."""
+    """Folder of files that would each leave a trace if they were read."""
     mark, command = tmp_path / "mark", tmp_path / "folder" / "command"
     folder = command.parent
     folder.mkdir()

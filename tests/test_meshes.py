@@ -1,4 +1,4 @@
-"""The reference meshes in meshes/ are those that the generator makes today."""
+"""Reference meshes in meshes/ compared with the output of the generator."""
 
 import runpy
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The same numbers on any number of ranks, and one voice when something is wrong."""
+"""MPI: results independent of the number of ranks, and errors reported once."""
 
 import json
 import os

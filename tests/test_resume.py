@@ -66,7 +66,7 @@ def command(name, folder, *more):
 
 
 def completed(name, folder, *more):
-    """A run in this process, with what it has said."""
+    """Run in this process, with its console output."""
     out, err = io.StringIO(), io.StringIO()
     with redirect_stdout(out), redirect_stderr(err):
         code = main(arguments(name, folder, *more))
@@ -74,7 +74,7 @@ def completed(name, folder, *more):
 
 
 def started(name, folder, *more):
-    """A run in a process of its own."""
+    """Run in a separate process."""
     return subprocess.Popen(
         command(name, folder, *more),
         stdout=subprocess.DEVNULL,
@@ -86,7 +86,7 @@ def started(name, folder, *more):
 
 
 def wait_for(path, process, rows=0):
-    """Until a file is there, with so many lines."""
+    """Wait until a file exists with a given number of lines."""
     deadline = time.monotonic() + 120
     while not (path.exists() and path.read_text(errors="replace").count("\n") >= rows):
         assert process.poll() is None, process.stderr.read()
@@ -95,7 +95,7 @@ def wait_for(path, process, rows=0):
 
 
 def tables(folder):
-    """All tables of a folder by name: header and numbers."""
+    """Header and numbers of all tables of a folder by name."""
     found = {}
     for path in sorted(folder.glob("*.csv")):
         with path.open(newline="") as file:
@@ -154,7 +154,7 @@ def checkpoint_time(folder):
 
 
 def assert_resumes(name, folder, whole, *more):
-    """It goes on to its end, and to the same numbers."""
+    """Check that a resumed run ends with the results of the uninterrupted one."""
     done = completed(name, folder, "--resume", *more)
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""

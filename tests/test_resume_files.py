@@ -14,7 +14,7 @@ STOPPED = "--set=analysis.max_steps=3"
 
 @pytest.fixture
 def place(tmp_path):
-    """A folder with a case of a mesh file and an initial shape, and a run that has stopped."""
+    """Folder with a case of a mesh file and an initial shape, and a stopped run."""
     folder = tmp_path / "first"
     folder.mkdir()
     (folder / "own-mesh.msh").write_bytes(starter_files("own-mesh")["own-mesh.msh"])

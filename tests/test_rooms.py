@@ -1,4 +1,4 @@
-"""The layout of the house: which room may import which."""
+"""Architecture: allowed imports between packages and folders."""
 
 import ast
 import os
@@ -25,7 +25,7 @@ ORDER = [
     "output",
     "app",
 ]
-"""Data flows one way: a room imports only from rooms above it in this list."""
+"""Packages in the order of data flow: each imports only from packages above it."""
 NOT_ALLOWED = {
     "case": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix"},
     "laws": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "pydantic", "pint"},
@@ -40,9 +40,9 @@ BARE = {
     "bulk": {"case", "geometry"},
     "contact": {"case", "geometry"},
 }
-"""Rooms that a room could import by the order, but has no business with."""
+"""Packages that must not be imported although the order would allow it."""
 MOST_MODULES = 14
-"""In a folder, unless they are all of a kind."""
+"""Largest number of modules in a folder, unless they are all of one kind."""
 OF_A_KIND = {"geometry/geometries", "reference", "verification/cases"}
 
 

@@ -1,4 +1,4 @@
-"""The command ``shape``."""
+"""Command ``shape``."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The command `sweep`: exit codes, results, processes."""
+"""Command `sweep`: exit codes, results, processes."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def test_a_sweep_is_not_for_many_ranks(monkeypatch, capsys):
     requirement: under a launcher that starts several processes it says what to do instead.
     """
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
-    monkeypatch.setattr("thermowear.app.cli._speaks", lambda: True)
+    monkeypatch.setattr("thermowear.app.cli._is_reporting_rank", lambda: True)
     assert main(["sweep", BLOCK, *LOADS]) == 1
     assert "--processes" in capsys.readouterr().err
 

@@ -19,7 +19,7 @@ ALLOWED = 1e-6
 
 @dataclass(frozen=True)
 class Balance:
-    """A balance: its name, the reference scale of its error, and a remedy where it fails."""
+    """Balance with its name, the reference scale of its error, and a remedy for violations."""
 
     name: str
     scale: str

@@ -6,7 +6,7 @@ import signal
 import sys
 import threading
 
-_LATER = 0.01
+_DELAY = 0.01
 """Delay after which the destructor has returned [s]."""
 
 
@@ -21,7 +21,7 @@ def deliver_again() -> None:
         heard = callable(signal.getsignal(signal.SIGINT))  # workers handle SIGTERM only
         number = signal.SIGINT if heard else signal.SIGTERM
         main = threading.main_thread().ident
-        again = threading.Timer(_LATER, signal.pthread_kill, (main, number))
+        again = threading.Timer(_DELAY, signal.pthread_kill, (main, number))
         again.daemon = True
         again.start()
 

@@ -134,7 +134,7 @@ class _Packing:
 
 
 def _unpacked(outline: Any, arrays: dict[str, np.ndarray]) -> Any:
-    """The inverse of `_Packing.outline`."""
+    """Rebuild a state from its outline and arrays; inverse of `_Packing.outline`."""
     if not isinstance(outline, dict):
         return outline
     kind, content = next(iter(outline.items()))

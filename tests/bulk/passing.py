@@ -20,7 +20,7 @@ INNER, OUTER = 0.01, 0.02
 
 
 def strip(columns=4, rows=4, length=0.02, height=0.01, bend=0.0):
-    """A rectangle from the origin; its cells are curved inside where `bend` is not zero."""
+    """Rectangle with a corner at the origin; inner cells are curved if `bend` is not zero."""
 
     def place(p):
         x, y = p[..., 0] * length, p[..., 1] * height
@@ -40,7 +40,7 @@ def strip(columns=4, rows=4, length=0.02, height=0.01, bend=0.0):
 
 
 def ring(columns=24, rows=3):
-    """A ring about the origin, of curved cells."""
+    """Ring of curved cells about the origin."""
     angles, radii = np.linspace(0, 2 * np.pi, columns + 1), np.linspace(INNER, OUTER, rows + 1)
     at = Polar()
     surfaces = {

@@ -24,7 +24,7 @@ PLANE = [PlaneStrain(THICKNESS), PlaneStress(THICKNESS)]
 
 
 def bent(points):
-    """A smooth, curving move of all points; sides of cells become curves."""
+    """Smooth map of all points after which the sides of cells are curved."""
     x, y = points[:, 0], points[:, 1]
     moved, raised = np.sin(90 * y + 20 * x), np.cos(70 * x) * np.sin(50 * y)
     return points + 2e-3 * np.column_stack([moved, raised])

@@ -18,7 +18,7 @@ ENDS = (np.linspace(0.0, 0.02, 3), np.linspace(0.0, 0.01, 3), np.array([0.0, 0.0
 
 
 def bar():
-    """A bar of three layers of 10, 20 and 10 mm, the middle one a part; pressed at its top."""
+    """Bar of three layers of 10, 20 and 10 mm, the middle one a part, loaded at its top."""
     body = mesh_lattice(Lattice(ENDS, lambda p: p), 1)
     middles = body.points[body.cells].mean(axis=1)[:, 2]
     body = replace(body, zones={"core": np.flatnonzero((middles > 0.01) & (middles < 0.03))})

@@ -1,4 +1,4 @@
-"""What the next degree adds to Lagrange elements."""
+"""Hierarchical surplus of Lagrange elements."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from thermowear.verification.starter import starter
 
 
 def _carried(amount):
-    """A smooth field after the nodes of the punch have gone up, those of its face the most."""
+    """Transfer of a smooth field after an upward motion of the punch nodes, largest at its face."""
     case = starter("annular-punch", "mesh.elements=8")
     mesh = case.tagged_mesh()
     points = mesh.points.copy()

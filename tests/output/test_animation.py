@@ -21,7 +21,7 @@ from ..conftest import COLD_RUNNING_IN
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory, bodies_not_drawn):
-    """A short running-in with frames and the animation that the run draws of them."""
+    """Short running-in with frames, and the animation drawn by the run."""
     path = tmp_path_factory.mktemp("animation") / "run"
     small = ["--set=mesh.degree=2", "--set=mesh.elements=4", "--set=analysis.end_time=5 s"]
     more = ["--set=analysis.output_times=[]", "--set=analysis.frames=6"]

@@ -1,4 +1,4 @@
-"""What the terminal shows."""
+"""Console output."""
 
 import io
 

@@ -99,7 +99,7 @@ def summary_of(folder: Path) -> dict:
 
 @pytest.fixture(scope="module", params=list(starters()))
 def finished(request, tmp_path_factory):
-    """A starter case by name, and the folder of a coarse run of it."""
+    """Starter case by name, and the results folder of a coarse run."""
     name = request.param
     place = tmp_path_factory.mktemp(name)
     with contextlib.redirect_stdout(io.StringIO()):
@@ -376,7 +376,7 @@ def test_a_mesh_from_a_file_gives_the_same_pressure(name, ending, allowed, tmp_p
 
 
 def gmsh_punch(path: Path) -> None:
-    """The bodies of the starter case, in millimetres, as a user of gmsh meshes them."""
+    """Bodies of the starter case in millimetres, meshed with gmsh as by a user."""
     with gmsh_model("punch") as gmsh:
         model, occ = gmsh.model, gmsh.model.occ
         punch = occ.addRectangle(-5, 0, 0, 10, 10)

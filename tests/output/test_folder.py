@@ -1,4 +1,4 @@
-"""The results folder by itself."""
+"""Results folder without a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""States on the way in a results folder: always whole, and never more than asked for."""
+"""Frames of a results folder: always complete, and at most as many as requested."""
 
 import meshio
 import numpy as np
@@ -22,7 +22,7 @@ SMALL = [
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A short running-in with at most eight frames."""
+    """Short running-in with at most eight frames."""
     path = tmp_path_factory.mktemp("frames") / "run"
     assert (
         main(["run", str(COLD_RUNNING_IN), "-o", str(path), *SMALL, "--set=analysis.frames=8"]) == 0

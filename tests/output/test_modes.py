@@ -1,4 +1,4 @@
-"""The files and the words of a stability analysis."""
+"""Files and console output of a stability analysis."""
 
 import json
 

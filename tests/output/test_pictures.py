@@ -31,7 +31,7 @@ def folders(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def drawn(folders):
-    """The same, drawn once for all who look."""
+    """Results folders with all pictures drawn once."""
     assert make_pictures(folders / "hot") == []
     assert make_pictures(folders / "cold") == []
     return folders

@@ -1,4 +1,4 @@
-"""The report: one page that says all, of any results folder, and harms no file."""
+"""Report: complete page of any results folder, without damage to other files."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ VOID = {"meta", "img"}
 
 
 class Page(HTMLParser):
-    """A page taken apart; every element must be closed where it was opened."""
+    """Parsed page; checks that elements are properly nested."""
 
     def __init__(self, text: str):
         super().__init__(convert_charrefs=True)
@@ -69,7 +69,7 @@ class Page(HTMLParser):
             self.rows[-1][1][-1] += data
 
     def shown(self, key: str) -> str:
-        """The text beside the figure of a key."""
+        """Displayed value of a key."""
         (cells,) = [cells for title, cells in self.rows if title.startswith(f"{key} = ")]
         return cells[-1]
 
@@ -113,7 +113,7 @@ def runs(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def copy(runs, tmp_path):
-    """A results folder of one's own."""
+    """Modifiable copy of a results folder."""
 
     def make(name: str) -> Path:
         return Path(shutil.copytree(runs / name, tmp_path / name))

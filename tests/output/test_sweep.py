@@ -1,4 +1,4 @@
-"""The folder of a sweep: its table, its pictures, and what it never harms."""
+"""Folder of a sweep: table, pictures, and protection of other files."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Points:
 
 
 def made(path, over, surface=False, failing=()):
-    """A sweep whose largest pressure is the product of all its values."""
+    """Sweep in which the largest pressure is the product of all values."""
     from itertools import product
 
     combinations = list(product(*over.values()))

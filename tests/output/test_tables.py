@@ -1,4 +1,4 @@
-"""The files of the results folder."""
+"""Tables of the results folder."""
 
 import json
 import resource

@@ -20,14 +20,14 @@ from ..errors import CaseError, CaseNote, ComputationError
 from .arguments import parser
 
 _INTERRUPTED = 130
-_HEARD = 1.0  # s; a launcher may drop messages written just before a process ends with an error
+_DELIVERY_TIME = 1.0  # s; launchers may drop messages written just before a failing process ends
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code."""
     with warnings.catch_warnings():
         warnings.simplefilter("default", CaseNote)
-        warnings.showwarning = _shown(warnings.showwarning)
+        warnings.showwarning = _note_hook(warnings.showwarning)
         return _main(arguments)
 
 
@@ -36,16 +36,16 @@ def _main(arguments: list[str] | None) -> int:
         chosen = parser().parse_args(arguments)
         return _COMMANDS[chosen.command](chosen)
     except CaseError as error:
-        return _complain(error.exit_code, *error.faults)
+        return _report_errors(error.exit_code, *error.faults)
     except ComputationError as error:
-        return _complain(error.exit_code, str(error))
+        return _report_errors(error.exit_code, str(error))
     except KeyboardInterrupt as error:
-        return _complain(_INTERRUPTED, str(error) or "interrupted")
+        return _report_errors(_INTERRUPTED, str(error) or "interrupted")
     except BrokenPipeError:
         return 0
 
 
-def _shown(otherwise):
+def _note_hook(otherwise):
     """Hook for warnings that prints a `CaseNote` as a note and leaves others unchanged."""
 
     def show(message, category, *where) -> None:
@@ -61,15 +61,15 @@ def _printable(line: str) -> str:
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
 
 
-def _complain(code: int, *lines: str) -> int:
-    for line in lines if _speaks() else ():
+def _report_errors(code: int, *lines: str) -> int:
+    for line in lines if _is_reporting_rank() else ():
         print(f"error: {_printable(line)}", file=sys.stderr, flush=True)
     if _launched_processes() > 1:
-        time.sleep(_HEARD)
+        time.sleep(_DELIVERY_TIME)
     return code
 
 
-def _speaks() -> bool:
+def _is_reporting_rank() -> bool:
     """True if this process of a parallel run reports errors.
 
     MPI is initialised if a launcher started several processes, so that finalisation waits for all
@@ -102,7 +102,7 @@ def _init(chosen) -> int:
     files = {path: starter_text(chosen.name).encode()}
     files |= {path.parent / name: data for name, data in starter_files(chosen.name).items()}
     for file in files:
-        _guard(file, chosen.overwrite)
+        _check_absent(file, chosen.overwrite)
     for file, data in files.items():
         try:
             file.write_bytes(data)
@@ -138,7 +138,7 @@ def _mesh(chosen) -> int:
 
     check_ending(chosen.output)
     case = load(chosen.case, tuple(chosen.overrides))
-    _guard(chosen.output, chosen.overwrite)
+    _check_absent(chosen.output, chosen.overwrite)
     mesh = case.tagged_mesh()
     write_mesh(mesh, chosen.output)
     print(f"wrote {chosen.output}: {len(mesh.cells)} cells, {len(mesh.points)} points")
@@ -153,7 +153,7 @@ def _shape(chosen) -> int:
 
     check_format(chosen.output)
     start_petsc()
-    _guard(chosen.output, chosen.overwrite)
+    _check_absent(chosen.output, chosen.overwrite)
     shaped = shape(chosen.case, chosen.body, tuple(chosen.overrides))
     write_shape(shaped, chosen.output)
     deepest = 1e6 * shaped.design.depth.max()
@@ -161,7 +161,7 @@ def _shape(chosen) -> int:
     return 0
 
 
-def _guard(path: Path, overwrite: bool) -> None:
+def _check_absent(path: Path, overwrite: bool) -> None:
     if os.path.exists(path) and not overwrite:  # Path.exists raises an error for invalid names
         raise CaseError(f"{path}: exists; use --overwrite or another name")
 

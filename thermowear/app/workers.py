@@ -11,7 +11,7 @@ from typing import Any
 from ..interrupts import deliver_again
 
 _SPAWN = get_context("spawn")  # fork does not work after MPI was initialised
-_PATIENCE = 60.0  # seconds for interrupted workers to write their results
+_FINISH_TIME = 60.0  # seconds for interrupted workers to write their results
 
 
 def work_off(
@@ -49,12 +49,12 @@ def work_off(
             worker.begin(waiting.pop(0))
         while workers:
             for pipe in connection.wait(list(workers)):
-                if _hear(workers, workers[pipe], told, lost):  # type: ignore[index]
-                    _go_on(workers, workers[pipe], waiting, work)  # type: ignore[index]
+                if _receive(workers, workers[pipe], told, lost):  # type: ignore[index]
+                    _assign_next(workers, workers[pipe], waiting, work)  # type: ignore[index]
     except KeyboardInterrupt:
         for worker in workers.values():
             worker.process.terminate()
-        _let_finish(workers, told)
+        _collect_remaining(workers, told)
         raise
 
 
@@ -93,7 +93,7 @@ class _Worker:
         self.pipe.close()
 
 
-def _hear(workers, worker: _Worker, told, lost) -> bool:
+def _receive(workers, worker: _Worker, told, lost) -> bool:
     """Forward a message of a worker; returns True if it is ready for another task."""
     try:
         message = worker.pipe.recv()
@@ -107,7 +107,7 @@ def _hear(workers, worker: _Worker, told, lost) -> bool:
     return False
 
 
-def _go_on(workers, worker: _Worker, waiting: list, work) -> None:
+def _assign_next(workers, worker: _Worker, waiting: list, work) -> None:
     """Assign another task to a worker, or to a new worker that replaces a dead one."""
     if not worker.process.is_alive():
         del workers[worker.pipe]
@@ -121,10 +121,10 @@ def _go_on(workers, worker: _Worker, waiting: list, work) -> None:
         worker.end()
 
 
-def _let_finish(workers, told) -> None:
+def _collect_remaining(workers, told) -> None:
     for worker in workers.values():
         try:
-            while worker.pipe.poll(_PATIENCE) and (message := worker.pipe.recv()) is not None:
+            while worker.pipe.poll(_FINISH_TIME) and (message := worker.pipe.recv()) is not None:
                 told(message[0])
         except (EOFError, OSError):
             pass

@@ -94,8 +94,8 @@ def distribute(tagged, comm) -> Bodies:
     kind, facet_kind, order, gdim, names, surfaces, checksum = head
     cell_nodes, facet_nodes = _nodes(kind, order), _nodes(facet_kind, order)
     if comm.rank == 0:
-        cells = tagged.cells[:, _matched(cell_nodes, tagged.node_places(kind))]
-        facets = tagged.facets[:, _matched(facet_nodes, tagged.node_places(facet_kind))]
+        cells = tagged.cells[:, _matching(cell_nodes, tagged.node_places(kind))]
+        facets = tagged.facets[:, _matching(facet_nodes, tagged.node_places(facet_kind))]
         points, cell_tags, facet_tags = tagged.points, tagged.cell_tags, tagged.facet_tags
     else:
         cells, points = np.empty((0, len(cell_nodes)), dtype=np.int64), np.empty((0, gdim))
@@ -123,7 +123,7 @@ def _nodes(kind: str, order: int) -> np.ndarray:
     return np.asarray(element.points)
 
 
-def _matched(wanted: np.ndarray, listed: np.ndarray) -> np.ndarray:
+def _matching(wanted: np.ndarray, listed: np.ndarray) -> np.ndarray:
     """Index in `listed` of each of the `wanted` points."""
     return np.array([np.abs(listed - place).sum(axis=1).argmin() for place in wanted])
 

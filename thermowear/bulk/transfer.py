@@ -12,13 +12,13 @@ from ..compat import coordinate_element, geometry_dofmap
 from .bodies import Bodies
 from .field import as_function, reference_element
 
-_STEPS = 20
-_BETWEEN = 0.76
+_NEWTON_STEPS = 20
+_CONTROL_POINT = 0.76
 """Position of the control point, as a fraction of the way from a cell's first corner to its
 midpoint."""
-_AT_ONCE = 2_000_000
+_LARGEST_BLOCK = 2_000_000
 """Largest number of point-cell pairs searched at once."""
-_ROOM = 1e-6
+_TOLERANCE = 1e-6
 """Tolerance of the bounding-box search, relative to the size of a cell."""
 
 
@@ -69,7 +69,7 @@ def transferred(
     count, gdim = new.dofmap.index_map.size_local, old.mesh.geometry.dim
     result, stays, error = np.zeros(count), np.zeros(count, dtype=bool), 0.0
     places = new.tabulate_dof_coordinates()[:count, :gdim]
-    if _alike(old, new):
+    if _same_connectivity(old, new):
         stays = np.all(places == old.tabulate_dof_coordinates()[:count, :gdim], axis=1)
         result[stays] = values[stays]
     field = _Field(old)
@@ -88,7 +88,7 @@ def transferred(
     return result, error
 
 
-def _alike(old: fem.FunctionSpace, new: fem.FunctionSpace) -> bool:
+def _same_connectivity(old: fem.FunctionSpace, new: fem.FunctionSpace) -> bool:
     """True if the meshes have equal connectivity on all ranks and differ in node positions only."""
     same = np.array_equal(old.dofmap.list, new.dofmap.list)
     return all(new.mesh.comm.allgather(same))
@@ -116,20 +116,20 @@ class _Field:
         self._simplex = kind in (basix.CellType.triangle, basix.CellType.tetrahedron)
 
     def between_nodes(self, cells: _Cells) -> tuple[np.ndarray, np.ndarray]:
-        """A point of each cell that is not a node for any degree, and the values there."""
-        place = _BETWEEN * self._middle[None]
+        """Control point of each cell, not a node for any degree, and the values there."""
+        place = _CONTROL_POINT * self._middle[None]
         shape, values = (e.tabulate(0, place)[0, 0, :, 0] for e in self._elements)
         return np.einsum("k,cki->ci", shape, cells.nodes), cells.values @ values
 
     def at(self, cells: _Cells, points: np.ndarray) -> np.ndarray:
         """Values at points, evaluated in the containing (or else the nearest) cell."""
-        chunk = max(1, _AT_ONCE // len(cells.nodes))
+        chunk = max(1, _LARGEST_BLOCK // len(cells.nodes))
         parts = [self._at(cells, points[i : i + chunk]) for i in range(0, len(points), chunk)]
         return np.concatenate([np.empty(0), *parts])
 
     def _at(self, cells: _Cells, points: np.ndarray) -> np.ndarray:
         low, high = cells.nodes.min(axis=1), cells.nodes.max(axis=1)
-        room = _ROOM * (high - low).max(axis=1, keepdims=True)
+        room = _TOLERANCE * (high - low).max(axis=1, keepdims=True)
         near = np.ones((len(points), len(low)), dtype=bool)
         for k in range(points.shape[1]):
             near &= points[:, k, None] >= (low - room)[:, k]
@@ -154,7 +154,7 @@ class _Field:
     def _places(self, nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Reference coordinates of points in one cell each, by Newton's method."""
         place = np.tile(self._middle, (len(points), 1))
-        for _ in range(_STEPS if len(points) else 0):
+        for _ in range(_NEWTON_STEPS if len(points) else 0):
             table = np.asarray(self._geometry.tabulate(1, place))[..., 0]
             off = np.einsum("nk,nki->ni", table[0], nodes) - points
             tangents = np.einsum("dnk,nki->nid", table[1:], nodes)

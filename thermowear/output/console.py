@@ -85,7 +85,7 @@ class Progress:
             self._unsaid = ""
 
 
-_LEAST = 1e-3
+_SMALLEST_SHOWN = 1e-3
 """Smallest error estimate shown as a number [%]; errors of quadrature are far below."""
 
 
@@ -151,14 +151,14 @@ def _highlights(summary: dict):
             yield f"NOT BALANCED: {balance.name}", f"relative error {error:.1e}"
     yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
     low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
-    yield "pressure", f"{low:.5g} … {high:.5g} MPa{_within(summary, 'pressure', 'max_pressure')}"
+    yield "pressure", f"{low:.5g} … {high:.5g} MPa{_margin(summary, 'pressure', 'max_pressure')}"
     yield "approach of the holder towards body 2", f"{summary['approach_m'] * 1e6:.5g} µm"
     if summary["shape_range_m"] > 0:
-        shape = f"{summary['shape_range_m'] * 1e6:.5g} µm{_within(summary, 'shape')}"
+        shape = f"{summary['shape_range_m'] * 1e6:.5g} µm{_margin(summary, 'shape')}"
         yield "peak-to-valley of the worn shape", shape
     if summary["max_temperature_K"] is not None:
         hottest = f"{summary['max_temperature_K'] - 273.15:.5g} °C"
-        yield "highest temperature", f"{hottest}{_within(summary, 'temperature')}"
+        yield "highest temperature", f"{hottest}{_margin(summary, 'temperature')}"
         yield "friction power", f"{summary['friction_power_W']:.6g} W"
     if summary.get("contact_heat_1_W") is not None and summary["friction_power_W"] == 0.0:
         yield "heat from body 1 to body 2", f"{summary['contact_heat_2_W']:.6g} W"
@@ -194,14 +194,14 @@ def _highlights(summary: dict):
         yield "distance from the steady state", f"{summary['distance_from_steady']:.2e}"
 
 
-def _within(summary: dict, *quantities: str) -> str:
+def _margin(summary: dict, *quantities: str) -> str:
     """Largest estimated discretisation error of some quantities, as text; "" without any."""
     keys = (f"{quantity}_error_estimate_relative" for quantity in quantities)
     known = [summary[key] for key in keys if summary.get(key) is not None]
     if not known:
         return ""
     error = 100 * max(known)
-    return f"  (± {error:.2g} %)" if error >= _LEAST else f"  (± {_LEAST:g} %)"
+    return f"  (± {error:.2g} %)" if error >= _SMALLEST_SHOWN else f"  (± {_SMALLEST_SHOWN:g} %)"
 
 
 def _critical(summary: dict, which: str) -> str:

@@ -15,7 +15,7 @@ from .checkpoint import read_checkpoint
 from .folder import ResultsFolder, now, versions
 from .frames import FRAMES, keep_indexed
 
-_ANEW = "--overwrite starts the run from the beginning"
+_START_ANEW = "--overwrite starts the run from the beginning"
 
 
 class ResumedFolder(ResultsFolder):
@@ -47,7 +47,7 @@ class ResumedFolder(ResultsFolder):
         try:
             keep_indexed(self.path / FRAMES)
         except ValueError as error:
-            raise CaseError(f"--resume: {error}; {_ANEW}") from None
+            raise CaseError(f"--resume: {error}; {_START_ANEW}") from None
 
     def abandon(self) -> None:
         """Restore the state of the folder before the attempt to resume."""
@@ -112,7 +112,7 @@ def last_checkpoint(
     found = read_checkpoint(path)
     if found is None:
         if (path / "summary.json").is_file():
-            raise CaseError(f"-o {path}: contains results but no checkpoint; {_ANEW}")
+            raise CaseError(f"-o {path}: contains results but no checkpoint; {_START_ANEW}")
         return None
     about = found[0]
     changed = forbidden_changes(load(about["case"]), case, about["time"])
@@ -121,12 +121,12 @@ def last_checkpoint(
         also = "".join(f", {change.key} differs too" for change in others)
         raise CaseError(
             f"--resume: the case differs from that of the run: {first}{also}; "
-            f"undo the change, or {_ANEW}"
+            f"undo the change, or {_START_ANEW}"
         )
     if about["ranks"] != ranks:
         raise CaseError(
             f"--resume: the checkpoint was written by {about['ranks']} processes, not by {ranks}; "
-            f"use mpirun -n {about['ranks']}, or {_ANEW}"
+            f"use mpirun -n {about['ranks']}, or {_START_ANEW}"
         )
     return found
 

@@ -1,4 +1,4 @@
-"""The CSV files of a results folder."""
+"""Reading and writing of the CSV files of a results folder."""
 
 from __future__ import annotations
 

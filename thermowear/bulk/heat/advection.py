@@ -20,7 +20,7 @@ from ..bodies import Bodies
 from ..field import reference_element
 from ..kinematics import Model, section_measure
 
-_RESOLVED = 1.0
+_RESOLVED_PECLET = 1.0
 """Largest cell Péclet number at which no stabilisation is needed."""
 
 
@@ -89,7 +89,7 @@ class Advection:
     @property
     def stabilised(self) -> bool:
         """True if some cells exceed the Péclet number that needs no stabilisation."""
-        return self.peclet > _RESOLVED
+        return self.peclet > _RESOLVED_PECLET
 
 
 def advection(
@@ -122,14 +122,14 @@ def advection(
     k = bodies.per_body({part: k for part, (k, _) in moving.items()})
     ρc = bodies.per_body({part: ρc for part, (_, ρc) in moving.items()})
     v = _velocity(mesh, passage)
-    crossing = _crossing(mesh, v)
+    crossing = _transit_time(mesh, v)
     number = ufl.dot(v, v) * crossing / (2 * degree)  # times the diffusivity, zero in body 1
     number *= bodies.per_body({part: ρc / k for part, (k, ρc) in moving.items()})
     peclet = _largest(bodies, passage, number)
 
     upwind = 0 * δT
     flow = ρc * ufl.dot(v, ufl.grad(T))
-    if peclet > _RESOLVED:  # the stabilisation vanishes with the cell Péclet number
+    if peclet > _RESOLVED_PECLET:  # the stabilisation vanishes with the cell Péclet number
         delay = crossing / (2 * degree) * ufl.min_value(1, number / 3)
         upwind = delay * ufl.dot(v, ufl.grad(δT))
         flow = flow * δT + (flow - k * ufl.div(ufl.grad(T))) * upwind
@@ -149,7 +149,7 @@ def _velocity(mesh, passage: Passage):
     return ufl.as_vector(v + [0.0 * ψ] * (mesh.geometry.dim - 2))
 
 
-def _crossing(mesh, v):
+def _transit_time(mesh, v):
     """Transit time through a cell [s], from the velocity in the reference cell."""
     speed = ufl.dot(ufl.inv(ufl.Jacobian(mesh)), v)
     return 1 / ufl.sqrt(ufl.max_value(ufl.dot(speed, speed), 1e-30))

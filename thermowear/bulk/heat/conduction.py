@@ -20,7 +20,7 @@ from ..direct_solver import Factor
 from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 
-_HIDDEN = 1e-8
+_BALANCE_FLOOR = 1e-8
 """Fraction of the flows between neighbouring nodes that serves as scale of the heat balance where
 no other heat flows; rounding errors are 1e-8 of these flows."""
 
@@ -134,7 +134,7 @@ class Conduction:
         In bodies of uniform temperature all heat flows are rounding errors.
         """
         size = float(np.abs(self.conductivity.getDiagonal().getArray()) @ np.abs(rise))
-        return _HIDDEN * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
+        return _BALANCE_FLOOR * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
 
     def losses(
         self,

@@ -18,7 +18,7 @@ from ..direct_solver import Factor
 from ..field import owned
 from .advection import Passage
 
-_APART = 1e-9
+_PATH_TOLERANCE = 1e-9
 """Tolerance for identifying paths, relative to the range of their coordinates."""
 
 
@@ -45,7 +45,7 @@ class EvenPaths:
         ψ.interpolate(passage.stream(bodies.mesh))
         height = space.tabulate_dof_coordinates()[self._passing, 2]
         places = np.column_stack([ψ.x.array[self._passing], height])
-        self._path, self._paths = _numbered(self._comm, places)
+        self._path, self._paths = _path_numbers(self._comm, places)
 
     def whole(self, fixed: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Extend prescribed temperatures (n_owned,) to whole paths (mean on each path)."""
@@ -58,7 +58,7 @@ class EvenPaths:
 
     def factor(self, matrix: PETSc.Mat, fixed: np.ndarray, symmetry: str) -> EvenFactor:
         """Factorise a matrix of all values with `fixed` values eliminated; see `Factor`."""
-        join = self._joining(matrix)
+        join = self._prolongation(matrix)
         small = matrix.ptap(join)
         first = small.getOwnershipRange()[0]
         held = np.flatnonzero(self.joined(fixed[:, None].astype(float))[:, 0] > 0)
@@ -90,7 +90,7 @@ class EvenPaths:
         paths = sums @ loads[self._passing]
         return sum_over_ranks(self._comm, paths)
 
-    def _joining(self, matrix: PETSc.Mat) -> PETSc.Mat:
+    def _prolongation(self, matrix: PETSc.Mat) -> PETSc.Mat:
         """Prolongation matrix from unknowns to nodal values, a single one in each row."""
         others, rows = len(self._others), matrix.getLocalSize()[0]
         size = others + (self._paths if self._comm.rank == 0 else 0)
@@ -126,7 +126,7 @@ class EvenFactor:
         return self._paths.spread(unknowns).reshape(loads.shape, order="F")
 
 
-def _numbered(comm, places: np.ndarray) -> tuple[np.ndarray, int]:
+def _path_numbers(comm, places: np.ndarray) -> tuple[np.ndarray, int]:
     """Path number of each point, and the number of paths.
 
     Parameters
@@ -136,16 +136,16 @@ def _numbered(comm, places: np.ndarray) -> tuple[np.ndarray, int]:
         Stream function and height of each point.
     """
     everywhere = np.vstack(comm.allgather(places))
-    steps = [_steps(values) for values in everywhere.T]
+    steps = [_ordinals(values) for values in everywhere.T]
     _, number = np.unique(np.column_stack(steps), axis=0, return_inverse=True)
     first = sum(comm.allgather(len(places))[: comm.rank])
     return number.ravel()[first : first + len(places)], int(number.max()) + 1
 
 
-def _steps(values: np.ndarray) -> np.ndarray:
-    """Rank of each value in ascending order; values equal up to rounding have the same rank."""
+def _ordinals(values: np.ndarray) -> np.ndarray:
+    """Number of each value in ascending order; values equal up to rounding have the same."""
     order = np.argsort(values)
-    higher = np.diff(values[order]) > _APART * np.ptp(values)
+    higher = np.diff(values[order]) > _PATH_TOLERANCE * np.ptp(values)
     step = np.empty(len(values), dtype=np.int64)
     step[order] = np.concatenate([[0], np.cumsum(higher)])
     return step

@@ -127,12 +127,12 @@ class VaryingConduction(Conduction):
         return _products(len(rise), tangents)
 
     def losses(self, rise, heat, storage=None, ambient=0.0):
-        return super().losses(rise, heat + self._held_back(rise), storage, ambient)
+        return super().losses(rise, heat + self._excess_flow(rise), storage, ambient)
 
     def turnover(self, rise, heat, storage=None, ambient=0.0):
-        return super().turnover(rise, heat + self._held_back(rise), storage, ambient)
+        return super().turnover(rise, heat + self._excess_flow(rise), storage, ambient)
 
-    def _held_back(self, rise: np.ndarray) -> np.ndarray:
+    def _excess_flow(self, rise: np.ndarray) -> np.ndarray:
         """Negative of the nodal heat flow in excess of that at constant conductivity [W]."""
         return -_products(len(rise), ((part.matrix, part.excess(rise)) for part in self.parts))
 

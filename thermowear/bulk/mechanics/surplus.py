@@ -45,7 +45,7 @@ def _element(cell: basix.CellType, degree: int):
             at, weights = np.zeros((0, dim)), np.zeros((0, 0))
             if d == 1 or (d > 1 and not edges_only):
                 local, weights = _moments(kind, degree)
-                at = _placed(kind, geometry[corners], local)
+                at = _mapped(kind, geometry[corners], local)
             points[d].append(np.ascontiguousarray(at))
             moments[d].append(np.ascontiguousarray(weights[:, None, :, None]))
     span = _products(cell, degree) if edges_only else _vanishing(cell, degree, inside=False)
@@ -95,7 +95,7 @@ def _quadrature(cell: basix.CellType, degree: int) -> tuple[np.ndarray, np.ndarr
     return np.asarray(points), np.asarray(weights)
 
 
-def _placed(kind: basix.CellType, corners: np.ndarray, local: np.ndarray) -> np.ndarray:
+def _mapped(kind: basix.CellType, corners: np.ndarray, local: np.ndarray) -> np.ndarray:
     """Map local points of an edge or facet with given corners to the cell."""
     units = np.asarray(basix.geometry(kind))
     along = [np.flatnonzero((units == unit).all(axis=1))[0] for unit in np.eye(units.shape[1])]

@@ -20,7 +20,7 @@ from .windows import FLAT, Extent, around_contact, color_limits, is_small, whole
 
 _DEFORMED_PART = 0.06  # largest displacement drawn, relative to the size of the bodies
 _PIXELS = 1400  # longer side of a rendered picture
-_BEHIND = 1e-3  # offset of body 1 away from the viewer, relative to the size of the bodies
+_DEPTH_OFFSET = 1e-3  # offset of body 1 away from the viewer, relative to the size of the bodies
 
 
 def draw_bodies(folder: Path) -> None:
@@ -122,7 +122,7 @@ def _render(grid, name: str, colors: str, limits, extent: Extent) -> np.ndarray:
     plotter.set_background("white")  # type: ignore[arg-type]
     for body in np.unique(grid.cell_data["body"]):
         part = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == body))
-        part.points[:, 2] = (body - 1) * _BEHIND * max(width, height)
+        part.points[:, 2] = (body - 1) * _DEPTH_OFFSET * max(width, height)
         plotter.add_mesh(
             part, scalars=name, cmap=colors, clim=limits, lighting=False, show_scalar_bar=False
         )

@@ -21,7 +21,7 @@ from .profile import draw_profile
 from .track import draw_track
 
 _TIMEOUT = 180.0  # seconds for the rendering process
-_LONG = 1800.0  # seconds for the rendering process of an animation
+_ANIMATION_TIMEOUT = 1800.0  # seconds for the rendering process of an animation
 
 
 def make_pictures(folder: Path) -> list[str]:
@@ -101,7 +101,11 @@ def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
 def _animate(folder: Path, path: Path, fps: float) -> str:
     """Draw an animation; returns the reason of a failure, empty on success."""
     return _render(
-        "animation.make", str(folder.resolve()), str(path.resolve()), str(fps), timeout=_LONG
+        "animation.make",
+        str(folder.resolve()),
+        str(path.resolve()),
+        str(fps),
+        timeout=_ANIMATION_TIMEOUT,
     )
 
 

@@ -15,10 +15,10 @@ from ..quantities import HISTORY, INTERFACE, Quantity
 from .curves import STYLE
 
 COLORS = {"pressure": "viridis", "temperature": "inferno", "shape": "cividis", "wear": "magma_r"}
-_LONGER = 4.6  # longer side of the face [inches]
+_LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
 _FLAT = 1e-12  # m
-_FLATTEST = (
+_LARGEST_ANGLE = (
     100.0  # largest angle of a boundary triangle [degrees]; larger ones lie outside the face
 )
 
@@ -58,7 +58,7 @@ def _draw(path: Path, data: dict[str, np.ndarray], names: list[str], title: str 
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
     tall = np.clip(np.ptp(y) / np.ptp(x), 0.3, 2.5)
-    width, height = _LONGER / max(1.0, tall) + 2.2, _LONGER * min(1.0, tall) + 0.8
+    width, height = _LONGER_SIDE / max(1.0, tall) + 2.2, _LONGER_SIDE * min(1.0, tall) + 0.8
     with mpl.rc_context(STYLE | {"axes.grid": False}):
         size = (width * columns, height * rows + (0.3 if title else 0.0))
         layout = ConstrainedLayoutEngine(wspace=0.06, hspace=0.06)
@@ -100,7 +100,7 @@ def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
     to_first, to_second = (corners - np.roll(corners, shift, axis=1) for shift in (1, -1))
     opposite = np.roll(_angles(-to_second, -to_first), -2, axis=1)
     while True:
-        flat = ~hidden & np.any((neighbors == -1) & (opposite > _FLATTEST), axis=1)
+        flat = ~hidden & np.any((neighbors == -1) & (opposite > _LARGEST_ANGLE), axis=1)
         if not flat.any():
             result.set_mask(hidden)
             return result

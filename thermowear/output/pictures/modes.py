@@ -36,15 +36,15 @@ def draw_modes(folder: Path) -> None:
 
 
 def _curves(modes: list[dict], model: str) -> Figure:
-    growing = [[mode] for mode in modes if not _stays(mode)]
-    staying = [mode for mode in modes if _stays(mode)]
+    growing = [[mode] for mode in modes if not _is_stationary(mode)]
+    staying = [mode for mode in modes if _is_stationary(mode)]
     groups = [*growing, *([staying] if staying else [])]
     figure = Figure(figsize=(6.4, 3.1 * len(groups)), layout="constrained", dpi=150)
     axes = figure.subplots(len(groups), sharex=True, squeeze=False)[:, 0]
     for axis, group in zip(axes, groups, strict=True):
         for mode in group:
             label, place = abscissa(mode, model)
-            axis.plot(place, mode["pressure"], label=_told(mode))
+            axis.plot(place, mode["pressure"], label=_description(mode))
             if mode["frequency"][0] > 0:
                 later = "a quarter period later"
                 axis.plot(place, -mode["pressure_imaginary"], "--", label=later)
@@ -63,7 +63,7 @@ def _maps(modes: list[dict]) -> Figure:
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for axis, mode in zip(axes, modes, strict=False):
         drawn = _map(axis, mode)
-        axis.set_title(fill(_told(mode), _TITLE), fontsize=9)
+        axis.set_title(fill(_description(mode), _TITLE), fontsize=9)
     for axis in axes[len(modes) :]:
         axis.set_visible(False)
     figure.colorbar(drawn, ax=axes, label=MODES["pressure"].label, shrink=0.6)
@@ -79,11 +79,11 @@ def _map(axis: Axes, mode: dict):
     return drawn
 
 
-def _stays(mode: dict) -> bool:
+def _is_stationary(mode: dict) -> bool:
     return mode["growth_rate"][0] == 0 and mode["frequency"][0] == 0
 
 
-def _told(mode: dict) -> str:
+def _description(mode: dict) -> str:
     """Describe a mode: kind, and its growth rate or critical speed."""
     factor, rate, frequency = (mode[k][0] for k in ("speed_factor", "growth_rate", "frequency"))
     kind = (

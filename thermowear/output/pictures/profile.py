@@ -15,7 +15,7 @@ from .curves import STYLE, abscissa
 
 _SAME = 1e-3
 """Relative difference below which both shapes coincide, as on a level face."""
-_EVEN = 1e-2
+_SMALLEST_RANGE = 1e-2
 """Smallest range of wear rates along the face, relative to their size."""
 _PAIRS = (
     ("shape", "shape_along_press", "height of the unloaded face"),
@@ -46,5 +46,5 @@ def draw_profile(folder: Path) -> None:
 
 
 def _differ(along_normal: np.ndarray, along_press: np.ndarray) -> bool:
-    size = max(float(np.ptp(along_normal)), _EVEN * float(np.abs(along_normal).max()))
+    size = max(float(np.ptp(along_normal)), _SMALLEST_RANGE * float(np.abs(along_normal).max()))
     return float(np.nanmax(np.abs(along_press - along_normal))) > _SAME * size

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from .windows import color_limits
 
 PIXELS = (1400, 1100)
-_FROM = (0.55, -1.0, 0.6)  # direction of the camera from the bodies
-_APART = 1e-6  # of the bodies' size
-_BEHIND = 1e-3
-_EDGE = 40.0  # smallest angle between faces at a drawn edge [degrees]
+_CAMERA = (0.55, -1.0, 0.6)  # direction of the camera from the bodies
+_MERGED = 1e-6  # of the bodies' size
+_DEPTH_OFFSET = 1e-3
+_EDGE_ANGLE = 40.0  # smallest angle between faces at a drawn edge [degrees]
 
 
 def draw_solids(path, grid, fields: list[tuple[str, str]], note: str, y: float) -> None:
@@ -59,9 +59,9 @@ def cut(grid, y: float) -> list:
     for body in (2, 1):
         part = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == body))
         # merge coinciding samples of neighbouring cells, so that interior faces are no surface
-        whole = part.clean(tolerance=_APART * size)
+        whole = part.clean(tolerance=_MERGED * size)
         surface = whole.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, y, 0.0)).extract_surface()
-        surface.points[:, 1] += (2 - body) * _BEHIND * size
+        surface.points[:, 1] += (2 - body) * _DEPTH_OFFSET * size
         surfaces.append(surface)
     return surfaces
 
@@ -75,12 +75,12 @@ def render(surfaces: list, name: str, colors: str, limits) -> np.ndarray:
             surface, scalars=name, cmap=colors, clim=limits, show_scalar_bar=False, ambient=0.5
         )
         edges = surface.extract_feature_edges(
-            feature_angle=_EDGE, boundary_edges=False, non_manifold_edges=False
+            feature_angle=_EDGE_ANGLE, boundary_edges=False, non_manifold_edges=False
         )
         if edges.n_points:
             plotter.add_mesh(edges, color="black", line_width=2, lighting=False)
     plotter.enable_parallel_projection()  # type: ignore[call-arg]
-    plotter.camera_position = [np.array(_FROM), np.zeros(3), (0.0, 0.0, 1.0)]
+    plotter.camera_position = [np.array(_CAMERA), np.zeros(3), (0.0, 0.0, 1.0)]
     plotter.add_axes(line_width=4)  # type: ignore[call-arg]
     plotter.reset_camera()  # type: ignore[call-arg]
     plotter.camera.zoom(1.1)

@@ -8,10 +8,12 @@ import numpy as np
 
 FLAT = 0.55
 """Aspect ratio (height over width) below which the colour bar is placed below a window."""
-_SMALL = 0.15  # size of a contact relative to the bodies, below which it gets its own window
-_AROUND = 3.0  # width of that window relative to the size of the contact
+_SMALL_CONTACT = (
+    0.15  # size of a contact relative to the bodies, below which it gets its own window
+)
+_WINDOW_SIZE = 3.0  # width of that window relative to the size of the contact
 _MARGIN = 0.02
-_LEAST = 99.5  # percentile of the samples at the end of the colour range
+_PERCENTILE = 99.5  # percentile of the samples at the end of the colour range
 
 Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]
 
@@ -38,14 +40,14 @@ def around_contact(interfaces: Sequence[dict[str, np.ndarray]]) -> Extent | None
         1e3 * np.concatenate([t[axis][p] for t, p in zip(interfaces, pressed, strict=True)])
         for axis in "xy"
     )
-    reach = _AROUND / 2 * max(np.ptp(x), np.ptp(y))
+    reach = _WINDOW_SIZE / 2 * max(np.ptp(x), np.ptp(y))
     x, y = (v.min() + np.ptp(v) / 2 for v in (x, y))
     return x - reach, x + reach, y - reach, y + reach
 
 
 def is_small(contact: Extent, points: np.ndarray) -> bool:
     """True if a contact is small relative to bodies with these points, and gets its own window."""
-    return bool(contact[1] - contact[0] < _AROUND * _SMALL * np.ptp(points[:, 0]))
+    return bool(contact[1] - contact[0] < _WINDOW_SIZE * _SMALL_CONTACT * np.ptp(points[:, 0]))
 
 
 def within(contact: Extent, points: np.ndarray) -> Extent:
@@ -56,7 +58,7 @@ def within(contact: Extent, points: np.ndarray) -> Extent:
 
 def color_limits(values: np.ndarray) -> tuple[float, float]:
     """Colour range without the few samples near singular edges."""
-    low, high = float(values.min()), float(np.percentile(values, _LEAST))
+    low, high = float(values.min()), float(np.percentile(values, _PERCENTILE))
     return (low, high) if high > low else (low - 0.5, low + 0.5)
 
 

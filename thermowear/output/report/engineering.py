@@ -71,7 +71,7 @@ def quantity(value: Any, si: str) -> str:
         return ", ".join(_entry(key, inner, si) for key, inner in value.items()) or NOTHING
     sizes = [abs(size) for size in _numbers(value)]
     unit, scale = multiple(si, max(sizes, default=0.0))
-    parts = value if _many(value) else [value]
+    parts = value if _is_list(value) else [value]
     text = ", ".join(_text(part, si, scale) for part in parts) or NOTHING
     return f"{text} {unit}" if unit and sizes else text
 
@@ -83,7 +83,7 @@ def _entry(key: str, value: Any, si: str) -> str:
 
 def _text(value: Any, si: str, scale: float) -> str:
     """Format one value times a scale; nested lists, such as intervals, in brackets."""
-    if _many(value):
+    if _is_list(value):
         return f"[{', '.join(_text(part, si, scale) for part in value)}]"
     if isinstance(value, dict):
         return quantity(value, si)
@@ -98,12 +98,12 @@ def _text(value: Any, si: str, scale: float) -> str:
 
 def _numbers(value: Any) -> Iterator[float]:
     """Iterate over the finite numbers in a value and in its lists."""
-    if _many(value):
+    if _is_list(value):
         for part in value:
             yield from _numbers(part)
     elif isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
         yield value
 
 
-def _many(value: Any) -> bool:
+def _is_list(value: Any) -> bool:
     return isinstance(value, list | tuple)

@@ -13,9 +13,9 @@ from .keys import Axis
 from .record import Record
 
 LINES = ("-", "--", "-.", ":")
-_FEW = 6
+_LEGEND_LIMIT = 6
 _MOST_COLUMNS = 6
-_WIDE = 30.0
+_LOG_RATIO = 30.0
 """Smallest ratio of largest to smallest value for a logarithmic axis; the values must also be more
 evenly spaced on it."""
 
@@ -48,7 +48,7 @@ class Layout:
     @property
     def continuous(self) -> bool:
         """True if colours form a continuous scale instead of entries of a legend."""
-        return self.axis.numbers is not None and len(self.axis.words) > _FEW
+        return self.axis.numbers is not None and len(self.axis.words) > _LEGEND_LIMIT
 
     def color(self, place: int):
         """Colour of a value of the coloured key, by its index."""
@@ -93,7 +93,7 @@ def lay_out(record: Record) -> Layout:
 
 def is_wide(numbers) -> bool:
     """Test whether numbers suit a logarithmic axis better than a linear one."""
-    if len(numbers) < 3 or min(numbers) <= 0 or max(numbers) < _WIDE * min(numbers):
+    if len(numbers) < 3 or min(numbers) <= 0 or max(numbers) < _LOG_RATIO * min(numbers):
         return False
     linear, logarithmic = (np.diff(np.sort(x)) for x in (numbers, np.log(numbers)))
     return bool(logarithmic.min() / logarithmic.max() > linear.min() / linear.max())

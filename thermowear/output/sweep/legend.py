@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 _LINE = 0.22  # inches
 _SHORT = 14  # characters of an entry, up to which several entries stand side by side
-_ABREAST = 4
+_MOST_COLUMNS = 4
 
 
 def add_legend(figure: Figure, place: str, title: str, handles: Sequence[Artist]) -> None:
@@ -24,7 +24,7 @@ def tallest(legends: Iterable[Sequence[Artist]]) -> float:
 
 def _columns(handles: Sequence[Artist]) -> int:
     longest = max(len(str(handle.get_label())) for handle in handles)
-    return min(_ABREAST, len(handles)) if longest <= _SHORT else 1
+    return min(_MOST_COLUMNS, len(handles)) if longest <= _SHORT else 1
 
 
 def _rows(handles: Sequence[Artist]) -> int:

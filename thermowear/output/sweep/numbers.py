@@ -16,7 +16,7 @@ from .layout import LINES, Layout, is_wide
 from .legend import add_legend, tallest
 from .record import Record
 
-_SAME = 1e-6
+_EQUAL = 1e-6
 """Relative difference below which numbers are considered equal."""
 _MARKED = 25
 _LISTED = 24  # entries of a legend
@@ -127,4 +127,4 @@ def _place(folder: Path) -> float:
 
 
 def _varies(values: np.ndarray) -> bool:
-    return bool(np.ptp(values) > _SAME * np.abs(values).max())
+    return bool(np.ptp(values) > _EQUAL * np.abs(values).max())

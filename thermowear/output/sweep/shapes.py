@@ -18,7 +18,7 @@ from .legend import add_legend, tallest
 
 _SINGULAR, _MOST = 3.0, 0.9
 """Peaks are clipped if they exceed the first factor times the quantile of the second."""
-_SAME = 1e-6
+_EQUAL = 1e-6
 """Relative difference below which curves are considered identical."""
 
 
@@ -80,7 +80,7 @@ def alike(curves: list[np.ndarray]) -> bool:
     first, *others = curves
     if not others or any(len(curve) != len(first) for curve in others):
         return False
-    nearest = _SAME * np.nanmax(np.abs(first))
+    nearest = _EQUAL * np.nanmax(np.abs(first))
     return all(np.allclose(curve, first, 0.0, nearest, equal_nan=True) for curve in others)
 
 

@@ -11,7 +11,7 @@ from ...quantities import HISTORY, INTERFACE, Quantity
 from ..curves import BODIES, abscissa, wrapped
 from .states import Film, State
 
-_ROOM = 1.06  # end of an axis relative to the largest value
+_AXIS_END = 1.06  # end of an axis relative to the largest value
 _SINGULAR, _MOST = 3.0, 0.9
 """Peaks are clipped if they exceed the first factor times the quantile of the second."""
 _FAINT = {"color": "0.6", "linewidth": 1.2}
@@ -33,7 +33,7 @@ class PressureCurve:
             if state.interface["pressure"].max() > 0:
                 axis.plot(*self._curve(state), style, label=name, **_FAINT)
         (self._line,) = axis.plot(*self._curve(states[0]), color="tab:red", label="now")
-        axis.set_ylim(0.0, _ROOM * max(top(self._curve(state)[1]) for state in states))
+        axis.set_ylim(0.0, _AXIS_END * max(top(self._curve(state)[1]) for state in states))
         axis.set_xlim(_span(self._curve(state)[0] for state in states))
         axis.set_ylabel(wrapped(INTERFACE["pressure"]))
         axis.set_xlabel(abscissa(states[-1].interface, self._film.model)[0])
@@ -55,7 +55,7 @@ class WearCurves:
         self._lines: dict[str, Line2D] = {}
         self._curves = {
             name: curve
-            for name, curve in (("wear_1", _along("wear_1")), ("wear_2", _of_body_2))
+            for name, curve in (("wear_1", _along("wear_1")), ("wear_2", _wear_of_body_2))
             if curve(film.states[-1])[1].max() > 0
         }
 
@@ -75,7 +75,7 @@ class WearCurves:
             places += [curve(state)[0] for state in states]
             values += [curve(state)[1] for state in states]
         deepest = max(v.max() for v in values)
-        axis.set_ylim(_ROOM * deepest, (1 - _ROOM) * deepest)
+        axis.set_ylim(_AXIS_END * deepest, (1 - _AXIS_END) * deepest)
         axis.set_xlim(_span(places))
         axis.set_ylabel(f"wear depth\n[{INTERFACE['wear_1'].unit}]")
         axis.set_xlabel(abscissa(states[-1].interface, self._film.model)[0])
@@ -111,7 +111,7 @@ class Course:
             axis.set_xscale("log")
         axis.set_xlim(self._time[0], self._time[-1])
         if self._name == "max_pressure":
-            axis.set_ylim(0.0, _ROOM * self._drawn.max())
+            axis.set_ylim(0.0, _AXIS_END * self._drawn.max())
         axis.set_xlabel(HISTORY["time"].axis + ("" if self._even else ", logarithmic"))
         axis.set_ylabel(wrapped(quantity))
         self._mark = axis.axvline(self._time[0], color="tab:red", linewidth=1.2)
@@ -153,7 +153,7 @@ def _along(name: str) -> Curve:
     )
 
 
-def _of_body_2(state: State) -> tuple[np.ndarray, np.ndarray]:
+def _wear_of_body_2(state: State) -> tuple[np.ndarray, np.ndarray]:
     """Wear depths of body 2 along the contact, or along the track if body 1 reciprocates."""
     if state.track is None:
         return _along("wear_2")(state)

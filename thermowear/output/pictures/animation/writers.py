@@ -17,7 +17,7 @@ from ....errors import CaseError
 from ...atomic_write import replacing
 
 GIF, MP4 = ".gif", ".mp4"
-_REST = 1.5  # duration of the last frame [s]
+_LAST_DURATION = 1.5  # duration of the last frame [s]
 
 
 def ffmpeg() -> str:
@@ -52,7 +52,7 @@ def write_gif(path: Path, pictures: Iterator[np.ndarray], fps: float, palette: n
         Image.fromarray(picture).quantize(palette=colors, dither=Image.Dither.NONE)
         for picture in pictures
     ]
-    shown = [1 / fps] * (len(frames) - 1) + [max(_REST, 1 / fps)]
+    shown = [1 / fps] * (len(frames) - 1) + [max(_LAST_DURATION, 1 / fps)]
     with replacing(path) as draft:
         frames[0].save(
             draft,
@@ -81,7 +81,7 @@ def write_mp4(path: Path, pictures: Iterator[np.ndarray], fps: float) -> None:
     stream = f"-f rawvideo -pix_fmt rgb24 -s {width}x{height} -r {fps:g} -i -".split()
     rest = [
         "-vf",
-        f"tpad=stop_mode=clone:stop_duration={_REST:g}",
+        f"tpad=stop_mode=clone:stop_duration={_LAST_DURATION:g}",
         "-pix_fmt",
         "yuv420p",
         "-f",

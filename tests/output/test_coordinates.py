@@ -1,0 +1,57 @@
+"""Coordinate names in labels of plane, axisymmetric and 3D models."""
+
+import json
+
+import numpy as np
+import pytest
+
+from thermowear.output import tables
+from thermowear.output.coordinates import in_model, model_of
+from thermowear.output.pictures import bodies, curves
+from thermowear.output.quantities import INTERFACE, PROFILE
+from thermowear.output.report.columns import shown_table
+
+AXES = {"axisymmetric": ("r", "z"), "plane-strain": ("x", "y"), "3d": ("x", "y")}
+
+
+@pytest.mark.parametrize(("model", "names"), AXES.items())
+def test_labels_name_the_coordinates_of_the_model(model, names):
+    """requirement: r and z in axisymmetric models, x and y in others; headers do not change."""
+    for column, name in zip("xy", names, strict=True):
+        shown = in_model(INTERFACE[column], model)
+        assert shown.axis == f"{name} [mm]"
+        assert shown.header == f"{column}_m"
+        assert in_model(PROFILE[f"normal_{column}"], model).label == f"normal, {name}"
+    assert in_model(INTERFACE["s"], model) == INTERFACE["s"]
+    assert in_model(INTERFACE["pressure"], model) == INTERFACE["pressure"]
+
+
+@pytest.mark.parametrize(("model", "names"), AXES.items())
+def test_axes_and_tables_of_a_folder(model, names, tmp_path):
+    """requirement: the model is read from the summary; curves and report tables use its names."""
+    assert model_of(tmp_path) == ""
+    (tmp_path / "summary.json").write_text(json.dumps({"model": model}), encoding="utf-8")
+    assert model_of(tmp_path) == model
+    x = np.linspace(1.0, 2.0, 5)
+    label, place = curves.abscissa({"x": x, "y": 0 * x, "s": x}, model_of(tmp_path))
+    assert label == f"{names[0]} [mm]"
+    assert place == pytest.approx(1e3 * x)
+    shown = shown_table("", {"x_m": x, "y_m": x, "pressure_Pa": x}, "interface.csv", model)
+    assert [head.label for head in shown.heads] == [*names, "contact pressure"]
+
+
+def test_pictures_of_the_bodies(tmp_path, monkeypatch):
+    """requirement: the axes of the section of an axisymmetric model are r and z."""
+    (tmp_path / "summary.json").write_text('{"model": "axisymmetric"}', encoding="utf-8")
+    grid = bodies.pyvista.ImageData(dimensions=(3, 3, 1)).cast_to_unstructured_grid()
+    grid["von_mises_Pa"] = np.ones(grid.n_points)
+    grid["displacement_m"] = np.zeros((grid.n_points, 3))
+    monkeypatch.setattr(bodies.pyvista, "read", lambda _: grid)
+    interface = {"x": np.ones(1), "y": np.ones(1), "pressure": np.ones(1)}
+    monkeypatch.setattr(tables, "read", lambda *_: interface)
+    drawn = []
+    monkeypatch.setattr(
+        bodies, "_draw", lambda path, grid, fields, axes, *_, **__: drawn.append(axes)
+    )
+    bodies.draw_bodies(tmp_path)
+    assert drawn == [("r [mm]", "z [mm]")] * 2

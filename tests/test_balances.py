@@ -18,7 +18,7 @@ NEARLY_INCOMPRESSIBLE = "bodies.punch.poisson_ratio=0.49999999999"
 
 
 def test_the_bound():
-    """requirement: 1e-6; infinite and undefined errors never hold, a missing one is no fault."""
+    """requirement: limit 1e-6; infinite and NaN errors violate it, missing ones do not."""
     assert holds(ALLOWED)
     assert not any(holds(error) for error in (1.1e-6, -1.1e-6, math.inf, math.nan))
     assert relative(0.0, 0.0) == 0.0
@@ -29,7 +29,7 @@ def test_the_bound():
 
 
 def test_a_run_that_is_not_balanced_fails(tmp_path, capsys):
-    """requirement: exit 2 with the reason; results readable; report, console and plot say it."""
+    """requirement: exit 2 with the reason, also in report, console and plot; results readable."""
     folder = tmp_path / "r"
     arguments = ("run", str(HOT), "--set", NEARLY_INCOMPRESSIBLE, *COARSE, "--no-pictures")
     assert main([*arguments, "-o", str(folder)]) == 2
@@ -54,7 +54,7 @@ def _notes(make, folder):
 
 
 def test_a_sweep_marks_the_variant_and_goes_on(tmp_path, capsys):
-    """requirement: the variant is marked as failed, others go on, exit 2."""
+    """requirement: the variant is marked as failed, others continue, exit 2."""
     over = "bodies.punch.poisson_ratio=0.49999999999,0.3"
     arguments = ("sweep", str(HOT), "--over", over, *COARSE, "--no-pictures", "--processes", "1")
     assert main([*arguments, "-o", str(tmp_path / "s")]) == 2

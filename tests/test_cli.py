@@ -90,7 +90,7 @@ WRONG_WORDS = [
 )
 def test_wrong_words(words, text, case, refused):
     """
-    requirement: a wrong command line ends with exit code 1 and one line that points to --help.
+    requirement: an invalid command line ends with exit code 1 and one line that points to --help.
     """
     line = refused(*words)
     assert text in line
@@ -155,7 +155,7 @@ def test_a_starter_is_written_and_valid(name, capsys):
 @pytest.mark.parametrize("name", ["annular-punch", "own-mesh"])
 def test_a_case_is_checked_without_the_solvers(name):
     """
-    requirement: `validate` answers at once: it loads no dolfinx, PETSc, gmsh, VTK or plotting.
+    requirement: `validate` loads no dolfinx, PETSc, gmsh, VTK or plotting.
     """
     assert main(["init", name, "-o", "case.toml"]) == 0
     command = [sys.executable, "-X", "importtime", "-m", "thermowear", "validate", "case.toml"]
@@ -192,7 +192,7 @@ def test_init_does_not_overwrite(refused):
 
 def test_init_names_the_starters(refused):
     """
-    requirement: an unknown name is answered with the known ones.
+    requirement: the error of an unknown name lists the known ones.
     """
     line = refused("init", "brake")
     assert all(name in line for name in starters())
@@ -206,14 +206,14 @@ def test_init_names_the_starters(refused):
 )
 def test_init_where_nothing_can_be_written(target, case, refused):
     """
-    requirement: a place that cannot be written to is one line, exit code 1.
+    requirement: a place that cannot be written to: one line, exit code 1.
     """
     assert "cannot be written" in refused("init", "annular-punch", "-o", target)
 
 
 def test_init_into_a_folder(refused):
     """
-    requirement: a folder where a file is due is one line, exit code 1.
+    requirement: a folder instead of a file: one line, exit code 1.
     """
     assert "cannot be written" in refused("init", "annular-punch", "-o", ".", "--overwrite")
 
@@ -279,7 +279,7 @@ def parts(mesh: meshio.Mesh) -> dict[str, tuple[str, np.ndarray]]:
 @pytest.mark.parametrize("ending", [".msh", ".vtu", ".xdmf", ".inp"])
 def test_a_mesh_is_read_back(ending, case):
     """
-    requirement: `mesh` writes bodies and surfaces so that another program finds them.
+    requirement: `mesh` writes bodies and surfaces readable by another program.
     """
     mesh = written_mesh(case, f"ring{ending}")
     found = parts(mesh)
@@ -321,7 +321,7 @@ def test_a_mesh_of_unknown_ending(name, case, refused):
 @pytest.mark.parametrize("folder", ["none", "ring.toml", "/proc"])
 def test_a_mesh_where_nothing_can_be_written(folder, ending, case, refused):
     """
-    requirement: a place that cannot be written to is one line, exit code 1.
+    requirement: a place that cannot be written to: one line, exit code 1.
     """
     target = f"{folder}/mesh{ending}"
     assert f"-o {target}: cannot be written" in refused("mesh", case, *SMALL, "-o", target)
@@ -353,7 +353,7 @@ def test_a_mesh_touches_no_file_beside_it(case):
 @pytest.mark.parametrize("folder", ["none", ".", "ring.toml"])
 def test_plot_without_results(folder, case, refused):
     """
-    requirement: `plot` of what is no results folder is one line, exit code 1.
+    requirement: `plot` without a results folder: one line, exit code 1.
     """
     assert folder in refused("plot", folder)
     assert list(contents()) == [case]
@@ -362,7 +362,7 @@ def test_plot_without_results(folder, case, refused):
 @pytest.mark.parametrize("content", [b"", b"a,b\n1,2\n", b"\xff\xfe\x00"])
 def test_plot_of_a_broken_table(content, refused):
     """
-    requirement: `plot` of a file that is not ours is one line, exit code 1.
+    requirement: `plot` with a file of other origin: one line, exit code 1.
     """
     Path("interface.csv").write_bytes(content)
     refused("plot", ".")
@@ -385,7 +385,7 @@ def results(tmp_path_factory) -> Path:
 
 def test_a_run_leaves_its_files(results):
     """
-    requirement: a run leaves summary, interface, fields, the resolved case and how it went.
+    requirement: a run writes summary, interface, fields, the resolved case and run.json.
     """
     assert {path.name for path in results.iterdir()} == {
         "summary.json",
@@ -403,7 +403,7 @@ def test_a_run_leaves_its_files(results):
 
 def test_the_resolved_case_is_the_case_that_was_run(results):
     """
-    requirement: case.resolved.toml has every default and every --set in it.
+    requirement: case.resolved.toml contains all defaults and all --set.
     """
     resolved = tw.load(results / "case.resolved.toml")
     source = tomllib.loads(starter_text("annular-punch"))
@@ -412,7 +412,7 @@ def test_the_resolved_case_is_the_case_that_was_run(results):
 
 def test_a_second_run_touches_nothing(results, case, refused):
     """
-    requirement: results that are there are not touched without --overwrite.
+    requirement: existing results remain unchanged without --overwrite.
     """
     before = contents(results)
     line = refused("run", case, *SMALL, "-o", str(results), "--no-pictures")
@@ -423,7 +423,7 @@ def test_a_second_run_touches_nothing(results, case, refused):
 
 def test_a_run_refuses_a_folder_of_something_else(case, refused):
     """
-    requirement: a folder with files of others is not used without --overwrite.
+    requirement: a folder with other files is not used without --overwrite.
     """
     Path("notes").mkdir()
     Path("notes/todo.txt").write_text("mine", encoding="utf-8")
@@ -433,7 +433,7 @@ def test_a_run_refuses_a_folder_of_something_else(case, refused):
 
 def test_overwriting_spares_the_files_of_others(case, capsys):
     """
-    requirement: --overwrite replaces earlier results and leaves files of others alone.
+    requirement: --overwrite replaces earlier results and keeps other files.
     """
     folder = Path("results/ring")
     (folder / "more").mkdir(parents=True)
@@ -467,7 +467,7 @@ def test_overwriting_spares_the_files_of_others(case, capsys):
 )
 def test_a_wrong_case_leaves_no_folder(changes, path, case, refused):
     """
-    requirement: no results folder is left behind when the case is wrong.
+    requirement: no results folder remains if the case is invalid.
     """
     assert refused("run", case, "--set", changes).startswith(f"error: {path}: ")
     assert refused("run", case, "--set", changes, "-o", "a/b").startswith(f"error: {path}: ")
@@ -476,7 +476,7 @@ def test_a_wrong_case_leaves_no_folder(changes, path, case, refused):
 
 def test_a_wrong_case_keeps_earlier_results(results, case, refused):
     """
-    requirement: nothing is overwritten when the case is wrong, even with --overwrite.
+    requirement: nothing is overwritten if the case is invalid, even with --overwrite.
     """
     before = contents(results)
     refused("run", case, "--set", "mesh.degree=0", "-o", str(results), "--overwrite")
@@ -491,7 +491,7 @@ def test_a_wrong_case_keeps_earlier_results(results, case, refused):
 @pytest.mark.parametrize("more", [(), ("--overwrite",)], ids=["plain", "overwrite"])
 def test_a_run_where_nothing_can_be_written(target, more, case, refused):
     """
-    requirement: an output folder that cannot be made is one line, before anything is computed.
+    requirement: an output folder that cannot be created: one line, before computing.
     """
     before = contents()
     assert f"error: -o {target}: cannot be written" in refused("run", case, "-o", target, *more)

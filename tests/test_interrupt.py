@@ -81,7 +81,7 @@ def test_a_reader_that_goes_away_does_not_end_the_run(tmp_path):
     "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
 )
 def test_interrupted_run_leaves_readable_results(tmp_path, number):
-    """requirement: what was computed before Ctrl-C is there, complete and consistent."""
+    """requirement: results up to Ctrl-C are complete and consistent."""
     folder = tmp_path / "out"
     process = subprocess.Popen(
         [sys.executable, "-m", "thermowear", "run", str(COLD_RUNNING_IN), "-o", str(folder)]
@@ -118,7 +118,7 @@ def status(folder):
 
 
 def test_ctrl_c_after_the_last_step_of_a_run(after_the_last_step, tmp_path, capsys):
-    """requirement: a noted request is never dropped: results whole, exit code 130."""
+    """requirement: a requested stop is not lost: complete results, exit code 130."""
     words = ["run", str(COLD_RUNNING_IN), *SHORT, "-o", str(tmp_path / "r"), "--no-pictures"]
     assert main(words) == 130
     assert capsys.readouterr().err == "error: interrupted\n"
@@ -138,13 +138,13 @@ def test_ctrl_c_after_the_last_step_of_a_variant(after_the_last_step, tmp_path):
 
 
 def test_ctrl_c_after_the_last_step_of_a_variant_in_python(after_the_last_step):
-    """requirement: `tw.sweep` does not go on with the next variant."""
+    """requirement: `tw.sweep` does not start the next variant."""
     with pytest.raises(KeyboardInterrupt):
         tw.sweep(tw.load(COLD_RUNNING_IN, SMALL), {"contact.friction": [0.25, 0.3]})
 
 
 def test_ctrl_c_after_the_last_step_of_a_coarser_run(after_the_last_step, tmp_path, monkeypatch):
-    """requirement: `--accuracy` does not go on with the finer one."""
+    """requirement: `--accuracy` does not start the finer discretisation."""
     folder = tmp_path / "r"
     words = ["run", str(COLD_RUNNING_IN), *SHORT, "-o", str(folder), "--no-pictures", "--accuracy"]
     monkeypatch.setattr(SavingRecorder, "checkpoint", lambda *_: None)  # the run itself passes
@@ -158,7 +158,7 @@ def test_ctrl_c_after_the_last_step_of_a_coarser_run(after_the_last_step, tmp_pa
     ids=["nothing to keep", "kept"],
 )
 def test_ctrl_c_beside_an_error(beside_a_failure, tmp_path, capsys, step, error):
-    """requirement: neither is lost: the sweep ends, and what had failed is said."""
+    """requirement: both are kept: the sweep ends, and the failure is reported."""
     folder = tmp_path / "s"
     beside_a_failure(step, error)
     assert main([*TWO, "-o", str(folder), "--processes", "1", "--no-pictures"]) == 130
@@ -169,7 +169,7 @@ def test_ctrl_c_beside_an_error(beside_a_failure, tmp_path, capsys, step, error)
 
 
 def test_ctrl_c_where_the_folder_cannot_be_closed(after_the_last_step, tmp_path, monkeypatch):
-    """requirement: a full disk does not make the sweep go on."""
+    """requirement: an interrupt ends the sweep also on a full disk."""
     folder, close = tmp_path / "s", ResultsFolder.close
 
     def fail(self, *words):

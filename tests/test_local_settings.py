@@ -39,7 +39,7 @@ def hostile(tmp_path, monkeypatch):
 
 
 def test_nothing_in_the_current_folder_is_carried_out(hostile):
-    """requirement: no command, module or option of the folder in which a case is run has a say."""
+    """requirement: commands, modules and options in the current folder have no effect."""
     done = subprocess.run(
         [sys.executable, "-m", "thermowear", "run", "ring.toml", "--no-pictures", *SMALL],
         env=os.environ | {"PYTHONPATH": str(Path(tw.__file__).parents[1])},

@@ -95,7 +95,7 @@ def test_two_ranks_give_the_serial_numbers(tmp_path, case, overrides):
     ],
 )
 def test_an_error_ends_all_ranks_with_one_message(tmp_path, arguments, message):
-    """requirement: bad case or unwritable folder: exit code 1, said once, nobody waits."""
+    """requirement: invalid case or unwritable folder: exit code 1, one message, no deadlock."""
     done = thermowear(2, *arguments)
     assert done.returncode == 1
     assert done.stderr.count(message) == 1
@@ -104,7 +104,7 @@ def test_an_error_ends_all_ranks_with_one_message(tmp_path, arguments, message):
 
 @pytest.mark.slow
 def test_the_rank_that_speaks_is_waited_for():
-    """requirement: one message, also where the other ranks know of the fault long before."""
+    """requirement: one message, also if other ranks find the error much earlier."""
     late = f'[ "$OMPI_COMM_WORLD_RANK" = 1 ] || sleep 2; exec {sys.executable} -m thermowear "$@"'
     command = ["mpirun", "--oversubscribe", "-n", "2", "sh", "-c", late, "sh", "run", HOT, "--sett"]
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("PMIX", "PRTE_"))}

@@ -184,7 +184,7 @@ def test_a_killed_run_goes_on_to_the_same_result(name, uninterrupted, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in CASES if name != "cold"])
 def test_random_moments(name, uninterrupted, tmp_path):
-    """requirement: whenever it is killed; four moments of each analysis, every other one twice."""
+    """requirement: killed at any time; four times per analysis, every other one twice."""
     for number in range(4):
         folder = tmp_path / str(number)
         kill_and_resume(name, folder, uninterrupted, times=1 + number % 2)
@@ -193,7 +193,7 @@ def test_random_moments(name, uninterrupted, tmp_path):
 
 @pytest.mark.slow
 def test_killed_while_writing_the_checkpoint(uninterrupted, tmp_path):
-    """requirement: the last one stands until the next does."""
+    """requirement: a valid checkpoint exists at any time."""
     whole, _ = uninterrupted("cold")
     folder, resume = tmp_path / "cold", ()
     for _ in range(2):
@@ -209,7 +209,7 @@ def test_killed_while_writing_the_checkpoint(uninterrupted, tmp_path):
 
 
 def test_ctrl_c_leaves_a_checkpoint_of_the_last_step(uninterrupted, tmp_path):
-    """requirement: nothing is computed twice; run.json says that it went on."""
+    """requirement: no step is computed twice; run.json records the restart."""
     whole, _ = uninterrupted("cold")
     folder = tmp_path / "cold"
     process = started("cold", folder)
@@ -227,7 +227,7 @@ def test_ctrl_c_leaves_a_checkpoint_of_the_last_step(uninterrupted, tmp_path):
 
 
 def test_a_full_disk_ends_the_run_and_keeps_the_last_checkpoint(uninterrupted, tmp_path):
-    """requirement: exit code 2 and why; with room again it goes on to the same result."""
+    """requirement: exit code 2 with reason; resumed with free disk space to the same result."""
     whole, _ = uninterrupted("cold")
     room = (whole / "checkpoint.npz").stat().st_size - 2000
     folder = tmp_path / "cold"
@@ -249,7 +249,7 @@ def test_a_full_disk_ends_the_run_and_keeps_the_last_checkpoint(uninterrupted, t
 
 
 def test_a_row_that_was_not_written_to_its_end_is_written_again(uninterrupted, tmp_path):
-    """requirement: half a row, or more rows than the checkpoint knows, do no harm."""
+    """requirement: incomplete rows, and rows beyond the checkpoint, are discarded."""
     whole, _ = uninterrupted("cold")
     folder = tmp_path / "cold"
     assert completed("cold", folder, "--set=analysis.max_steps=20").returncode == 2
@@ -262,7 +262,7 @@ def test_a_row_that_was_not_written_to_its_end_is_written_again(uninterrupted, t
 
 @pytest.mark.slow
 def test_killed_before_anything_was_computed(uninterrupted, tmp_path):
-    """requirement: then it begins at the beginning."""
+    """requirement: the run starts from the beginning."""
     whole, _ = uninterrupted("cold")
     folder = tmp_path / "cold"
     killed("cold", folder, 0.0)
@@ -271,7 +271,7 @@ def test_killed_before_anything_was_computed(uninterrupted, tmp_path):
 
 
 def test_nothing_to_resume(uninterrupted, tmp_path):
-    """requirement: a finished run says so; where there is none, one clear line."""
+    """requirement: a finished run prints a message; a missing run is an error."""
     whole, _ = uninterrupted("cold")
     before = {path: path.stat().st_mtime_ns for path in whole.iterdir()}
     done = completed("cold", whole, "--resume")
@@ -301,7 +301,7 @@ def test_nothing_to_resume(uninterrupted, tmp_path):
     ],
 )
 def test_other_physics_are_refused(changes, named, uninterrupted):
-    """requirement: the first key that differs is named with both values; the folder stays."""
+    """requirement: the first changed key is named with both values; the folder is unchanged."""
     whole, _ = uninterrupted("cold")
     before = {path: path.stat().st_mtime_ns for path in whole.iterdir()}
     done = completed("cold", whole, "--resume", *(f"--set={text}" for text in changes))
@@ -328,7 +328,7 @@ def test_the_end_may_be_later(uninterrupted, tmp_path):
 
 
 def test_two_runs_in_one_folder_are_refused(tmp_path):
-    """requirement: a run that still goes on is not disturbed."""
+    """requirement: a run in progress is not disturbed."""
     folder = tmp_path / "cold"
     slow = f"--set={EVERY_STEP}", "--set=analysis.tolerance=1e-9"
     process = started("cold", folder, *slow)

@@ -44,7 +44,7 @@ def moved(file):
 
 
 def test_files_may_lie_elsewhere(place):
-    """requirement: the same mesh and shape in another folder are those of the run."""
+    """requirement: the same mesh and shape in another folder are accepted."""
     there = place.parent / "second"
     shutil.move(place, there)
     assert run(there, "--resume") == 0
@@ -52,7 +52,7 @@ def test_files_may_lie_elsewhere(place):
 
 
 def test_another_mesh_is_noticed(place, capsys):
-    """requirement: one line with the key, exit code 1, and the run as it was."""
+    """requirement: one line with the key, exit code 1, and unchanged results."""
     before = (place.parent / "results" / "run.json").read_text()
     original = (place / "own-mesh.msh").read_text()
     moved(place / "own-mesh.msh")
@@ -68,7 +68,7 @@ def test_another_mesh_is_noticed(place, capsys):
 
 
 def test_another_shape_is_noticed(place, capsys):
-    """requirement: the gap that a shape leaves is that of the run."""
+    """requirement: another gap from the initial shape is refused."""
     (place / "shape.csv").write_text("s_m,shape_m\n0,0\n0.012,1.1e-7\n0.025,0\n")
     assert run(place, "--resume") == 1
     assert "the initial shape or the version of a library" in capsys.readouterr().err

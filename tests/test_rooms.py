@@ -79,7 +79,7 @@ def own_imports(path):
 
 @pytest.mark.parametrize("room", ORDER)
 def test_rooms_import_only_from_above(room):
-    """requirement: one-way flow; only bulk, contact and simulation know dolfinx."""
+    """requirement: imports follow the order; only bulk, contact and simulation use dolfinx."""
     below = set(ORDER[ORDER.index(room) + 1 :]) | BARE.get(room, set())
     for path in (ROOT / room).rglob("*.py"):
         for name in imports(path):
@@ -96,7 +96,7 @@ def test_no_circle_of_imports():
 
 
 def test_folders_inside_a_room_import_one_way():
-    """requirement: of two folders, and of a folder and modules beside it, one knows the other."""
+    """requirement: imports between sibling folders and modules go one way."""
     graph = {}
     for name, path in SOURCES.items():
         if path.name == "__init__.py":
@@ -111,7 +111,7 @@ def test_folders_inside_a_room_import_one_way():
 
 
 def test_folders_are_small():
-    """requirement: about a dozen modules in a folder, more only where all are of a kind."""
+    """requirement: about a dozen modules per folder, more only if all are of one kind."""
     for folder in {path.parent for path in SOURCES.values()}:
         modules = [path for path in folder.glob("*.py") if path.name != "__init__.py"]
         kind = folder.relative_to(ROOT).as_posix()
@@ -119,7 +119,7 @@ def test_folders_are_small():
 
 
 def test_only_compat_knows_versions():
-    """requirement: one module spans the dolfinx releases."""
+    """requirement: differences of dolfinx releases are handled in one module."""
     own = {"__init__.py", "app/arguments.py", "output/folder.py"}  # the program's own version
     for path in SOURCES.values():
         if path.name != "compat.py":
@@ -154,7 +154,7 @@ def test_public_names_are_there():
 
 
 def test_a_case_is_loaded_without_the_package_being_asked_first(tmp_path):
-    """requirement: `thermowear.case.load` knows every geometry, whatever was imported before."""
+    """requirement: `thermowear.case.load` knows every geometry without other imports."""
     from thermowear.case.starters import starter_text
 
     (tmp_path / "ring.toml").write_text(starter_text("annular-punch"), encoding="utf-8")

@@ -53,7 +53,7 @@ def test_every_format_begins_a_run(name, ending, capsys):
 
 
 def test_step_is_in_millimetres():
-    """requirement: the unit that CAD expects; the ring less what is worn off."""
+    """requirement: unit millimetre; the ring minus its wear."""
     assert run("annular-punch.toml", "-o", "ring.step") == 0
     assert "SI_UNIT(.MILLI.,.METRE.)" in Path("ring.step").read_text("utf-8")
     with gmsh_model("read") as gmsh:
@@ -67,7 +67,7 @@ def test_step_is_in_millimetres():
 
 
 def test_a_mesh_other_programs_read():
-    """requirement: gmsh reads it with its names and how far its nodes were moved."""
+    """requirement: gmsh reads it with its names and the displacement of its nodes."""
     assert run("annular-punch.toml", "-o", "plate.msh", "--body", "plate") == 0
     assert set(meshio.read("plate.msh").field_data) == {
         "plate",
@@ -81,7 +81,7 @@ def test_a_mesh_other_programs_read():
 
 
 def test_files_are_not_overwritten():
-    """requirement: a file that is there is kept unless it is said so."""
+    """requirement: an existing file is kept without --overwrite."""
     Path("d.csv").write_text("mine", encoding="utf-8")
     assert run("annular-punch.toml", "-o", "d.csv") == 1
     assert Path("d.csv").read_text(encoding="utf-8") == "mine"
@@ -112,13 +112,13 @@ def test_bad_words(words, text, capsys):
 
 
 def test_a_case_without_steady_state(capsys):
-    """requirement: exit code 1, with why there is none."""
+    """requirement: exit code 1 with the reason."""
     assert main(["shape", "cylinder-stick-slip.toml", "-o", "d.csv"]) == 1
     assert "requires a transient or fretting analysis, not steady" in capsys.readouterr().err
 
 
 def test_one_process(monkeypatch, capsys):
-    """requirement: ranks of a launcher would write over each other."""
+    """requirement: several ranks are refused, as they would overwrite each other's file."""
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     monkeypatch.setattr("time.sleep", lambda _: None)
     assert run("annular-punch.toml", "-o", "d.csv") == 1

@@ -42,7 +42,7 @@ def table(path) -> list[dict[str, str]]:
 
 def test_a_sweep_leaves_its_files(capsys):
     """
-    requirement: a table, two pictures, and for each variant what a run leaves but the fields.
+    requirement: a table, two pictures, and for each variant the files of a run without fields.
     """
     frictions = ("--over", "contact.friction=0.1,0.3")
     assert main(["sweep", BLOCK, *SMALL, *LOADS, *frictions]) == 0
@@ -71,7 +71,7 @@ def test_a_sweep_leaves_its_files(capsys):
 
 def test_processes_do_not_change_the_numbers():
     """
-    requirement: variants that share nothing are computed in processes of their own, to the same.
+    requirement: variants that share nothing are computed in parallel with equal results.
     """
     over = ("--over", "mesh.elements=2,3", "--over", "contact.friction=0.1,0.2")
     for processes in ("1", "2"):
@@ -90,7 +90,7 @@ def test_processes_do_not_change_the_numbers():
 
 def test_one_variant_fails(capsys):
     """
-    requirement: a failing variant keeps the rest; its row says why; exit code 2.
+    requirement: a failed variant does not affect others; its row has the reason; exit code 2.
     """
     locked = ("--set", 'motion.velocity="50 mm/s"', "--over", "contact.friction=0.1,9.0,0.2")
     assert main(["sweep", LEVER, *SMALL, *locked, "-o", "s"]) == 2
@@ -120,7 +120,7 @@ def test_one_variant_fails(capsys):
 )
 def test_a_wrong_sweep_computes_nothing(words, said, capsys):
     """
-    requirement: all variants are checked before anything runs; exit code 1, no traceback.
+    requirement: all variants are validated before computing; exit code 1, no traceback.
     """
     assert main(["sweep", BLOCK, *words]) == 1
     printed = capsys.readouterr()
@@ -133,7 +133,7 @@ def test_a_wrong_sweep_computes_nothing(words, said, capsys):
 
 def test_results_are_not_overwritten(capsys):
     """
-    requirement: results that are there stay, unless --overwrite.
+    requirement: existing results remain without --overwrite.
     """
     words = ["sweep", BLOCK, *SMALL, *LOADS, "-o", "s", "--no-pictures"]
     assert main(words) == 0
@@ -159,7 +159,7 @@ def test_the_pictures_again():
 
 def test_a_sweep_is_not_for_many_ranks(monkeypatch, capsys):
     """
-    requirement: under a launcher that starts several processes it says what to do instead.
+    requirement: started by a launcher with several processes: an error with a remedy.
     """
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     monkeypatch.setattr("thermowear.app.cli._is_reporting_rank", lambda: True)
@@ -201,7 +201,7 @@ def test_ctrl_c_keeps_what_is_done(tmp_path, processes):
 
 def test_from_python():
     """
-    requirement: `tw.sweep` gives values and results in order, and why a variant has none.
+    requirement: `tw.sweep` returns values and results or errors in order.
     """
     tables_of_law = [
         {"coefficient": "1e-7 1/MPa"},

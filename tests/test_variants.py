@@ -35,7 +35,7 @@ def test_values_are_split_at_commas(text, values):
 
 @pytest.mark.parametrize("text", ["a", "=1", "a=", "a=1,,2", "a=1,", ""])
 def test_over_that_says_nothing(text):
-    """requirement: one line that shows how it is written."""
+    """requirement: one line with the correct syntax."""
     with pytest.raises(CaseError, match=r"--over .*must be KEY=V1,V2") as error:
         parse_over([text])
     assert len(error.value.faults) == 1
@@ -74,7 +74,7 @@ def test_every_fault_is_said_once_with_its_variant(ring):
     "value", ["1 kN", 'say "x"', 3, 2.5, True, ["1 m", "2 m"], {"type": "table", "at": [1, 2.0]}]
 )
 def test_values_of_python_are_written_as_toml(value):
-    """requirement: what is swept from Python needs no quotes of its own."""
+    """requirement: values from Python need no quotes."""
     import tomllib
 
     assert tomllib.loads(f"value = {written(value)}")["value"] == value

@@ -32,7 +32,7 @@ def dawdle(task, tell):
 
 
 def test_all_tasks_are_done_in_other_processes():
-    """requirement: tasks go to processes of their own, each told as it is done."""
+    """requirement: tasks are computed in processes, each reported when it is finished."""
     told, lost = [], []
     work_off([[1, 2], [3], [4], [5, 6]], 2, square, told.append, lambda *given: lost.append(given))
     assert sorted((a, b) for a, b, _ in told) == [(k, k**2) for k in range(1, 7)]
@@ -43,7 +43,7 @@ def test_all_tasks_are_done_in_other_processes():
 
 
 def test_a_process_that_dies_takes_one_task_with_it():
-    """requirement: a crash is told, and the other tasks are done."""
+    """requirement: a crash is reported, and the other tasks are computed."""
     told, lost = [], []
     tasks = [[1, -1], [2], [3]]
     work_off(tasks, 1, square, told.append, lambda *given: lost.append(given))
@@ -54,7 +54,7 @@ def test_a_process_that_dies_takes_one_task_with_it():
 
 
 def test_what_is_saved_after_ctrl_c_arrives(heeds_ctrl_c):
-    """requirement: Ctrl-C lets the processes save what they have, and ends them."""
+    """requirement: after Ctrl-C the processes save their results and end."""
     told = []
 
     def hear(message):
@@ -69,7 +69,7 @@ def test_what_is_saved_after_ctrl_c_arrives(heeds_ctrl_c):
 
 
 def test_ctrl_c_while_a_process_is_started(heeds_ctrl_c, monkeypatch):
-    """requirement: it comes in when the process runs; that one does not hear it."""
+    """requirement: it is delivered once the process runs, and not to that process."""
     told, start = [], workers._SPAWN.Process.start
 
     def interrupted(process):
@@ -105,7 +105,7 @@ except KeyboardInterrupt:
 
 
 def test_an_interrupt_inside_a_destructor_is_not_lost():
-    """requirement: Ctrl-C while a matrix is given back still ends the run, without a traceback."""
+    """requirement: Ctrl-C during deallocation of a matrix ends the run without a traceback."""
     command = [sys.executable, "-c", INTERRUPTED_IN_A_DESTRUCTOR]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert (done.stdout, done.stderr) == ("interrupted\n", "")

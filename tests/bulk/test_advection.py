@@ -42,7 +42,7 @@ def random_rise(conduction, seed=0):
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("peclet", [1.0, 10.0])
 def test_between_two_given_temperatures(peclet, sense):
-    """requirement: the exact profile of heat that flows along, or against the motion."""
+    """requirement: exact temperature profile of conduction along or against the motion."""
     speed = sense * peclet * DIFFUSIVITY / LENGTH
     given = {"strip_left": 0.0, "strip_right": 100.0}
     moving = conducting(strip(), 8, along(speed), given)
@@ -56,7 +56,7 @@ def test_between_two_given_temperatures(peclet, sense):
 
 @pytest.mark.parametrize("center", [None, (0.0, 0.0), (0.003, -0.004)])
 def test_velocity_is_that_of_a_rigid_body(center):
-    """requirement: what a linear rise carries is the velocity: along +x, or anticlockwise."""
+    """requirement: advection of a linear rise gives the velocity: +x, or anticlockwise."""
     moving = conducting(strip(), 2, Passage(("strip",), center, 3.0, spread=False))
     velocity = (3.0, 0.0)
     if center is not None:  # its mean is that of the middle
@@ -72,7 +72,7 @@ def test_velocity_is_that_of_a_rigid_body(center):
 @pytest.mark.parametrize("bend", [0.0, 0.1])
 @pytest.mark.parametrize("speed", [1e-4, 1.0])
 def test_what_a_strip_carries_out(degree, bend, speed):
-    """requirement: whatever the rise, the sum over all nodes is what passes the right end."""
+    """requirement: the nodal sum equals the heat through the right end for any rise."""
     moving = conducting(strip(bend=bend), degree, along(speed))
     assert moving.advection.stabilised == (speed == 1.0)
     rise = random_rise(moving)
@@ -88,7 +88,7 @@ def test_what_a_strip_carries_out(degree, bend, speed):
 @pytest.mark.parametrize("degree", [1, 3, 5])
 @pytest.mark.parametrize("speed", [1e-3, 10.0])
 def test_a_ring_loses_and_makes_nothing(degree, speed):
-    """requirement: on curved cells, to 1e-12 of what goes round, stabilised or not."""
+    """requirement: heat is conserved on curved cells to 1e-12, stabilised or not."""
     moving = conducting(ring(), degree, turning(speed))
     rise = random_rise(moving)
     carried = times(moving.carried, rise)
@@ -98,7 +98,7 @@ def test_a_ring_loses_and_makes_nothing(degree, speed):
 
 
 def test_a_ring_that_turns_keeps_what_is_even_round_it():
-    """requirement: rigid rotation does not touch an axisymmetric temperature."""
+    """requirement: rigid rotation does not change an axisymmetric temperature."""
     given, cooling = {"ring_rim": 100.0}, {"ring_bore": 3e3}
     bodies = ring()
     still = conducting(bodies, 4, None, given, cooling)
@@ -119,7 +119,7 @@ def test_a_ring_that_turns_keeps_what_is_even_round_it():
 
 
 def test_heat_goes_where_the_body_goes():
-    """requirement: a spot heats what comes after it, anticlockwise and along +x."""
+    """requirement: a heated spot has a wake downstream, anticlockwise and along +x."""
     bodies = strip(8, 4)
     for sense in (1, -1):
         moving = conducting(bodies, 3, along(sense * 1e-2))
@@ -159,7 +159,7 @@ def test_upwind_only_where_cells_are_too_large():
 @pytest.mark.parametrize(("degree", "cells"), [(1, (8, 16, 32)), (2, (6, 12, 24)), (3, (4, 8, 16))])
 @pytest.mark.parametrize("fast", [2.0, 400.0])
 def test_order_of_convergence(degree, cells, fast, step):
-    """requirement: what decays along the motion, L2 order degree + 1, stabilised degree + 1/2.
+    """requirement: L2 order degree + 1, with stabilisation degree + 1/2.
 
     Of degree 1 stabilised alone only order 1: no second derivatives, so the upwinding is not
     consistent there with what is conducted.
@@ -203,7 +203,7 @@ def test_order_of_convergence(degree, cells, fast, step):
 @pytest.mark.parametrize("speed", [0.1, 10.0])
 @pytest.mark.parametrize("step", [None, 0.1])
 def test_what_is_sensed_is_the_adjoint(speed, step):
-    """requirement: weights on the rise are as good as sensed weights on the heat."""
+    """requirement: `sense` is the adjoint of `respond`."""
     moving = conducting(ring(), 3, turning(speed), {"ring_bore": 5.0}, {"ring_rim": 1e3})
     assert moving.advection.stabilised == (speed == 10.0)
     moving = moving if step is None else moving.storing(step)
@@ -221,7 +221,7 @@ def total_product(left, right):
 
 
 def test_bodies_that_stay_are_left_alone():
-    """requirement: what stands still conducts and stores the same beside one that passes fast."""
+    """requirement: a resting body is not affected by advection in the other."""
     tagged = load(DEMOS / "block_on_disk.toml", ("mesh.degree=2",)).tagged_mesh()
     bodies = distribute(tagged, COMM)
     passage = Passage(("disk",), (0.0, 0.0), 100.0, spread=False)

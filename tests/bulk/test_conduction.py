@@ -35,7 +35,7 @@ def interpolated(space, function):
 
 @pytest.mark.parametrize("degree", [1, 4, 8])
 def test_linear_profile_between_cooling_and_given_temperature(degree):
-    """requirement: a slab between a given temperature and a cooled end is exact at any degree."""
+    """requirement: the solution of a slab with a cooled end is exact at any degree."""
     h, k, hot = 2000.0, 50.0, 80.0
     conducting = build(degree, {"upper_end": h}, {"upper_face": hot, "lower_end": 0.0})
     rise = conducting.solve(np.zeros(owned(conducting.space)))
@@ -68,7 +68,7 @@ def test_cylinder_shell():
 
 
 def test_outflow_equals_the_heat_put_in():
-    """requirement: what goes in goes out by cooling and given temperatures, to 1e-10."""
+    """requirement: heat input equals losses by cooling and given temperatures, to 1e-10."""
     conducting = build(5, {"upper_end": 300.0}, {"lower_end": 12.0})
     heat = interpolated(conducting.space, lambda x: np.exp(10 * x[0] + 20 * x[1]))
     heat = np.where(conducting.fixed, 0.0, heat)

@@ -92,7 +92,7 @@ def test_thick_walled_cylinder():
 
 
 def test_pressure_on_the_surface_inside_a_thick_walled_cylinder():
-    """requirement: its nodal loads deform the bodies as Lamé has it."""
+    """requirement: its nodal loads give Lamé's displacements."""
     elastic = build(6, materials=(STEEL, STEEL), clamped=(), rollers=(*ENDS, *FACES))
     p, inner, outer = 1e8, 0.05, 0.09
     loads = sum(surface_pressure(elastic, f"{b}_inside", p) for b in ("upper", "lower"))
@@ -121,7 +121,7 @@ def test_free_expansion_has_no_stress():
 
 
 def test_clamped_heating():
-    """requirement: wholly clamped heating gives σ = -E α ΔT/(1 - 2ν) in all directions."""
+    """requirement: fully constrained heating gives σ = -E α ΔT/(1 - 2ν) in all directions."""
     elastic = build(2, materials=(STEEL, STEEL))
     space = lagrange_space(elastic.bodies.mesh, 2)
     rise = as_function(space, np.full(owned(space), 50.0), "T")

@@ -31,7 +31,7 @@ def radial(r, h):
 
 @pytest.mark.parametrize(("degree", "rows", "allowed"), [(1, 16, 2e-3), (2, 6, 1e-4), (6, 3, 2e-6)])
 def test_a_ring_heated_in_one_place(degree, rows, allowed):
-    """requirement: the radial solution, whatever the degree: nothing locks; even to rounding."""
+    """requirement: radial solution for any degree, uniform along paths to rounding."""
     h = 2e3
     even = conducting(ring(rows=rows), degree, FAST, cooling={"ring_bore": h})
     rise, (x, y) = even.respond(spot(even)), places(even)
@@ -46,7 +46,7 @@ def test_a_ring_heated_in_one_place(degree, rows, allowed):
 
 
 def test_given_temperatures_hold_all_along_a_path():
-    """requirement: a bore at a given temperature, and the balance of heat with it."""
+    """requirement: prescribed temperature of a bore, with heat balance."""
     even = conducting(ring(), 6, FAST, {"ring_bore": 7.0})
     rise, (x, y) = even.solve(spot(even)), places(even)
     exact = 7.0 + np.log(np.hypot(x, y) / INNER) / K / (2 * np.pi)
@@ -55,7 +55,7 @@ def test_given_temperatures_hold_all_along_a_path():
 
 
 def test_a_strip_that_runs_fast():
-    """requirement: no change along x; across it, heat flows down as in a slab."""
+    """requirement: uniform along x, one-dimensional conduction across."""
     passage = Passage(("strip",), None, -5.0, spread=True)
     even = conducting(strip(), 3, passage, cooling={"strip_bottom": 1e3})
     x, y = places(even)
@@ -70,7 +70,7 @@ def test_a_strip_that_runs_fast():
 
 
 def test_what_is_sensed_and_stored():
-    """requirement: the adjoint; heat in a step of time goes into storage and cooling."""
+    """requirement: adjoint solution; heat of a time step equals storage plus cooling."""
     even = conducting(ring(), 4, FAST, {}, {"ring_bore": 1e3}).storing(0.2)
     rng = np.random.default_rng(3)
     heat, weights = rng.normal(size=(2, owned(even.space), 3))

@@ -77,7 +77,7 @@ def test_linear_patch_on_curved_cells(model, triangles, order):
 
 @pytest.mark.parametrize("model", PLANE, ids=lambda m: m.name)
 def test_free_expansion_is_free_of_stress(model):
-    """requirement: uniform heat moves a free body without stress, by α T or (1 + ν) α T."""
+    """requirement: free expansion by α T or (1 + ν) α T without stress."""
     elastic = build(model, 2, clamped=("upper_end",))
     rise, stretch = 80.0, 1.0 if isinstance(model, PlaneStress) else 1 + ν
     expanded = nodal(elastic, lambda x: stretch * α * rise * x[:2])
@@ -103,7 +103,7 @@ def _mean(elastic, density):
 
 
 def test_volumes():
-    """requirement: plane models count the thickness, axisymmetric ones the circumference."""
+    """requirement: plane models integrate over thickness, axisymmetric ones over the circle."""
     mesh = build(PlaneStrain(THICKNESS), 1, clamped=("upper_end",)).bodies.mesh
     one = fem.Constant(mesh, 1.0)
     section = fem.assemble_scalar(fem.form(one * ufl.dx(mesh)))
@@ -116,7 +116,7 @@ def test_volumes():
 
 
 def test_symmetric_side_rolls():
-    """requirement: on a plane of symmetry nothing moves across it, all may move along it."""
+    """requirement: symmetry planes fix the normal displacement only."""
     materials = dict.fromkeys(("upper", "lower"), ElasticMaterial(E, ν))
     bodies = distribute(two_blocks(), MPI.COMM_WORLD)
     sides = ("upper_inside", "lower_inside")
@@ -145,7 +145,7 @@ def test_sliding_of_plane_models(velocity):
 
 
 def test_friction_of_the_slowest_sliding():
-    """requirement: friction knows the direction of sliding, not its speed."""
+    """requirement: friction depends on the direction of sliding, not on its speed."""
     model, normals = section_model("plane-strain", 1.0), np.array([[0.0, -1.0], [0.6, -0.8]])
     slow, fast = (
         sliding(model.sliding(normals, Motion(velocity=v)), normals, (0.0, -1.0)).along
@@ -156,7 +156,7 @@ def test_friction_of_the_slowest_sliding():
 
 @pytest.mark.parametrize("model", ["plane-strain", "plane-stress"])
 def test_sliding_across_a_section(model):
-    """requirement: speed as given, but nothing in the section that friction could drag along."""
+    """requirement: the given speed, without a component in the section."""
     normals = np.array([[0.0, -1.0], [0.6, -0.8]])
     moved = section_model(model, 1.0).sliding(normals, Motion(velocity="-50 mm/s"), across=True)
     assert moved == pytest.approx(np.array([[0.0, 0.0, -0.05]] * 2))
@@ -167,7 +167,7 @@ def test_sliding_across_a_section(model):
 
 @pytest.mark.parametrize("turning", ["2 rad/s", "-2 rad/s"])
 def test_sliding_over_a_turning_disk(turning):
-    """requirement: a disk that turns anticlockwise drags what lies on top of it along -x."""
+    """requirement: an anticlockwise disk drags a body on top of it along -x."""
     motion = Motion(angular_velocity=turning)
     angle = np.array([-0.4, 0.0, 0.7])
     outward = np.column_stack([np.sin(angle), np.cos(angle)])

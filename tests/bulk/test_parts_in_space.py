@@ -27,7 +27,7 @@ def bar():
 
 
 def test_layers_in_series():
-    """requirement: each gives way by p h/E under a pressure on the top."""
+    """requirement: each layer is compressed by p h/E under a pressure on the top."""
     bodies = distribute(bar() if COMM.rank == 0 else None, COMM)
     materials = {"bar": ElasticMaterial(2e9, 0.0), "core": ElasticMaterial(5e10, 0.0)}
     elastic = elasticity(bodies, Spatial(), 2, materials, ["bar_bottom"])

@@ -27,7 +27,7 @@ def integral(mesh, density):
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("place", [straight, bent, turned])
 def test_the_bodies_have_their_volume(place, order):
-    """requirement: nodes of cells of every order arrive in the right order."""
+    """requirement: nodes of cells of every order are numbered correctly."""
     bodies, _ = gathered(solids(DIVISIONS, order, (place, place)))
     mesh = bodies.mesh
     one = fem.Constant(mesh, 1.0)

@@ -25,7 +25,7 @@ MESHES = {
 @pytest.mark.parametrize("degree", [1, 2, 3])
 @pytest.mark.parametrize("cell", MESHES)
 def test_space_and_surplus_make_the_next_degree(cell, degree):
-    """requirement: error estimates see all that the next degree would add, without a gap."""
+    """requirement: space and surplus together are the complete space of the next degree."""
     mesh = MESHES[cell]()
     surplus, low, high = (
         surplus_space(mesh, degree),
@@ -43,7 +43,7 @@ def test_space_and_surplus_make_the_next_degree(cell, degree):
 
 
 def test_hexahedra_take_what_leads():
-    """requirement: in space the surplus is that of edges; x³ is in the sum of both."""
+    """requirement: in 3D the surplus belongs to edges; x³ is in the sum of both spaces."""
     mesh = dmesh.create_unit_cube(MPI.COMM_WORLD, 1, 1, 1, dmesh.CellType.hexahedron)
     surplus, low = surplus_space(mesh, 2), lagrange_space(mesh, 2)
     assert total(surplus) == 12

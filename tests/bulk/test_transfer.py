@@ -35,7 +35,7 @@ def _carried(amount):
 
 
 def test_the_field_stays_where_it_is_in_space():
-    """requirement: temperatures do not travel with the nodes, nor from body to body."""
+    """requirement: temperatures stay at their place in space and in their body."""
     for amount in (1e-3, 2e-2):
         found, expected, error = _carried(amount)
         assert np.abs(found - expected).max() < 1e-4

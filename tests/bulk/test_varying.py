@@ -21,7 +21,7 @@ TABLE = {"at": ["20 degC", "120 degC", "220 degC"], "factor": [1.0, 1.4, 1.1]}
 
 
 def test_factor_has_a_slope_and_an_integral():
-    """requirement: those of the straight lines, beyond the ends too."""
+    """requirement: value, slope and integral of a piecewise linear table, also beyond its ends."""
     factor = TemperatureFactor(**TABLE)
     T = np.array([200.0, 300.0, 400.0, 450.0, 600.0])
     ε = 1e-4
@@ -54,7 +54,7 @@ def varying(degree=4):
 
 
 def test_tangent_is_the_derivative():
-    """requirement: the tangent about a rise holds that rise, and changes as the fluxes do."""
+    """requirement: the tangent is consistent with the nonlinear fluxes and their derivative."""
     conducting = varying()
     x = conducting.space.tabulate_dof_coordinates()[: owned(conducting.space)]
     rise, change = 80 + 500 * x[:, 1], 1e-3 * np.sin(40 * x[:, 0])
@@ -77,7 +77,7 @@ def test_tangent_is_the_derivative():
 
 
 def test_heat_balances():
-    """requirement: what goes in leaves by cooling and given temperatures, to 1e-10."""
+    """requirement: heat input equals losses by cooling and given temperatures, to 1e-10."""
     conducting = varying()
     free = ~conducting.fixed
     heat = np.where(free, 0.02, 0.0)
@@ -92,7 +92,7 @@ def test_heat_balances():
 
 @pytest.mark.parametrize("rise", [60.0, 150.0, 400.0])
 def test_free_expansion(rise):
-    """requirement: uniformly heated rings grow by factor(T) alpha T in all directions."""
+    """requirement: uniformly heated rings expand by factor(T) alpha T in all directions."""
     bodies = two_rings()
     α, ν = 1.2e-5, 0.3
     materials = dict.fromkeys(("upper", "lower"), ElasticMaterial(2e11, ν, α))

@@ -40,7 +40,7 @@ def pictures(path):
 
 
 def test_the_run_draws_it(folder):
-    """requirement: one picture a frame and one of the end, shown longer; a small file."""
+    """requirement: one picture per frame and a longer final one; a small file."""
     film = read_film(folder)
     found = pictures(folder / "animation.gif")
     assert len(found) == len(film.states) > 3
@@ -60,7 +60,7 @@ def test_states_go_from_start_to_end(folder):
 
 
 def test_axes_stand_still(folder):
-    """requirement: what does not move is the same in all pictures, pixel by pixel."""
+    """requirement: static elements are identical in all pictures."""
     found = [picture.astype(int) for picture, _ in pictures(folder / "animation.gif")]
     changed = np.max([np.abs(p - found[0]).max(axis=2) for p in found], axis=0) > 40
     height, width = changed.shape
@@ -72,7 +72,7 @@ def test_axes_stand_still(folder):
 
 
 def test_colours_mean_the_same_in_all_frames(folder):
-    """requirement: one range, which spans that of each state but its few largest samples."""
+    """requirement: one colour range for all states, except few largest samples."""
     section = Section(read_film(folder))
     low, high = section.limits
     for _, _, _, values in section._fields.values():
@@ -81,7 +81,7 @@ def test_colours_mean_the_same_in_all_frames(folder):
 
 
 def test_body_1_sinks_as_it_wears(folder):
-    """requirement: bodies are drawn where they are, in step with the approach of the history."""
+    """requirement: bodies are drawn displaced, consistent with the approach."""
     film = read_film(folder)
     section = Section(film)
     heights = []
@@ -97,7 +97,7 @@ def test_body_1_sinks_as_it_wears(folder):
 
 
 def test_outline_of_two_cells_that_share_no_points():
-    """requirement: the edge between them, and that inside a cell, is none of the outline."""
+    """requirement: inner edges do not belong to the outline."""
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
     points = np.concatenate([square, square + [1, 0]])
     triangles = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])
@@ -123,7 +123,7 @@ def test_times_in_words(time, text):
 
 @pytest.mark.slow
 def test_fps_and_name(folder, tmp_path):
-    """requirement: --fps sets how long each is shown."""
+    """requirement: --fps sets the duration of each frame."""
     path = tmp_path / "slow.gif"
     assert main(["animate", str(folder), "-o", str(path), "--fps", "2"]) == 0
     assert {time for _, time in pictures(path)} == {500, 1500}
@@ -136,7 +136,7 @@ cat > "$last"
 
 
 def test_mp4_goes_through_ffmpeg(folder, tmp_path, monkeypatch):
-    """requirement: all pictures reach ffmpeg, in the size that it is told."""
+    """requirement: ffmpeg receives all pictures in the declared size."""
     tool = tmp_path / "ffmpeg"
     tool.write_text(FAKE, encoding="utf-8")
     tool.chmod(tool.stat().st_mode | stat.S_IXUSR)
@@ -148,7 +148,7 @@ def test_mp4_goes_through_ffmpeg(folder, tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_ffmpeg_that_fails_is_heard(folder, tmp_path, monkeypatch, capsys):
-    """requirement: exit code 2, its last word, and no half film."""
+    """requirement: exit code 2, the last line of ffmpeg, and no partial file."""
     tool = tmp_path / "ffmpeg"
     tool.write_text("#!/bin/sh\necho 'no such encoder' >&2\nexit 1\n", encoding="utf-8")
     tool.chmod(tool.stat().st_mode | stat.S_IXUSR)
@@ -160,7 +160,7 @@ def test_ffmpeg_that_fails_is_heard(folder, tmp_path, monkeypatch, capsys):
 
 
 def test_mp4_without_ffmpeg(folder, tmp_path, monkeypatch, capsys):
-    """requirement: one line that says what is missing, exit code 1."""
+    """requirement: exit code 1 and one line naming the missing program."""
     monkeypatch.setattr(shutil, "which", lambda _: None)
     assert main(["animate", str(folder), "-o", str(tmp_path / "film.mp4")]) == 1
     said = capsys.readouterr().err.splitlines()
@@ -169,7 +169,7 @@ def test_mp4_without_ffmpeg(folder, tmp_path, monkeypatch, capsys):
 
 
 def test_refusals(folder, tmp_path):
-    """requirement: other endings, no results, results without frames; each says what to do."""
+    """requirement: invalid endings and folders are reported with a remedy."""
     with pytest.raises(CaseError, match=r"\.gif or \.mp4"):
         make.check_film(folder, tmp_path / "film.avi")
     with pytest.raises(CaseError, match="no folder"):
@@ -188,7 +188,7 @@ def test_a_wrong_rate_is_refused(folder, fps):
 
 @pytest.mark.slow
 def test_bodies_in_space(tmp_path):
-    """requirement: solids and maps of the face; the depth worn off changes, the scales do not."""
+    """requirement: 3D bodies and maps; wear depth changes, colour scales do not."""
     case, folder = tmp_path / "case.toml", tmp_path / "run"
     case.write_text(starter_text("rectangular-punch"), encoding="utf-8")
     ending = 'analysis={type="transient", end_time="100 s", frames=3}'

@@ -22,7 +22,7 @@ ABOUT, ARRAYS = {"time": 0.1, "case": {"title": "µ"}}, {"a0": np.arange(3.0), "
 
 
 def test_a_checkpoint_is_read_as_it_was_written(tmp_path):
-    """requirement: to the last bit, and without pickle."""
+    """requirement: exact restoration to the last bit, without pickle."""
     assert read_checkpoint(tmp_path) is None
     write_checkpoint(tmp_path, ABOUT, ARRAYS)
     about, arrays = read_checkpoint(tmp_path)
@@ -38,7 +38,7 @@ def test_a_checkpoint_is_read_as_it_was_written(tmp_path):
 
 @pytest.mark.parametrize("fails", ["fsync", "replace"])
 def test_a_disk_that_fails_leaves_the_last_checkpoint(fails, monkeypatch, tmp_path):
-    """requirement: whatever goes wrong on the way, and its room is free again."""
+    """requirement: the previous checkpoint survives any error; the draft is removed."""
     write_checkpoint(tmp_path, ABOUT, ARRAYS)
 
     def full(*_):
@@ -75,7 +75,7 @@ CRAFTED = {
 
 @pytest.mark.parametrize("changed", CRAFTED.values(), ids=CRAFTED)
 def test_what_was_not_written_is_refused(changed, tmp_path):
-    """requirement: a checkpoint that somebody or something has changed ends in one line."""
+    """requirement: a modified checkpoint is reported in one line."""
     write_checkpoint(tmp_path, ABOUT, ARRAYS)
     with np.load(tmp_path / CHECKPOINT) as file:
         content = dict(file)
@@ -86,7 +86,7 @@ def test_what_was_not_written_is_refused(changed, tmp_path):
 
 
 def test_a_checkpoint_that_swells_is_refused(tmp_path):
-    """requirement: a small file cannot fill the memory; this program compresses none."""
+    """requirement: compressed entries, which could exhaust the memory, are refused."""
     write_checkpoint(tmp_path, ABOUT, ARRAYS)
     with np.load(tmp_path / CHECKPOINT) as file:
         content = dict(file)
@@ -116,7 +116,7 @@ def test_a_head_of_something_else_is_refused(about, tmp_path):
     ],
 )
 def test_outlines_of_something_else_are_refused(outline):
-    """requirement: whatever an outline says, it is a state that is known, or one line."""
+    """requirement: an outline is unpacked to a registered state, or reported in one line."""
     with pytest.raises(tw.CaseError, match="--resume"):
         Checkpoint([outline], {"a": np.arange(3.0)}).state(0)
 
@@ -129,7 +129,7 @@ def test_a_run_of_something_else_is_refused(text, tmp_path):
 
 
 def test_numbers_that_are_not_finite(tmp_path):
-    """requirement: a summary is JSON that every program reads, and says where numbers lack."""
+    """requirement: the summary is valid JSON and lists numbers that are not finite."""
     summary = {"a": np.inf, "b": [1.0, -np.inf], "c": {"d": np.nan}, "e": 2.0, "f": None}
     found = json.loads(json.dumps(finite(summary), allow_nan=False))
     said = found.pop("not_finite")
@@ -158,7 +158,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
 
 
 def test_a_table_begins_with_known_rows_and_ends_with_a_whole_one(tmp_path):
-    """requirement: a row that was cut off is no row."""
+    """requirement: an incomplete row is ignored."""
     path = tmp_path / "history.csv"
     rows = [HistoryRow(*np.full(10, value).tolist()) for value in (1.0, 2.0, 3.0)]
     path.write_text("what a run that was killed has left", "utf-8")

@@ -34,7 +34,7 @@ def test_plain_lines_where_nobody_watches():
 
 
 def test_one_live_line_on_a_terminal():
-    """requirement: the line is rewritten; the last state stays."""
+    """requirement: the live line is overwritten; the last state remains."""
     text = shown(terminal=True)
     assert "\x1b[2K" in text or "\r" in text
     assert text.rstrip().splitlines()[-1].count("t = 1 s") == 1

@@ -110,7 +110,7 @@ def finished(request, tmp_path_factory):
 
 
 def test_a_starter_leaves_its_files(finished):
-    """requirement: the files of the contract, no others, and status done."""
+    """requirement: exactly the files of the contract, and status done."""
     name, folder = finished
     case = tw.load(folder / "case.resolved.toml")
     analysis, heat, more = case.analysis, case.heat, set()
@@ -171,7 +171,7 @@ def test_summary_and_interface_tell_one_story(finished):
 
 
 def test_the_profile_is_that_of_the_interface(finished):
-    """requirement: heights along the press are those along the normal over its cosine."""
+    """requirement: heights along the load direction are normal heights over the cosine."""
     _, folder = finished
     i = tables.read(folder / "interface.csv", INTERFACE)
     profile = tables.read(folder / "profile.csv", PROFILE)
@@ -199,7 +199,7 @@ def test_the_profile_is_that_of_the_interface(finished):
 
 
 def test_a_starter_carries_its_load(finished):
-    """requirement: the force of the case; Hertz's starter its approach."""
+    """requirement: the force of the case; the approach of Hertz's starter."""
     name, folder = finished
     summary, case = summary_of(folder), tw.load(folder / "case.resolved.toml")
     if name == HERTZ:
@@ -225,7 +225,7 @@ def fretting(tmp_path_factory):
 
 
 def test_tables_of_fretting_agree(fretting):
-    """requirement: loads.csv, friction.csv and interface.csv are of the same states."""
+    """requirement: loads.csv, friction.csv and interface.csv are consistent."""
     folder, summary = fretting / "results", summary_of(fretting / "results")
     loads = tables.read(folder / "loads.csv", LOADS)
     assert len(loads["time"]) == summary["steps"] == 4 * 3
@@ -248,7 +248,7 @@ def test_tables_of_fretting_agree(fretting):
 
 
 def test_another_analysis_leaves_nothing_of_fretting(fretting, tmp_path):
-    """requirement: --overwrite removes the files of fretting that the new run does not write."""
+    """requirement: --overwrite removes fretting files that the new run does not write."""
     folder = tmp_path / "results"
     quick = sets(*COARSE, *QUICK[FRETTING])
     assert run(fretting / "case.toml", folder, *quick) == 0
@@ -274,7 +274,7 @@ def test_another_analysis_leaves_nothing_of_fretting(fretting, tmp_path):
 
 
 def test_too_large_a_load_is_one_line(tmp_path, capsys):
-    """requirement: a contact that outgrows its body is a fault of the case, at its key."""
+    """requirement: a contact that exceeds its body is reported with the key of the case."""
     file = tmp_path / "case.toml"
     file.write_text(starter_text(HERTZ), encoding="utf-8")
     words = sets(*COARSE, 'load={force="1 MN"}')
@@ -345,7 +345,7 @@ def file_geometry(case, path: Path) -> dict:
     ],
 )
 def test_a_mesh_from_a_file_gives_the_same_pressure(name, ending, allowed, tmp_path, capsys):
-    """requirement: a mesh that other programs wrote gives what the geometry itself gives."""
+    """requirement: a mesh written by other programs gives the results of the geometry."""
     original, again = tmp_path / "original.toml", tmp_path / "again.toml"
     mesh = tmp_path / f"mesh{ending}"
     changes = PLAIN[name]
@@ -410,7 +410,7 @@ def gmsh_punch(path: Path) -> None:
 
 @pytest.mark.slow
 def test_triangles_of_gmsh_give_the_pressure_of_the_starter(tmp_path):
-    """requirement: a mesh of one's own, of other cells and in another unit, away from the edges."""
+    """requirement: a user mesh of other cells and unit agrees away from the edges."""
     gmsh_punch(tmp_path / "own.msh")
     geometry = {
         "type": "file",
@@ -452,7 +452,7 @@ WRONG = {
 
 @pytest.mark.parametrize(("keys", "path", "text"), WRONG.values(), ids=WRONG)
 def test_what_is_not_in_the_file(keys, path, text, tmp_path, monkeypatch, capsys):
-    """requirement: exit code 1 and one line: the key, and the names that there are."""
+    """requirement: exit code 1 and one line with the key and the existing names."""
     monkeypatch.chdir(tmp_path)
     Path("punch.toml").write_text(starter_text(PUNCH), encoding="utf-8")
     Path("folder.msh").mkdir()

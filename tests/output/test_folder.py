@@ -30,7 +30,7 @@ def run_file(path: Path) -> dict:
 
 def test_a_new_folder_says_what_runs(tmp_path):
     """
-    requirement: the resolved case and the state of the run are there from the first moment.
+    requirement: the resolved case and run.json are written at the beginning.
     """
     path = tmp_path / "deep" / "er"
     opened(path)
@@ -43,7 +43,7 @@ def test_a_new_folder_says_what_runs(tmp_path):
 
 def test_an_empty_folder_can_be_used(tmp_path):
     """
-    requirement: a folder that the user made beforehand is taken if it is empty.
+    requirement: an existing folder is used if it is empty.
     """
     opened(tmp_path)
     assert run_file(tmp_path)["status"] == "running"
@@ -52,7 +52,7 @@ def test_an_empty_folder_can_be_used(tmp_path):
 @pytest.mark.parametrize("name", ["run.json", "notes.txt", ".hidden", "sub"])
 def test_a_folder_in_use_is_refused(name, tmp_path):
     """
-    requirement: a folder that holds anything is refused and stays as it is.
+    requirement: a folder with any content is refused and remains unchanged.
     """
     if name == "sub":
         (tmp_path / name).mkdir()
@@ -97,7 +97,7 @@ THEIRS = [
 
 def test_overwriting_takes_away_results_only(tmp_path):
     """
-    requirement: earlier results go, whatever their output times; files of others stay.
+    requirement: earlier results are removed for any output times; other files remain.
     """
     for name in OURS + THEIRS:
         (tmp_path / name).write_text("old", encoding="utf-8")
@@ -109,7 +109,7 @@ def test_overwriting_takes_away_results_only(tmp_path):
 
 def test_files_that_only_look_like_ours_are_safe(tmp_path):
     """
-    requirement: --overwrite never touches a folder in which this program has not worked.
+    requirement: --overwrite does not change a folder without results of this program.
     """
     (tmp_path / "history.csv").write_text("of the town", encoding="utf-8")
     with pytest.raises(tw.CaseError, match=r"no run\.json"):
@@ -120,7 +120,7 @@ def test_files_that_only_look_like_ours_are_safe(tmp_path):
 @pytest.mark.parametrize("time", [20.0, 0.5, 1e6, 1e-5, 123456789.0, 1e-300])
 def test_an_interface_of_any_time_is_known_as_ours(time, tmp_path):
     """
-    requirement: --overwrite finds the interface files of all output times.
+    requirement: --overwrite removes the interface files of all output times.
     """
     opened(tmp_path)
     (tmp_path / name_at("interface", time)).write_text("old", encoding="utf-8")
@@ -133,7 +133,7 @@ def test_an_interface_of_any_time_is_known_as_ours(time, tmp_path):
 )
 def test_the_end_is_recorded(status, message, tmp_path):
     """
-    requirement: run.json says how the run ended, and why if there is a reason.
+    requirement: run.json contains the final status, and the reason if there is one.
     """
     opened(tmp_path).close(status, message)
     end = run_file(tmp_path)
@@ -144,7 +144,7 @@ def test_the_end_is_recorded(status, message, tmp_path):
 
 def test_every_step_is_on_disk_at_once(tmp_path):
     """
-    requirement: what was computed can be read while the run goes on.
+    requirement: results can be read during the run.
     """
     folder = opened(tmp_path)
     first = HistoryRow(*(0.1 * n for n in range(1, 11)))
@@ -158,7 +158,7 @@ def test_every_step_is_on_disk_at_once(tmp_path):
 
 
 def test_a_case_that_turns_out_wrong_leaves_what_was_computed(tmp_path):
-    """requirement: nothing is left where nothing was computed; else all is kept, and said."""
+    """requirement: no files remain if nothing was computed; else results and status are kept."""
     opened(tmp_path / "none").abandon()
     assert not (tmp_path / "none").exists()
     folder = opened(tmp_path / "some")

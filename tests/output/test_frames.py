@@ -31,7 +31,7 @@ def folder(tmp_path_factory):
 
 
 def test_index_and_files_agree(folder):
-    """requirement: every frame is named with the time of its step, nothing else is left."""
+    """requirement: the index lists each frame with its time; no other files remain."""
     frames = frame_files(folder / FRAMES)
     times = read(folder / "history.csv", HISTORY)["time"]
     assert 4 <= len(frames) <= 8
@@ -43,7 +43,7 @@ def test_index_and_files_agree(folder):
 
 
 def test_fields_are_those_of_the_step(folder):
-    """requirement: the contact's largest pressure is the history's; stress in single precision."""
+    """requirement: the largest pressure equals that of the history; stress in single precision."""
     largest = read(folder / "history.csv", HISTORY)["max_pressure"]
     for frame in frame_files(folder / FRAMES):
         pressure = read(frame.interface, INTERFACE)["pressure"]
@@ -54,7 +54,7 @@ def test_fields_are_those_of_the_step(folder):
 
 
 def test_without_the_key_there_are_none(tmp_path):
-    """requirement: ordinary runs write what they always did."""
+    """requirement: runs without frames write the same files as before."""
     assert main(["run", str(COLD_RUNNING_IN), "-o", str(tmp_path / "run"), *SMALL]) == 0
     assert not (tmp_path / "run" / FRAMES).exists()
 
@@ -88,7 +88,7 @@ def test_a_broken_index_is_said(text, tmp_path):
 
 
 def test_what_a_killed_run_left_is_removed(folder, tmp_path):
-    """requirement: files of frames between index and removal are gone after going on."""
+    """requirement: frame files not in the index are removed when a run is resumed."""
     import shutil
 
     place = tmp_path / FRAMES

@@ -33,7 +33,7 @@ GRADED = np.array([0.0, 1e-3, 1e-2, 0.1, 0.5, 0.9, 0.99, 0.999, 1.0])
 
 @pytest.mark.parametrize("turn", [0.0, 0.3])
 def test_a_graded_rectangle_is_filled(turn):
-    """requirement: thin cells at the rim are not taken for bays."""
+    """requirement: thin cells at the boundary are not masked."""
     x, y = grid(60 * GRADED, 80 * GRADED)
     triangles = triangulated(
         x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)
@@ -43,7 +43,7 @@ def test_a_graded_rectangle_is_filled(turn):
 
 @pytest.mark.parametrize("angle", [30, 60, 120, 150])
 def test_the_bay_of_a_sector_is_left_out(angle):
-    """requirement: nothing is drawn where the face is not."""
+    """requirement: nothing is drawn outside the face."""
     angles = np.radians(angle) * (GRADED - 0.5)
     fine = np.unique(np.concatenate([angles, np.linspace(angles[0], angles[-1], 25)]))
     r, φ = grid(np.array([80.0, 80.2, 85.0, 100.0, 115.0, 119.8, 120.0]), fine)
@@ -78,7 +78,7 @@ def folder_of(tmp_path_factory):
     ],
 )
 def test_every_picture_shows_something(folder_of, name, pictures):
-    """requirement: pictures of a body in space exist, with something drawn on each."""
+    """requirement: all pictures of a 3D model exist and are not empty."""
     folder = folder_of(name)
     assert {path.stem for path in folder.glob("*.png")} == pictures
     for path in folder.glob("*.png"):
@@ -89,7 +89,7 @@ def test_every_picture_shows_something(folder_of, name, pictures):
 
 
 def test_the_fields_are_volumes(folder_of):
-    """requirement: hexahedra for ParaView."""
+    """requirement: the fields are written as hexahedra."""
     mesh = meshio.read(folder_of("punch") / "fields.vtu")
     assert {block.type for block in mesh.cells} == {"hexahedron"}
     assert np.ptp(mesh.points, axis=0) == pytest.approx([0.12, 0.14, 0.11])

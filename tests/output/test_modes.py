@@ -30,7 +30,7 @@ def drawn(path):
 
 @pytest.mark.usefixtures("bodies_not_drawn")
 def test_swinging_bands(tmp_path, capsys):
-    """requirement: the critical speeds are told, shapes are in mode.csv, and drawn."""
+    """requirement: critical speeds are printed, modes are in mode.csv and drawn."""
     folder, said = run(tmp_path, capsys, DISK, {"mesh.degree": 3, "mesh.elements": 6})
     summary = json.loads((folder / "summary.json").read_text())
     modes = tables.read(folder / "mode.csv", MODES)
@@ -57,7 +57,7 @@ def test_swinging_bands(tmp_path, capsys):
 
 
 def test_growing_waves(tmp_path, capsys):
-    """requirement: beyond the critical speed it says how fast they grow."""
+    """requirement: beyond the critical speed the growth rate is printed."""
     storing = {"density": "7800 kg/m^3", "specific_heat": "460 J/(kg K)"}
     changes = {f"bodies.{b}.{k}": v for b in ("upper", "lower") for k, v in storing.items()}
     changes |= {"analysis": {"type": "stability"}, "mesh.degree": 2}

@@ -54,7 +54,7 @@ def test_every_picture_shows_something(drawn):
 
 
 def test_pictures_have_their_own_style(folders):
-    """requirement: a `matplotlibrc` of the current folder, which may ask for TeX, has no say."""
+    """requirement: a `matplotlibrc` of the current folder has no influence."""
     with mpl.rc_context({"text.usetex": True, "savefig.format": "none"}):
         draw_interface(folders / "hot")
     image = mpimg.imread(folders / "hot" / "interface.png")
@@ -70,7 +70,7 @@ STARTERS = {
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "expected"), STARTERS.items(), ids=STARTERS)
 def test_pictures_of_curved_faces(name, expected, tmp_path):
-    """requirement: those of a plane half model and of a history of loads, drawn by the run."""
+    """requirement: a run draws pictures of a plane half model and of a load history."""
     file, folder = tmp_path / "case.toml", tmp_path / "results"
     file.write_text(starter_text(name), encoding="utf-8")
     small = ["--set=mesh.degree=3", "--set=mesh.elements=12"]

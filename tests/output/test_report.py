@@ -141,7 +141,7 @@ def refused(capsys):
 
 @pytest.mark.parametrize("name", RUNS)
 def test_a_page_says_everything_and_needs_nothing(name, copy, capsys):
-    """requirement: all analyses; well-formed, nothing from outside, every key of the summary."""
+    """requirement: well-formed, self-contained page with all summary keys, any analysis."""
     folder = copy(name)
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     page = report(folder)
@@ -219,7 +219,7 @@ VALUES = {
 
 
 def test_every_kind_of_value_is_shown(copy):
-    """requirement: unknown keys are in a group of their own, what is no number is a dash."""
+    """requirement: unknown keys are in a separate group, undefined numbers are dashes."""
     folder = copy(HERTZ)
     keys = {key: value for key, (value, _) in VALUES.items() if "." not in key}
     change(folder / "summary.json", **keys)
@@ -234,7 +234,7 @@ def test_every_kind_of_value_is_shown(copy):
 
 
 def test_all_that_hurts_is_escaped(copy):
-    """requirement: text of a case is text on the page, whatever it is."""
+    """requirement: any text of a case is escaped on the page."""
     folder = copy(HERTZ)
     hurting = "<b>&\"'</title><script>alert(1)</script>\x00\ud800 µ"
     change(folder / "summary.json", title=hurting, analysis=hurting, **{hurting: hurting})
@@ -253,7 +253,7 @@ def marks(page: Page) -> list[tuple[str, str]]:
 
 
 def test_balances_are_judged(copy):
-    """requirement: errors of equilibrium and heat against 1e-6, a mark for each."""
+    """requirement: errors of equilibrium and heat are compared with 1e-6 and marked."""
     folder = copy(STEADY)
     assert [mark for mark, _ in marks(report(folder))] == ["good", "good"]
     change(folder / "summary.json", equilibrium_relative_error=1.1e-6)
@@ -278,7 +278,7 @@ ENDS = {
 
 @pytest.mark.parametrize(("status", "end"), ENDS.items(), ids=ENDS)
 def test_the_verdict(status, end, copy):
-    """requirement: finished, or stopped and why, and what the figures are then."""
+    """requirement: status with reason, and the state that the figures refer to."""
     keys, mark, text = end
     folder = copy(RUNNING_IN)
     change(folder / "run.json", status=status, **keys)
@@ -307,7 +307,7 @@ def test_output_times_agree_with_the_history(copy):
 
 
 def test_output_times_of_fretting_agree_with_the_loads(copy):
-    """requirement: energy and sticking area at the output times are those of loads.csv."""
+    """requirement: energy and stick area at the output times are those of loads.csv."""
     folder = copy(FRETTING)
     heads, rows = report(folder).table("Output times")
     loads = tables.read(folder / "loads.csv", LOADS)
@@ -342,12 +342,12 @@ def test_a_history_is_sampled(total, copy):
 
 
 def test_no_output_times_no_table(copy):
-    """requirement: a table of output times only where there are some."""
+    """requirement: the table of output times is omitted without output times."""
     assert not any("Output times" in heading for heading in report(copy(STEADY)).text["h3"])
 
 
 def test_columns_that_are_not_known(copy):
-    """requirement: a column of a later release is shown, in the unit its header says."""
+    """requirement: an unknown column is shown in the unit of its header."""
     folder = copy(RUNNING_IN)
     lines = (folder / "history.csv").read_text(encoding="utf-8").splitlines()
     more = [f"{lines[0]},tilt_rad,film_m", *(f"{line},0.5,nan" for line in lines[1:])]
@@ -361,7 +361,7 @@ def test_columns_that_are_not_known(copy):
 
 
 def test_pictures_are_in_the_page(copy):
-    """requirement: each picture is embedded, decodes to what is in the folder, has a caption."""
+    """requirement: each picture is embedded unchanged, with a caption."""
     folder = copy(STEADY)
     draw_interface(folder)
     page = Page((report(folder), (folder / "report.html").read_text(encoding="utf-8"))[1])
@@ -377,13 +377,13 @@ def test_pictures_are_in_the_page(copy):
 
 
 def test_without_pictures_it_says_how_to_make_them(copy):
-    """requirement: a run with --no-pictures has a report, and the command that draws."""
+    """requirement: the report of a run without pictures contains the commands to draw them."""
     folder = copy(STEADY)
     assert f"python3 -m thermowear plot {folder}" in report(folder).text["pre"][0]
 
 
 def test_a_broken_picture_is_left_out(copy):
-    """requirement: a picture that is being drawn does not spoil the page."""
+    """requirement: an incomplete picture file is omitted."""
     folder = copy(STEADY)
     (folder / "wear.png").write_bytes(b"")
     assert "img" not in {tag for tag, _ in report(folder).elements}
@@ -396,7 +396,7 @@ def names_in(folder: Path, ending: str) -> set[str]:
 
 
 def test_everything_has_a_caption():
-    """requirement: what the program draws and writes is what the report shows."""
+    """requirement: the report covers all pictures and tables of the program."""
     pictures = names_in(Path(output.__file__).parent / "pictures", "png")
     assert len(pictures) >= 7
     assert pictures <= set(CAPTIONS)
@@ -408,7 +408,7 @@ def test_everything_has_a_caption():
 
 
 def test_a_run_that_failed_half_way(tmp_path, capsys):
-    """requirement: too few steps: the reason, the figures that were reached."""
+    """requirement: the report of a failed run contains the reason and the last figures."""
     (tmp_path / "case.toml").write_text(starter_text(RUNNING_IN), encoding="utf-8")
     words = [f"--set={key}" for key in (*COARSE, "analysis.max_steps=3")]
     out = tmp_path / "out"
@@ -421,7 +421,7 @@ def test_a_run_that_failed_half_way(tmp_path, capsys):
 
 
 def test_a_run_that_left_nothing_but_its_case(copy):
-    """requirement: without summary and tables there is a page that says so."""
+    """requirement: the report of an early stop states that there are no results."""
     folder = copy(RUNNING_IN)
     for path in folder.iterdir():
         if path.name not in {"run.json", "case.resolved.toml", "history.csv"}:
@@ -438,7 +438,7 @@ def test_a_run_that_left_nothing_but_its_case(copy):
 
 
 def test_no_results_no_report(tmp_path, refused):
-    """requirement: exit code 1 and one line for what is no results folder; nothing is written."""
+    """requirement: exit code 1 and one line without a results folder; nothing is written."""
     (tmp_path / "file").write_text("mine", encoding="utf-8")
     (tmp_path / "empty").mkdir()
     for name in ("none", "empty", "file", "n" * 300):
@@ -455,7 +455,7 @@ def test_no_results_no_report(tmp_path, refused):
 )
 @pytest.mark.parametrize("broken", [b"\xff\xfe", b"{", b"a,b\n1\n", b"a_m\nx\n"])
 def test_a_broken_file_is_named(name, broken, copy, refused):
-    """requirement: one line that says which file is not what it should be."""
+    """requirement: one line naming the invalid file."""
     folder = copy(RUNNING_IN)
     if (name.endswith("csv"), broken) == (True, b"{"):
         broken = b""  # a single unfinished line is being written
@@ -468,7 +468,7 @@ def test_a_broken_file_is_named(name, broken, copy, refused):
 
 
 def test_a_report_is_replaced(copy):
-    """requirement: a report of the program gives way to a new one, and no draft stays."""
+    """requirement: an earlier report is replaced, and no draft remains."""
     folder = copy(HERTZ)
     report(folder)
     change(folder / "summary.json", title="anew")
@@ -481,7 +481,7 @@ def test_a_report_is_replaced(copy):
     "mine", [b"", b"<p>mine</p>", b'<meta name="generator" content="thermowear-like">']
 )
 def test_a_page_of_someone_else_stays(mine, copy, refused):
-    """requirement: a report.html that the program did not make is refused and stays."""
+    """requirement: a report.html of other origin is refused and remains."""
     folder = copy(HERTZ)
     (folder / "report.html").write_bytes(mine)
     line = refused(folder)
@@ -490,7 +490,7 @@ def test_a_page_of_someone_else_stays(mine, copy, refused):
 
 
 def test_a_folder_or_a_link_of_someone_else_stays(copy, refused):
-    """requirement: neither a folder of that name nor a link to nowhere is replaced."""
+    """requirement: neither a folder of that name nor a broken link is replaced."""
     folder = copy(HERTZ)
     (folder / "report.html").mkdir()
     assert "not a report of this program" in refused(folder)
@@ -501,7 +501,7 @@ def test_a_folder_or_a_link_of_someone_else_stays(copy, refused):
 
 
 def test_where_nothing_can_be_written(copy, refused, monkeypatch):
-    """requirement: a full disk is one line."""
+    """requirement: a full disk is reported in one line."""
 
     def full(*_, **__):
         raise OSError(28, "No space left on device")

@@ -88,7 +88,7 @@ def rows(path):
     ],
 )
 def test_columns_of_swept_keys(resolved, header, values):
-    """requirement: SI numbers, the unit in the column name; words as they were written."""
+    """requirement: SI numbers with the unit in the column name; words as given."""
     written = [f"x{k}" for k in range(len(resolved))]
     found = swept("a.b", written, [_nested("a.b", value) for value in resolved])
     assert found.header == header
@@ -96,7 +96,7 @@ def test_columns_of_swept_keys(resolved, header, values):
 
 
 def test_axes_of_swept_keys():
-    """requirement: pictures show the unit that was written if it is one, else SI."""
+    """requirement: pictures use the given unit if it is common, else SI."""
     assert axis("f", ["1 kN", '"2.5 kN"'], [1e3, 2.5e3], "f_N").label == "f [kN]"
     assert axis("f", ["1 kN", '"2.5 kN"'], [1e3, 2.5e3], "f_N").numbers == (1.0, 2.5)
     mixed = axis("f", ["1 kN", "500 N"], [1e3, 500.0], "f_N")
@@ -108,7 +108,7 @@ def test_axes_of_swept_keys():
 
 
 def test_a_row_a_variant(tmp_path):
-    """requirement: number, swept keys, status, the numbers of the summary; why one failed."""
+    """requirement: number, swept keys, status with reason, numbers of the summary."""
     made(tmp_path / "s", {"load.force": ["1.0 N", "2.0 N"], "mesh.degree": ["2", "3"]}, failing=[3])
     header, *variants = rows(tmp_path / "s")
     assert header[:4] == ["variant", "load.force_N", "mesh.degree", "status"]
@@ -120,7 +120,7 @@ def test_a_row_a_variant(tmp_path):
 
 
 def test_what_is_not_computed_yet_has_a_row(tmp_path):
-    """requirement: the table is whole at every moment."""
+    """requirement: the table is complete at any time."""
     keys = [swept("a", ["1", "2"], [{"a": 1}, {"a": 2}])]
     folder = SweepFolder(tmp_path / "s", {"a": ["1", "2"]}, keys, overwrite=False)
     assert rows(tmp_path / "s") == [
@@ -134,7 +134,7 @@ def test_what_is_not_computed_yet_has_a_row(tmp_path):
 
 
 def test_a_sweep_replaces_only_a_sweep(tmp_path):
-    """requirement: results are replaced where asked for, and nothing else is touched."""
+    """requirement: results are replaced on request, and other files remain unchanged."""
     path = tmp_path / "s"
     made(path, {"a": ["1", "2", "3"]})
     (path / "notes.txt").write_text("mine")
@@ -157,7 +157,7 @@ def test_a_sweep_replaces_only_a_sweep(tmp_path):
 
 
 def test_the_record_is_read_back(tmp_path):
-    """requirement: pictures are made from the files alone, without the variants that failed."""
+    """requirement: pictures need the files only and omit failed variants."""
     over = {"load.force": ["1.0 kN", "2.0 kN"], "model": ["one", "two"]}
     made(tmp_path / "s", over, failing=[2])
     record = read_sweep(tmp_path / "s")
@@ -201,7 +201,7 @@ def test_pictures(name, tmp_path):
 
 
 def test_curves_that_are_one():
-    """requirement: equal but for rounding, point by point; a single one is not compared."""
+    """requirement: curves equal up to rounding coincide; a single one is not compared."""
     curve = np.array([1.0, np.nan, 2.0])
     assert alike([curve, curve * (1 + 1e-9)])
     assert not alike([curve, curve * (1 + 1e-5)])
@@ -210,14 +210,14 @@ def test_curves_that_are_one():
 
 
 def test_pictures_of_faces_in_space(tmp_path):
-    """requirement: where contact points have no order, shapes are maps."""
+    """requirement: shapes of 3D models are drawn as maps."""
     made(tmp_path / "s", {"a": [str(k) for k in range(1, 16)]}, surface=True)
     assert draw_sweep(tmp_path / "s") == []
     assert (tmp_path / "s" / "shapes.png").is_file()
 
 
 def test_nothing_to_draw(tmp_path):
-    """requirement: a sweep in which all failed has no pictures, and says so."""
+    """requirement: a sweep with failed variants only has no pictures, and a message."""
     made(tmp_path / "s", {"a": ["1", "2"]}, failing=[1, 2])
     (said,) = draw_sweep(tmp_path / "s")
     assert "no variant" in said
@@ -229,5 +229,5 @@ def test_nothing_to_draw(tmp_path):
     + [((1, 99), False)],
 )
 def test_logarithmic_axes(numbers, wide):
-    """requirement: logarithmic only where the values lie evenly on it."""
+    """requirement: a logarithmic axis is used for evenly spaced logarithms only."""
     assert is_wide(numbers) == wide

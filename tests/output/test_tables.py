@@ -49,7 +49,7 @@ def test_columns_are_those_of_the_contract(folder):
 
 
 def test_files_agree_with_each_other(folder):
-    """requirement: summary, tables and fields tell one story."""
+    """requirement: summary, tables and fields are consistent."""
     names = {path.name for path in folder.iterdir()}
     assert names == {
         "summary.json",
@@ -81,7 +81,7 @@ def test_files_agree_with_each_other(folder):
 
 
 def test_contracted_summary_keys(folder):
-    """requirement: the summary has at least these keys, whatever the analysis."""
+    """requirement: the summary has at least these keys for any analysis."""
     summary = json.loads((folder / "summary.json").read_text())
     for key in [
         "analysis",
@@ -113,7 +113,7 @@ def test_contracted_summary_keys(folder):
 
 
 def test_fields_cover_both_bodies(folder):
-    """requirement: fields.vtu is read by others; punch above, plate below, moved by the load."""
+    """requirement: meshio reads fields.vtu; punch above plate, displaced by the load."""
     mesh = meshio.read(folder / "fields.vtu")
     body = mesh.cell_data["body"][0]
     height = mesh.points[mesh.cells[0].data].mean(axis=1)[:, 1]
@@ -132,7 +132,7 @@ def test_a_table_of_another_kind_is_refused(tmp_path):
 
 
 def test_a_row_that_the_disk_does_not_take_leaves_no_trace(tmp_path):
-    """requirement: tables are whole when the disk is full, and go on when it is not any more."""
+    """requirement: tables remain valid on a full disk, and continue afterwards."""
     path = tmp_path / "history.csv"
     rows = [HistoryRow(*np.full(10, value).tolist()) for value in (1 / 3, 2 / 3, 4 / 3)]
     writer = tables.RowWriter(path, HISTORY, rows[:1])

@@ -162,6 +162,12 @@ CYCLES = {
 PHASES = {
     "import": "import of libraries",
     "pair": "pairing of the contact faces",
+    "assemble elasticity": "assembly of elasticity",
+    "condense elasticity": "condensation of elasticity",
+    "assemble conduction": "assembly of conduction",
+    "condense conduction": "condensation of conduction",
+    "condense distortion": "condensation of thermal distortion",
+    "contact operators": "assembly of contact operators",
     "bodies": "output of the bodies",
     "move meshes": "mesh motion",
     "carry temperatures over": "transfer of temperatures",

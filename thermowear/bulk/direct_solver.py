@@ -7,6 +7,14 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
+from ..errors import ComputationError
+
+_FAILURES = {
+    -9: "its work space was too small",
+    -10: "it is singular: a part of a body is not supported, or its cells are degenerate",
+    -13: "the memory does not suffice; use fewer elements or a lower degree",
+}
+"""Reasons by the error code of MUMPS (INFOG(1))."""
 _ORDERINGS = {2: 2, 3: 4}
 """Ordering of MUMPS (ICNTL(7)) by dimension of the mesh. In 2D approximate minimum fill: for 1e4 to
 3e5 unknowns twice as fast as the default of MUMPS, with the same fill. In 3D PORD: for 5e4 to 2e5
@@ -28,6 +36,11 @@ class Factor:
         ``"symmetric"`` or ``"none"``.
     dim : int
         Dimension of the mesh, which selects the ordering.
+
+    Raises
+    ------
+    ComputationError
+        If the matrix is singular or too large.
     """
 
     def __init__(self, matrix: PETSc.Mat, symmetry: str = "definite", dim: int = 2):
@@ -47,11 +60,15 @@ class Factor:
         self._factored = preconditioner.getFactorMatrix()
         self._factored.setMumpsIcntl(7, _ORDERINGS[dim])
         self._factored.setMumpsIcntl(27, _COLUMNS)
-        preconditioner.setUp()
+        self.repeat()
 
     def repeat(self) -> None:
-        """Repeat the factorisation after a change of values with unchanged sparsity pattern."""
+        """Factorise the matrix, again after a change of values with unchanged sparsity pattern."""
         self._solver.getPC().setUp()
+        code = self._factored.getMumpsInfog(1)
+        if code < 0:
+            reason = _FAILURES.get(code, "see INFOG(1) in the manual of MUMPS")
+            raise ComputationError(f"a matrix cannot be factorised (MUMPS error {code}): {reason}")
 
     @property
     def negative_pivots(self) -> int:

@@ -1,8 +1,8 @@
 """A contact patch: all that the principle needs to know of a face, in three dimensions.
 
 Signs are those of `thermowear.contact.search.pairing`: ``n`` is the outward normal of body 1, and
-its traction is ``-p ñ`` with ``ñ = n + mu e_1 + mu_d e_2``. ``e_1`` is the direction in which body 1
-slides over body 2; ``e_2``, across it, is that in which the rigid-body wear velocity draws body 1
+its traction is ``-p ñ`` with ``ñ = n + mu e_1 + mu_d e_2``. ``e_1`` is the direction in which body
+1 slides over body 2; ``e_2``, across it, is that in which the rigid-body wear velocity draws body 1
 along the face, so that ``mu_d`` resists it.
 """
 

@@ -1,0 +1,33 @@
+"""Sparse direct solver: solutions, and singular matrices."""
+
+from petsc4py import PETSc
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from thermowear.bulk.direct_solver import Factor
+from thermowear.errors import ComputationError
+
+
+def petsc(matrix) -> PETSc.Mat:
+    rows = sp.csr_matrix(matrix)
+    found = PETSc.Mat().createAIJ(rows.shape, csr=(rows.indptr, rows.indices, rows.data))
+    found.assemble()
+    return found
+
+
+def test_a_matrix_is_solved_with_many_right_hand_sides():
+    """requirement: dense and sparse ones alike."""
+    matrix = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 1.0], [0.0, 1.0, 2.0]])
+    factor, loads = Factor(petsc(matrix)), np.array([[1.0, 0.0], [0.0, 2.0], [3.0, 1.0]])
+    expected = np.linalg.solve(matrix, loads)
+    assert factor.solve(loads) == pytest.approx(expected, rel=1e-14)
+    assert factor.solve(sp.csr_matrix(loads)) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("symmetry", ["definite", "symmetric", "none"])
+def test_a_singular_matrix_is_an_error_in_words(symmetry):
+    """requirement: no factor, no solution: exit code 2 and the reason."""
+    with pytest.raises(ComputationError, match=r"cannot be factorised.*singular"):
+        Factor(petsc(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 2.0]])), symmetry)

@@ -11,7 +11,13 @@ import tomli_w
 import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
-from thermowear.case.values.bounds import LARGEST_FILE, LONGEST_KEY, MOST_PARTS, MOST_VALUES
+from thermowear.case.values.bounds import (
+    LARGEST_FILE,
+    LONGEST_KEY,
+    MOST_PARTS,
+    MOST_VALUES,
+    check_keys,
+)
 from thermowear.errors import MOST_FAULTS
 
 from .bad import faults
@@ -207,6 +213,28 @@ def test_tables_written_and_read_again_are_bounded_alike():
     assert tomli_w.dumps(deep)
     (line,) = faults({"mesh": deep})
     assert f"at most {MOST_PARTS}" in line
+
+
+@pytest.mark.parametrize("text", ["x = " + "[" * 5000, "x = " + "{a=" * 5000, "[" * 5000])
+def test_brackets_within_brackets(text, tmp_path):
+    """
+    requirement: the recursion limit is never approached, where finalisers would fail as well.
+    """
+    path = tmp_path / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(tw.CaseError, match="brackets nested deeper than 100"):
+        tw.load(path)
+
+
+def test_brackets_in_strings_are_no_brackets():
+    """
+    requirement: brackets in strings and comments do not count, unterminated strings included.
+    """
+    for text in ('t = "' + "[" * 500 + '"', "t = '" + "{" * 500 + "'", "# " + "[" * 500):
+        check_keys(text, "case")
+        check_keys(text[:-1], "case")
+    check_keys('t = """' + "[\n" * 500 + '"""', "case")
+    check_keys('t = "' + r"\"[" * 500 + '"', "case")
 
 
 def test_the_bounds_are_documented():

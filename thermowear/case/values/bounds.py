@@ -22,12 +22,21 @@ MOST_VALUES = 60_000
 _WIDEST = 1024
 """Largest number of bits of an integer: beyond it, it does not fit a floating-point number."""
 
+_DEEPEST = 100
+"""Largest nesting depth of brackets in TOML, far below the recursion limit of Python."""
+
 _PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 _LONG_KEY = re.compile(rf"(?<![\w\\-])(?:{_PART}[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}", re.DOTALL)
+_QUOTED = re.compile(
+    r'"""(?:[^\\]|\\.)*?(?:"""|\Z)|"(?:[^"\\\n]|\\.)*+"?'
+    r"|'''.*?(?:'''|\Z)|'[^'\n]*+'?|#[^\n]*",
+    re.DOTALL,
+)
+"""Strings, also unterminated ones, and comments of TOML."""
 
 
 def check_keys(text: str, where: str) -> None:
-    """Reject TOML with a dotted key of too many parts, which takes the parser quadratic time.
+    """Reject TOML that the parser takes quadratic time or too many nested calls for.
 
     Parameters
     ----------
@@ -43,6 +52,11 @@ def check_keys(text: str, where: str) -> None:
     if found is not None:
         line = text.count("\n", 0, found.start()) + 1
         raise CaseError(f"{where}: line {line} has a key of more than {MOST_PARTS} parts")
+    depth = 0
+    for bracket in re.finditer(r"[\[\]{}]", _QUOTED.sub("", text)):
+        depth += 1 if bracket[0] in "[{" else -1
+        if depth > _DEEPEST:
+            raise CaseError(f"{where}: is not valid TOML: brackets nested deeper than {_DEEPEST}")
 
 
 def check_tables(tables: dict[str, Any]) -> None:

@@ -14,8 +14,8 @@ import thermowear
 ROOT = Path(thermowear.__file__).parent
 PACKAGE = "thermowear"
 ORDER = [
-    "case",
     "laws",
+    "case",
     "reference",
     "geometry",
     "bulk",

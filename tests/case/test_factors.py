@@ -79,7 +79,9 @@ def test_factors_multiply_by_straight_lines_constant_beyond_their_ends():
     factors = tw.load(tables(STEADY, {FRICTION: given})).contact.friction_factor
     T = np.array([393.15, 0.0, 900.0])
     p, v = np.array([20e6, 0.0, 1e9]), np.array([0.5, 0.0, 3.0])
-    assert factors.value(T, p, v) == pytest.approx([0.75 * 1.5 * 0.9, 1.0, 0.5 * 2.0 * 0.8])
+    assert factors.multipliers.value(p, v, T) == pytest.approx(
+        [0.75 * 1.5 * 0.9, 1.0, 0.5 * 2.0 * 0.8]
+    )
     assert factors.depends_on == ("temperature", "pressure", "speed")
 
 
@@ -88,7 +90,11 @@ def test_without_tables_the_factor_is_one():
     requirement: nothing changes unless the case says so, hot or cold.
     """
     case = tw.load(tables(STEADY, {"heat": GONE}))
-    assert case.wear["punch"].factor.value(None, np.zeros(3), np.ones(3)).tolist() == [1, 1, 1]
+    assert case.wear["punch"].factor.multipliers.value(np.zeros(3), np.ones(3), 0.0).tolist() == [
+        1,
+        1,
+        1,
+    ]
     assert case.contact.friction_factor.depends_on == ()
     assert not case.varies
 
@@ -107,5 +113,5 @@ def test_tables_of_bodies_are_in_kelvin():
     """
     none = {"at": ["20 degC", "1220 degC"], "factor": [1.0, 0.0]}
     body = tw.load(tables(STEADY, {CONDUCTS: WARM, EXPANDS: none})).material("plate")
-    assert body.conductivity_factor.value(np.array([343.15])) == pytest.approx([0.875])
-    assert body.expansion_factor.value(np.array([1493.15])) == pytest.approx([0.0])
+    assert body.conductivity_factor.table.value(np.array([343.15])) == pytest.approx([0.875])
+    assert body.expansion_factor.table.value(np.array([1493.15])) == pytest.approx([0.0])

@@ -10,7 +10,7 @@ from thermowear.contact.friction.loads import Loads
 from thermowear.contact.friction.slip_wear import Profile, SlipWear
 from thermowear.contact.friction.stick_slip import follow
 from thermowear.contact.friction.stick_slip_state import Status, unloaded
-from thermowear.laws import WearLaw
+from thermowear.laws import PowerWear
 from thermowear.reference.growing_contact import growing_line
 from thermowear.reference.mindlin import MindlinLine
 
@@ -18,7 +18,7 @@ from .half_plane import half_plane
 
 LINE = MindlinLine(force=1e5, radius=0.05, modulus=1e11, friction=0.4)
 A = LINE.normal.half_width
-LAWS = (WearLaw(2e-13), WearLaw(1e-13))
+LAWS = (PowerWear(2e-13), PowerWear(1e-13))
 
 
 def close(value, rel=1e-6):
@@ -29,7 +29,7 @@ def close(value, rel=1e-6):
 def wear(x, laws=LAWS, bodies=(0, 1), duration=1.0, repeats=1):
     areas = np.full(len(x), x[1] - x[0])
     profiles = tuple(Profile(x, areas, body == 0) for body in bodies)
-    return SlipWear(laws, profiles, duration, repeats)
+    return SlipWear(laws, profiles, 0.3, duration, repeats)
 
 
 def pushed(*forces):
@@ -91,7 +91,7 @@ def test_without_jumps_it_is_mindlins_energy():
 def test_the_law(a, b):
     """requirement: depth = κ p^b |s|^a t^(1-a), n times; slip without friction is that given."""
     x, contact = half_plane(LINE, 60)
-    law = WearLaw(1e-9 / (2.5e8**b * 1e-4**a), b, a)
+    law = PowerWear(1e-9 / (2.5e8**b * 1e-4**a), b, a)
     start, slid, time = unloaded(contact, 1), 1e-4, 3.0
     *_, pressed = follow(contact, 0.0, moved(0.0), 1, start)
     settings = wear(x, (law,), (1,), time, 2)
@@ -123,7 +123,7 @@ def test_jumps_of_any_size_are_stable():
     ends = []
     for jump in (int(0.5 * limit), int(20 * limit)):
         state = pressed
-        law = wear(x, (WearLaw(k),), (1,), repeats=jump)
+        law = wear(x, (PowerWear(k),), (1,), repeats=jump)
         for _ in range(int(100 * limit) // jump):
             (state,) = follow(contact, 0.0, moved(state.motion[1] + slid), 1, state, law)
             pressing = state.pressure[state.pressure > 0]
@@ -154,7 +154,7 @@ def test_a_cylinder_that_slides_to_and_fro(body):
     law = growing_line(LINE.force, LINE.radius, LINE.modulus, k)
     a = 3 * A
     jump = int(law.distance(a) / (cycles * 4 * d))
-    settings = wear(x, (WearLaw(k),), (body,), repeats=jump)
+    settings = wear(x, (PowerWear(k),), (body,), repeats=jump)
     (state,) = follow(contact, 0.0, moved(0.0), 1, unloaded(contact, 1))
     for _ in range(cycles):
         *_, state = follow(contact, 0.0, moved(d, -d, 0.0), 12, state, settings)
@@ -189,7 +189,7 @@ def test_wear_with_the_square_of_the_pressure():
     k, d = 1e-22, 1e-3
     law = growing_line(LINE.force, LINE.radius, LINE.modulus, k, 2.0)
     jump = int(law.distance(3 * A) / (40 * d))
-    settings = wear(x, (WearLaw(k, 2.0),), (1,), repeats=jump)
+    settings = wear(x, (PowerWear(k, 2.0),), (1,), repeats=jump)
     (state,) = follow(contact, 0.0, moved(0.0), 1, unloaded(contact, 1))
     *_, state = follow(contact, 0.0, moved(40 * d), 40, state, settings)
     expected = float(law.elastic_depth(40 * d * jump))
@@ -201,7 +201,7 @@ def test_at_the_end_of_an_increment_the_worn_faces_touch(b):
     """requirement: the pressure is that of the contact of what is left, however much is worn."""
     x, contact = half_plane(LINE, 60, extent=2.5)
     (start,) = follow(contact, 0.0, moved(0.0), 1, unloaded(contact, 1))
-    settings = wear(x, (WearLaw(5e-6 / 1e8**b, b),), (1,))
+    settings = wear(x, (PowerWear(5e-6 / 1e8**b, b),), (1,))
     (end,) = follow(contact, 0.0, moved(1.0), 1, start, settings)
     left = dataclasses.replace(contact, gap=contact.gap + end.worn[0])
     (known,) = follow(left, 0.0, moved(1.0), 1, unloaded(contact))
@@ -235,7 +235,7 @@ def test_nothing_wears_in_no_time():
 def test_halved_increments_wear_as_much():
     """requirement: where an increment is halved, each half has half the time."""
     x, _ = half_plane(LINE, 20)
-    law = wear(x, (WearLaw(1e-13, 1.0, 0.5),), (1,), 2.0, 3)
+    law = wear(x, (PowerWear(1e-13, 1.0, 0.5),), (1,), 2.0, 3)
     pressure = np.full(20, 1e7)
     whole = law.depths(pressure, np.full(20, 1e-5))
     halves = 2 * law.halved().depths(pressure, np.full(20, 0.5e-5))
@@ -258,14 +258,14 @@ def test_corners_may_be_followed_one_by_one(partial):
 def test_a_law_of_ones_own_is_asked():
     """requirement: a wear law that somebody derives is used, in fretting, too."""
 
-    class Doubled(WearLaw):
-        def rate(self, pressure, speed):
-            return 2 * super().rate(pressure, speed)
+    class Doubled(PowerWear):
+        def rate(self, *state, **more):
+            return 2 * super().rate(*state, **more)
 
-        def slope(self, pressure, speed):
-            return 2 * super().slope(pressure, speed)
+        def slope(self, *state, **more):
+            return 2 * super().slope(*state, **more)
 
     x, p, slip = np.linspace(0, 1, 5), np.full(5, 1e6), np.full(5, 1e-6)
-    plain, doubled = (wear(x, (law(2e-13),), (0,)) for law in (WearLaw, Doubled))
+    plain, doubled = (wear(x, (law(2e-13),), (0,)) for law in (PowerWear, Doubled))
     assert doubled.depths(p, slip) == close(2 * plain.depths(p, slip), rel=1e-14)
     assert doubled.slopes(p, slip) == close(2 * plain.slopes(p, slip), rel=1e-14)

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from thermowear.laws import WearLaw, contact_patch, rotation, translation
+from thermowear.laws import PowerWear, contact_patch, rotation, translation
 
 
 def random_laws(rng):
     """One or two wear laws with rates of an ordinary size."""
     exponents = np.exp(rng.uniform(np.log(0.3), np.log(4.0), rng.integers(1, 3)))
     return [
-        WearLaw(10 ** rng.uniform(-15, -12) * 1e6 ** (1 - b), b, rng.uniform(0.0, 2.0))
+        PowerWear(10 ** rng.uniform(-15, -12) * 1e6 ** (1 - b), b, rng.uniform(0.0, 2.0))
         for b in exponents
     ]
 

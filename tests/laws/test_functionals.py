@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from thermowear.laws import WearLaw, friction_dissipation, wear_dissipation, wear_volume_rate
+from thermowear.laws import PowerWear, friction_dissipation, wear_dissipation, wear_volume_rate
 
 from .random_problems import curved_face
 
 RNG = np.random.default_rng(1)
 W, P, V = RNG.uniform(0.5, 1, 12), RNG.uniform(1e6, 9e6, 12), RNG.uniform(0.1, 2, 12)
-LAWS = [WearLaw(1e-13, 1.0, 0.5), WearLaw(3e-20, 2.0, 1.5)]
+LAWS = [PowerWear(1e-13, 1.0, 0.5), PowerWear(3e-20, 2.0, 1.5)]
 C = RNG.uniform(0.8, 1.3, 12)
 
 
@@ -66,7 +66,7 @@ def test_large_q_is_the_largest_density():
 
 def test_where_they_have_a_minimum():
     """requirement: q > 1/(b + 1), q > 1, q > 1/b."""
-    law = [WearLaw(1.0, 0.5)]
+    law = [PowerWear(1.0, 0.5)]
     for build, bound in (
         (lambda q: wear_dissipation(W, law, V, q), 2 / 3),
         (lambda q: friction_dissipation(W, 0.3, V, q), 1.0),

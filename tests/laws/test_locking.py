@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear import ComputationError
-from thermowear.laws import NotCarried, SelfLocking, WearLaw, contact_patch, rotation, translation
+from thermowear.laws import NotCarried, PowerWear, SelfLocking, contact_patch, rotation, translation
 
 from .random_problems import curved_face
 
@@ -31,7 +31,7 @@ def locking_friction(b):
 def test_lever_locks_in_one_sense(b, beyond):
     """requirement: I <= 0 is reported as self-locking; the other sense never locks."""
     friction = locking_friction(b)
-    law = [WearLaw(1e-13 * 1e6 ** (1 - b), b)]
+    law = [PowerWear(1e-13 * 1e6 ** (1 - b), b)]
     with pytest.raises(SelfLocking, match="self-locking: friction carries the load"):
         block(friction * (1 + beyond), -1).steady([200.0], law)
     steady = block(friction * (1 + beyond), 1).steady([200.0], law)
@@ -43,7 +43,7 @@ def test_lever_locks_in_one_sense(b, beyond):
 def test_just_before_it_locks_there_is_a_pressure(b, before):
     """requirement: up to the limit the closed form is found, however large the pressure."""
     friction = locking_friction(b) * (1 - before)
-    steady = block(friction, -1).steady([200.0], [WearLaw(1e-13 * 1e6 ** (1 - b), b)])
+    steady = block(friction, -1).steady([200.0], [PowerWear(1e-13 * 1e6 ** (1 - b), b)])
     integral = AREA @ ((Z - friction * 0.04) * Z ** (1 / b))
     np.testing.assert_allclose(
         steady.pressure, 200.0 / integral * Z ** (1 / b), rtol=1e-13 / before + 1e-11
@@ -53,7 +53,7 @@ def test_just_before_it_locks_there_is_a_pressure(b, before):
 def test_one_line():
     """requirement: a clear message of one line, and a computation error (exit code 2)."""
     with pytest.raises(ComputationError) as caught:
-        block(5.0, -1).steady([200.0], [WearLaw(1e-13)])
+        block(5.0, -1).steady([200.0], [PowerWear(1e-13)])
     assert "\n" not in str(caught.value)
     assert "lower the friction" in str(caught.value)
 
@@ -63,7 +63,7 @@ def test_pulled_off_is_not_self_locking():
     for friction in (0.0, 0.3, 5.0):
         for sense in (1, -1):
             with pytest.raises(NotCarried, match="outside of what pressure"):
-                block(friction, sense).steady([-200.0], [WearLaw(1e-13)])
+                block(friction, sense).steady([-200.0], [PowerWear(1e-13)])
 
 
 TILTING = [translation((1, 0, 0)), rotation((0, 1, 0), (0, 0, 0.1))]
@@ -80,10 +80,10 @@ def test_outside_the_face_is_not_self_locking():
             shift = sense * friction * 0.04
             half = Z.max() - 0.1  # of the outermost points
             for arm in (half * 0.95, -half * 0.95):
-                patch.steady([1e3, 1e3 * (arm + shift)], [WearLaw(1e-13)])
+                patch.steady([1e3, 1e3 * (arm + shift)], [PowerWear(1e-13)])
             for arm in (half * 1.01, -half * 1.01):
                 with pytest.raises(NotCarried):
-                    patch.steady([1e3, 1e3 * (arm + shift)], [WearLaw(1e-13)])
+                    patch.steady([1e3, 1e3 * (arm + shift)], [PowerWear(1e-13)])
 
 
 def winding(patch, law):

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from thermowear.laws import WearLaw
-from thermowear.laws.principle.interior_point import PowerSum, solve
+from thermowear.laws import PowerWear
+from thermowear.laws.principle.interior_point import solve
+from thermowear.laws.principle.rate_sums import PowerSum
 
 from .random_problems import curved_face
 
@@ -46,7 +47,7 @@ def test_homogeneous():
     rng = np.random.default_rng(3)
     patch, load, _ = curved_face(rng, friction=0.3, eccentric=6.0, motions=3)
     for b in (0.3, 1.0, 4.0):
-        local = power_sum([WearLaw(1e-13 * 1e6 ** (1 - b), b)], patch.speed)
+        local = power_sum([PowerWear(1e-13 * 1e6 ** (1 - b), b)], patch.speed)
         once, twice = (
             solve(patch.weights, patch.normal_modes, patch.force_modes, factor * load, local)
             for factor in (1.0, 2.0)

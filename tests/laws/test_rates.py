@@ -4,8 +4,8 @@ import numpy as np
 
 from thermowear.laws import (
     InPlace,
+    PowerWear,
     Track,
-    WearLaw,
     contact_patch,
     rotation,
     translation,
@@ -23,7 +23,7 @@ def test_block_on_disk():
         0.02 * outward, np.full(40, 1e-5), -outward, [translation((0, -1))], 0.3,
         0.3, np.column_stack([np.cos(α), -np.sin(α)]),
     )  # fmt: skip
-    steady = patch.steady([1000.0], [WearLaw(1e-13, 2.0, 0.5)])
+    steady = patch.steady([1000.0], [PowerWear(1e-13, 2.0, 0.5)])
     vectors = wear_vectors(patch, steady)
     np.testing.assert_allclose(vectors.direction, np.tile([0, -1, 0], (40, 1)), atol=1e-15)
     np.testing.assert_allclose(vectors.inclination, np.abs(α), atol=1e-8)
@@ -77,7 +77,7 @@ def test_where_the_faces_part_a_track_wears_along_its_normal():
         np.column_stack([np.full(41, 0.03), 0 * z, z]), np.full(41, 1e-5), (1, 0, 0),
         [translation((1, 0, 0)), rotation((0, 1, 0), (0, 0, 0))], 1.0,
     )  # fmt: skip
-    laws, track = [WearLaw(1e-13), WearLaw(1e-13)], Track(np.full(41, 1e-3))
+    laws, track = [PowerWear(1e-13), PowerWear(1e-13)], Track(np.full(41, 1e-3))
     steady = patch.steady([1e3, 30.0], laws, [InPlace(), track])
     vectors = wear_vectors(patch, steady)
     away = steady.approach <= 0

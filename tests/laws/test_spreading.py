@@ -6,9 +6,9 @@ import pytest
 from thermowear import ComputationError
 from thermowear.laws import (
     InPlace,
+    PowerWear,
     Share,
     Track,
-    WearLaw,
     contact_patch,
     rings,
     rotation,
@@ -53,14 +53,14 @@ def test_share_and_rows_say_the_same():
 
 def test_a_share_of_the_wear():
     """requirement: under a pad of angle θ the disk wears θ/2π of what it would in place."""
-    laws = [WearLaw(5e-14), WearLaw(8e-21, 2.0)]
+    laws = [PowerWear(5e-14), PowerWear(8e-21, 2.0)]
     x, w = np.polynomial.legendre.leggauss(40)
     r = 0.07 + 0.05 * x
     weights, down, load = 2 * np.pi * r * w * 0.05, np.ones((40, 1)), np.array([4e6])
     shared = steady_pressure(
         weights, down, down, load, laws, 10 * r, spread=[InPlace(), Share(0.1)]
     )
-    tenth = steady_pressure(weights, down, down, load, [laws[0], WearLaw(8e-22, 2.0)], 10 * r)
+    tenth = steady_pressure(weights, down, down, load, [laws[0], PowerWear(8e-22, 2.0)], 10 * r)
     np.testing.assert_allclose(shared.pressure, tenth.pressure, rtol=1e-11)
     np.testing.assert_allclose(shared.rates[1], tenth.rates[1], rtol=1e-11)
 
@@ -85,7 +85,7 @@ def block_on_strip(tilting):
 def test_wear_that_is_spread_over_a_track(tilting, b_1, b_2, κ_2):
     """requirement: the strip wears everywhere at ``1/L ∫ Z p^b ds``; both rates add up to V·n."""
     z, patch, track = block_on_strip(tilting)
-    laws = [WearLaw(1e-13 * 1e6 ** (1 - b_1), b_1), WearLaw(κ_2 * 1e6 ** (1 - b_2), b_2)]
+    laws = [PowerWear(1e-13 * 1e6 ** (1 - b_1), b_1), PowerWear(κ_2 * 1e6 ** (1 - b_2), b_2)]
     load = patch.force_modes.T @ (patch.weights * 1e6 * (z / 0.1) ** 2)
     steady = patch.steady(load, laws, [InPlace(), track])
     p = steady.pressure
@@ -106,7 +106,7 @@ def test_wear_that_is_spread_over_a_track(tilting, b_1, b_2, κ_2):
 def test_a_track_does_not_shape_what_only_descends():
     """requirement: a uniform rate of the strip adds to the descent and leaves the pressure."""
     z, patch, track = block_on_strip(tilting=True)
-    laws = [WearLaw(1e-13), WearLaw(4e-12)]
+    laws = [PowerWear(1e-13), PowerWear(4e-12)]
     load = patch.force_modes.T @ (patch.weights * 1e6 * (z / 0.1))
     both = patch.steady(load, laws, [InPlace(), track])
     alone = patch.steady(load, laws[:1])
@@ -118,7 +118,7 @@ def test_wear_of_tracks_only_leaves_the_pressure_open():
     """requirement: what does not determine a pressure is said, not made up."""
     _, patch, track = block_on_strip(tilting=False)
     with pytest.raises(ComputationError, match="spread over a track"):
-        patch.steady([10.0], [WearLaw(1e-13)], [track])
+        patch.steady([10.0], [PowerWear(1e-13)], [track])
 
 
 def disk_under_a_pad(n=12, m=9):
@@ -159,7 +159,7 @@ def test_the_principle_with_a_disk_that_wears_along_its_track(b_1, b_2):
     """requirement: where it presses, pad and disk together wear as the pad approaches."""
     r, angle, w = disk_under_a_pad()
     way = rings(r, w, 1 / 6)
-    laws = [WearLaw(1e-13 * 1e6 ** (1 - b_1), b_1), WearLaw(9e-13 * 1e6 ** (1 - b_2), b_2)]
+    laws = [PowerWear(1e-13 * 1e6 ** (1 - b_1), b_1), PowerWear(9e-13 * 1e6 ** (1 - b_2), b_2)]
     x, y = r * np.cos(angle), r * np.sin(angle)
     modes = np.column_stack([np.ones(len(r)), x - 0.1, y])
     load = np.array([1e3, 2.0, 1.0])

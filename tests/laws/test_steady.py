@@ -8,7 +8,7 @@ from scipy.optimize import fsolve
 
 from thermowear import ComputationError
 from thermowear.laws import (
-    WearLaw,
+    PowerWear,
     admissible_changes,
     contact_patch,
     rotation,
@@ -40,7 +40,7 @@ def solve_ring(laws, force=4.39823e6, speed=10.0):
 @pytest.mark.parametrize("a", [1.0, 0.5, 2.0])
 def test_annular_punch(a, b):
     """requirement: special case 8, p = (F/I) r^(-a/b); uniform normal wear rate."""
-    r, _, steady = solve_ring([WearLaw(5e-14 * 1e6 ** (1 - b), b, a)])
+    r, _, steady = solve_ring([PowerWear(5e-14 * 1e6 ** (1 - b), b, a)])
     exact = annular_punch.steady_pressure(r, 4.39823e6, INNER, OUTER, b, a)
     np.testing.assert_allclose(steady.pressure, exact, rtol=1e-11)
     np.testing.assert_allclose(steady.rates[0], steady.velocity[0], rtol=1e-12)
@@ -59,13 +59,13 @@ def test_published_numbers(b, at_20, at_120, torque):
     force = 100e6 * np.pi * (OUTER**2 - INNER**2)
     p = annular_punch.steady_pressure(np.array([INNER, OUTER]), force, INNER, OUTER, b) / 1e6
     assert p == pytest.approx([at_20, at_120], rel=2e-5)
-    r, weights, steady = solve_ring([WearLaw(5e-14 * 1e6 ** (1 - b), b)], force)
+    r, weights, steady = solve_ring([PowerWear(5e-14 * 1e6 ** (1 - b), b)], force)
     assert weights @ (steady.pressure * r) * 1e3 == pytest.approx(torque, rel=2e-5)
 
 
 def test_both_bodies_wear_with_different_exponents():
     """requirement: with b1 ≠ b2 the sum of both rates equals the rigid-body rate point by point."""
-    laws = [WearLaw(5e-14, 1.0), WearLaw(2e-21, 2.0)]
+    laws = [PowerWear(5e-14, 1.0), PowerWear(2e-21, 2.0)]
     _, weights, steady = solve_ring(laws)
     np.testing.assert_allclose(sum(steady.rates), steady.velocity[0], rtol=1e-12)
     assert min(rate.max() for rate in steady.rates) > 0.05 * steady.velocity[0]
@@ -85,7 +85,7 @@ def test_tilting_rectangular_punch():
     load = np.array([10e3, 10e3 * 5 / 30])
     for b, values in expected.items():
         steady = steady_pressure(
-            w, modes, modes, load, [WearLaw(1e-10 * 1e6 ** (1 - b), b)], np.full(30, 5e-3)
+            w, modes, modes, load, [PowerWear(1e-10 * 1e6 ** (1 - b), b)], np.full(30, 5e-3)
         )
         rate = np.polynomial.Polynomial.fit(ξ, steady.pressure**b, 1)
         at = rate(np.array([-30e-3, 0.0, 30e-3])) ** (1 / b) / 1e6
@@ -103,7 +103,7 @@ def test_pivoted_block(b, sense, low, high):
     arm = z + sense * 0.3 * 0.04
     steady = steady_pressure(
         0.05 * w * 0.01, z[:, None], arm[:, None], np.array([1000 * 0.2]),
-        [WearLaw(1e-13 * 1e6 ** (1 - b), b)], np.ones(40),
+        [PowerWear(1e-13 * 1e6 ** (1 - b), b)], np.ones(40),
     )  # fmt: skip
     scale = steady.pressure / z ** (1 / b)
     np.testing.assert_allclose(scale, scale[0], rtol=1e-12)
@@ -115,7 +115,7 @@ def test_lifts_off_where_the_rigid_rate_is_negative():
     """requirement: p = 0 where V·n < 0; a load outside the kernel lifts one side off."""
     x, w = np.polynomial.legendre.leggauss(200)
     modes = np.column_stack([np.ones_like(x), x])
-    steady = steady_pressure(w, modes, modes, np.array([1.0, 0.6]), [WearLaw(1.0)], np.ones(200))
+    steady = steady_pressure(w, modes, modes, np.array([1.0, 0.6]), [PowerWear(1.0)], np.ones(200))
     zone = 3 * (1 - 0.6)
     assert np.all(steady.pressure[x < 1 - zone - 0.02] == 0)
     exact = np.maximum(0, 2 / zone**2 * (x - (1 - zone)))
@@ -132,7 +132,7 @@ def dissipation(pressure, weights, law, speed):
 )
 def test_no_admissible_change_lowers_the_dissipation(seed, b, size):
     """requirement: the solution is the minimum of D_w among pressures in equilibrium."""
-    law = WearLaw(5e-14 * 1e6 ** (1 - b), b)
+    law = PowerWear(5e-14 * 1e6 ** (1 - b), b)
     r, weights, steady = solve_ring([law])
     change = np.random.default_rng(seed).normal(size=len(r)) * steady.pressure
     change -= steady.pressure * (weights @ change) / (weights @ steady.pressure)
@@ -147,7 +147,7 @@ def test_points_at_rest_have_no_steady_state():
     r, weights = ring(5)
     down = np.ones((5, 1))
     with pytest.raises(ComputationError, match="do not slide"):
-        steady_pressure(weights, down, down, np.ones(1), [WearLaw(1.0)], r * 0)
+        steady_pressure(weights, down, down, np.ones(1), [PowerWear(1.0)], r * 0)
 
 
 def test_nothing_to_wear_or_to_press():
@@ -157,7 +157,7 @@ def test_nothing_to_wear_or_to_press():
     with pytest.raises(ComputationError, match="no body wears"):
         steady_pressure(weights, down, down, np.ones(1), [], r)
     with pytest.raises(ComputationError, match="outside of what pressure"):
-        steady_pressure(weights, down, down, np.zeros(1), [WearLaw(1.0)], r)
+        steady_pressure(weights, down, down, np.zeros(1), [PowerWear(1.0)], r)
 
 
 def check_all_conditions(patch, load, laws, steady):
@@ -226,7 +226,7 @@ def symmetric_arc(friction, b=2.0, sense=1):
         0.02 * outward, 0.5 * w * 0.02 * 0.01, -outward, [translation((0, -1))], 0.3,
         friction, sense * np.column_stack([np.cos(α), -np.sin(α)]),
     )  # fmt: skip
-    return α, patch, patch.steady([1000.0], [WearLaw(1e-19, b)])
+    return α, patch, patch.steady([1000.0], [PowerWear(1e-19, b)])
 
 
 @pytest.mark.parametrize("b", [0.5, 1.0, 3.0])
@@ -254,7 +254,7 @@ def test_friction_moves_the_pressure_of_a_tilting_block():
             np.column_stack([np.full(40, h), 0 * z, z]), 0.05 * w * 0.01, (1, 0, 0),
             [translation((1, 0, 0)), rotation((0, 1, 0), (0, 0, 0))], 1.0, mu, (0, 0, -sense),
         )  # fmt: skip
-        steady = patch.steady([force, 0.0], [WearLaw(1e-13)])
+        steady = patch.steady([force, 0.0], [PowerWear(1e-13)])
         moment = -sense * mu * h * force
         exact = force / (0.01 * length) + 12 * moment * z / (0.01 * length**3)
         np.testing.assert_allclose(steady.pressure, exact, rtol=1e-11)
@@ -297,11 +297,11 @@ def test_probes_bear_nothing():
 
 def test_different_exponents_minimise_what_the_docstring_says():
     """requirement: with b1 ≠ b2 the kinematics holds, not the minimum of D_w itself."""
-    r, weights, steady = solve_ring([WearLaw(5e-14, 1.0), WearLaw(2e-21, 2.0, 0.5)])
+    r, weights, steady = solve_ring([PowerWear(5e-14, 1.0), PowerWear(2e-21, 2.0, 0.5)])
     down = np.ones((len(r), 1))
-    laws = [WearLaw(5e-14 / 2, 1.0), WearLaw(2e-21 / 3, 2.0, 0.5)]  # each over b + 1
+    laws = [PowerWear(5e-14 / 2, 1.0), PowerWear(2e-21 / 3, 2.0, 0.5)]  # each over b + 1
     weighted = wear_dissipation(weights, laws, 10 * r)
-    plain = wear_dissipation(weights, [WearLaw(5e-14), WearLaw(2e-21, 2.0, 0.5)], 10 * r)
+    plain = wear_dissipation(weights, [PowerWear(5e-14), PowerWear(2e-21, 2.0, 0.5)], 10 * r)
     changes = admissible_changes(
         np.random.default_rng(1), 1000, weights, down, steady.pressure, (1e-4, 0.5)
     )
@@ -321,4 +321,4 @@ def test_motions_that_do_not_press_are_refused(extra):
     points = np.column_stack([np.full(30, 0.04), 0 * z, z])
     patch = contact_patch(points, np.ones(30), (1, 0, 0), motions, 1.0, 0.3, (0, 0, -1))
     with pytest.raises(ComputationError, match="free motion"):
-        patch.steady([10.0, 100.0, 30.0], [WearLaw(1e-13)])
+        patch.steady([10.0, 100.0, 30.0], [PowerWear(1e-13)])

@@ -11,6 +11,7 @@ from thermowear.case.tables.facing import Facing
 from thermowear.case.tables.schema import as_plain
 from thermowear.errors import CaseError
 from thermowear.geometry.moving.remeshed import meshed_anew
+from thermowear.simulation.model.interface_laws import partition
 
 from ..layered import layered_case, write_layered
 from .space import changed
@@ -180,7 +181,7 @@ def test_a_face_of_two_materials_shares_heat_point_by_point():
     heat |= {"bodies.block.specific_heat": "1600 J/(kg K)", "heat.partition": "effusivity"}
     case = tw.load(changed(layered_case("no.msh", LINING=first, BACKING=second), heat))
     parts = ("pad", "block", "pad.LINING", "pad.BACKING")
-    shares = case.partition(Facing(parts, (np.array([2, 3, 2]), np.array([1, 1, 1]))))
+    shares = partition(case, Facing(parts, (np.array([2, 3, 2]), np.array([1, 1, 1]))))
     np.testing.assert_allclose(shares, [1 / 3, 3 / 7, 1 / 3], rtol=1e-12)
 
 

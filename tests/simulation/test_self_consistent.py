@@ -93,7 +93,7 @@ def test_brake_fade():
     summary, i = result.summary, result.interface
     case = tw.load(tables("disk-brake-fading"))
     mean = (i.temperature_1 + i.temperature_2) / 2
-    friction = 0.4 * case.contact.friction_factor.value(mean, i.pressure, 20 * i.x)
+    friction = 0.4 * case.contact.friction_factor.multipliers.value(i.pressure, 20 * i.x, mean)
     np.testing.assert_allclose(
         i.heat_flux_1 + i.heat_flux_2, friction * i.pressure * 20 * i.x, rtol=1e-8
     )

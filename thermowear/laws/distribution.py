@@ -1,4 +1,4 @@
-"""Where the wear of a body goes: to the spot that touches, or over all that passes by.
+"""Distribution of the wear of a body: in place, or over the track that passes the contact.
 
 A face that stays in the contact wears where it is pressed. Points of a strip, disk or drum visit
 the contact for a part of the time only; in a frame that does not move with them their wear rate is
@@ -16,13 +16,13 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 _SAME = 1e-3
-"""Of the width of a face: points nearer to each other than that lie on one circle."""
+"""Relative distance, by the width of a face, below which points lie on one circle."""
 _ALIKE = 0.5
-"""Of the mean number of points on a circle: the fewest on each where the mesh is a polar one."""
+"""Smallest number of points on a circle of a polar mesh, relative to the mean number."""
 
 
 class Spreading(Protocol):
-    """How the local rate of a body becomes its rate at the points.
+    """Map from the local wear rate of a body to its rate at the points.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Spreading(Protocol):
     def coverage(self) -> float: ...
 
     def reach(self, n: int) -> np.ndarray:
-        """How much of each mean each of the n points has, shape (n, k)."""
+        """Weights of the k means at the n points, shape (n, k)."""
         ...
 
     def rate(self, local: np.ndarray) -> np.ndarray:

@@ -25,9 +25,9 @@ from scipy.optimize import brentq
 _REAL = 1e-7
 """Imaginary part, relative to the largest eigenvalue, of those that count as real."""
 _ROUNDING = 1e-13
-"""Of the largest rate: what is nearer to zero stays, as an uneven face that nothing wears."""
+"""Relative growth rate, by the largest one, below which a mode is stationary."""
 _RANGE, _STRIDE = 1e5, 1.5
-"""How far from a start an onset is looked for, and in which steps: factors of the speed."""
+"""Search range of an onset around its start, and step of the search: factors of the speed."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def _influence(elastic: np.ndarray, thermal: np.ndarray, space: LoadFree) -> np.
 
 @dataclass(frozen=True)
 class Rate:
-    """How fast a disturbance grows.
+    """Growth rate of a perturbation.
 
     Attributes
     ----------

@@ -1,28 +1,26 @@
-"""Contact conductance: how much heat passes from face to face where they touch."""
+"""Contact conductance in the case file."""
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter, model_validator
 
 from ...errors import quoted
+from ...laws.by_name import registered_laws
+from ...laws.coefficients.table1d import Table1D
+from ...laws.expressions import Expression
+from ...laws.interfaces import INTERFACE_VARIABLES
 from ..values import units
+from ..values.expressions import expression
 from ..values.section import KeyFault, Section
+from .law_values import NamedLaw, checked, named_law, written
 from .multipliers import must_increase, must_match
 
 
-def harmonic_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """``2 a b / (a + b)``: of two things in series."""
-    return 2 * a * b / (a + b)
-
-
 class PressureConductance(Section):
-    """Conductance in proportion to the pressure: ``h = coefficient k p / H``.
-
-    k and H are the harmonic means ``2 k1 k2 / (k1 + k2)`` of both bodies' conductivities and
-    hardnesses. The model of MOOSE (``GapFluxModelPressureDependentConduction``) and of 4C.
+    """Conductance in proportion to the pressure, see `laws.coefficients.conductance`.
 
     Attributes
     ----------
@@ -32,12 +30,6 @@ class PressureConductance(Section):
 
     type: Literal["pressure"]
     coefficient: units.PerLength
-
-    def value(
-        self, pressure: np.ndarray, conductivity: np.ndarray, hardness: np.ndarray
-    ) -> np.ndarray:
-        """Conductance [W/(m² K)] at pressures [Pa], by the harmonic means of both bodies."""
-        return self.coefficient * conductivity * np.asarray(pressure) / hardness
 
 
 class TabulatedConductance(Section):
@@ -63,9 +55,10 @@ class TabulatedConductance(Section):
             raise KeyFault("conductance", "one at least must be greater than 0")
         return self
 
-    def value(self, pressure: np.ndarray) -> np.ndarray:
-        """Conductance [W/(m² K)] at pressures [Pa]."""
-        return np.interp(pressure, self.pressure, self.conductance)
+    @property
+    def table(self) -> Table1D:
+        """Conductance as a piecewise linear function of the pressure."""
+        return Table1D(self.pressure, self.conductance)
 
 
 _KINDS: dict[str, type[Section]] = {
@@ -73,30 +66,38 @@ _KINDS: dict[str, type[Section]] = {
     "table": TabulatedConductance,
 }
 _CONSTANT = TypeAdapter(units.HeatTransfer)
-_ALLOWED = " or ".join(repr(kind) for kind in _KINDS)
+_VARIABLE = re.compile(rf"(?<![\w.])({'|'.join(INTERFACE_VARIABLES)})(?!\w)", re.ASCII)
 
 
 def _read(data: Any) -> Any:
-    """A constant where it is text, else the table that its type names."""
-    if isinstance(data, PressureConductance | TabulatedConductance):
+    """A constant where the text has no variable, an expression, or the law that its type names."""
+    if isinstance(data, Section | Expression | NamedLaw):
         return data
+    if isinstance(data, str) and _VARIABLE.search(data):
+        return checked(expression(data, "W/(m^2 K)", INTERFACE_VARIABLES), "heat.conductance", 0.0)
     if not isinstance(data, dict):
         return _CONSTANT.validate_python(data)
+    laws = registered_laws("conductance")
+    allowed = " or ".join(repr(kind) for kind in (*_KINDS, *laws))
     if "type" not in data:
-        raise KeyFault("type", f"missing; must be {_ALLOWED}")
+        raise KeyFault("type", f"missing; must be {allowed}")
     kind = data["type"]
-    if not isinstance(kind, str) or kind not in _KINDS:
-        raise KeyFault("type", f"found {quoted(kind)}; must be {_ALLOWED}")
-    return _KINDS[kind].model_validate(data)
+    if isinstance(kind, str) and kind in _KINDS:
+        return _KINDS[kind].model_validate(data)
+    if not isinstance(kind, str) or kind not in laws:
+        raise KeyFault("type", f"found {quoted(kind)}; must be {allowed}")
+    return checked(named_law("conductance", data), "heat.conductance", 0.0)
 
 
 def _written(value: Any) -> Any:
-    return value.model_dump() if isinstance(value, Section) else _CONSTANT.dump_python(value)
+    if isinstance(value, Section):
+        return value.model_dump()
+    return _CONSTANT.dump_python(value) if isinstance(value, float) else written(value)
 
 
 Conductance = Annotated[
-    float | PressureConductance | TabulatedConductance,
+    float | PressureConductance | TabulatedConductance | Expression | NamedLaw,
     PlainValidator(_read),
     PlainSerializer(_written),
 ]
-"""A constant [W/(m² K)], or one of the tables."""
+"""A constant [W/(m² K)], one of the tables, an expression in p, v and T, or a registered law."""

@@ -1,14 +1,13 @@
-"""What changes in time: straight lines between given instants."""
+"""Histories: piecewise linear functions of time."""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any, ClassVar
 
-import numpy as np
 from pydantic import TypeAdapter, ValidationError, ValidationInfo, model_validator
 
+from ...laws.time_course import TimeCourse
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
 from ..values.paths import UserFile
@@ -72,25 +71,13 @@ class Course(Section):
             raise KeyFault("repeat", f"{key} must end with the value that it begins with")
 
     @property
-    def period(self) -> float:
-        """From the first instant to the last [s]."""
-        return self.time[-1] - self.time[0]
-
-    def instant(self, time: float) -> float:
-        """The instant between the first and the last one that holds at any time [s]."""
-        begin, end = self.time[0], self.time[-1]
-        if self.repeat and time > end:
-            return begin + (time - begin) % self.period
-        return min(max(time, begin), end)
+    def course(self) -> TimeCourse:
+        """The instants."""
+        return TimeCourse(self.time, self.repeat)
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Where a straight line ends or begins, after 0 and up to a time, repetitions too [s]."""
-        times = np.array(self.time)
-        if self.repeat:
-            again = np.arange(math.ceil(max(end - times[-1], 0.0) / self.period) + 1)
-            cycles = times[1:] + self.period * again[:, None]
-            times = np.concatenate([times[:1], cycles.ravel()])
-        return tuple(float(time) for time in times if 0 < time <= end)
+        """Ends of straight lines after 0 and up to a time, repetitions included [s]."""
+        return self.course.corners(end)
 
 
 def _charge(error: ValidationError, columns: Columns) -> None:
@@ -105,7 +92,7 @@ def _charge(error: ValidationError, columns: Columns) -> None:
 
 
 class FactorHistory(Course):
-    """What changes by a factor: the motion of the case, or its friction.
+    """Time-dependent factor of the speed or of the friction.
 
     Attributes
     ----------
@@ -127,7 +114,7 @@ class FactorHistory(Course):
 
     def factor_at(self, time: float) -> float:
         """Factor at a time [s]."""
-        return float(np.interp(self.instant(time), self.time, self.factor))
+        return self.course.value(self.factor, time)
 
 
 class TemperatureHistory(Course):
@@ -151,7 +138,7 @@ class TemperatureHistory(Course):
 
     def at(self, time: float) -> float:
         """Temperature [K] at a time [s]."""
-        return float(np.interp(self.instant(time), self.time, self.temperature))
+        return self.course.value(self.temperature, time)
 
 
 class History(Course):
@@ -215,14 +202,14 @@ class History(Course):
         return (closed[0], self.time[-1]) if closed else None
 
     def _as_at_the_end(self, time: float) -> bool:
-        """Whether the loads at an instant are those of the last one."""
+        """True if the loads at an instant equal those of the last one."""
         now, last = self.at(time), self.at(self.time[-1])
         sizes = {key: max(map(abs, getattr(self, key))) for key in now}
         return all(abs(now[key] - last[key]) <= _CLOSED * sizes[key] for key in now)
 
     @property
     def tangential(self) -> bool:
-        """Whether the holder moves, or is pushed, across the press."""
+        """True if the holder has a tangential displacement or force."""
         return self.tangential_force is not None or self.tangential_displacement is not None
 
     def at(self, time: float) -> dict[str, float]:
@@ -230,7 +217,7 @@ class History(Course):
         keys = ("force", "approach", "tangential_force", "tangential_displacement")
         given = {key: getattr(self, key) for key in keys}
         return {
-            key: float(np.interp(self.instant(time), self.time, values))
+            key: self.course.value(values, time)
             for key, values in given.items()
             if values is not None
         }

@@ -1,13 +1,14 @@
-"""Tables of factors: what changes with temperature, pressure or speed."""
+"""Tables of factors by temperature, pressure or speed."""
 
 from __future__ import annotations
 
 from itertools import pairwise
 from typing import Annotated
 
-import numpy as np
 from pydantic import Field, model_validator
 
+from ...laws.coefficients.multipliers import Multipliers
+from ...laws.coefficients.table1d import Table1D
 from ..values import units
 from ..values.section import KeyFault, Number, Section
 
@@ -30,7 +31,7 @@ def must_match(key: str, values: tuple[float, ...], places: tuple[float, ...], w
 
 
 class Factor(Section):
-    """A factor by straight lines between given places, constant beyond the ends.
+    """Factor by straight lines between given places, constant beyond the ends.
 
     Attributes
     ----------
@@ -48,25 +49,10 @@ class Factor(Section):
         must_match("factor", self.factor, self.at, "places")
         return self
 
-    def value(self, x: np.ndarray) -> np.ndarray:
-        """The factor at `x`, an array of any shape in SI."""
-        return np.interp(x, self.at, self.factor)
-
-    def slope(self, x: np.ndarray) -> np.ndarray:
-        """Its derivative; where lines meet, that of the next one."""
-        slopes = np.concatenate([[0.0], np.diff(self.factor) / np.diff(self.at), [0.0]])
-        return slopes[np.searchsorted(self.at, x, side="right")]
-
-    def integral(self, start: float, x: np.ndarray) -> np.ndarray:
-        """Its integral from `start` to `x`."""
-        return self._integral(np.asarray(x, dtype=float)) - self._integral(np.asarray(start))
-
-    def _integral(self, x: np.ndarray) -> np.ndarray:
-        """From the first place on: straight lines are integrated exactly by their means."""
-        at, factor = np.array(self.at), np.array(self.factor)
-        whole = np.concatenate([[0.0], np.cumsum(np.diff(at) * (factor[1:] + factor[:-1]) / 2)])
-        last = np.maximum(np.searchsorted(at, x, side="right") - 1, 0)
-        return whole[last] + (x - at[last]) * (factor[last] + self.value(x)) / 2
+    @property
+    def table(self) -> Table1D:
+        """The factor as a piecewise linear function."""
+        return Table1D(self.at, self.factor)
 
 
 class TemperatureFactor(Factor):
@@ -102,33 +88,12 @@ class Factors(Section):
 
     @property
     def depends_on(self) -> tuple[str, ...]:
-        """Which of temperature, pressure and speed there is a table of."""
+        """Variables with a table: temperature, pressure, speed."""
         names = ("temperature", "pressure", "speed")
         return tuple(name for name in names if getattr(self, name) is not None)
 
-    def value(
-        self,
-        temperature: np.ndarray | float | None,
-        pressure: np.ndarray | float,
-        speed: np.ndarray | float,
-    ) -> np.ndarray:
-        """Product of the factors at points.
-
-        Parameters
-        ----------
-        temperature : ndarray, shape (n,)
-            [K]; may be None where nothing depends on it.
-        pressure : ndarray, shape (n,)
-            [Pa]
-        speed : ndarray, shape (n,)
-            [m/s]
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
-        found = {"temperature": temperature, "pressure": pressure, "speed": speed}
-        product = np.ones(np.broadcast_shapes(np.shape(pressure), np.shape(speed)))
-        for name in self.depends_on:
-            product = product * getattr(self, name).value(found[name])
-        return product
+    @property
+    def multipliers(self) -> Multipliers:
+        """The factors as a law."""
+        tables = (self.temperature, self.pressure, self.speed)
+        return Multipliers(*(None if table is None else table.table for table in tables))

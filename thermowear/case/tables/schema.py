@@ -5,22 +5,23 @@ All values are in SI after reading; `units` defines the unit of each key.
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from ...errors import CaseError, quoted
+from ...laws.interfaces import InterfaceLaw
+from ...laws.plausible import typical_value
 from ..values import units
 from ..values.section import Number, Section, Switch
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
-from .conductance import PressureConductance, TabulatedConductance, harmonic_mean
 from .driving import Holder, Load, Motion
-from .facing import Facing
 from .geometry import Pressing
 from .geometry_type import AnyGeometry
 from .heat import Heat
 from .history import Course, FactorHistory
+from .law_values import Friction, law_of
 from .materials import Body, Properties, material_of
 from .multipliers import Factors
 from .wear import WearTable
@@ -88,7 +89,7 @@ class Contact(Section):
 
     Attributes
     ----------
-    friction : float
+    friction : float, Expression or NamedLaw
         Coefficient of friction in the direction of sliding.
     friction_factor : Factors
         Its multipliers: tables of the mean face temperature, the pressure and the speed.
@@ -115,7 +116,7 @@ class Contact(Section):
         Move the mesh until element ends coincide with the contact edges.
     """
 
-    friction: Annotated[Number, Field(ge=0.0)] = 0.0
+    friction: Friction = 0.0
     friction_factor: Factors = Factors()
     friction_history: FactorHistory | None = None
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
@@ -126,6 +127,17 @@ class Contact(Section):
     theta: Variant = None
     gamma: Annotated[Number, Field(gt=0.0)] | None = None
     positioning: Switch = False
+
+    @property
+    def friction_law(self) -> InterfaceLaw:
+        """The coefficient of friction as a law, without `friction_factor`."""
+        return law_of(self.friction, "contact.friction", -math.inf)
+
+    @property
+    def nominal_friction(self) -> float:
+        """The coefficient of friction; of a law, its value in a typical state."""
+        given = self.friction
+        return given if isinstance(given, float) else typical_value(self.friction_law)
 
 
 class Case(Section):
@@ -202,46 +214,23 @@ class Case(Section):
     @property
     def friction_varies(self) -> bool:
         """True if the coefficient of friction depends on time, temperature, pressure or speed."""
+        return bool(self.friction_variables) or self.contact.friction_history is not None
+
+    @property
+    def friction_variables(self) -> frozenset[str]:
+        """Variables of the coefficient of friction and its factors: of p, v and T."""
         contact = self.contact
-        return bool(contact.friction_factor.depends_on) or contact.friction_history is not None
+        return contact.friction_law.variables | contact.friction_factor.multipliers.variables
 
     @property
     def varies(self) -> bool:
         """True if friction, wear or conductance depend on temperature, pressure or speed."""
-        tables = (self.contact.friction_factor, *(law.factor for law in self.wear.values()))
         conductance = None if self.heat is None else self.heat.conductance
-        return isinstance(conductance, Section) or any(table.depends_on for table in tables)
-
-    def partition(self, facing: Facing) -> float | np.ndarray:
-        """Fraction of the friction heat released on body 1, at points (n,) or uniform."""
-        assert self.heat is not None
-        share = self.heat.partition
-        if isinstance(share, float):
-            return share
-        e1, e2 = facing.of(self.located_material, "effusivity")
-        return e1 / (e1 + e2)
-
-    def conductance(self, pressure: np.ndarray, facing: Facing) -> np.ndarray | None:
-        """Contact conductance at points [W/(m² K)]; None: perfect contact.
-
-        Parameters
-        ----------
-        pressure : ndarray, shape (n,)
-            Contact pressure [Pa].
-        facing : Facing
-            Parts that face each other there.
-        """
-        assert self.heat is not None
-        given = self.heat.conductance
-        if isinstance(given, TabulatedConductance):
-            return given.value(pressure)
-        if isinstance(given, PressureConductance):
-            k, hardness = (
-                harmonic_mean(*facing.of(self.located_material, key))
-                for key in ("conductivity", "hardness")
-            )
-            return given.value(pressure, k, hardness)
-        return None if given is None else np.full(np.shape(pressure), given)
+        return (
+            not isinstance(conductance, float | None)
+            or bool(self.friction_variables)
+            or any(law.factor.depends_on or law.follows_state for law in self.wear.values())
+        )
 
     def tagged_mesh(self, zone: tuple[float, float] | None = None):
         """Mesh of the case for a contact zone (by default the expected one).

@@ -9,14 +9,25 @@ import math
 from collections.abc import ItemsView, Iterator, KeysView, ValuesView
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field, PlainSerializer, model_validator
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    model_serializer,
+    model_validator,
+)
 
 from ...errors import quoted
+from ...laws.interfaces import WearRate
 from ..values.section import KeyFault, Number, Section
 from ..values.units import parse, registry
+from .law_values import RateOfWear, wear_rate_of
 from .multipliers import Factors
 
 _EXAMPLE = "2e-7 1/MPa"
+_OF_POWER = ("coefficient", "per", "pressure_exponent", "velocity_exponent")
+"""Keys of a law that is a power."""
 
 
 def _coefficient(text: Any):
@@ -38,12 +49,15 @@ Coefficient = Annotated[Any, BeforeValidator(_coefficient), PlainSerializer(_tex
 
 
 class Wear(Section):
-    """Wear law of one body.
+    """Wear law of one body: a coefficient with exponents, or a rate.
 
     Attributes
     ----------
-    coefficient : pint.Quantity
+    coefficient : pint.Quantity or None
         In the unit that fits both exponents.
+    rate : Expression, NamedLaw or None
+        Wear rate as an expression in p, v, T, depth and mu, or a registered law, in place of the
+        coefficient, its exponents and `per`.
     per : str
         ``"friction-stress"``: it multiplies ``(mu p)^b v^a``; ``"pressure"``: ``p^b v^a``.
     pressure_exponent, velocity_exponent : float
@@ -56,7 +70,8 @@ class Wear(Section):
         Of the coefficient, by the temperature of the body's own face, pressure and speed.
     """
 
-    coefficient: Coefficient
+    coefficient: Coefficient | None = None
+    rate: RateOfWear | None = None
     per: Literal["friction-stress", "pressure"] = "friction-stress"
     pressure_exponent: Annotated[Number, Field(ge=0.1, le=10.0)] = 1.0
     velocity_exponent: Annotated[Number, Field(ge=0.0, le=10.0)] = 1.0
@@ -64,7 +79,14 @@ class Wear(Section):
     factor: Factors = Factors()
 
     @model_validator(mode="after")
-    def _unit_fits(self):
+    def _one_law(self):
+        if self.rate is not None:
+            for key in _OF_POWER:
+                if key in self.model_fields_set:
+                    raise KeyFault(key, "is for a wear coefficient; leave it out beside rate")
+            return self
+        if self.coefficient is None:
+            raise KeyFault("coefficient", "missing")
         try:
             number = self.coefficient_si()
         except (OverflowError, ZeroDivisionError):
@@ -72,6 +94,30 @@ class Wear(Section):
         if not 0 < number < math.inf:
             raise KeyFault("coefficient", f'found "{_text(self.coefficient)}"; out of range in SI')
         return self
+
+    @model_serializer(mode="wrap")
+    def _keys_of_its_law(self, handler):
+        """Without the keys of the other kind of law."""
+        written = handler(self)
+        left_out = ("rate",) if self.rate is None else _OF_POWER
+        return {key: value for key, value in written.items() if key not in left_out}
+
+    @property
+    def law(self) -> WearRate | None:
+        """The law of `rate`; None where there is a coefficient."""
+        return None if self.rate is None else wear_rate_of(self.rate, "wear rate")
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Variables of the law, of p, v, T, depth and mu; those of the tables are not counted."""
+        if self.law is not None:
+            return self.law.variables
+        return frozenset({"p", "v", "mu"} if self.per == "friction-stress" else {"p", "v"})
+
+    @property
+    def follows_state(self) -> bool:
+        """True if the rate depends on the temperature or on the wear depth."""
+        return bool(self.variables & {"T", "depth"})
 
     def coefficient_si(self) -> float:
         """The coefficient in ``(m/s)^(1-a) Pa^(-b)``.
@@ -81,6 +127,7 @@ class Wear(Section):
         ValueError
             If its unit does not fit the exponents.
         """
+        assert self.coefficient is not None
         a, b = self.velocity_exponent, self.pressure_exponent
         due = {"[length]": 1 - a + b, "[time]": a - 1 + 2 * b, "[mass]": -b}
         found = dict(self.coefficient.dimensionality)

@@ -45,9 +45,10 @@ def check(case: Case) -> None:
 
 def _note_defaults(case: Case) -> None:
     """Note defaults that change the result and are often set differently."""
-    friction = case.contact.friction
+    friction = case.contact.nominal_friction
     for name, law in case.wear.items():
-        if "per" not in law.model_fields_set and friction > 0.0:
+        power = law.rate is None
+        if power and "per" not in law.model_fields_set and friction > 0.0:
             note(
                 f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
                 'Archard\'s k multiplies p: with per = "pressure" it wears '
@@ -164,11 +165,13 @@ def _sliding(case: Case) -> Iterator[Fault]:
     )
     if case.motion is None and analysis.type != "fretting":
         yield from _at_rest(case, heated_by_friction)
-    if case.contact.friction == 0.0:
+    if case.contact.nominal_friction == 0.0:
         if heated_by_friction:
             yield "contact.friction", "is 0; friction heat needs friction"
         for name, law in case.wear.items():
-            if law.per == "friction-stress":
+            if law.rate is not None and "mu" in law.variables:
+                yield "contact.friction", f"is 0; wear.{name}.rate depends on mu"
+            elif law.rate is None and law.per == "friction-stress":
                 yield (
                     "contact.friction",
                     f'is 0; wear.{name} is per friction stress (write per = "pressure" instead)',
@@ -266,7 +269,8 @@ def _positioning(case: Case) -> Iterator[Fault]:
 
 def _symmetry(case: Case) -> Iterator[Fault]:
     geometry = case.geometry
-    drags = case.contact.friction > 0 and case.motion is not None and not geometry.slides_across
+    slides = case.motion is not None and not geometry.slides_across
+    drags = slides and case.contact.nominal_friction > 0
     if drags and case.model != "axisymmetric" and geometry.symmetry:
         yield "geometry.half", "sliding friction is not symmetric; mesh the whole section"
 

@@ -37,7 +37,7 @@ def courses(case: Case) -> Iterator[Fault]:
         which = next(iter(histories))
         yield "analysis.until", f"there is no steady state under {which}; give end_time only"
     if case.contact.friction_history is not None:
-        if case.contact.friction == 0.0:
+        if case.contact.nominal_friction == 0.0:
             yield "contact.friction_history", "has no effect: contact.friction is 0"
         elif case.motion is None and isinstance(analysis, Transient):
             yield (

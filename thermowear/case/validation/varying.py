@@ -27,6 +27,32 @@ def varying(case: Case) -> Iterator[Fault]:
         for key in _OF_BODIES:
             if constant and getattr(body, key) is not None:
                 yield f"bodies.{name}.{key}", f"is not supported in a {case.analysis.type} analysis"
+    yield from _laws(case)
+
+
+def _laws(case: Case) -> Iterator[Fault]:
+    """Variables of laws that are not available in an analysis."""
+    type_, constant = case.analysis.type, case.analysis.type in _CONSTANT
+    friction = case.contact.friction_law.variables
+    if constant and friction:
+        yield (
+            "contact.friction",
+            f"depends on {_listed(friction)}; not supported in a {type_} analysis",
+        )
+    laws = {"contact.friction": friction}
+    laws |= {f"wear.{name}.rate": law.variables for name, law in case.wear.items() if law.rate}
+    for path, variables in laws.items():
+        followed = variables & {"T", "depth"}
+        if "T" in variables and case.heat is None:
+            yield path, "depends on T; requires a [heat] table"
+        elif constant and followed and path != "contact.friction":
+            yield path, f"depends on {_listed(followed)}; not supported in a {type_} analysis"
+        elif "depth" in variables and "steady" in (type_, getattr(case.analysis, "until", None)):
+            yield path, "depends on depth, which grows without end: there is no steady state"
+
+
+def _listed(variables: frozenset[str]) -> str:
+    return ", ".join(sorted(variables))
 
 
 def condensed_only(case: Case) -> str | None:

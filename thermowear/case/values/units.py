@@ -101,11 +101,11 @@ def _read(text: str):
     number = _NUMBER.match(text)
     if number is None:
         raise ValueError("no number")
-    return registry().Quantity(float(number[1]), _unit(text[number.end() :].strip()))
+    return registry().Quantity(float(number[1]), unit_of(text[number.end() :].strip()))
 
 
 @lru_cache(maxsize=1000)
-def _unit(text: str):
+def unit_of(text: str):
     """Unit in engineering notation: ``W/(m² K)``, ``/K``, ``mm^3/(N m)``, ``1/MPa**0.5``."""
     text = _SUPERSCRIPT.sub(_as_power, text)
     _check_unit(text)

@@ -18,12 +18,12 @@ L; what is lost there goes back to ω by its adjoint, so that no volume is lost 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...errors import ComputationError
-from ...laws.wear import WearLaw
+from ...laws.interfaces import WearRate
 from ..search.pairing import Pairing
 from .stick_slip_state import StickSlipState
 
@@ -90,18 +90,21 @@ class SlipWear:
 
     Attributes
     ----------
-    laws : tuple of WearLaw
-        Of the wearing bodies.
+    laws : tuple of WearRate
+        Of the wearing bodies; they depend on neither temperature nor depth.
     profiles : tuple of Profile
         Of the same bodies.
+    friction : float
+        Coefficient.
     duration : float
         Of the increment; nothing wears in none [s].
     repeats : int
         How many such increments it stands for, one a cycle.
     """
 
-    laws: tuple[WearLaw, ...]
+    laws: tuple[WearRate, ...]
     profiles: tuple[Profile, ...]
+    friction: float
     duration: float
     repeats: int = 1
 
@@ -122,22 +125,22 @@ class SlipWear:
         slip : ndarray, shape (m,)
             Amount of slip of the increment, in the mean of each function [m].
         """
-        return self._each(pressure, slip, lambda law, *at: law.rate(*at))
+        return self._each(pressure, slip, [law.rate for law in self.laws])
 
     def slopes(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
         """Their derivatives by the pressure, shape (n_wearing, m) [m/Pa]."""
-        return self._each(pressure, slip, lambda law, *at: law.slope(*at))
+        return self._each(pressure, slip, [law.slope for law in self.laws])
 
-    def _each(self, pressure, slip, of_law) -> np.ndarray:
+    def _each(self, pressure, slip, functions) -> np.ndarray:
         if self.duration == 0.0:
             return np.zeros((len(self.laws), len(pressure)))
         speed, time = slip / self.duration, self.repeats * self.duration
-        values = [time * of_law(law, pressure, speed) for law in self.laws]
+        values = [time * of_law(pressure, speed, friction=self.friction) for of_law in functions]
         return np.reshape(values, (-1, len(pressure)))
 
     def halved(self) -> SlipWear:
         """Of half the increment."""
-        return SlipWear(self.laws, self.profiles, self.duration / 2, self.repeats)
+        return replace(self, duration=self.duration / 2)
 
 
 def implicitly(

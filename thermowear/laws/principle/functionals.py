@@ -28,7 +28,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..wear import WearLaw
+from ..power_wear import PowerWear
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class PowerFunctional:
 
     @property
     def defined(self) -> bool:
-        """Whether there is a minimum: ``m q > 1``."""
+        """True if there is a minimum: ``m q > 1``."""
         return bool(np.all(self.degrees * self.q > 1))
 
     def parts(self, pressure: np.ndarray) -> np.ndarray:
@@ -81,7 +81,7 @@ class PowerFunctional:
 
 def wear_dissipation(
     weights: np.ndarray,
-    laws: Sequence[WearLaw],
+    laws: Sequence[PowerWear],
     speed: np.ndarray,
     q: float = 1.0,
     inclination_factor: np.ndarray | float = 1.0,
@@ -100,7 +100,7 @@ def friction_dissipation(
 
 
 def wear_volume_rate(
-    weights: np.ndarray, laws: Sequence[WearLaw], speed: np.ndarray, q: float
+    weights: np.ndarray, laws: Sequence[PowerWear], speed: np.ndarray, q: float
 ) -> PowerFunctional:
     """``W^(q)``; for q = 1 the volume worn per time [m³/s]."""
     factors = np.array([law.factor(speed) for law in laws])

@@ -2,8 +2,8 @@
 
 Wanted are a pressure p and multipliers V (rigid-body wear velocities) with::
 
-    p >= 0,   s = h(p) + N S - R V >= 0,   p s = 0        h(p) = Σ_i g_i p^e_i
-    Tᵀ w p = F,   S_k = Σ_points a_k p^e_k
+    p >= 0,   s = h(p) + N S - R V >= 0,   p s = 0        h(p) = Σ_i h_i(p)
+    Tᵀ w p = F,   S_k = Σ_points a_k h_k(p)
 
 where s is the rate at which the faces part, S the means of wear that is spread over a track, and N
 how much of each of them every point has. Where ``T = R`` and S = 0 these are the conditions of a
@@ -20,6 +20,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...errors import ComputationError
+from .rate_sums import Common, RateSum
+
 STEPS = 200
 FLOOR = 1e-2  # of the largest pressure: where to start at points that part without friction
 TO_THE_BOUNDARY = 0.9995  # of the way to where a pressure or a rate of parting becomes zero
@@ -30,65 +33,8 @@ EXACT, ENOUGH = 1e-13, 1e-10  # relative errors: where to stop, and what is acce
 
 
 @dataclass(frozen=True)
-class PowerSum:
-    """``Σ_i g_i p^e_i`` point by point.
-
-    Attributes
-    ----------
-    factors : ndarray, shape (m, n)
-    exponents : ndarray, shape (m,)
-    """
-
-    factors: np.ndarray
-    exponents: np.ndarray
-
-    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Value and derivative at positive pressures, shape (n,) each."""
-        terms = self.terms(pressure)
-        return terms.sum(axis=0), self.exponents @ terms / pressure
-
-    def terms(self, pressure: np.ndarray) -> np.ndarray:
-        """Each of its summands, shape (m, n)."""
-        return self.factors * pressure ** self.exponents[:, None]
-
-    def scaled(self, pressure: np.ndarray, value: float) -> PowerSum:
-        """The same in units of a pressure at each point and of a value."""
-        return PowerSum(self.terms(pressure) / value, self.exponents)
-
-
-@dataclass(frozen=True)
-class Common:
-    """Means of rates that points have in common.
-
-    Attributes
-    ----------
-    means : PowerSum
-        The summands at the points of each mean, factors of shape (K, n).
-    reach : ndarray, shape (n, K)
-        N: how much of each mean each point has.
-    """
-
-    means: PowerSum
-    reach: np.ndarray
-
-    @classmethod
-    def none(cls, n: int) -> Common:
-        """No mean at all, at n points."""
-        return cls(PowerSum(np.zeros((0, n)), np.zeros(0)), np.zeros((n, 0)))
-
-    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The means (K,), and their derivatives at positive pressures, shape (K, n)."""
-        terms = self.means.terms(pressure)
-        return terms.sum(axis=1), self.means.exponents[:, None] * terms / pressure
-
-    def scaled(self, pressure: np.ndarray, value: float) -> Common:
-        """The same in units of a pressure at each point and of a value."""
-        return Common(self.means.scaled(pressure, value), self.reach)
-
-
-@dataclass(frozen=True)
 class Solution:
-    """What the method ends at.
+    """Solution of the interior-point method.
 
     Attributes
     ----------
@@ -112,7 +58,7 @@ def solve(
     normal_modes: np.ndarray,
     force_modes: np.ndarray,
     load: np.ndarray,
-    local: PowerSum,
+    local: RateSum,
     common: Common | None = None,
 ) -> Solution | None:
     """Pressure and multipliers; None where the method finds none.
@@ -125,7 +71,7 @@ def solve(
         R and T; the columns of R are independent.
     load : ndarray, shape (k,)
         F; nothing to solve where it is zero.
-    local : PowerSum
+    local : RateSum
         h.
     common : Common, optional
         S and N.
@@ -164,18 +110,18 @@ class _Conditions:
     approach, carried : ndarray, shape (n, k)
         R, and T with the weights.
     goal : ndarray, shape (k,)
-    local : PowerSum
+    local : RateSum
     common : Common
     """
 
     approach: np.ndarray
     carried: np.ndarray
     goal: np.ndarray
-    local: PowerSum
+    local: RateSum
     common: Common
 
     def scaled(self, pressure: np.ndarray, rate: float) -> _Conditions:
-        """The same in units of a pressure at each point and of a rate."""
+        """Problem scaled by a pressure at each point and by a rate."""
         return _Conditions(
             self.approach,
             pressure[:, None] * self.carried / np.linalg.norm(self.goal),
@@ -233,6 +179,11 @@ def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
     worn = conditions.local.at(start)[0]
     common = conditions.common.reach @ conditions.common.at(start)[0]
     unit = float((worn + common).mean())
+    if unit == 0.0:
+        raise ComputationError(
+            "no steady state: the mean pressure wears nothing, so many pressures last; a larger "
+            "load or speed is needed"
+        )
     found = _iterate(conditions.scaled(start, unit))
     if found is None:
         return None
@@ -289,6 +240,6 @@ def _predicted_and_corrected(newton: _Linearised):
 
 
 def _reach(*positive: tuple[np.ndarray, np.ndarray]) -> float:
-    """How much of the steps can be taken while all values stay positive."""
+    """Largest fraction of a step that keeps all values positive."""
     falls = [(-step[step < 0] / value[step < 0]).max(initial=0.0) for value, step in positive]
     return min(1.0, TO_THE_BOUNDARY / max(*falls, 1e-300))

@@ -20,9 +20,10 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from ...errors import ComputationError
-from ..wear import WearLaw
+from ..power_wear import PowerWear
 from .functionals import PowerFunctional, wear_dissipation
-from .interior_point import PowerSum, solve
+from .interior_point import solve
+from .rate_sums import PowerSum
 from .solvability import not_carried
 from .steady import steady_pressure
 
@@ -34,7 +35,7 @@ _TURNS = 120  # of the direction, each a minimisation
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where a functional is least.
+    """Minimiser of a functional.
 
     Attributes
     ----------
@@ -90,7 +91,7 @@ def least_wear_dissipation(
     normal_modes: np.ndarray,
     force_modes: np.ndarray,
     load: np.ndarray,
-    laws: Sequence[WearLaw],
+    laws: Sequence[PowerWear],
     speed: np.ndarray,
     q: float = 1.0,
 ) -> Minimum:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..distribution import Spreading
 from ..motions import RigidMotion
-from ..wear import WearLaw
+from ..power_wear import PowerWear
 from .steady import SteadyWear, steady_pressure
 
 
@@ -83,7 +83,7 @@ class ContactPatch:
         return (self.weights * pressure) @ np.cross(arms, self.traction)
 
     def steady(
-        self, load, laws: Sequence[WearLaw], spread: Sequence[Spreading] | None = None
+        self, load, laws: Sequence[PowerWear], spread: Sequence[Spreading] | None = None
     ) -> SteadyWear:
         """The steady state under a load along each motion; see `steady_pressure`."""
         return steady_pressure(

@@ -63,7 +63,7 @@ def why_no_steady_state(
 
 
 def _bounded(R: np.ndarray, T: np.ndarray) -> bool:
-    """Whether a motion y exists with ``R y > 0`` and ``T y > 0`` at all points."""
+    """Test whether a motion y exists with ``R y > 0`` and ``T y > 0`` at all points."""
     rows = np.vstack([R, T])
     rows = rows / np.abs(rows).max(axis=0)
     least = linprog(  # the largest t with rows y >= t

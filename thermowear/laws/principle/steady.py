@@ -13,13 +13,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeGuard
 
 import numpy as np
 
 from ...errors import ComputationError
 from ..distribution import InPlace, Spreading
-from ..wear import WearLaw
-from .interior_point import Common, PowerSum, solve
+from ..interfaces import Values, WearRate
+from ..power_wear import PowerWear
+from .interior_point import solve
+from .law_sum import BoundLaw, LawSum
+from .rate_sums import Common, PowerSum, RateSum
 from .solvability import why_no_steady_state
 
 _DEPENDENT = 1e-10  # relative: motions nearer than this to each other press the faces the same way
@@ -55,10 +59,12 @@ def steady_pressure(
     normal_modes: np.ndarray,
     force_modes: np.ndarray,
     load: np.ndarray,
-    laws: Sequence[WearLaw],
+    laws: Sequence[WearRate],
     speed: np.ndarray,
     spread: Sequence[Spreading] | None = None,
     factors: np.ndarray | None = None,
+    temperature: np.ndarray | None = None,
+    friction: Values = 0.0,
 ) -> SteadyWear:
     """Solve the principle for pressure and rigid-body wear velocity.
 
@@ -73,14 +79,18 @@ def steady_pressure(
         equilibrium.
     load : ndarray, shape (k,)
         Force or moment along each free direction [N or N m].
-    laws : sequence of WearLaw
-        Of the wearing bodies, one or two.
+    laws : sequence of WearRate
+        Of the wearing bodies, one or two; rates that grow with the pressure.
     speed : ndarray, shape (n,)
         Sliding speed [m/s].
     spread : sequence of Spreading, optional
         Where the wear of each body goes; by default each wears in place.
     factors : ndarray, shape (n_wearing, n), optional
         Of the wear rates at the points, by default 1.
+    temperature : ndarray, shape (n_wearing, n), optional
+        Of the wearing faces, for laws that depend on it [K].
+    friction : ndarray, shape (n,), optional
+        Coefficient, for laws that depend on it.
 
     Returns
     -------
@@ -93,7 +103,8 @@ def steady_pressure(
     NotCarried
         If the load opens the contact.
     ComputationError
-        If points do not slide, nothing wears where it is pressed, or a motion presses nothing.
+        If points do not slide, nothing wears where it is pressed, a motion presses nothing, or a
+        rate falls as the pressure rises.
     """
     spread = spread if spread is not None else [InPlace()] * len(laws)
     factors = factors if factors is not None else np.ones((len(laws), len(weights)))
@@ -106,19 +117,24 @@ def steady_pressure(
             "no steady pressure: all wear is spread over a track, which takes any pressure"
         )
     _check_motions(weights, normal_modes)
+    warm = np.zeros((len(laws), 1)) if temperature is None else temperature
+    bound = [BoundLaw(law, speed, T, friction) for law, T in zip(laws, warm, strict=True)]
     found = solve(
         weights,
         normal_modes,
         force_modes,
         load,
-        local=_power_sum(laws, speed, factors, [way.share for way in spread]),
-        common=_common(laws, speed, factors, spread),
+        local=_rate_sum(bound, factors, np.array([[way.share] for way in spread])),
+        common=_common(bound, factors, spread),
     )
     if found is None or not found.regular:
         raise why_no_steady_state(weights, normal_modes, force_modes, load)
+    for law in bound:
+        if not _in_closed_form(law.law):
+            law.require_growth(found.pressure)
     rates = tuple(
-        way.rate(factor * law.rate(found.pressure, speed))
-        for law, way, factor in zip(laws, spread, factors, strict=True)
+        way.rate(factor * law.rate(found.pressure))
+        for law, way, factor in zip(bound, spread, factors, strict=True)
     )
     return SteadyWear(
         found.pressure,
@@ -129,27 +145,36 @@ def steady_pressure(
     )
 
 
-def _power_sum(laws: Sequence[WearLaw], speed: np.ndarray, factors, portions) -> PowerSum:
-    """The part of the bodies' rates ``Z p^b`` that goes one way."""
-    each = zip(portions, laws, factors, strict=True)
-    Z = [portion * factor * law.factor(speed) for portion, law, factor in each]
-    return PowerSum(np.array(Z), np.array([law.pressure_exponent for law in laws]))
+def _rate_sum(laws: Sequence[BoundLaw], factors: np.ndarray, weights: np.ndarray) -> RateSum:
+    """Weighted rates of the laws, shape (m, n); those of powers in closed form."""
+    powers = [law.law for law in laws if _in_closed_form(law.law)]
+    if len(powers) < len(laws):
+        return LawSum(laws, weights * factors, np.ones(factors.shape[1]))
+    Z = [law.factor(bound.speed) for law, bound in zip(powers, laws, strict=True)]
+    exponents = np.array([law.pressure_exponent for law in powers])
+    return PowerSum(weights * factors * np.reshape(Z, factors.shape), exponents)
+
+
+def _in_closed_form(law: WearRate) -> TypeGuard[PowerWear]:
+    """True if a law is exactly a power law; a derived class may override its rate."""
+    return type(law) is PowerWear
 
 
 def _common(
-    laws: Sequence[WearLaw], speed: np.ndarray, factors, spread: Sequence[Spreading]
+    laws: Sequence[BoundLaw], factors: np.ndarray, spread: Sequence[Spreading]
 ) -> Common | None:
     """The means of the bodies' rates that points have in common; None without any."""
+    n = factors.shape[1]
+    each = zip(laws, factors, spread, strict=True)
     found = [
-        (way.rows * (factor * law.factor(speed)), law.pressure_exponent, way.reach(len(speed)))
-        for law, way, factor in zip(laws, spread, factors, strict=True)
-        if way.rows is not None
+        (law, factor, way.rows, way.reach(n)) for law, factor, way in each if way.rows is not None
     ]
     if not found:
         return None
-    rows, exponents, reach = zip(*found, strict=True)
-    each = np.repeat(exponents, [len(weights) for weights in rows])
-    return Common(PowerSum(np.vstack(rows), each), np.hstack(reach))
+    rows = np.vstack([row for _, _, row, _ in found])
+    repeated = [law for law, _, row, _ in found for _ in row]
+    factors = np.vstack([np.tile(factor, (len(row), 1)) for _, factor, row, _ in found])
+    return Common(_rate_sum(repeated, factors, rows), np.hstack([reach for *_, reach in found]))
 
 
 def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:

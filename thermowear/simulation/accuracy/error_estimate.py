@@ -30,6 +30,7 @@ from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
 from ...laws import steady_pressure
 from ..model.building import sliding_of
+from ..model.conditions import Conditions
 from ..model.system import System
 from ..results.outcome import Outcome
 from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
@@ -184,7 +185,7 @@ def _richer_pressure(
 ) -> np.ndarray:
     """The pressure of a richer discretisation at the contact points [Pa]."""
     if _is_steady(system):
-        return _finer_principle(system, outcome.contact.pressure)
+        return _finer_principle(system, outcome.contact.pressure, outcome.contact.conditions)
     degree = system.case.contact.pressure_degree
     if degree == "lobatto":
         raise ComputationError('not estimated for contact.pressure_degree = "lobatto"')
@@ -217,16 +218,29 @@ def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
     return np.where(least[facet] > 0.0, least[facet], np.maximum(depth, 0.0)) / mean
 
 
-def _finer_principle(system: System, pressure: np.ndarray) -> np.ndarray:
+def _finer_principle(system: System, pressure: np.ndarray, conditions: Conditions) -> np.ndarray:
     """The steady pressure by a finer quadrature: the only error that the principle makes."""
     if system.worn is not None:
         raise ComputationError("not estimated on moved meshes")
+    if any("T" in law.variables for law in system.laws.values()):
+        raise ComputationError("not estimated where wear depends on the temperature")
     coarse, fine = (_principle(part) for part in (system, _finer(system)))
     velocity = system.holder.modes @ coarse.velocity
     change = system.holder.modes @ fine.velocity - velocity
-    exponent = min(law.pressure_exponent for law in system.laws.values())
+    exponent = _exponent(system, pressure, conditions)
     moving = np.where(pressure > 0, velocity, 1.0)
     return pressure * (1 + change / (exponent * moving))
+
+
+def _exponent(system: System, pressure: np.ndarray, conditions: Conditions) -> float:
+    """Least exponent of the pressure in the wear rates, ``p h'(p)/h(p)``, where it presses."""
+    pressing, least = pressure > 0, np.inf
+    for row, law in enumerate(system.laws.values()):
+        rate = conditions.wear_rate(row, law, pressure)
+        slope = conditions.wear_slope(row, law, pressure)
+        wears = pressing & (rate > 0)
+        least = min(least, float((pressure * slope / np.where(wears, rate, 1.0))[wears].min()))
+    return least
 
 
 def _finer(system: System) -> System:
@@ -238,7 +252,9 @@ def _finer(system: System) -> System:
     pairing = pair(face_1, face_2, model, order, refine=not lobatto)
     slides = sliding_of(case, model, pairing)
     assert slides is not None
-    pull = slides.pull(pairing.normals, case.contact.friction, case.contact.transverse_friction)
+    pull = slides.pull(
+        pairing.normals, case.contact.nominal_friction, case.contact.transverse_friction
+    )
     holder = hold(pairing, pull, system.holder.drives)
     return replace(
         system, pairing=pairing, slides=slides, pull=pull, speed=slides.speed, holder=holder
@@ -254,4 +270,5 @@ def _principle(system: System):
         list(system.laws.values()),
         system.speed,
         list(system.spreads.values()),
+        friction=system.friction,
     )

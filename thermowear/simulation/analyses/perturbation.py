@@ -179,9 +179,10 @@ class DisturbedContact:
         system, conditions, space = self._system, self._conditions, self._kinds
         pressed = system.basis @ space.pressures
         worn = np.zeros_like(pressed)
-        laws = zip(conditions.wear, system.laws.values(), system.spreads.values(), strict=True)
-        for part, law, spread in laws:
-            slope = part * law.slope(self._pressure, factor * conditions.speed)
+        conditions = replace(conditions, speed=factor * conditions.speed)
+        laws = zip(system.laws.values(), system.spreads.values(), strict=True)
+        for row, (law, spread) in enumerate(laws):
+            slope = conditions.wear_slope(row, law, self._pressure)
             worn += spread.operator(len(slope)) @ (slope[:, None] * pressed)
         return space.gaps.T @ (system.contact.weighted.T @ worn)
 

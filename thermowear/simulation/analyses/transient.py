@@ -54,7 +54,7 @@ def _principle(system: System) -> SteadyState | None:
     """The steady state that a running-in tends to; None where there is none.
 
     There is none where nothing presses in the end, where the contact grows, where something is
-    given over time, or where the principle has no solution.
+    given over time, where wear depends on the depth, or where the principle has no solution.
     """
     settings = system.case.analysis
     assert isinstance(settings, Transient)
@@ -62,6 +62,8 @@ def _principle(system: System) -> SteadyState | None:
     if not (len(free) and free.all()) or (grows and settings.until is None):
         return None
     if system.case.histories or not system.laws:
+        return None
+    if any("depth" in law.variables for law in system.laws.values()):
         return None
     try:
         return steady_state(system)

@@ -128,7 +128,7 @@ class _Path:
                 yield Instant(time, leg, number == count, state)
 
     def _wear(self, duration: float, repeats: int = 1) -> SlipWear:
-        return SlipWear(self._laws, self._profiles, duration, repeats)
+        return SlipWear(self._laws, self._profiles, self._friction, duration, repeats)
 
 
 def _loads(case: Case, instant: float) -> Loads:

@@ -86,7 +86,7 @@ class ReciprocatingProblem:
         assert factor is not None  # plane models have one
         self._systems = [position.system for position in stroke]
         self._holder = system.holder
-        self._laws = system.laws
+        self._laws, self._friction = system.laws, system.friction
         self._speeds = np.array([[position.speed] for position in stroke])
         pairings = [there.pairing for there in self._systems]
         lengths = [position.length for position in stroke]
@@ -239,11 +239,15 @@ class ReciprocatingProblem:
 
     def _local(self, pressure: np.ndarray) -> np.ndarray:
         """Rates of the wearing bodies where they touch, shape (n_wearing, J, m) [m/s]."""
-        return np.array([law.rate(pressure, self._speeds) for law in self._laws.values()])
+        return self._each(pressure, [law.rate for law in self._laws.values()])
 
     def _slopes(self, pressure: np.ndarray) -> np.ndarray:
         """Their derivatives by the pressure [m/s/Pa]."""
-        return np.array([law.slope(pressure, self._speeds) for law in self._laws.values()])
+        return self._each(pressure, [law.slope for law in self._laws.values()])
+
+    def _each(self, pressure: np.ndarray, functions) -> np.ndarray:
+        at = pressure, self._speeds
+        return np.array([of_law(*at, friction=self._friction) for of_law in functions])
 
 
 def _unevenness(rate: np.ndarray, place: np.ndarray) -> float:

@@ -98,7 +98,7 @@ def moved(system: System, offset: float, way: int) -> System:
     assert case.motion is not None  # the case has been checked
     velocity = way * model.sliding(pairing.points, case.motion.one_way)
     slides = sliding(velocity, pairing.normals, geometry.press_direction)
-    friction = case.contact.friction, case.contact.transverse_friction
+    friction = case.contact.nominal_friction, case.contact.transverse_friction
     pull = slides.pull(pairing.normals, *friction)
     on_1, on_2 = pairing.sides
     in_place = replace(pairing, sides=(replace(on_1, face=system.pairing.sides[0].face), on_2))

@@ -14,6 +14,7 @@ from ...contact.operators.heat import Resting, ThermalState, at_rest
 from ...contact.operators.heat_condensation import condense_heat
 from ...parallel import sum_over_ranks
 from ..model.conditions import Conditions
+from ..model.interface_laws import partition
 from ..model.system import System
 from ..model.thermal_system import ThermalSystem
 from .condensed_distortion import CondensedDistortion
@@ -207,7 +208,7 @@ class FrictionHeat:
             return (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
         if friction_heat == 0.0:
             return np.inf
-        share = case.partition(self._system.facing)
+        share = partition(case, self._system.facing)
         first, second = self._system.facing.of(case.located_material, "effusivity")
         steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
         through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity

@@ -8,8 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...errors import ComputationError
-from ...laws import WearLaw
 from ...laws.distribution import Spreading
+from ...laws.interfaces import WearRate
 from ...serialise import serialisable
 from ..heat.heat_stages import HeatStage
 from ..model.conditions import Conditions
@@ -148,33 +148,30 @@ class WearRates:
 
     Attributes
     ----------
-    laws : list of WearLaw
+    laws : list of WearRate
         Of the wearing bodies.
     spreads : list of Spreading
         Of the same bodies.
-    speed : ndarray, shape (n,) [m/s]
-    factors : ndarray, shape (n_wearing, n)
-        Of the rates.
+    conditions : Conditions
     """
 
-    laws: list[WearLaw]
+    laws: list[WearRate]
     spreads: list[Spreading]
-    speed: np.ndarray
-    factors: np.ndarray
+    conditions: Conditions
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates, shape (n_wearing, n) [m/s]."""
-        rates = np.zeros_like(self.factors)
+        rates = np.zeros_like(self.conditions.wear)
         for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
-            rates[row] = spread.rate(self.factors[row] * law.rate(pressure, self.speed))
+            rates[row] = spread.rate(self.conditions.wear_rate(row, law, pressure))
         return rates
 
     def slope(self, pressure: np.ndarray) -> Slope:
         """Derivative of their sum by the pressures [m/s/Pa]."""
         n = len(pressure)
         point, rows, reach = np.zeros(n), [np.zeros((0, n))], [np.zeros((n, 0))]
-        for law, spread, factor in zip(self.laws, self.spreads, self.factors, strict=True):
-            local = factor * law.slope(pressure, self.speed)
+        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
+            local = self.conditions.wear_slope(row, law, pressure)
             point += spread.share * local
             if spread.varying_rows is not None:
                 rows.append(spread.varying_rows * local)

@@ -31,6 +31,10 @@ class State(Protocol):
     def faces(self) -> ThermalState | None:
         """Temperatures of the faces; None without heat."""
 
+    @property
+    def worn(self) -> np.ndarray:
+        """Depths worn off the wearing bodies, shape (n_wearing, n) [m]."""
+
 
 Found = TypeVar("Found", bound=State)
 
@@ -41,6 +45,7 @@ class Supposed:
 
     pressure: np.ndarray
     faces: ThermalState | None
+    worn: np.ndarray
 
 
 def self_consistent(
@@ -77,13 +82,14 @@ def self_consistent(
 
     def conditions_of(state: State) -> Conditions:
         touching = state.pressure > 0 if closed is None else closed
-        return surroundings.at(time, state.pressure, state.faces, touching)
+        return surroundings.at(time, state.pressure, state.faces, touching, state.worn)
 
     tried, mixing = start, None
     for _ in range(_TURNS):
         conditions = conditions_of(tried)
         found = respond(conditions)
         if conditions_of(found).settled(conditions):
+            surroundings.require_friction(time, found.pressure, found.faces)
             return conditions, found
         before, after = _stacked(tried, found), _stacked(found, found)
         missed = after - before
@@ -112,6 +118,6 @@ def _unstacked(vector: np.ndarray, found: State) -> Supposed:
     pressure, *rises = np.split(vector, 1 if found.faces is None else 3)
     pressing = np.where(found.pressure > 0, np.maximum(pressure, 1e-9), 0.0) * pascal
     if found.faces is None:
-        return Supposed(pressing, None)
+        return Supposed(pressing, None, found.worn)
     rise = (rises[0] * kelvin, rises[1] * kelvin)
-    return Supposed(pressing, ThermalState(rise, found.faces.flux))
+    return Supposed(pressing, ThermalState(rise, found.faces.flux), found.worn)

@@ -88,7 +88,8 @@ class InterfaceProblem:
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return WornContact(worn, contact, faces=faces)
 
-        start = Supposed(self._guess.pressure, None if heat is None else heat.unheated)
+        faces = None if heat is None else heat.unheated
+        start = Supposed(self._guess.pressure, faces, worn)
         return self_consistent(self._surroundings, time, start, respond, _UNWORN)[1]
 
     def worn(self, depth: np.ndarray, guess: Contact | None = None) -> Contact:
@@ -186,7 +187,8 @@ class InterfaceProblem:
             nonlocal last
             last = self._contact(before.worn, step, conditions, heat, last, before.pointwise)
             faces = None if heat is None else heat.faces(conditions, last.pressure)
-            return WornContact(before.worn, last, before.peak, faces, pointwise=before.pointwise)
+            worn = before.worn + step * self._rates(conditions)(last.pressure)
+            return WornContact(worn, last, before.peak, faces, pointwise=before.pointwise)
 
         conditions, found = self_consistent(
             self._surroundings, time, guess, respond, _STEP, closed=guess.pressure > 0
@@ -195,7 +197,8 @@ class InterfaceProblem:
 
     def conditions(self, state: WornContact, time: float) -> Conditions:
         """What holds at the interface in a state at a time [s]."""
-        return self._surroundings.at(time, state.pressure, state.faces, state.pressure > 0)
+        touching = state.pressure > 0
+        return self._surroundings.at(time, state.pressure, state.faces, touching, state.worn)
 
     def contact_state(self, state: WornContact, time: float) -> ContactState:
         """What a state does to the bodies; every rank calls."""
@@ -319,7 +322,7 @@ class InterfaceProblem:
         return float(np.abs(state.pressure - steady).max() / steady.max())
 
     def _rates(self, conditions: Conditions) -> WearRates:
-        return WearRates(self._laws, self._spreads, conditions.speed, conditions.wear)
+        return WearRates(self._laws, self._spreads, conditions)
 
     def _nothing(self) -> np.ndarray:
         """No wear, shape (n_wearing, n)."""

@@ -53,12 +53,13 @@ def steady_state(system: System) -> SteadyState:
     heat = friction_heat(system)
     area = float(system.weights.sum())
     even = np.full(len(system.weights), (system.case.force() or area) / area)
-    start = Supposed(even, None if heat is None else heat.steady.unheated)
+    nothing = np.zeros((len(system.laws), len(even)))
+    start = Supposed(even, None if heat is None else heat.steady.unheated, nothing)
 
     def respond(conditions: Conditions) -> _Worn:
         wear = _principle(system, conditions)
         faces = None if heat is None else heat.steady.faces(conditions, wear.pressure)
-        return _Worn(wear, faces)
+        return _Worn(wear, faces, nothing)
 
     conditions, found = self_consistent(Surroundings(system), 0.0, start, respond, _NONE)
     warmth = None if heat is None else heat.lasting(conditions, found.pressure)
@@ -71,6 +72,7 @@ class _Worn:
 
     wear: SteadyWear
     faces: ThermalState | None
+    worn: np.ndarray
 
     @property
     def pressure(self) -> np.ndarray:
@@ -89,6 +91,8 @@ def _principle(system: System, conditions: Conditions) -> SteadyWear:
         speed=conditions.speed,
         spread=list(system.spreads.values()),
         factors=conditions.wear,
+        temperature=conditions.temperature,
+        friction=conditions.friction,
     )
 
 

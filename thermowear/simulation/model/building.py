@@ -19,6 +19,7 @@ from ...parallel import on_root
 from ...timer import Phases
 from .contact_points import contact_points, facing_parts, worn_contact_points
 from .elastic_system import dead_load, dead_resultant, elastic_system
+from .interface_laws import partition
 from .rigid_modes import drives
 from .setup_cache import Parts, inputs
 from .system import System
@@ -70,7 +71,7 @@ def build(
     slides = sliding_of(case, model, pairing)
     pull, speed = pairing.normals, np.zeros(len(pairing.weights))
     if slides is not None:
-        friction = case.contact.friction, case.contact.transverse_friction
+        friction = case.contact.nominal_friction, case.contact.transverse_friction
         pull, speed = slides.pull(pairing.normals, *friction), slides.speed
     facing = facing_parts(bodies, pairing)
     dead = dead_load(case, elastic)
@@ -134,7 +135,7 @@ def _paired(
 
 def _exchanging(thermal: ThermalSystem, case: Case, facing: Facing) -> ThermalSystem:
     """The same bodies with the partition of this case."""
-    return replace(thermal, face=replace(thermal.face, partition=case.partition(facing)))
+    return replace(thermal, face=replace(thermal.face, partition=partition(case, facing)))
 
 
 def sliding_of(case: Case, model: Model, pairing: Pairing) -> Sliding | None:

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
 from ...case.tables.history import FactorHistory, History
+from ...case.tables.wear import Wear
 from ...contact.operators.heat import ThermalState
+from ...errors import ComputationError
+from ...laws.coefficients.multipliers import Multipliers
+from ...laws.interfaces import InterfaceLaw, WearRate
+from .interface_laws import conductance_law, friction_law
 from .system import System
 
 _SETTLED = 1e-10
@@ -30,6 +37,8 @@ class Conditions:
         Factor of the wear rate of each wearing body.
     conductance : ndarray
         Between the faces; infinite in perfect contact [W/(m² K)].
+    temperature, depth : ndarray, shape (n_wearing, n)
+        Of the wearing faces, where wear depends on them [K, m]; else 0.
     """
 
     load: np.ndarray
@@ -37,11 +46,24 @@ class Conditions:
     friction: np.ndarray
     wear: np.ndarray
     conductance: np.ndarray
+    temperature: np.ndarray
+    depth: np.ndarray
 
     @property
     def heating(self) -> np.ndarray:
         """Friction heat per pressure, ``mu v`` [m/s]."""
         return self.friction * self.speed
+
+    def wear_rate(self, row: int, law: WearRate, pressure: np.ndarray) -> np.ndarray:
+        """Local wear rate of a wearing body at pressures (n,) [m/s]."""
+        return self.wear[row] * law.rate(pressure, *self._state(row))
+
+    def wear_slope(self, row: int, law: WearRate, pressure: np.ndarray) -> np.ndarray:
+        """Its derivative with respect to the pressure [m/(s Pa)]."""
+        return self.wear[row] * law.slope(pressure, *self._state(row))
+
+    def _state(self, row: int) -> tuple[np.ndarray, ...]:
+        return self.speed, self.temperature[row], self.depth[row], self.friction
 
     @property
     def released(self) -> bool:
@@ -73,6 +95,35 @@ def _part(course: History | FactorHistory | None, time: float) -> float:
     return part if part > _ROUNDING else 0.0
 
 
+@dataclass(frozen=True)
+class _WearingBody:
+    """Settings of a wear law that are not in the law itself.
+
+    Attributes
+    ----------
+    index : int
+        Of the body, 0 is body 1.
+    variables : frozenset of str
+        Of the law.
+    factors : Multipliers
+        Of the rate.
+    friction_exponent : float
+        Of the coefficient of friction in a power of the friction stress; 0 in other laws.
+    """
+
+    index: int
+    variables: frozenset[str]
+    factors: Multipliers
+    friction_exponent: float
+
+    @classmethod
+    def of(cls, index: int, wear: Wear) -> _WearingBody:
+        """From the table of the case."""
+        stress = wear.law is None and wear.per == "friction-stress"
+        exponent = wear.pressure_exponent if stress else 0.0
+        return cls(index, wear.variables, wear.factor.multipliers, exponent)
+
+
 class Surroundings:
     """The conditions of a case at any time, pressure and temperature.
 
@@ -84,13 +135,20 @@ class Surroundings:
     def __init__(self, system: System):
         self._system = system
         self._case = system.case
-        bodies = self._case.geometry.bodies
-        self._laws = [(index, self._case.wear[bodies[index]]) for index in system.laws]
+        names = self._case.geometry.bodies
+        self._wearing = [_WearingBody.of(i, self._case.wear[names[i]]) for i in system.laws]
+        self._friction_law = friction_law(self._case)
+        self._varies, self._friction_varies = self._case.varies, self._case.friction_varies
         self._courses = list(self._case.histories.values())
         self._lasting: tuple[bytes, Conditions] | None = None
 
     def at(
-        self, time: float, pressure: np.ndarray, faces: ThermalState | None, closed: np.ndarray
+        self,
+        time: float,
+        pressure: np.ndarray,
+        faces: ThermalState | None,
+        closed: np.ndarray,
+        depth: np.ndarray | None = None,
     ) -> Conditions:
         """Conditions in a state.
 
@@ -103,28 +161,33 @@ class Surroundings:
             Temperatures of the faces, where they are known.
         closed : ndarray of bool, shape (n,)
             Which points exchange heat by contact.
+        depth : ndarray, shape (n_wearing, n), optional
+            Worn off the wearing bodies, by default none [m].
         """
-        if self._case.varies or self._courses:
-            return self._present(time, pressure, faces, closed)
+        if self._varies or self._courses:
+            return self._present(time, pressure, faces, closed, depth)
         key = closed.tobytes()  # nothing else changes: most cases ask for the same again and again
         if self._lasting is None or self._lasting[0] != key:
-            self._lasting = (key, self._present(time, pressure, faces, closed))
+            self._lasting = (key, self._present(time, pressure, faces, closed, None))
         return self._lasting[1]
 
-    def _present(self, time, pressure, faces, closed) -> Conditions:
+    def _present(self, time, pressure, faces, closed, depth) -> Conditions:
         system, case = self._system, self._case
         load, motion = case.load.history, case.motion
         pressed = _part(load, time)
         moved = _part(None if motion is None else motion.history, time)
         speed = moved * system.speed
         temperatures = self._temperatures(faces)
+        own = None if temperatures is None else [temperatures[body.index] for body in self._wearing]
         friction = self._friction(time, temperatures, pressure, speed)
         return Conditions(
             load=pressed * system.holder.load + system.holder.dead,
             speed=speed,
             friction=friction,
-            wear=self._wear(temperatures, pressure, speed, friction),
-            conductance=self._conductance(pressure, closed),
+            wear=self._wear(own, pressure, speed, friction),
+            conductance=self._conductance(temperatures, pressure, speed, closed),
+            temperature=self._of_wear("T", own, pressure),
+            depth=self._of_wear("depth", depth, pressure),
         )
 
     def corners(self, end: float) -> tuple[float, ...]:
@@ -132,31 +195,73 @@ class Surroundings:
         return tuple(t for course in self._courses for t in course.corners(end))
 
     def _temperatures(self, faces: ThermalState | None):
-        if faces is None or self._system.thermal is None:
+        if self._system.thermal is None:
             return None
         ambient = self._system.thermal.ambient
+        if faces is None:
+            return np.full((2, len(self._system.weights)), ambient)
         return faces.rise[0] + ambient, faces.rise[1] + ambient
 
+    @staticmethod
+    def _mean(temperatures) -> np.ndarray | float:
+        """Of both faces; unused where there is no heat [K]."""
+        return 0.0 if temperatures is None else (temperatures[0] + temperatures[1]) / 2
+
+    def _of_wear(self, name: str, values: Sequence[np.ndarray] | None, pressure) -> np.ndarray:
+        """Values of a variable for the wear laws that depend on it; 0 for the others."""
+        result = np.zeros((len(self._wearing), len(pressure)))
+        for row, body in enumerate(self._wearing):
+            if values is not None and name in body.variables:
+                result[row] = values[row]
+        return result
+
     def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
-        mean = None if temperatures is None else (temperatures[0] + temperatures[1]) / 2
-        contact = self._case.contact
-        present = _part(contact.friction_history, time) * self._system.friction
-        return present * contact.friction_factor.value(mean, pressure, speed)
+        """Not below 0: where the law ends there is said once the state is found."""
+        value = self._friction_law.value(pressure, speed, self._mean(temperatures))
+        return _part(self._case.contact.friction_history, time) * np.maximum(value, 0.0)
+
+    def require_friction(
+        self, time: float, pressure: np.ndarray, faces: ThermalState | None
+    ) -> None:
+        """Refuse a state in which the law of friction is negative where the faces press.
+
+        Raises
+        ------
+        ComputationError
+        """
+        if not self._friction_law.variables:
+            return
+        temperatures, motion = self._temperatures(faces), self._case.motion
+        mean = np.broadcast_to(self._mean(temperatures), pressure.shape)
+        speed = _part(None if motion is None else motion.history, time) * self._system.speed
+        value = self._friction_law.value(pressure, speed, mean)
+        lowest = int(np.argmin(np.where(pressure > 0, value, np.inf)))
+        if pressure[lowest] > 0 and value[lowest] < 0:
+            raise ComputationError(
+                f"contact.friction: {value[lowest]:.4g} at p = {pressure[lowest]:.4g} Pa, "
+                f"v = {speed[lowest]:.4g} m/s, T = {mean[lowest]:.4g} K; must not be negative: "
+                "bound the law, max(0.05, …), or reduce load or speed"
+            )
 
     def _wear(self, temperatures, pressure, speed, friction) -> np.ndarray:
         """Factors by table, and of a friction that is not the nominal one."""
-        result = np.ones((len(self._laws), len(pressure)))
-        for row, (index, wear) in enumerate(self._laws):
-            own = None if temperatures is None else temperatures[index]
-            result[row] = wear.factor.value(own, pressure, speed)
-            if wear.per == "friction-stress" and self._case.friction_varies:
-                result[row] *= (friction / self._system.friction) ** wear.pressure_exponent
+        result = np.ones((len(self._wearing), len(pressure)))
+        for row, body in enumerate(self._wearing):
+            own = 0.0 if temperatures is None else temperatures[row]
+            result[row] = body.factors.value(pressure, speed, own)
+            if body.friction_exponent and self._friction_varies:
+                result[row] *= (friction / self._system.friction) ** body.friction_exponent
         return result
 
-    def _conductance(self, pressure: np.ndarray, touching: np.ndarray) -> np.ndarray:
+    @cached_property
+    def _conductance_law(self) -> InterfaceLaw | None:
+        return conductance_law(self._case, self._system.facing)
+
+    def _conductance(self, temperatures, pressure, speed, touching) -> np.ndarray:
         heat = self._case.heat
         if heat is None:
             return np.zeros(len(pressure))
-        given = self._case.conductance(pressure, self._system.facing)
-        closed = np.inf if given is None else given
+        law = self._conductance_law
+        at = pressure, speed, self._mean(temperatures)
+        closed = np.inf if law is None else law.value(*at)
         return np.where(touching, closed, heat.gap_conductance or 0.0)

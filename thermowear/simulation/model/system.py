@@ -17,8 +17,8 @@ from ...contact.operators.holder import Holder, hold
 from ...contact.operators.sliding import Sliding
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
-from ...laws import WearLaw
 from ...laws.distribution import InPlace, Share, Spreading, Track, rings
+from ...laws.interfaces import WearRate
 from ...laws.motions import RigidMotion
 from ...parallel import sum_over_ranks
 from ...timer import Phases
@@ -118,10 +118,10 @@ class System:
 
     @property
     def friction(self) -> float:
-        return self.case.contact.friction
+        return self.case.contact.nominal_friction
 
     @cached_property
-    def laws(self) -> dict[int, WearLaw]:
+    def laws(self) -> dict[int, WearRate]:
         """Wear laws by index of the body (0 is body 1); bodies that do not wear are left out."""
         return wear_laws(self.case)
 

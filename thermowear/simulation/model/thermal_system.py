@@ -29,6 +29,7 @@ from ...contact.operators.heat_condensation import bath_matrix, condense_heat
 from ...contact.operators.traces import value_trace
 from ...contact.search.pairing import Pairing
 from ...timer import Phases
+from .interface_laws import partition
 from .thermal_loads import ThermalLoads, temperature_at, thermal_loads
 
 
@@ -105,8 +106,8 @@ def thermal_system(
         loads = thermal_loads(heat, bodies, model, conducting, times)
         conducting, expansions = _varying(case, conducting, bodies, model, elastic, materials)
     with phases("condense conduction"):
-        partition = case.partition(facing)
-        face = condense_heat(conducting, pairing.weights, basis, traces, shift, partition)
+        share = partition(case, facing)
+        face = condense_heat(conducting, pairing.weights, basis, traces, shift, share)
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
     return ThermalSystem(
@@ -125,8 +126,8 @@ def _varying(
     """Let conductivity and expansion change with the temperature where the case has tables."""
     assert case.heat is not None
     found = {part: case.material(part) for part in case.geometry.parts}
-    conducts = {p: m.conductivity_factor for p, m in found.items() if m.conductivity_factor}
-    expands = {p: m.expansion_factor for p, m in found.items() if m.expansion_factor}
+    conducts = {p: m.conductivity_factor.table for p, m in found.items() if m.conductivity_factor}
+    expands = {p: m.expansion_factor.table for p, m in found.items() if m.expansion_factor}
     if not conducts and not expands:
         return conducting, ()
     ambient = case.heat.ambient
@@ -142,7 +143,7 @@ def _conductivities(case: Case, materials: dict[str, ThermalMaterial]) -> list[f
     factors = [case.material(part).conductivity_factor for part in materials]
     ambient = np.array(case.heat.ambient)
     return [
-        material.conductivity * (1.0 if factor is None else float(factor.value(ambient)))
+        material.conductivity * (1.0 if factor is None else float(factor.table.value(ambient)))
         for material, factor in zip(materials.values(), factors, strict=True)
     ]
 

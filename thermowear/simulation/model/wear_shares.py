@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ...case.tables.analyses import Fretting
 from ...case.tables.schema import Case
+from ...laws.plausible import typical_rate
 from .wear_laws import wear_laws
 
-_NOMINAL = np.array(1e7), np.array(0.1)
-"""At which wear rates are compared: bodies that rub have the same exponents as a rule [Pa, m/s]."""
 LEAST = 1e-9
 """Softness of a body whose face does not change, where that of the other one is 1."""
 
@@ -24,7 +21,7 @@ def softness_of_parts(case: Case) -> dict[str, float]:
     wearing = _wear_rates(case)
     if not wearing:
         return {part: _elastic(case, part) for part in case.geometry.parts}
-    largest = max(wearing.values())
+    largest = max(wearing.values()) or 1.0  # below a threshold none of them wears
     softness: dict[str, float] = {}
     for index, body in enumerate(case.geometry.bodies):
         share = max(wearing.get(index, 0.0) / largest, LEAST)
@@ -51,7 +48,7 @@ def _wear_rates(case: Case) -> dict[int, float]:
         return {}
     bodies = case.geometry.bodies
     return {
-        index: float(law.rate(*_NOMINAL))
+        index: typical_rate(law, case.contact.nominal_friction)
         for index, law in wear_laws(case).items()
         if case.wear[bodies[index]].spread == "in-place"
     }

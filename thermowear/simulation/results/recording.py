@@ -85,8 +85,8 @@ def record(
 def _local_rates(system: System, contact: ContactState) -> np.ndarray:
     rates = np.zeros((2, len(contact.pressure)))
     for row, (index, law) in enumerate(system.laws.items()):
-        local = law.rate(contact.pressure, contact.conditions.speed)
-        rates[index] = system.spreads[index].rate(contact.conditions.wear[row] * local)
+        local = contact.conditions.wear_rate(row, law, contact.pressure)
+        rates[index] = system.spreads[index].rate(local)
     return rates
 
 

@@ -48,7 +48,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "dofs_displacement": total(system.elastic.space),
         "dofs_temperature": _thermal_dofs(system),
         "contact_points": len(w),
-        "friction": system.friction,
+        "friction": system.friction if isinstance(case.contact.friction, float) else None,
         "normal_force_N": normal_force(system, p),
         "friction_force_N": float(w @ friction),
         "friction_torque_Nm": _torque(system, friction),
@@ -69,7 +69,9 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "wear_dissipation_W": float(w @ (p * rates)),
         "wear_volume_1_m3": float(volumes[0]),
         "wear_volume_2_m3": float(volumes[1]),
-        "wear_coefficient_per": {name: law.per for name, law in case.wear.items()},
+        "wear_coefficient_per": {
+            name: law.per for name, law in case.wear.items() if law.coefficient is not None
+        },
     }
     about = _passing(system, outcome) | _guide_reactions(system, p) | _rotations(system, outcome)
     return summary | about | _friction(system, outcome) | outcome.extra

@@ -15,7 +15,7 @@ import numpy as np
 from ...laws import (
     Minimum,
     PowerFunctional,
-    WearLaw,
+    PowerWear,
     admissible_changes,
     friction_dissipation,
     least_wear_dissipation,
@@ -73,7 +73,7 @@ def special_cases() -> dict[str, SpecialCase]:
 def _with_second_body(case: SpecialCase, a: float) -> SpecialCase:
     """Case with a second body that wears, with another velocity exponent."""
     (first,) = case.laws
-    second = WearLaw(0.5 * first.coefficient, first.pressure_exponent, a)
+    second = PowerWear(0.5 * first.coefficient, first.pressure_exponent, a)
     return SpecialCase(case.patch, case.load, (first, second))
 
 

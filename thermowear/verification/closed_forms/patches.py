@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...laws import ContactPatch, SteadyWear, WearLaw, contact_patch, rotation, translation
+from ...laws import ContactPatch, PowerWear, SteadyWear, contact_patch, rotation, translation
 
 DOWN = (0.0, 0.0, -1.0)
 POINTS = 40
@@ -28,12 +28,12 @@ class SpecialCase:
     patch : ContactPatch
     load : ndarray, shape (k,)
         Load along each motion [N or N m].
-    laws : tuple of WearLaw
+    laws : tuple of PowerWear
     """
 
     patch: ContactPatch
     load: np.ndarray
-    laws: tuple[WearLaw, ...]
+    laws: tuple[PowerWear, ...]
 
     def steady(self) -> SteadyWear:
         """Steady state, by the generic solver."""
@@ -44,9 +44,9 @@ class SpecialCase:
         return self.steady().pressure[-probes:]
 
 
-def wear_law(b: float, a: float = 1.0) -> WearLaw:
+def wear_law(b: float, a: float = 1.0) -> PowerWear:
     """Wear law with realistic rates for pressures of some MPa."""
-    return WearLaw(1e-13 * 1e6 ** (1 - b), b, a)
+    return PowerWear(1e-13 * 1e6 ** (1 - b), b, a)
 
 
 def along(

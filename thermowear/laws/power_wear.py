@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
+
+from .interfaces import Values
 
 _FLOOR = 1e-9  # of the largest pressure: where p^b has an infinite slope (b < 1) at p = 0
 
 
+def floored(pressure: np.ndarray) -> np.ndarray:
+    """Pressures at which a law has a finite slope: a small positive one in place of 0 [Pa]."""
+    return np.maximum(pressure, _FLOOR * max(float(np.max(pressure, initial=0.0)), 1.0))
+
+
 @dataclass(frozen=True)
-class WearLaw:
+class PowerWear:
     """Wear law of one body, friction included.
 
     Attributes
@@ -24,22 +32,36 @@ class WearLaw:
     coefficient: float
     pressure_exponent: float = 1.0
     velocity_exponent: float = 1.0
+    variables: ClassVar[frozenset[str]] = frozenset({"p", "v"})
 
     @classmethod
-    def per_friction_stress(cls, β: float, friction: float, b: float, a: float) -> WearLaw:
+    def per_friction_stress(cls, β: float, friction: float, b: float, a: float) -> PowerWear:
         """The law ``β (μ p)^b v^a``."""
         return cls(β * friction**b, b, a)
 
-    def factor(self, speed: np.ndarray) -> np.ndarray:
+    def factor(self, speed: Values) -> np.ndarray:
         """Z = κ v^a at points, so that the rate is Z p^b."""
         return self.coefficient * np.power(speed, self.velocity_exponent)
 
-    def rate(self, pressure: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    def rate(
+        self,
+        pressure: np.ndarray,
+        speed: Values,
+        temperature: Values = 0.0,
+        depth: Values = 0.0,
+        friction: Values = 0.0,
+    ) -> np.ndarray:
         """Depth worn per time [m/s] at pressures [Pa] and speeds [m/s], shape (n,)."""
         return self.factor(speed) * np.power(np.maximum(pressure, 0.0), self.pressure_exponent)
 
-    def slope(self, pressure: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Derivative of the rate by the pressure [m/(s Pa)]; finite at p = 0 also for b < 1."""
+    def slope(
+        self,
+        pressure: np.ndarray,
+        speed: Values,
+        temperature: Values = 0.0,
+        depth: Values = 0.0,
+        friction: Values = 0.0,
+    ) -> np.ndarray:
+        """Derivative by the pressure [m/(s Pa)]; finite at p = 0 also for b < 1."""
         b = self.pressure_exponent
-        floor = _FLOOR * max(float(np.max(pressure, initial=0.0)), 1.0)
-        return self.factor(speed) * b * np.power(np.maximum(pressure, floor), b - 1.0)
+        return self.factor(speed) * b * np.power(floored(pressure), b - 1.0)

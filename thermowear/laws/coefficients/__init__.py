@@ -1,0 +1,1 @@
+"""Coefficients of the interface: constant, tabulated, in proportion to the pressure."""

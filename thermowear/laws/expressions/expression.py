@@ -1,0 +1,101 @@
+"""Expressions in physical variables, with their values and derivatives in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .dimensions import Dimension
+from .parser import Parser, Units
+from .tokens import fault
+from .tree import Call, Constant, Extreme, Node, Power, Product, Sum, Variable
+
+
+@dataclass(frozen=True)
+class Expression:
+    """An arithmetic expression.
+
+    Attributes
+    ----------
+    text : str
+        As it was written.
+    node : Node
+    variables : frozenset of str
+        Variables that occur in it.
+    """
+
+    text: str
+    node: Node
+    variables: frozenset[str]
+
+    @property
+    def constant(self) -> float | None:
+        """Value of an expression without variables."""
+        return self.node.value if isinstance(self.node, Constant) else None
+
+    def value(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Value in SI at arrays of the variables, of their common shape."""
+        return self._both(at, "")[0]
+
+    def slope(self, at: Mapping[str, np.ndarray], by: str) -> np.ndarray:
+        """Derivative with respect to a variable, in SI."""
+        return self._both(at, by)[1]
+
+    def _both(self, at: Mapping[str, np.ndarray], by: str) -> tuple[np.ndarray, np.ndarray]:
+        shape = np.broadcast_shapes(*(np.shape(values) for values in at.values()))
+        arrays = {name: np.asarray(values, dtype=float) for name, values in at.items()}
+        with np.errstate(all="ignore"):  # what is not finite is found by who asks
+            value, slope = self.node.at(arrays, by)
+        return np.zeros(shape) + value, np.zeros(shape) + slope
+
+
+def parse_expression(
+    text: str, variables: Mapping[str, Dimension], unit: str, units: Units
+) -> Expression:
+    """Parse an expression and check the units in it.
+
+    Parameters
+    ----------
+    text : str
+    variables : mapping of str to Dimension
+        Variables that may occur.
+    unit : str
+        Of the value; empty for a dimensionless number.
+    units : callable
+        Factor to SI and dimension of a unit, by its text.
+
+    Raises
+    ------
+    ValueError
+        In one line, with the position of the fault in the text.
+    """
+    found = Parser(text, variables, units).parse()
+    dimension = units(unit)[1] if unit else Dimension()
+    if not found.dimension.same(dimension):
+        needed = unit or "a dimensionless number"
+        raise fault(found.start, f"the value has the unit {found.dimension}; needs {needed}")
+    return Expression(text, found.node, frozenset(_names(found.node)))
+
+
+def _names(node: Node) -> set[str]:
+    """Variables in a tree."""
+    if isinstance(node, Variable):
+        return {node.name}
+    return set().union(*(_names(part) for part in _parts(node)))
+
+
+def _parts(node: Node) -> tuple[Node, ...]:
+    match node:
+        case Sum():
+            return tuple(term for _, term in node.terms)
+        case Product():
+            return tuple(factor for _, factor in node.factors)
+        case Power():
+            return node.base, node.exponent
+        case Call():
+            return (node.argument,)
+        case Extreme():
+            return node.arguments
+    return ()

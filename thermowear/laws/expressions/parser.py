@@ -1,0 +1,296 @@
+"""Recursive-descent parser: from text to a tree whose dimensions fit, with a whitelist of names.
+
+::
+
+    sum      = product { ("+" | "-") product }
+    product  = signed { ("*" | "/") signed }
+    signed   = { "+" | "-" } power
+    power    = atom [ ("^" | "**") signed ]
+    atom     = number [ unit ] | variable | function "(" sum { "," sum } ")" | "(" sum ")"
+
+A unit is written as in the case file, ``W/(m^2 K)``, and is as long as it can be: it ends before a
+variable, a function or a number. A quantity with a compound unit behind a ``/`` needs parentheses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .dimensions import Dimension
+from .functions import EXTREMES, FUNCTIONS, KNOWN
+from .tokens import Token, fault, tokens
+from .tree import Call, Constant, Extreme, Node, Power, Product, Sum, Variable
+from .unit_text import unit_end
+
+Units = Callable[[str], tuple[float, Dimension]]
+"""Factor to SI and dimension of a unit, by its text; a `ValueError` says why it is none."""
+
+_DEEPEST = 30
+"""Parentheses, signs and powers within each other."""
+_LARGEST_EXPONENT = 100.0
+
+
+@dataclass(frozen=True)
+class Parsed:
+    """A part of an expression.
+
+    Attributes
+    ----------
+    node : Node
+    dimension : Dimension
+    start : int
+        Position of its first character.
+    literal : str
+        ``"plain"`` or ``"compound"`` for a quantity with a unit that stands without parentheses.
+    """
+
+    node: Node
+    dimension: Dimension
+    start: int
+    literal: str = ""
+
+    @property
+    def constant(self) -> float | None:
+        """Value of a constant."""
+        return self.node.value if isinstance(self.node, Constant) else None
+
+
+class Parser:
+    """Parser of one expression.
+
+    Parameters
+    ----------
+    text : str
+    variables : mapping of str to Dimension
+        Variables that may occur.
+    units : callable
+    """
+
+    def __init__(self, text: str, variables: Mapping[str, Dimension], units: Units):
+        self._text, self._variables, self._units = text, variables, units
+        self._tokens = tokens(text)
+        self._at = 0
+        self._depth = 0
+
+    def parse(self) -> Parsed:
+        """The whole expression.
+
+        Raises
+        ------
+        ValueError
+            With the position of the first fault.
+        """
+        if self._next.kind == "end":
+            raise ValueError("is empty; needs an expression")
+        result = self._sum()
+        if self._next.kind != "end":
+            raise fault(self._next.start, self._out_of_place())
+        return result
+
+    @property
+    def _next(self) -> Token:
+        return self._tokens[self._at]
+
+    def _out_of_place(self) -> str:
+        token = self._next
+        if token.kind == "end":
+            return "the expression ends too early"
+        if token.text == ")":
+            return "')' closes no parenthesis"
+        return f"found {token.text!r}; needs an operator or the end"
+
+    def _accept(self, *signs: str) -> Token | None:
+        """The next token, if it is one of some signs; it is taken."""
+        token = self._next
+        if token.kind != "sign" or token.text not in signs:
+            return None
+        self._at += 1
+        return token
+
+    def _deeper(self, parse: Callable[[], Parsed]) -> Parsed:
+        """A part within another one."""
+        if self._depth == _DEEPEST:
+            raise fault(self._next.start, f"nested too deeply; at most {_DEEPEST} levels")
+        self._depth += 1
+        result = parse()
+        self._depth -= 1
+        return result
+
+    def _sum(self) -> Parsed:
+        first = self._product()
+        terms = [(1.0, first)]
+        while (sign := self._accept("+", "-")) is not None:
+            term = self._product()
+            if not term.dimension.same(first.dimension):
+                raise fault(
+                    sign.start,
+                    f"{sign.text!r} between the units {first.dimension} and {term.dimension}",
+                )
+            terms.append((1.0 if sign.text == "+" else -1.0, term))
+        if len(terms) == 1:
+            return first
+        node = Sum(tuple((sign, term.node) for sign, term in terms))
+        return self._folded(node, first.dimension, [term for _, term in terms], first.start)
+
+    def _product(self) -> Parsed:
+        first = self._signed()
+        factors, dimension = [(False, first)], first.dimension
+        while (sign := self._accept("*", "/")) is not None:
+            factor, divides = self._signed(), sign.text == "/"
+            if divides and factor.literal == "compound":
+                raise fault(
+                    factor.start, "'/' before a quantity with a compound unit needs parentheses"
+                )
+            dimension = dimension.times(factor.dimension, -1.0 if divides else 1.0)
+            factors.append((divides, factor))
+        if len(factors) == 1:
+            return first
+        node = Product(tuple((divides, factor.node) for divides, factor in factors))
+        return self._folded(node, dimension, [factor for _, factor in factors], first.start)
+
+    def _signed(self) -> Parsed:
+        sign = self._accept("+", "-")
+        if sign is None:
+            return self._power()
+        operand = self._deeper(self._signed)
+        node = Sum(((1.0 if sign.text == "+" else -1.0, operand.node),))
+        found = self._folded(node, operand.dimension, [operand], sign.start)
+        return Parsed(found.node, found.dimension, found.start, operand.literal)
+
+    def _power(self) -> Parsed:
+        base = self._atom()
+        sign = self._accept("^")
+        if sign is None:
+            return base
+        if base.literal:
+            raise fault(sign.start, "a power of a quantity needs parentheses round the quantity")
+        exponent = self._deeper(self._signed)
+        if not exponent.dimension.none:
+            raise fault(
+                exponent.start, f"an exponent must be dimensionless, found {exponent.dimension}"
+            )
+        number = exponent.constant
+        if number is not None and abs(number) > _LARGEST_EXPONENT:
+            raise fault(exponent.start, f"an exponent is at most {_LARGEST_EXPONENT:g} in size")
+        if number is None and not base.dimension.none:
+            raise fault(
+                base.start,
+                f"a variable power must be of something dimensionless, found {base.dimension}",
+            )
+        dimension = base.dimension.to(number if number is not None else 0.0)
+        parts = [base, exponent]
+        return self._folded(Power(base.node, exponent.node), dimension, parts, base.start)
+
+    def _atom(self) -> Parsed:
+        token = self._next
+        if token.kind == "number":
+            return self._quantity()
+        if token.kind == "name":
+            return self._named()
+        if self._accept("(") is not None:
+            inner = self._deeper(self._sum)
+            self._close(token)
+            return Parsed(inner.node, inner.dimension, token.start)
+        if token.kind == "end" or token.text == ")":
+            raise fault(token.start, "the expression ends too early; needs a number or a variable")
+        raise fault(token.start, f"found {token.text!r}; needs a number or a variable")
+
+    def _close(self, opened: Token) -> None:
+        if self._accept(")") is None:
+            if self._next.kind == "end":
+                raise fault(opened.start, "'(' is not closed")
+            raise fault(self._next.start, self._out_of_place())
+
+    def _quantity(self) -> Parsed:
+        """A number and its unit."""
+        token = self._next
+        number = float(token.text)
+        if not np.isfinite(number):
+            raise fault(token.start, "a number must be finite")
+        self._at += 1
+        end = unit_end(self._tokens, self._at, self._variables)
+        if end == self._at:
+            return Parsed(Constant(number), Dimension(), token.start)
+        start = self._next.start
+        text = self._text[start : self._tokens[end - 1].end]
+        try:
+            factor, dimension = self._units(text)
+        except ValueError as error:
+            raise fault(start, str(error)) from None
+        if not np.isfinite(number * factor):
+            raise fault(token.start, "a number must be finite in SI, too")
+        literal = "plain" if end == self._at + 1 else "compound"
+        self._at = end
+        return Parsed(Constant(number * factor), dimension, token.start, literal)
+
+    def _named(self) -> Parsed:
+        token = self._next
+        self._at += 1
+        opened = self._accept("(")
+        if opened is not None:
+            return self._call(token, opened)
+        if token.text in self._variables:
+            return Parsed(Variable(token.text), self._variables[token.text], token.start)
+        known = ", ".join(self._variables)
+        if token.text in KNOWN:
+            raise fault(token.start, f"{token.text!r} is a function; its argument is missing")
+        raise fault(
+            token.start,
+            f"{token.text!r} is not a variable; known: {known} (a unit needs a number before it)",
+        )
+
+    def _call(self, token: Token, opened: Token) -> Parsed:
+        name = token.text
+        if name in self._variables:
+            raise fault(token.start, f"{name!r} is a variable, not a function")
+        if name not in KNOWN:
+            raise fault(token.start, f"{name!r} is not a function; known: {', '.join(KNOWN)}")
+        arguments = [self._deeper(self._sum)]
+        while self._accept(",") is not None:
+            arguments.append(self._deeper(self._sum))
+        self._close(opened)
+        if name in EXTREMES:
+            return self._extreme(token, arguments)
+        if len(arguments) > 1:
+            raise fault(token.start, f"{name} has one argument, found {len(arguments)}")
+        (argument,) = arguments
+        power = FUNCTIONS[name].power
+        if power is None and not argument.dimension.none:
+            raise fault(
+                argument.start,
+                f"the argument of {name} must be dimensionless, found {argument.dimension}",
+            )
+        dimension = Dimension() if power is None else argument.dimension.to(power)
+        return self._folded(Call(name, argument.node), dimension, arguments, token.start)
+
+    def _extreme(self, token: Token, arguments: list[Parsed]) -> Parsed:
+        if len(arguments) < 2:
+            raise fault(token.start, f"{token.text} has at least two arguments")
+        first = arguments[0]
+        for other in arguments[1:]:
+            if not other.dimension.same(first.dimension):
+                raise fault(
+                    other.start,
+                    f"{token.text} of the units {first.dimension} and {other.dimension}",
+                )
+        node = Extreme(token.text, tuple(argument.node for argument in arguments))
+        return self._folded(node, first.dimension, arguments, token.start)
+
+    def _folded(self, node: Node, dimension: Dimension, parts: list[Parsed], start: int) -> Parsed:
+        """The part, as a number where it depends on nothing.
+
+        Raises
+        ------
+        ValueError
+            If that number is not finite: a division by zero, or an overflow.
+        """
+        if any(part.constant is None for part in parts):
+            return Parsed(node, dimension, start)
+        with np.errstate(all="ignore"):
+            value = float(node.at({}, "")[0])
+        if not np.isfinite(value):
+            raise fault(start, f"the value of this part is {value:g}: not a finite number")
+        return Parsed(Constant(value), dimension, start)

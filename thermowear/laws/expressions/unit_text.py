@@ -1,0 +1,94 @@
+"""Extent of the unit behind a number, as the case file writes units: ``m/s``, ``W/(m^2 K)``."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from .tokens import Token, fault
+
+
+def unit_end(tokens: Sequence[Token], start: int, variables: Collection[str]) -> int:
+    """Index of the token behind the unit that begins at a token; the same one: there is no unit.
+
+    Parameters
+    ----------
+    tokens : sequence of Token
+        Those of the expression; the last one is its end.
+    start : int
+        Index of the token behind the number.
+    variables : collection of str
+        Names that end a unit, as a name with ``(`` behind it does.
+
+    Raises
+    ------
+    ValueError
+        If the exponent of a unit is not a number.
+    """
+    return _Extent(tokens, variables).after(start)
+
+
+class _Extent:
+    def __init__(self, tokens: Sequence[Token], variables: Collection[str]):
+        self._tokens, self._variables = tokens, variables
+
+    def after(self, start: int) -> int:
+        """Index behind a unit, which may begin with ``/`` or ``1/`` where it begins at all."""
+        at = start
+        if self._is(at, "1") and self._is(at + 1, "/"):
+            at += 1
+        if self._is(at, "/"):
+            behind = self._factor(at + 1)
+            return start if behind is None else self._rest(behind)
+        first = self._factor(at, parenthesised=False)
+        return start if first is None else self._rest(first)
+
+    def _rest(self, at: int) -> int:
+        """Index behind further factors: side by side, or after ``*`` and ``/``."""
+        while True:
+            signed = self._is(at, "*") or self._is(at, "/")
+            behind = self._factor(at + 1 if signed else at, parenthesised=signed)
+            if behind is None:
+                return at
+            at = behind
+
+    def _factor(self, at: int, parenthesised: bool = True) -> int | None:
+        """Index behind one name or parenthesis with its exponent; None where none stands there."""
+        token = self._tokens[at]
+        if token.kind == "name" and not self._ends_unit(at):
+            return self._exponent(at + 1)
+        if not (parenthesised and self._is(at, "(")):
+            return None
+        inner = self._factor(at + 1)
+        if inner is None:
+            return None
+        end = self._rest(inner)
+        return self._exponent(end + 1) if self._is(end, ")") else None
+
+    def _ends_unit(self, at: int) -> bool:
+        return self._tokens[at].text in self._variables or self._is(at + 1, "(")
+
+    def _exponent(self, at: int) -> int:
+        """Index behind the exponent of a unit, or the same one where it has none."""
+        if not self._is(at, "^"):
+            return at
+        end = at + 1
+        if self._is(end, "("):
+            behind = self._number(end + 1)
+            if behind is not None and self._is(behind, "/"):
+                behind = self._number(behind + 1)
+            if behind is not None and self._is(behind, ")"):
+                return behind + 1
+        else:
+            behind = self._number(end)
+            if behind is not None:
+                return behind
+        raise fault(self._tokens[at].start, "the exponent of a unit must be a number")
+
+    def _number(self, at: int) -> int | None:
+        """Index behind a number with its sign; None where none stands there."""
+        if self._is(at, "-") or self._is(at, "+"):
+            at += 1
+        return at + 1 if self._tokens[at].kind == "number" else None
+
+    def _is(self, at: int, text: str) -> bool:
+        return at < len(self._tokens) and self._tokens[at].text == text

@@ -1,0 +1,1 @@
+"""Laws that a case file names, one a module."""

@@ -1,0 +1,56 @@
+"""Wear in proportion to the friction power above a threshold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ..interfaces import Values
+from ..registry import parameter, registered
+
+
+@registered("wear", "energy")
+@dataclass(frozen=True)
+class EnergyWear:
+    """Wear rate ``coefficient * max(mu p v - threshold, 0)``.
+
+    The energy law of fretting wear (Fouvry, Kapsa and Vincent, Wear 200 (1996) 186) with a
+    threshold.
+
+    Attributes
+    ----------
+    coefficient : float
+        Volume worn per energy [m³/J].
+    threshold : float
+        Friction power per area that wears nothing [W/m²].
+    """
+
+    coefficient: float = parameter("m^3/J", "2e-13 m^3/J", gt=0)
+    threshold: float = parameter("W/m^2", "1e4 W/m^2", default=0.0, ge=0)
+    variables: ClassVar[frozenset[str]] = frozenset({"p", "v", "mu"})
+
+    def rate(
+        self,
+        pressure: np.ndarray,
+        speed: Values,
+        temperature: Values = 0.0,
+        depth: Values = 0.0,
+        friction: Values = 0.0,
+    ) -> np.ndarray:
+        """Depth worn per time at points (n,) [m/s]."""
+        power = friction * np.maximum(pressure, 0.0) * speed
+        return self.coefficient * np.maximum(power - self.threshold, 0.0)
+
+    def slope(
+        self,
+        pressure: np.ndarray,
+        speed: Values,
+        temperature: Values = 0.0,
+        depth: Values = 0.0,
+        friction: Values = 0.0,
+    ) -> np.ndarray:
+        """Derivative with respect to the pressure [m/(s Pa)]; that above, at the threshold."""
+        wears = friction * pressure * speed >= self.threshold
+        return np.where(wears, self.coefficient * friction * speed, 0.0)

@@ -1,0 +1,43 @@
+"""Friction that falls from a static to a kinetic coefficient as the speed rises."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ..interfaces import Values
+from ..registry import parameter, registered
+
+
+@registered("friction", "stribeck")
+@dataclass(frozen=True)
+class StribeckFriction:
+    """Coefficient ``kinetic + (static - kinetic) exp(-v/speed)``.
+
+    The exponential Stribeck curve (Bo and Pavelescu, Wear 82 (1982) 277) of exponent 1.
+
+    Attributes
+    ----------
+    static, kinetic : float
+        Coefficients at rest and at high speed.
+    speed : float
+        At which the difference has fallen to 1/e [m/s].
+    """
+
+    static: float = parameter("", "0.35", gt=0)
+    kinetic: float = parameter("", "0.1", gt=0)
+    speed: float = parameter("m/s", "0.5 m/s", gt=0)
+    variables: ClassVar[frozenset[str]] = frozenset("v")
+
+    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+        """Coefficient at points (n,)."""
+        fallen = self.kinetic + (self.static - self.kinetic) * np.exp(
+            -np.asarray(speed) / self.speed
+        )
+        return np.zeros(np.shape(pressure)) + fallen
+
+    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+        """Derivative with respect to the pressure: 0."""
+        return np.zeros(np.shape(pressure))

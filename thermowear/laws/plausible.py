@@ -1,0 +1,107 @@
+"""Checks of laws on the range of values that a contact can have."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..errors import ComputationError
+from .interfaces import InterfaceLaw, WearRate
+
+SAMPLES: Mapping[str, np.ndarray] = {
+    "p": np.concatenate([[0.0], np.geomspace(1.0, 1e10, 61)]),
+    "v": np.concatenate([[0.0], np.geomspace(1e-9, 1e2, 12)]),
+    "T": np.array([200.0, 250.0, 293.15, 350.0, 500.0, 750.0, 1000.0, 1500.0]),
+    "depth": np.concatenate([[0.0], np.geomspace(1e-9, 1e-2, 8)]),
+    "mu": np.array([0.0, 0.1, 0.3, 1.0]),
+}
+"""Values at which a law is looked at, in SI: up to 10 GPa, 100 m/s, 1500 K and 10 mm."""
+TYPICAL = {"p": 1e7, "v": 0.1, "T": 293.15, "depth": 0.0, "mu": 0.3}
+"""One state of a contact, at which laws are compared, in SI."""
+_ROUNDING = 1e-9  # of the rate
+
+
+def require_wear_rate(law: WearRate) -> None:
+    """Refuse a wear rate that is negative or infinite somewhere, or falls as the pressure rises.
+
+    Raises
+    ------
+    ValueError
+        In one line, with a state where it does.
+    """
+    at = _grid(law.variables | {"p"})
+    names = ("p", "v", "T", "depth", "mu")
+    with np.errstate(all="ignore"):
+        rates = _evaluated(law.rate, *(at.get(name, TYPICAL[name]) for name in names))
+    rates = np.broadcast_to(rates, np.broadcast_shapes(*(v.shape for v in at.values())))
+    _refuse(~np.isfinite(rates), at, "the rate is not finite")
+    _refuse(rates < 0.0, at, "the rate is negative")
+    _refuse(rates[:1] > _ROUNDING * rates[-1:], at, "there is wear without pressure")
+    falls = np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]
+    _refuse(falls, at, "the rate falls as the pressure rises")
+    if not rates.any():
+        raise ValueError("the rate is 0 at all pressures")
+
+
+def require_interface_law(law: InterfaceLaw) -> None:
+    """Refuse a coefficient that is not finite somewhere, or not positive in a typical state.
+
+    Raises
+    ------
+    ValueError
+        In one line, with a state where that is so.
+    """
+    at = _grid(law.variables)
+    names = ("p", "v", "T")
+    with np.errstate(all="ignore"):
+        values = _evaluated(law.value, *(at.get(name, TYPICAL[name]) for name in names))
+    values = np.broadcast_to(values, np.broadcast_shapes(*(v.shape for v in at.values()), (1,)))
+    _refuse(~np.isfinite(values), at, "the value is not finite")
+    typical = typical_value(law)
+    if not typical > 0.0:
+        one = {name: np.array([TYPICAL[name]]) for name in names}
+        _refuse(np.array([True]), one, f"the value is {typical:.4g}, must be greater than 0,")
+
+
+def typical_value(law: InterfaceLaw) -> float:
+    """Coefficient in the state of `TYPICAL`."""
+    return float(law.value(*(np.array([TYPICAL[name]]) for name in ("p", "v", "T")))[0])
+
+
+def typical_rate(law: WearRate, friction: float) -> float:
+    """Wear rate in the state of `TYPICAL`, at a coefficient of friction [m/s]."""
+    p, v, T, depth = (np.array([TYPICAL[name]]) for name in ("p", "v", "T", "depth"))
+    return float(law.rate(p, v, T, depth, np.array([friction]))[0])
+
+
+def _evaluated(function, *at: np.ndarray | float) -> np.ndarray:
+    arrays = np.broadcast_arrays(*(np.asarray(values, dtype=float) for values in at))
+    try:
+        return function(*arrays)
+    except ComputationError as error:  # of a law that checks its values itself
+        raise ValueError(str(error)) from None
+
+
+def _grid(variables: frozenset[str]) -> dict[str, np.ndarray]:
+    """Samples of the variables, each along an axis of its own; the pressure along the first."""
+    names = [name for name in SAMPLES if name in variables]
+    shapes = np.eye(len(names), dtype=int)
+    return {
+        name: SAMPLES[name].reshape(np.where(axis, len(SAMPLES[name]), 1))
+        for name, axis in zip(names, shapes, strict=True)
+    }
+
+
+def _refuse(wrong: np.ndarray, at: Mapping[str, np.ndarray], what: str) -> None:
+    """Raise for the first point of a grid at which something is wrong."""
+    if not wrong.any():
+        return
+    first = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
+    units = {"p": " Pa", "v": " m/s", "T": " K", "depth": " m", "mu": ""}
+    where = ", ".join(
+        f"{name} = {float(values[tuple(np.minimum(first, np.array(values.shape) - 1))]):.3g}"
+        f"{units[name]}"
+        for name, values in at.items()
+    )
+    raise ValueError(f"{what} at {where}" if where else what)

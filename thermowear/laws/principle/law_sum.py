@@ -1,0 +1,97 @@
+"""Rates of any wear laws at the contact points, for the interior-point method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import ComputationError
+from ..interfaces import Values, WearRate
+
+_MULTIPLES = np.array([0.03, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0])
+"""Multiples of the steady pressure between which a rate must not fall."""
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class BoundLaw:
+    """Wear law at the contact points, as a function of the pressure alone.
+
+    Attributes
+    ----------
+    law : WearRate
+    speed, temperature, friction : ndarray, shape (n,)
+        [m/s], [K], [-].
+    """
+
+    law: WearRate
+    speed: Values
+    temperature: Values
+    friction: Values
+
+    def rate(self, pressure: np.ndarray) -> np.ndarray:
+        """Local wear rate (n,) [m/s]."""
+        return self._of(self.law.rate, pressure)
+
+    def slope(self, pressure: np.ndarray) -> np.ndarray:
+        """Derivative with respect to the pressure (n,) [m/(s Pa)]."""
+        return self._of(self.law.slope, pressure)
+
+    def _of(self, function: Callable[..., np.ndarray], pressure: np.ndarray) -> np.ndarray:
+        return function(pressure, self.speed, self.temperature, 0.0, self.friction)
+
+    def require_growth(self, pressure: np.ndarray) -> None:
+        """Refuse a law whose rate falls as the pressure rises, around given pressures.
+
+        Raises
+        ------
+        ComputationError
+        """
+        rates = np.array([self.rate(factor * pressure) for factor in _MULTIPLES])
+        if np.any(np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]):
+            raise ComputationError(
+                "no steady state: a wear rate falls as the pressure rises; the principle needs "
+                "rates that grow with it"
+            )
+
+
+@dataclass(frozen=True)
+class LawSum:
+    """Weighted rates of several laws, in units of a pressure at each point and of a value.
+
+    Attributes
+    ----------
+    laws : sequence of BoundLaw
+        One for each summand.
+    weights : ndarray, shape (m, n)
+    pressure : ndarray, shape (n,)
+        Unit of the pressures [Pa].
+    value : float
+        Unit of the rates.
+    """
+
+    laws: Sequence[BoundLaw]
+    weights: np.ndarray
+    pressure: np.ndarray
+    value: float = 1.0
+
+    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Value and derivative at positive pressures, shape (n,) each."""
+        return self.terms(pressure).sum(axis=0), self.slopes(pressure).sum(axis=0)
+
+    def terms(self, pressure: np.ndarray) -> np.ndarray:
+        """Each of its summands, shape (m, n)."""
+        rates = [law.rate(self.pressure * pressure) for law in self.laws]
+        return self.weights * np.reshape(rates, self.weights.shape) / self.value
+
+    def slopes(self, pressure: np.ndarray) -> np.ndarray:
+        """Derivative of each of its summands, shape (m, n)."""
+        slopes = [law.slope(self.pressure * pressure) for law in self.laws]
+        scale = self.pressure / self.value
+        return self.weights * np.reshape(slopes, self.weights.shape) * scale
+
+    def scaled(self, pressure: np.ndarray, value: float) -> LawSum:
+        """Rates in units of a further pressure at each point and of a value."""
+        return LawSum(self.laws, self.weights, self.pressure * pressure, self.value * value)

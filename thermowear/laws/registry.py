@@ -1,0 +1,47 @@
+"""Laws that a case file names: ``rate = { type = "energy", … }``.
+
+A law is a frozen dataclass in a module of `named`, registered by its decorator. Its fields are the
+keys of its table; `parameter` gives the unit and the bounds of each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import field
+from typing import Any, Literal, TypeVar
+
+Role = Literal["wear", "friction", "conductance"]
+Law = TypeVar("Law", bound=type)
+
+REGISTERED: dict[str, dict[str, type]] = {"wear": {}, "friction": {}, "conductance": {}}
+"""Laws by role and name; `by_name` imports the modules of `named` first."""
+
+
+def parameter(unit: str, example: str, *, default: Any = None, **bounds: float) -> Any:
+    """Field of a registered law.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit; empty for a plain number.
+    example : str
+        A well-formed value, for messages.
+    default : float, optional
+        In SI; without one the key is needed.
+    **bounds
+        ``gt``, ``ge``, ``le``, ``ne`` in SI.
+    """
+    metadata = {"unit": unit, "example": example, "bounds": bounds}
+    if default is None:
+        return field(metadata=metadata)
+    return field(default=default, metadata=metadata)
+
+
+def registered(role: Role, name: str) -> Callable[[Law], Law]:
+    """Decorator of a law that a case file may name."""
+
+    def register(law: Law) -> Law:
+        REGISTERED[role][name] = law
+        return law
+
+    return register

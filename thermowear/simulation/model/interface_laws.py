@@ -1,0 +1,53 @@
+"""Friction, conductance and partition of friction heat at the interface of a case."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...case.tables.conductance import PressureConductance, TabulatedConductance
+from ...case.tables.facing import Facing
+from ...case.tables.law_values import law_of
+from ...case.tables.schema import Case
+from ...laws.coefficients import conductance as laws
+from ...laws.coefficients.multipliers import Multiplied
+from ...laws.interfaces import InterfaceLaw
+
+
+def friction_law(case: Case) -> InterfaceLaw:
+    """Coefficient of friction without its history in time."""
+    contact = case.contact
+    factors = contact.friction_factor.multipliers
+    return Multiplied(contact.friction_law, factors) if factors.variables else contact.friction_law
+
+
+def conductance_law(case: Case, facing: Facing) -> InterfaceLaw | None:
+    """Contact conductance at the points [W/(m² K)]; None: perfect contact.
+
+    Parameters
+    ----------
+    case : Case
+        With heat.
+    facing : Facing
+        Parts that touch at the points.
+    """
+    assert case.heat is not None
+    given = case.heat.conductance
+    if isinstance(given, TabulatedConductance):
+        return laws.TabulatedConductance(given.table)
+    if isinstance(given, PressureConductance):
+        k, hardness = (
+            laws.harmonic_mean(*facing.of(case.located_material, key))
+            for key in ("conductivity", "hardness")
+        )
+        return laws.PressureConductance(given.coefficient, k, hardness)
+    return None if given is None else law_of(given, "heat.conductance", 0.0)
+
+
+def partition(case: Case, facing: Facing) -> float | np.ndarray:
+    """Part of the friction heat that is set free on body 1, at points (n,) or everywhere."""
+    assert case.heat is not None
+    share = case.heat.partition
+    if isinstance(share, float):
+        return share
+    e1, e2 = facing.of(case.located_material, "effusivity")
+    return e1 / (e1 + e2)

@@ -10,7 +10,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from thermowear.output.pictures.overlay import Panel, draw_overlay
+from thermowear.output.pictures.overlay import OverlayPanel, draw_overlay
 
 HERE = Path(__file__).resolve().parent
 
@@ -28,7 +28,7 @@ class Slide:
     runs : dict of str to tuple of str
         Overrides of the case by legend entry; ``{previous}`` in them stands for the results folder
         of the previous run.
-    panels : tuple of Panel
+    panels : tuple of OverlayPanel
     """
 
     name: str
@@ -36,14 +36,14 @@ class Slide:
     text: str
     case: str
     runs: dict[str, tuple[str, ...]]
-    panels: tuple[Panel, ...]
+    panels: tuple[OverlayPanel, ...]
 
 
 COLD = "motion.angular_velocity=1e-6 rad/s"
 """Override for a speed without noticeable friction heat."""
 
-PRESSURE, SHAPE = Panel("pressure", from_zero=True), Panel("shape")
-ALONG, RATE = Panel("shape_along_press"), Panel("wear_rate", from_zero=True)
+PRESSURE, SHAPE = OverlayPanel("pressure", from_zero=True), OverlayPanel("shape")
+ALONG, RATE = OverlayPanel("shape_along_press"), OverlayPanel("wear_rate", from_zero=True)
 
 _ON = "analysis={type='transient', until='steady', tolerance=1e-3}"
 _FROM = "geometry.initial_shape={previous}/profile.csv"

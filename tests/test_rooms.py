@@ -118,6 +118,17 @@ def test_folders_are_small():
         assert len(modules) <= MOST_MODULES or kind in OF_A_KIND, folder
 
 
+def test_no_class_name_is_used_twice():
+    """requirement: one name, one meaning."""
+    names = [
+        node.name
+        for path in SOURCES.values()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef)
+    ]
+    assert sorted(names) == sorted(set(names))
+
+
 def test_only_compat_knows_versions():
     """requirement: differences of dolfinx releases are handled in one module."""
     own = {"__init__.py", "app/arguments.py", "output/folder.py"}  # the program's own version

@@ -14,7 +14,7 @@ from mpi4py import MPI
 import numpy as np
 
 import thermowear as tw
-from thermowear.bulk.direct_solver import Factor
+from thermowear.bulk.direct_solver import DirectSolver
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.interface.steady import steady_state
 from thermowear.simulation.model.building import build
@@ -56,7 +56,7 @@ def main():
     def one_increment():
         matrix = elastic.stiffness.copy()
         matrix.zeroRowsColumns(rows, diag=1e12)
-        Factor(matrix).solve(system.trace @ (system.weights * steady.wear.pressure))
+        DirectSolver(matrix).solve(system.trace @ (system.weights * steady.wear.pressure))
 
     increment = seconds(one_increment)
     explicit_steps = case.analysis.end_time / largest_stable_increment(system)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from thermowear.bulk.direct_solver import Factor
+from thermowear.bulk.direct_solver import DirectSolver
 from thermowear.errors import ComputationError
 
 
@@ -20,7 +20,7 @@ def petsc(matrix) -> PETSc.Mat:
 def test_a_matrix_is_solved_with_many_right_hand_sides():
     """requirement: dense and sparse ones alike."""
     matrix = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 1.0], [0.0, 1.0, 2.0]])
-    factor, loads = Factor(petsc(matrix)), np.array([[1.0, 0.0], [0.0, 2.0], [3.0, 1.0]])
+    factor, loads = DirectSolver(petsc(matrix)), np.array([[1.0, 0.0], [0.0, 2.0], [3.0, 1.0]])
     expected = np.linalg.solve(matrix, loads)
     assert factor.solve(loads) == pytest.approx(expected, rel=1e-14)
     assert factor.solve(sp.csr_matrix(loads)) == pytest.approx(expected, rel=1e-14)
@@ -30,4 +30,4 @@ def test_a_matrix_is_solved_with_many_right_hand_sides():
 def test_a_singular_matrix_is_an_error_in_words(symmetry):
     """requirement: no factor, no solution: exit code 2 and the reason."""
     with pytest.raises(ComputationError, match=r"cannot be factorised.*singular"):
-        Factor(petsc(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 2.0]])), symmetry)
+        DirectSolver(petsc(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 2.0]])), symmetry)

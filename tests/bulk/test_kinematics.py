@@ -12,7 +12,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, section_model
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.case.tables.driving import Motion
+from thermowear.case.tables.driving import MotionTable
 from thermowear.contact.operators.sliding import sliding
 
 from ..conftest import two_blocks
@@ -133,7 +133,7 @@ def test_symmetric_side_rolls():
 @pytest.mark.parametrize("velocity", ["50 mm/s", "-50 mm/s"])
 def test_sliding_of_plane_models(velocity):
     """requirement: e is the unit direction, along the face, in which body 1 slides."""
-    motion = Motion(velocity=velocity)
+    motion = MotionTable(velocity=velocity)
     normals = np.array([[0.0, -1.0], [0.6, -0.8], [-0.6, -0.8]])
     model = section_model("plane-strain", 1.0)
     slides = sliding(model.sliding(normals, motion), normals, (0.0, -1.0))
@@ -148,7 +148,7 @@ def test_friction_of_the_slowest_sliding():
     """requirement: friction depends on the direction of sliding, not on its speed."""
     model, normals = section_model("plane-strain", 1.0), np.array([[0.0, -1.0], [0.6, -0.8]])
     slow, fast = (
-        sliding(model.sliding(normals, Motion(velocity=v)), normals, (0.0, -1.0)).along
+        sliding(model.sliding(normals, MotionTable(velocity=v)), normals, (0.0, -1.0)).along
         for v in ("1e-15 m/s", "1 m/s")
     )
     assert slow == pytest.approx(fast, abs=1e-12)
@@ -158,7 +158,9 @@ def test_friction_of_the_slowest_sliding():
 def test_sliding_across_a_section(model):
     """requirement: the given speed, without a component in the section."""
     normals = np.array([[0.0, -1.0], [0.6, -0.8]])
-    moved = section_model(model, 1.0).sliding(normals, Motion(velocity="-50 mm/s"), across=True)
+    moved = section_model(model, 1.0).sliding(
+        normals, MotionTable(velocity="-50 mm/s"), across=True
+    )
     assert moved == pytest.approx(np.array([[0.0, 0.0, -0.05]] * 2))
     slides = sliding(moved, normals, (0.0, -1.0))
     assert slides.speed == pytest.approx(0.05)
@@ -168,7 +170,7 @@ def test_sliding_across_a_section(model):
 @pytest.mark.parametrize("turning", ["2 rad/s", "-2 rad/s"])
 def test_sliding_over_a_turning_disk(turning):
     """requirement: an anticlockwise disk drags a body on top of it along -x."""
-    motion = Motion(angular_velocity=turning)
+    motion = MotionTable(angular_velocity=turning)
     angle = np.array([-0.4, 0.0, 0.7])
     outward = np.column_stack([np.sin(angle), np.cos(angle)])
     center = np.array([0.1, -0.2])

@@ -9,7 +9,7 @@ from dolfinx import fem
 
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial, section_model
-from thermowear.case.tables.driving import Motion
+from thermowear.case.tables.driving import MotionTable
 from thermowear.contact.operators.sliding import sliding
 from thermowear.parallel import sum_over_ranks
 
@@ -106,7 +106,7 @@ def test_no_thickness():
 @pytest.mark.parametrize("velocity", ["50 mm/s", "-50 mm/s"])
 def test_sliding_along_x(velocity):
     """requirement: e is the unit direction in which body 1 slides."""
-    motion, points = Motion(velocity=velocity), np.zeros((2, 3))
+    motion, points = MotionTable(velocity=velocity), np.zeros((2, 3))
     normals = np.array([[0.0, 0.0, -1.0], [0.0, 0.6, -0.8]])
     slides = sliding(Spatial().sliding(points, motion), normals, (0.0, 0.0, -1.0))
     np.testing.assert_allclose(slides.speed, 0.05)
@@ -117,7 +117,7 @@ def test_sliding_along_x(velocity):
 @pytest.mark.parametrize("turning", ["2 rad/s", "-2 rad/s"])
 def test_a_turning_disk_drags_the_pad_along(turning):
     """requirement: seen from above, an anticlockwise disk drags a pad on the x-axis along y."""
-    motion = Motion(angular_velocity=turning)
+    motion = MotionTable(angular_velocity=turning)
     points, center = np.array([[0.4, -0.2, 0.0], [0.1, 0.3, 0.0]]), (0.1, -0.2)
     normals = np.array([[0.0, 0.0, -1.0]] * 2)
     slides = sliding(Spatial().sliding(points, motion, center), normals, (0.0, 0.0, -1.0))

@@ -12,7 +12,7 @@ from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.heat.varying import thermal_forces, varying_conduction, varying_expansion
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.case.tables.multipliers import ExpansionFactor, TemperatureFactor
+from thermowear.case.tables.multipliers import ExpansionTable, TemperatureTable
 
 from ..conftest import two_blocks
 
@@ -22,7 +22,7 @@ TABLE = {"at": ["20 degC", "120 degC", "220 degC"], "factor": [1.0, 1.4, 1.1]}
 
 def test_factor_has_a_slope_and_an_integral():
     """requirement: value, slope and integral of a piecewise linear table, also beyond its ends."""
-    factor = TemperatureFactor(**TABLE).table
+    factor = TemperatureTable(**TABLE).table
     T = np.array([200.0, 300.0, 400.0, 450.0, 600.0])
     ε = 1e-4
     slope = (factor.value(T + ε) - factor.value(T - ε)) / (2 * ε)
@@ -49,7 +49,7 @@ def varying(degree=4):
     k = {"upper": ThermalMaterial(50.0), "lower": ThermalMaterial(15.0)}
     surfaces = {"upper_end": 300.0}, {"lower_end": 12.0}
     constant = conduction(bodies, Axisymmetric(), space, k, *surfaces, no_bath)
-    factors = {"upper": TemperatureFactor(**TABLE).table}
+    factors = {"upper": TemperatureTable(**TABLE).table}
     return varying_conduction(constant, bodies, Axisymmetric(), k, factors, AMBIENT)
 
 
@@ -100,7 +100,7 @@ def test_free_expansion(rise):
         bodies, Axisymmetric(), 3, materials, [], rollers=("upper_end", "lower_end")
     )
     space = lagrange_space(bodies.mesh, 3)
-    factor = ExpansionFactor(**TABLE).table
+    factor = ExpansionTable(**TABLE).table
     parts = varying_expansion(elastic, space, {"upper": factor}, AMBIENT)
     load = elastic.thermal_load(space)
     forces = thermal_forces(load, parts, np.full(owned(space), rise))

@@ -12,7 +12,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators.condensation import condense
-from thermowear.contact.operators.holder import Drive, hold
+from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.face import gather_face
@@ -95,6 +95,6 @@ def condensed(tagged, degree, poisson_ratio=0.0, force=1.0, drives=None, **suppo
     pairing = pair(*faces, Spatial(), degree + 2)
     trace = gap_trace(elastic.space, pairing)
     basis = pressure_basis(pairing, max(degree - 1, 1))
-    drives = drives or [Drive(translation((0.0, 0.0, -1.0)), load=force)]
+    drives = drives or [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
     holder = hold(pairing, pairing.normals, drives)
     return pairing, holder, condense(elastic, pairing, trace, trace, basis, holder)

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from thermowear import ComputationError
 from thermowear.contact.solvers.lemke import lemke
 from thermowear.contact.solvers.signorini import (
-    ContactSolution,
     NoEquilibrium,
+    SignoriniSolution,
     _checked,
     _pressing_by_lemke,
     _Problem,
@@ -114,10 +114,10 @@ def test_every_wrong_pressure_is_caught(wrong):
         gap = np.array([1e-6, 0.0, 0.0])
     else:
         load = load * (1 + 1e-6)
-    solution = ContactSolution(λ, np.array([d]), λ != 0)
+    solution = SignoriniSolution(λ, np.array([d]), λ != 0)
     with pytest.raises(ComputationError):
         _checked(_Problem(compliance, gap, modes, load, modes), solution)
-    right = ContactSolution(np.ones(3), np.array([1.0]), np.ones(3, dtype=bool))
+    right = SignoriniSolution(np.ones(3), np.array([1.0]), np.ones(3, dtype=bool))
     problem = _Problem(compliance, np.zeros(3), modes, np.array([3.0]), modes)
     assert _checked(problem, right) is not None
 

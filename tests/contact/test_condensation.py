@@ -9,7 +9,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators.condensation import condense, influence
-from thermowear.contact.operators.holder import Drive, hold
+from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, vector_trace
 from thermowear.contact.search.face import gather_face
@@ -39,7 +39,7 @@ def condensed(degree, columns, poisson_ratio=0.3):
     )
     trace = gap_trace(elastic.space, pairing)
     basis = pressure_basis(pairing, max(degree - 1, 1))
-    holder = hold(pairing, pairing.normals, [Drive(translation((0.0, -1.0)), load=1.0)])
+    holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)])
     return elastic, pairing, trace, condense(elastic, pairing, trace, trace, basis, holder)
 
 
@@ -80,7 +80,7 @@ def test_another_friction_needs_no_new_solution(columns, monkeypatch):
     basis = pressure_basis(pairing, 3)
     answers = influence(elastic, pairing, trace, basis)
     along = np.broadcast_to([1.0, 0.0], pairing.normals.shape)
-    holder = hold(pairing, pairing.normals, [Drive(translation((0.0, -1.0)), load=1.0)])
+    holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)])
     λ = np.random.default_rng(1).uniform(0, 1e8, basis.shape[1])
     for friction in (-0.3, 0.6):
         traction = vector_trace(elastic.space, pairing, pairing.normals + friction * along)

@@ -20,7 +20,7 @@ from thermowear.contact.operators.heat_condensation import (
     condense_heat,
     gap_per_rise,
 )
-from thermowear.contact.operators.holder import Drive, hold
+from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.face import gather_face
@@ -142,7 +142,7 @@ def test_condensed_distortion_equals_the_bodies_own():
         trace,
         trace,
         basis,
-        hold(pairing, pairing.normals, [Drive(translation((0, -1)), load=1.0)]),
+        hold(pairing, pairing.normals, [RigidMode(translation((0, -1)), load=1.0)]),
         keep_influence=True,
     )
     load = elastic.thermal_load(conducting.space)

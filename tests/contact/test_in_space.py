@@ -11,7 +11,7 @@ from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators.condensation import condense
 from thermowear.contact.operators.heat import at_rest
 from thermowear.contact.operators.heat_condensation import bath_matrix, condense_heat
-from thermowear.contact.operators.holder import Drive, hold
+from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.face import gather_face
@@ -121,13 +121,13 @@ def test_a_slab_between_walls_is_in_plane_strain():
         return 4e-6 * ((x - 0.018) / 0.02) ** 2
 
     middle, force, moment = 0.02, 5e3, 5.0
-    down = [Drive(translation((0.0, -1.0)), load=force)]
+    down = [RigidMode(translation((0.0, -1.0)), load=force)]
     # about y by the right-hand rule is clockwise in the plane of x and z
-    down.append(Drive(rotation((0.0, 0.0, -1.0), (middle, 0.0)), load=moment))
+    down.append(RigidMode(rotation((0.0, 0.0, -1.0), (middle, 0.0)), load=moment))
     model = PlaneStrain(SIZE[1])
     x, expected, motion = plane_contact(model, 0.0, 6, 3, gap, down)
-    drives = [Drive(translation((0.0, 0.0, -1.0)), load=force)]
-    drives.append(Drive(rotation((0.0, 1.0, 0.0), (middle, 0.0, 0.0)), load=moment))
+    drives = [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
+    drives.append(RigidMode(rotation((0.0, 1.0, 0.0), (middle, 0.0, 0.0)), load=moment))
     walls = tuple(f"{name}_{end}_y" for name in MODULI for end in ("low", "high"))
     tagged = solids(((6, 1, 3), (6, 1, 3)))
     pairing, holder, contact = condensed(tagged, 3, 0.3, drives=drives, rollers=walls)
@@ -148,7 +148,7 @@ def test_a_quarter_of_a_ring_is_axisymmetric(degree, order, round_):
         return 2e-6 * ((r - 0.07) / 0.02) ** 2
 
     force = 4e4
-    down = [Drive(translation((0.0, -1.0)), load=force)]
+    down = [RigidMode(translation((0.0, -1.0)), load=force)]
     r, expected, motion = plane_contact(Axisymmetric(), 0.05, 6, degree, gap, down)
     tagged = solids(((6, round_, 3), (6, round_, 3)), order, (turned, turned))
     pairing, holder, contact = condensed(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.friction.loads import Loads
-from thermowear.contact.friction.slip_wear import Profile, SlipWear
+from thermowear.contact.friction.slip_wear import SlipWear, WornProfile
 from thermowear.contact.friction.stick_slip import follow
 from thermowear.contact.friction.stick_slip_state import Status, unloaded
 from thermowear.laws import PowerWear
@@ -28,7 +28,7 @@ def close(value, rel=1e-6):
 
 def wear(x, laws=LAWS, bodies=(0, 1), duration=1.0, repeats=1):
     areas = np.full(len(x), x[1] - x[0])
-    profiles = tuple(Profile(x, areas, body == 0) for body in bodies)
+    profiles = tuple(WornProfile(x, areas, body == 0) for body in bodies)
     return SlipWear(laws, profiles, 0.3, duration, repeats)
 
 
@@ -212,14 +212,14 @@ def test_at_the_end_of_an_increment_the_worn_faces_touch(b):
 def test_profiles_slide_along_and_lose_no_volume():
     """requirement: W1(x - s), by linear interpolation, and its adjoint with areas."""
     places, areas = np.array([0.0, 1.0, 1.5, 3.0]), np.array([0.5, 0.75, 1.0, 0.75])
-    own = Profile(places, areas, True)
+    own = WornProfile(places, areas, True)
     np.testing.assert_allclose(own.seen(0.5) @ (2 * places + 1), [1.0, 2.0, 3.0, 6.0])
     for slip in (0.0, 0.3, -0.7, 10.0):
         seen, lost = own.seen(slip), own.lost(slip)
         np.testing.assert_allclose(seen.sum(axis=1), 1.0)
         assert np.all(seen >= 0)
         np.testing.assert_allclose(areas @ lost, areas)
-    still = Profile(places, areas, False)
+    still = WornProfile(places, areas, False)
     np.testing.assert_array_equal(still.seen(0.5), np.eye(4))
 
 

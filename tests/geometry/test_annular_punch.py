@@ -8,7 +8,7 @@ import pytest
 import thermowear as tw
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.geometries.annular_punch import AnnularPunch
@@ -131,7 +131,7 @@ def test_a_conical_face(changes, angle, settings, zone):
     """
     geometry = punch(**changes)
     zone = zone if geometry.inner_radius < 0.03 else None
-    mesh = geometry.build(Mesh(**settings), zone)
+    mesh = geometry.build(MeshTable(**settings), zone)
     inner, outer = geometry.inner_radius, geometry.outer_radius
     # what the plate gains outside and loses inside; the trapezoids keep their heights at the middle
     rise = (outer - inner) / 2 / np.tan(angle)
@@ -154,7 +154,7 @@ def test_a_toroidal_face(changes, settings, zone):
     requirement: nodes of both faces on the torus exactly; it bulges downwards in the middle.
     """
     geometry = punch(**changes)
-    mesh = geometry.build(Mesh(**settings), zone)
+    mesh = geometry.build(MeshTable(**settings), zone)
     lost, radius = arc_area(geometry), geometry.torus_radius
     edge = radius - np.sqrt(radius**2 - 0.05**2)
     sections = {"punch": 0.1 * 0.05 - lost, "plate": 0.14 * 0.1 + lost + 0.04 * edge}
@@ -189,7 +189,7 @@ def test_normals_of_a_cone(changes, angle):
     """
     requirement: the cone angle lies between the axis and the face that rises outwards.
     """
-    tagged = punch(**changes).build(Mesh(), None)
+    tagged = punch(**changes).build(MeshTable(), None)
     face = gather_face(distribute(tagged, MPI.COMM_SELF), "punch_face")
     facets = np.arange(len(face.nodes))
     normals = face.normals(facets, np.full(len(facets), 0.4))
@@ -202,7 +202,7 @@ def test_faces_of_a_torus_pair():
     requirement: faces that are divided differently lie on one another, and their area is right.
     """
     geometry = punch(**TORI["round"])
-    settings = Mesh(bodies={"plate": {"elements": 17}})
+    settings = MeshTable(bodies={"plate": {"elements": 17}})
     bodies = distribute(geometry.build(settings, None), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
     pairing = pair(*faces, section_model("axisymmetric", None), 9)

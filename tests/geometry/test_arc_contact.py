@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.geometries.block_on_disk import BlockOnDisk
@@ -94,7 +94,7 @@ def test_cells_are_well_shaped_and_fill_the_bodies(geometry, elements, grading):
     requirement: no inverted or slanted cell; areas to 1e-6, as cubic arcs of up to 12 degrees have
     them; every boundary edge has one name, and every name an edge.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), None)
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), None)
     steepest = np.cos(np.abs(geometry.arc).max()) if isinstance(geometry, BlockOnDisk) else 1.0
     check_mesh(mesh, sections(geometry), rel=1e-6, shape=max(0.1, 0.999 * steepest))
     assert mesh.surfaces == geometry.surfaces
@@ -107,7 +107,7 @@ def test_both_faces_are_the_same_arc(geometry, elements, grading):
     requirement: all nodes on the circle exactly; the asked elements from edge to edge, and the
     same nodes on both faces.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), None)
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), None)
     middle = sum(geometry.arc) / 2
     arcs = []
     for face in geometry.contact:
@@ -134,7 +134,7 @@ def test_bodies_may_be_divided_differently(geometry):
     requirement: elements and grading of each body; both faces still have the same ends.
     """
     ring = geometry.bodies[1]
-    mesh = geometry.build(Mesh(bodies={ring: {"elements": 17, "grading": 1.0}}), None)
+    mesh = geometry.build(MeshTable(bodies={ring: {"elements": 17, "grading": 1.0}}), None)
     upper, lower = (edges(mesh, face) for face in geometry.contact)
     assert (len(upper), len(lower)) == (12, 17)
     for axis in range(2):
@@ -151,7 +151,7 @@ def test_faces_pair_and_the_press_closes_them(geometry, outward):
     requirement: no gap; normals of body 1 along the radius, to the disk inside or to the ring
     outside; the nominal area is what a uniform pressure has along the press.
     """
-    bodies = distribute(geometry.build(Mesh(elements=32), None), MPI.COMM_SELF)
+    bodies = distribute(geometry.build(MeshTable(elements=32), None), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
     pairing = pair(*faces, section_model("plane-strain", geometry.thickness_factor), 8)
     assert pairing.unpaired < 1e-12
@@ -198,7 +198,7 @@ def test_a_contact_may_end_inside_the_face(geometry, span):
     start, end = max(span[0], geometry.arc_start), min(span[1], geometry.arc_end)
     reach = np.clip(span, -np.pi / 2, np.pi / 2)
     assert geometry.follows_contact
-    mesh = geometry.build(Mesh(elements=12), tuple(geometry.radius * np.sin(reach)))
+    mesh = geometry.build(MeshTable(elements=12), tuple(geometry.radius * np.sin(reach)))
     for face in geometry.contact:
         angles = np.unique(np.round(np.arctan2(*edges(mesh, face)[:, :2].reshape(-1, 2).T), 10))
         assert np.abs(angles - start).min() < 2e-10

@@ -12,7 +12,7 @@ from dolfinx.mesh import meshtags
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.beam_on_foundation import BeamOnFoundation
 
 from .measure import ends, unnamed
@@ -38,7 +38,7 @@ def test_beam_and_foundation(elements):
     """
     requirement: well-shaped cells fill both bodies, a gap apart; every boundary edge named.
     """
-    mesh = beam().build(Mesh(elements=elements), None)
+    mesh = beam().build(MeshTable(elements=elements), None)
     check_mesh(mesh, {"beam": 0.3 * 0.025, "foundation": 0.3 * 0.01}, shape=0.999)
     assert unnamed(mesh) == 0
     places = {
@@ -63,7 +63,7 @@ def test_elements_are_equally_long(elements, position):
     """
     requirement: the asked elements along the contact, alike but for the ends of the load.
     """
-    mesh = beam(load_position=position).build(Mesh(elements=elements), None)
+    mesh = beam(load_position=position).build(MeshTable(elements=elements), None)
     x, opposite = ends(mesh, "beam_face"), ends(mesh, "foundation_face")
     assert len(x) == elements + 1
     np.testing.assert_allclose(x, opposite, atol=1e-12)
@@ -81,12 +81,12 @@ def test_supports():
     assert beam().held == "beam_clamp"
     assert beam().rollers == ("beam_support",)
     assert beam().contact_area() is None
-    assert beam(gap="0 mm").build(Mesh(), None).points[:, 1].max() == pytest.approx(0.025)
+    assert beam(gap="0 mm").build(MeshTable(), None).points[:, 1].max() == pytest.approx(0.025)
 
 
 def deflection(geometry, modulus, force):
     """Deflection of the lower face at the middle of the load, without contact [m]."""
-    bodies = distribute(geometry.build(Mesh(elements=40), None), MPI.COMM_SELF)
+    bodies = distribute(geometry.build(MeshTable(elements=40), None), MPI.COMM_SELF)
     model = section_model("plane-stress", geometry.thickness_factor)
     steel = ElasticMaterial(modulus, 0.3, 0.0)
     elastic = elasticity(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 
 from .measure import edges
 from .sound import fault
@@ -15,7 +15,7 @@ def test_the_block_has_vertical_sides_and_a_flat_top():
     requirement: sides where the arc ends, the top above the highest point of the disk by its key.
     """
     geometry = block(arc_start="-11 deg", arc_end="40 deg")
-    mesh = geometry.build(Mesh(), None)
+    mesh = geometry.build(MeshTable(), None)
     ends = 20e-3 * np.sin(geometry.arc)
     x, y = edges(mesh, "block_side").reshape(-1, 2).T
     assert np.abs(x[:, None] - ends).min(axis=1).max() < 1e-15

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.disk_brake import DiskBrake
 
 from .measure import ends, unnamed
@@ -32,7 +32,7 @@ def test_pad_and_half_the_disk(settings, zone):
     """
     requirement: well-shaped cells fill the pad and half the disk; every boundary edge named.
     """
-    mesh = brake().build(Mesh(**settings), zone)
+    mesh = brake().build(MeshTable(**settings), zone)
     check_mesh(mesh, {"pad": 0.04 * 0.012, "disk": 0.07 * 0.01}, shape=0.999)
     assert unnamed(mesh) == 0
     places = {
@@ -55,10 +55,10 @@ def test_faces_are_divided_alike_up_to_the_edge_of_contact():
     """
     requirement: element ends agree on both faces, and lie at the ends of the contact.
     """
-    mesh = brake().build(Mesh(), None)
+    mesh = brake().build(MeshTable(), None)
     assert len(ends(mesh, "pad_face")) == 13
     np.testing.assert_allclose(ends(mesh, "pad_face"), ends(mesh, "disk_face"), rtol=1e-12)
-    parted = ends(brake().build(Mesh(), (0.08, 0.1073)), "pad_face")
+    parted = ends(brake().build(MeshTable(), (0.08, 0.1073)), "pad_face")
     assert np.abs(parted - 0.1073).min() < 1e-12
 
 
@@ -79,7 +79,7 @@ def test_a_pad_as_wide_as_the_disk():
     requirement: the edges are shared, whatever unit they are written in; no empty surface.
     """
     geometry = brake(disk_inner_radius="0.08 m", disk_outer_radius="12 cm")
-    mesh = geometry.build(Mesh(), None)
+    mesh = geometry.build(MeshTable(), None)
     check_mesh(mesh, {"pad": 0.04 * 0.012, "disk": 0.04 * 0.01}, shape=0.999)
     assert unnamed(mesh) == 0
     assert mesh.surfaces == geometry.surfaces
@@ -93,7 +93,7 @@ def test_a_pad_that_ends_where_the_disk_ends_on_one_side(side, span):
     requirement: what the pad leaves of the disk's face is the rest, on the other side only.
     """
     radius = {"inner": "80 mm", "outer": "120 mm"}[side]
-    mesh = brake(**{f"disk_{side}_radius": radius}).build(Mesh(), None)
+    mesh = brake(**{f"disk_{side}_radius": radius}).build(MeshTable(), None)
     assert spans(mesh, "disk_rest") == [pytest.approx(span)]
     assert spans(mesh, "disk_face") == [pytest.approx((0.08, 0.12))]
 

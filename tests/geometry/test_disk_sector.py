@@ -11,7 +11,7 @@ from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.geometries.disk_sector import DiskSector
@@ -38,7 +38,7 @@ def brake(**changes):
 
 
 def built(degree, **keys):
-    return brake().build(Mesh(degree=degree, elements=6, grading=0.5, **keys))
+    return brake().build(MeshTable(degree=degree, elements=6, grading=0.5, **keys))
 
 
 @pytest.mark.parametrize(("degree", "order", "allowed"), [(1, 1, 5e-2), (2, 2, 2e-4), (5, 3, 3e-5)])
@@ -92,7 +92,7 @@ def test_a_pad_as_wide_as_the_disk(wide):
     """requirement: edges shared on either side or both; matching faces, and no empty surface."""
     radii = {"inner": "8 cm", "outer": "0.12 m"}
     geometry = brake(**{f"disk_{side}_radius": radii[side] for side in wide})
-    mesh = geometry.build(Mesh(degree=2, elements=6, grading=0.3))
+    mesh = geometry.build(MeshTable(degree=2, elements=6, grading=0.3))
     counts = dict(zip(mesh.surfaces, np.bincount(mesh.facet_tags)[1:], strict=True))
     assert counts["disk_face"] == counts["pad_face"] == 12
     assert min(counts.values()) > 0

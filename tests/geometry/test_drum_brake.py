@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 
 from .measure import edges
 from .sound import fault
@@ -18,7 +18,7 @@ def test_the_shoe_is_held_inside_and_turns_about_its_pivot_in_a_drum_fixed_outsi
     assert geometry.bodies == ("shoe", "drum")
     assert geometry.contact == ("shoe_face", "drum_face")
     assert geometry.pivot_point == pytest.approx((-80e-3, -20e-3), rel=1e-12)
-    mesh = geometry.build(Mesh(), None)
+    mesh = geometry.build(MeshTable(), None)
     radii = {"shoe_face": 0.1, "shoe_inside": 86e-3, "drum_inside": 0.1, "drum_rim": 112e-3}
     assert {*radii, "shoe_side", "drum_face"} == set(mesh.surfaces)
     assert (geometry.held, geometry.fixed) == ("shoe_inside", "drum_rim")
@@ -34,7 +34,7 @@ def test_the_lining_is_a_zone_of_the_shoe():
     geometry = shoe()
     assert geometry.zones == {"lining": "shoe"}
     assert geometry.parts_of("shoe") == ("shoe", "lining")
-    mesh = geometry.build(Mesh(), None)
+    mesh = geometry.build(MeshTable(), None)
     assert mesh.bodies == geometry.parts == ("shoe", "drum", "lining")
     radii = {}
     for tag, part in enumerate(mesh.bodies, start=1):

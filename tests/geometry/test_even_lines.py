@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 
 from thermowear.geometry.moving.even_lines import even
-from thermowear.geometry.moving.skeleton import Line
+from thermowear.geometry.moving.skeleton import OutlinePiece
 
 
 def straight(sizes, ends=(0, 1), start=(0.0, 0.0), way=(1.0, 0.0)):
     """A line of edges of order 2."""
     at = np.concatenate([[0.0], np.cumsum(sizes)])
     along = at[:-1, None] + np.diff(at)[:, None] * np.array([0.0, 0.5, 1.0])
-    return Line(ends, np.array(start) + along[..., None] * np.array(way), 1, {1: True}, False)
+    return OutlinePiece(
+        ends, np.array(start) + along[..., None] * np.array(way), 1, {1: True}, False
+    )
 
 
 def lengths(line):
@@ -48,7 +50,7 @@ def test_a_short_edge_round_the_corner_counts():
 
 def test_halves_of_a_curved_edge_are_of_the_same_curve():
     x = np.array([0.0, 0.5, 1.0])
-    line = Line((0, 1), np.column_stack([x, x**2])[None], 1, {1: True}, False)
+    line = OutlinePiece((0, 1), np.column_stack([x, x**2])[None], 1, {1: True}, False)
     halves = line.cut(np.array([0.0, 0.5, 1.0])).edges
     assert halves.shape == (2, 3, 2)
     assert halves[..., 1] == pytest.approx(halves[..., 0] ** 2, abs=1e-15)

@@ -9,7 +9,7 @@ import tomli_w
 
 import thermowear as tw
 from thermowear.app.cli import main
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.errors import CaseError, CaseNote
 from thermowear.geometry.geometries.cylinder_on_block import CylinderOnBlock
 from thermowear.geometry.geometries.mesh_file import MeshFile
@@ -33,7 +33,7 @@ def file_geometry(path, **keys):
 
 
 def read(path, **keys):
-    return file_geometry(path, **keys).build(Mesh(), None)
+    return file_geometry(path, **keys).build(MeshTable(), None)
 
 
 def fault(path, **keys):
@@ -192,7 +192,7 @@ def test_curved_exports_are_read_back(tmp_path, ending):
     cylinder = CylinderOnBlock(
         type="cylinder-on-block", radius="10 mm", block_width="40 mm", block_height="20 mm"
     )
-    made = cylinder.build(Mesh(elements=20), (-5e-4, 5e-4))
+    made = cylinder.build(MeshTable(elements=20), (-5e-4, 5e-4))
     path = tmp_path / f"mesh.{ending}"
     write_mesh(made, path)
     keys = numbered(made) if ending in ("vtu", "xdmf") else {"bodies": {b: b for b in made.bodies}}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.pivoted_block import PivotedBlock
 
 from .measure import ends, unnamed
@@ -30,7 +30,7 @@ def test_block_and_strip(settings, zone):
     """
     requirement: well-shaped cells fill both bodies; every boundary edge named.
     """
-    mesh = block().build(Mesh(**settings), zone)
+    mesh = block().build(MeshTable(**settings), zone)
     check_mesh(mesh, {"block": 0.1 * 0.03, "strip": 0.24 * 0.025}, shape=0.999)
     assert unnamed(mesh) == 0
     places = {

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
 from thermowear.case.tables.geometry import Pressing
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
@@ -45,7 +45,7 @@ def test_cells_are_well_shaped_and_fill_the_bodies(geometry, elements, grading, 
     """
     requirement: no inverted or degenerate cell; the areas are right; every boundary edge named.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), zone)
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), zone)
     assert scaled_jacobians(mesh).min() > 0.12
     part = 0.5 if geometry.half else 1.0
     corners = (2 - np.pi / 2) * geometry.edge_radius**2
@@ -63,7 +63,7 @@ def test_faces_of_a_sharp_punch_end_at_its_edges(geometry, elements, grading, zo
     """
     requirement: the asked elements on both faces, which end at the edges of the punch.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), (-1e-3, 1e-3))
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), (-1e-3, 1e-3))
     for face in geometry.contact:
         x = ends(mesh, face)
         assert x[0] == pytest.approx(0.0 if geometry.half else -6e-3, abs=1e-15)
@@ -76,7 +76,7 @@ def test_elements_of_a_rounded_punch_end_where_it_matters(geometry, elements, gr
     """
     requirement: ends of elements at the ends of contact and of the flat, on both faces.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), zone)
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), zone)
     places = [zone[1], geometry.flat] + ([0.0] if geometry.half else [zone[0], -geometry.flat])
     for face in geometry.contact:
         x = ends(mesh, face)
@@ -90,7 +90,7 @@ def test_the_face_of_a_rounded_punch_follows_the_rounding(half):
     requirement: nodes on the flat and on the arc exactly, the face up to 45 degrees of it.
     """
     geometry = punch("1 mm", half=half)
-    mesh = geometry.build(Mesh(elements=12), (-5.1e-3, 5.1e-3))
+    mesh = geometry.build(MeshTable(elements=12), (-5.1e-3, 5.1e-3))
     x, y = np.abs(edges(mesh, "punch_face")).reshape(-1, 2).T
     on_flat = x <= geometry.flat * (1 + 1e-12)
     assert np.all(y[on_flat] == 0.0)
@@ -103,7 +103,7 @@ def test_faces_pair(geometry):
     """
     requirement: faces are chains that lie opposite each other; the gap is the rounding's height.
     """
-    tagged = geometry.build(Mesh(elements=10), (-5.1e-3, 5.1e-3))
+    tagged = geometry.build(MeshTable(elements=10), (-5.1e-3, 5.1e-3))
     faces = [gather_face(distribute(tagged, MPI.COMM_SELF), name) for name in geometry.contact]
     pairing = pair(*faces, section_model("plane-strain", geometry.thickness_factor), 6)
     side = pairing.sides[0]
@@ -167,5 +167,5 @@ def test_a_contact_beyond_the_rounding_is_refused():
     requirement: one clear line with the key's path.
     """
     with pytest.raises(CaseError) as error:
-        punch("1 mm").build(Mesh(), (-5.8e-3, 5.8e-3))
+        punch("1 mm").build(MeshTable(), (-5.8e-3, 5.8e-3))
     assert error.value.faults[0].startswith("geometry.edge_radius: too small for the contact")

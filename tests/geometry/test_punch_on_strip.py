@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.punch_on_strip import PunchOnStrip
 
 from .measure import edges, ends, unnamed
@@ -30,7 +30,7 @@ def test_punch_and_strip(settings, zone):
     """
     requirement: well-shaped cells fill both bodies; every boundary edge named.
     """
-    mesh = punch().build(Mesh(**settings), zone)
+    mesh = punch().build(MeshTable(**settings), zone)
     check_mesh(mesh, {"punch": 0.03 * 0.02, "strip": 0.12 * 0.015}, shape=0.999)
     assert unnamed(mesh) == 0
     places = {
@@ -53,10 +53,10 @@ def test_faces_are_divided_alike_up_to_the_edge_of_contact():
     """
     requirement: element ends agree on both faces, and lie at the ends of the contact.
     """
-    mesh = punch().build(Mesh(), None)
+    mesh = punch().build(MeshTable(), None)
     assert len(ends(mesh, "punch_face")) == 13
     np.testing.assert_allclose(ends(mesh, "punch_face"), ends(mesh, "strip_face"), atol=1e-15)
-    tilted = punch().build(Mesh(), (-0.015, 0.0037))
+    tilted = punch().build(MeshTable(), (-0.015, 0.0037))
     for face in tilted.surfaces[0], tilted.surfaces[4]:
         assert np.abs(ends(tilted, face) - 0.0037).min() < 1e-12
 
@@ -65,7 +65,7 @@ def test_mesh_is_symmetric():
     """
     requirement: nothing tilts a punch but friction.
     """
-    x = ends(punch().build(Mesh(), None), "strip_bottom")
+    x = ends(punch().build(MeshTable(), None), "strip_bottom")
     np.testing.assert_allclose(x, -x[::-1], atol=1e-12)
 
 
@@ -73,7 +73,7 @@ def test_a_long_strip_costs_little():
     """
     requirement: far from the contact elements grow to the height of the strip, however fine.
     """
-    mesh = punch(strip_length="2 m").build(Mesh(elements=40, grading=1.0), None)
+    mesh = punch(strip_length="2 m").build(MeshTable(elements=40, grading=1.0), None)
     x = np.unique(edges(mesh, "strip_bottom")[:, :2, 0].round(12))
     assert len(x) < 40 + 2 * 100
     sizes = np.diff(x[x > 0.015])
@@ -101,7 +101,7 @@ def test_a_strip_that_is_rubbed_to_and_fro():
     """
     requirement: its face goes on by the stroke on both sides, in elements as large as the punch's.
     """
-    mesh = punch(stroke="10 mm").build(Mesh(elements=6, grading=1.0), None)
+    mesh = punch(stroke="10 mm").build(MeshTable(elements=6, grading=1.0), None)
     check_mesh(mesh, {"punch": 0.03 * 0.02, "strip": 0.12 * 0.015}, shape=0.999)
     assert unnamed(mesh) == 0
     assert spans(mesh, "strip_face") == [pytest.approx((-0.025, 0.025))]
@@ -117,7 +117,7 @@ def test_a_punch_as_wide_as_its_strip():
     requirement: edges in line; nothing is left of the strip's top.
     """
     geometry = punch(strip_length="0.03 m")
-    mesh = geometry.build(Mesh(), None)
+    mesh = geometry.build(MeshTable(), None)
     assert mesh.surfaces == geometry.surfaces
     assert "strip_top" not in mesh.surfaces
     assert unnamed(mesh) == 0

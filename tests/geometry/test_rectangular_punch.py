@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.rectangular_punch import RectangularPunch
 
 from .measure import edges
@@ -38,7 +38,7 @@ def areas(mesh, surface):
 @pytest.mark.parametrize(("elements", "grading"), [(8, 0.3), (5, 1.0), (1, 0.3), (12, 0.6)])
 def test_bodies_and_surfaces(elements, grading):
     """requirement: boxes that fill both bodies; every facet of the boundary has one name."""
-    mesh = punch().build(Mesh(elements=elements, grading=grading))
+    mesh = punch().build(MeshTable(elements=elements, grading=grading))
     volumes = {"punch": 0.06 * 0.08 * 0.05, "block": 0.12 * 0.14 * 0.06}
     for body, volume in volumes.items():
         low, high = boxes(mesh, body)
@@ -71,18 +71,18 @@ def test_bodies_and_surfaces(elements, grading):
 
 def test_faces_agree_where_their_meshes_do():
     """requirement: the same facets on both sides; more on one where the case says so."""
-    alike = punch().build(Mesh(elements=8, grading=0.3))
+    alike = punch().build(MeshTable(elements=8, grading=0.3))
     upper, lower = (edges(alike, f"{body}_face").mean(axis=1) for body in ("punch", "block"))
     assert len(upper) == 8 * 6
     nearest = np.linalg.norm(upper[:, None] - lower, axis=2).min(axis=1)
     assert nearest.max() < 1e-12
-    other = Mesh(elements=8, grading=0.3, bodies={"block": {"elements": 4}})
+    other = MeshTable(elements=8, grading=0.3, bodies={"block": {"elements": 4}})
     assert len(edges(punch().build(other), "block_face")) == 4 * 3
 
 
 def test_elements_follow_the_sides():
     """requirement: `elements` on the longer side, fewer on the shorter, thin at the edges."""
-    mesh = punch(size_x="20 mm").build(Mesh(elements=12, grading=0.5))
+    mesh = punch(size_x="20 mm").build(MeshTable(elements=12, grading=0.5))
     face = edges(mesh, "punch_face")
     x, y = (np.unique(np.round(face[..., axis], 12)) for axis in (0, 1))
     assert (len(x), len(y)) == (4, 13)

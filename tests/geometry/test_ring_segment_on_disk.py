@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 
 from .measure import edges
 from .sound import fault
@@ -18,7 +18,7 @@ def test_the_segment_is_held_inside_and_pressed_up_on_a_disk_fixed_outside():
     assert geometry.bodies == ("segment", "disk")
     assert geometry.contact == ("segment_face", "disk_face")
     assert geometry.press_direction == (0.0, 1.0)
-    mesh = geometry.build(Mesh(), None)
+    mesh = geometry.build(MeshTable(), None)
     radii = {
         "segment_face": 40e-3,
         "segment_inside": 30e-3,
@@ -37,7 +37,7 @@ def test_its_sides_are_radial():
     requirement: both ends of the segment lie at the angles of the arc.
     """
     geometry = segment()
-    side = edges(geometry.build(Mesh(), None), "segment_side").reshape(-1, 2)
+    side = edges(geometry.build(MeshTable(), None), "segment_side").reshape(-1, 2)
     angles = np.arctan2(*side.T)
     assert np.abs(angles[:, None] - geometry.arc).min(axis=1).max() < 1e-12
 

@@ -8,7 +8,7 @@ import pytest
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
 from thermowear.case.tables.geometry import Pressing
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
@@ -51,7 +51,7 @@ def test_cells_are_well_shaped_and_fill_the_bodies(geometry, elements, grading, 
     """
     requirement: no inverted or degenerate cell, curved nodes included; every boundary edge named.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), zone)
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), zone)
     assert scaled_jacobians(mesh).min() > 0.12
     part = 0.5 if geometry.right_only else 1.0
     upper, lower = (areas(mesh, body) for body in mesh.bodies)
@@ -67,7 +67,7 @@ def test_a_fine_mesh_has_the_area_of_the_disc():
     """
     requirement: curved cells; the area converges with the fourth power of the element size.
     """
-    mesh = cylinder(half=True).build(Mesh(elements=120, grading=1.0), (-2e-3, 2e-3))
+    mesh = cylinder(half=True).build(MeshTable(elements=120, grading=1.0), (-2e-3, 2e-3))
     assert areas(mesh, "cylinder").sum() == pytest.approx(np.pi * R**2 / 4, rel=1e-6)
 
 
@@ -76,7 +76,7 @@ def test_elements_end_where_the_contact_ends(geometry, elements, grading, zone):
     """
     requirement: both faces have the asked elements in the zone, and element ends at its ends.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), zone)
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), zone)
     left = 0.0 if geometry.right_only else zone[0]
     for face in geometry.contact:
         x = ends(mesh, face)
@@ -95,7 +95,7 @@ def test_elements_shrink_towards_the_end_of_contact_from_both_sides(half):
     """
     requirement: `mesh.grading` inside the zone; beyond it they start alike and grow threefold.
     """
-    mesh = cylinder(half=half).build(Mesh(elements=8, grading=0.3), (-5e-4, 5e-4))
+    mesh = cylinder(half=half).build(MeshTable(elements=8, grading=0.3), (-5e-4, 5e-4))
     x = ends(mesh, "block_face")
     h, edge = np.diff(x), int(np.argmin(np.abs(x - 5e-4)))
     inside, outside = h[edge - 4 : edge][::-1], h[edge : edge + 4]
@@ -108,7 +108,7 @@ def test_ungraded_elements_go_on_with_the_same_size():
     """
     requirement: grading 1 means equal elements in the zone, and no jump at its end.
     """
-    mesh = cylinder().build(Mesh(elements=20, grading=1.0), (-5e-4, 5e-4))
+    mesh = cylinder().build(MeshTable(elements=20, grading=1.0), (-5e-4, 5e-4))
     x = ends(mesh, "cylinder_face")
     h = np.diff(x)
     edge = int(np.argmin(np.abs(x - 5e-4)))
@@ -121,7 +121,7 @@ def test_bodies_may_be_divided_differently():
     requirement: elements and grading of each body; the faces need not match.
     """
     division = {"block": {"elements": 14, "grading": 1.0}}
-    mesh = cylinder().build(Mesh(elements=6, grading=0.3, bodies=division), (-5e-4, 5e-4))
+    mesh = cylinder().build(MeshTable(elements=6, grading=0.3, bodies=division), (-5e-4, 5e-4))
     for face, elements in (("cylinder_face", 6), ("block_face", 14)):
         x = ends(mesh, face)
         assert (np.abs(x) < 5e-4 + 1e-12).sum() == elements + 1
@@ -131,7 +131,7 @@ def test_nodes_of_the_arc_lie_on_the_circle():
     """
     requirement: every node of a curved edge is on the circle, not only the corners.
     """
-    mesh = cylinder().build(Mesh(elements=6), (-5e-4, 5e-4))
+    mesh = cylinder().build(MeshTable(elements=6), (-5e-4, 5e-4))
     for surface in ("cylinder_face", "cylinder_side"):
         p = edges(mesh, surface)
         assert p.shape[1] > 2
@@ -143,13 +143,13 @@ def test_the_axis_is_at_zero_exactly():
     """
     requirement: symmetry, and the axis of revolution, are found by x = 0.
     """
-    half = cylinder(half=True).build(Mesh(elements=6), (-5e-4, 5e-4))
+    half = cylinder(half=True).build(MeshTable(elements=6), (-5e-4, 5e-4))
     for surface in ("cylinder_axis", "block_axis"):
         assert np.all(edges(half, surface)[..., 0] == 0.0)
     assert cylinder(half=True).symmetry == ("cylinder_axis", "block_axis")
     assert cylinder(half=True).thickness_factor == 2 * cylinder().thickness_factor
     assert cylinder().symmetry == ()
-    ball = sphere().build(Mesh(elements=6), (-5e-4, 5e-4))
+    ball = sphere().build(MeshTable(elements=6), (-5e-4, 5e-4))
     on_axis = np.abs(ball.points[:, 0]) < 1e-6
     assert on_axis.sum() > 10
     assert np.all(ball.points[on_axis, 0] == 0.0)
@@ -160,7 +160,7 @@ def test_the_full_mesh_is_symmetric():
     """
     requirement: a symmetric zone gives a mesh that is its own mirror image.
     """
-    mesh = cylinder().build(Mesh(elements=14, grading=0.3), (-5e-4, 5e-4))
+    mesh = cylinder().build(MeshTable(elements=14, grading=0.3), (-5e-4, 5e-4))
     mirrored = mesh.points * [-1.0, 1.0]
     both = [np.unique(np.round(p / 1e-10).astype(int), axis=0) for p in (mesh.points, mirrored)]
     assert np.abs(both[0] - both[1]).max() <= 1
@@ -171,10 +171,10 @@ def test_meshes_are_as_small_as_promised():
     requirement: three graded elements of degree 6 in the half zone within 5000 displacements; a
     smooth mesh of degree 2 with 46 equal ones about 27000.
     """
-    coarse = cylinder(half=True).build(Mesh(elements=6, grading=0.3), (-5e-4, 5e-4))
+    coarse = cylinder(half=True).build(MeshTable(elements=6, grading=0.3), (-5e-4, 5e-4))
     assert len(coarse.cells) <= 62
     assert dofs(coarse, 6) <= 5000
-    fine = cylinder(half=True).build(Mesh(elements=92, grading=1.0), (-5e-4, 5e-4))
+    fine = cylinder(half=True).build(MeshTable(elements=92, grading=1.0), (-5e-4, 5e-4))
     assert 2.2e4 < dofs(fine, 2) < 3.2e4
 
 
@@ -186,7 +186,7 @@ def test_the_gap_is_that_of_a_circle(geometry, model):
     requirement: faces chain and pair along the common normal, which halves the angle between the
     faces of like bodies; the initial gap is exact to 1e-8 of the radius.
     """
-    division = Mesh(elements=6, grading=0.3, bodies={"block": {"elements": 10}})
+    division = MeshTable(elements=6, grading=0.3, bodies={"block": {"elements": 10}})
     bodies = distribute(geometry.build(division, (-5e-4, 5e-4)), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
     pairing = pair(*faces, section_model(model, geometry.thickness_factor), 8)
@@ -233,7 +233,7 @@ def test_a_contact_too_large_for_the_bodies_is_refused(geometry, outer, key):
     requirement: one clear line with the key's path.
     """
     with pytest.raises(CaseError) as error:
-        geometry.build(Mesh(), (-outer, outer))
+        geometry.build(MeshTable(), (-outer, outer))
     assert len(error.value.faults) == 1
     assert error.value.faults[0].startswith(f"{key}: too small for the contact")
 
@@ -248,7 +248,9 @@ def test_a_zone_that_grows_is_meshed_where_it_will_be(geometry, shape):
     assert expected < 1e-4
     wide = geometry(zone="0.3 mm")
     assert wide.expected_zone(light) == (-3e-4, 3e-4)
-    x = ends(wide.build(Mesh(elements=30, grading=1.0), wide.expected_zone(light)), "block_face")
+    x = ends(
+        wide.build(MeshTable(elements=30, grading=1.0), wide.expected_zone(light)), "block_face"
+    )
     inside = x[(x > shape[0] - 1e-9) & (x < shape[1] + 1e-9)]
     np.testing.assert_allclose(np.diff(inside), 2e-5, rtol=1e-6)
     assert (inside[0], inside[-1]) == pytest.approx(shape, abs=1e-12)

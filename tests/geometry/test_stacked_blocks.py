@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.stacked_blocks import StackedBlocks
 
 from .measure import edges, ends, unnamed
@@ -36,7 +36,7 @@ def test_two_blocks(settings):
     """
     requirement: well-shaped cells fill both blocks; every boundary edge named.
     """
-    mesh = blocks().build(Mesh(**settings))
+    mesh = blocks().build(MeshTable(**settings))
     check_mesh(mesh, {"upper": 0.01 * 0.03, "lower": 0.01 * 0.004}, shape=0.999)
     assert unnamed(mesh) == 0
     sides = {side: edges(mesh, side)[..., 0] for side in SIDES}
@@ -51,7 +51,7 @@ def test_two_blocks(settings):
     }
     level = [mesh.surfaces.index(name) + 1 for name in places]
     kept = np.isin(mesh.facet_tags, level)
-    assert kept.sum() == 4 * Mesh(**settings).elements
+    assert kept.sum() == 4 * MeshTable(**settings).elements
     for name in places:
         assert spans(mesh, name) == [pytest.approx((0.0, 0.01))]
         np.testing.assert_allclose(edges(mesh, name)[..., 1], places[name][1], atol=1e-15)
@@ -61,7 +61,7 @@ def test_faces_are_divided_evenly_and_alike():
     """
     requirement: nothing is singular at a plane of symmetry; element ends agree on both faces.
     """
-    mesh = blocks().build(Mesh(elements=8))
+    mesh = blocks().build(MeshTable(elements=8))
     np.testing.assert_allclose(ends(mesh, "upper_face"), np.linspace(0, 0.01, 9), atol=1e-15)
     np.testing.assert_allclose(ends(mesh, "lower_face"), np.linspace(0, 0.01, 9), atol=1e-15)
 
@@ -71,7 +71,7 @@ def test_faces_of_their_own():
     requirement: each block may be divided by its own numbers.
     """
     own = {"lower": {"elements": 3, "grading": 1.0}}
-    mesh = blocks().build(Mesh(elements=8, grading=0.5, bodies=own))
+    mesh = blocks().build(MeshTable(elements=8, grading=0.5, bodies=own))
     assert len(ends(mesh, "upper_face")) == 9
     assert len(ends(mesh, "lower_face")) == 4
     np.testing.assert_allclose(np.diff(np.abs(rows(mesh, "lower_side"))), 0.004 / 3, rtol=1e-9)
@@ -82,7 +82,7 @@ def test_rows_are_thin_at_the_contact(side, end):
     """
     requirement: the last three rows shrink by the grading; the others are equal.
     """
-    mesh = blocks().build(Mesh(elements=8, grading=0.25))
+    mesh = blocks().build(MeshTable(elements=8, grading=0.25))
     y = rows(mesh, side)
     assert y[0] == 0.0
     assert y[-1] == pytest.approx(end, rel=1e-12)

@@ -8,7 +8,7 @@ import pytest
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import section_model
 from thermowear.case.tables.geometry import Pressing
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
@@ -54,7 +54,7 @@ def test_cells_are_well_shaped_and_fill_the_bodies(geometry, elements, grading, 
     requirement: no inverted or slanted cell; areas to 1e-6, as cubic arcs of up to 12 degrees have
     them (2e-5 where an element is 28 degrees wide); every edge has one name, every name an edge.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), zone)
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), zone)
     check_mesh(mesh, sections(geometry), rel=2e-5 if zone[1] > 5e-3 else 1e-6, shape=0.99)
     assert mesh.surfaces == geometry.surfaces
     assert unnamed(mesh) == 0
@@ -66,7 +66,7 @@ def test_elements_end_where_the_contact_ends(geometry, elements, grading, zone):
     requirement: the asked elements in the zone, with ends at its ends; those of the support lie
     opposite, on the same normals.
     """
-    mesh = geometry.build(Mesh(elements=elements, grading=grading), zone)
+    mesh = geometry.build(MeshTable(elements=elements, grading=grading), zone)
     x = ends(mesh, "tube_face")
     for end in zone:
         assert np.abs(x - end).min() < 2e-12
@@ -84,7 +84,7 @@ def test_every_surface_is_where_its_name_says():
     """
     requirement: nodes on circles about the centres of the tube and of the hole.
     """
-    mesh = tube().build(Mesh(), (-1e-3, 1e-3))
+    mesh = tube().build(MeshTable(), (-1e-3, 1e-3))
     hole = 10.2e-3
     circles = {
         "tube_face": (R, R),
@@ -105,7 +105,7 @@ def test_they_touch_at_the_bottom_and_gape_beside_it(zone):
     requirement: the whole face pairs; the gap is that of two circles.
     """
     geometry = tube()
-    bodies = distribute(geometry.build(Mesh(elements=20), zone), MPI.COMM_SELF)
+    bodies = distribute(geometry.build(MeshTable(elements=20), zone), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
     pairing = pair(*faces, section_model("plane-strain", geometry.thickness_factor), 6)
     assert pairing.unpaired < 1e-12
@@ -154,7 +154,7 @@ def test_a_contact_that_cannot_be_meshed_is_refused(zone, text):
     requirement: one clear line with the key's path.
     """
     with pytest.raises(CaseError) as error:
-        tube().build(Mesh(), zone)
+        tube().build(MeshTable(), zone)
     assert len(error.value.faults) == 1
     assert error.value.faults[0].startswith(text)
 
@@ -179,9 +179,9 @@ def test_a_mesh_for_a_contact_that_travels():
     """requirement: the zone of the case, wherever the unworn bodies would touch; not too large."""
     wide = tube(zone="1.5 mm")
     assert wide.expected_zone(Pressing(1.0, None, 1e11)) == (-1.5e-3, 1.5e-3)
-    mesh = wide.build(Mesh(elements=10, grading=1.0), (-1.5e-3, 1.5e-3))
+    mesh = wide.build(MeshTable(elements=10, grading=1.0), (-1.5e-3, 1.5e-3))
     x = ends(mesh, "tube_face")
     inside = x[np.abs(x) < 1.51e-3]
     assert len(inside) == 11
     with pytest.raises(CaseError, match=r"geometry.zone: too large for the contact"):
-        tube(zone="9.9 mm").build(Mesh(), (-9.9e-3, 9.9e-3))
+        tube(zone="9.9 mm").build(MeshTable(), (-9.9e-3, 9.9e-3))

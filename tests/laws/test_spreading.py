@@ -5,10 +5,10 @@ import pytest
 
 from thermowear import ComputationError
 from thermowear.laws import (
+    DutyFactor,
     InPlace,
     PowerWear,
-    Share,
-    Track,
+    UniformTrack,
     contact_patch,
     rings,
     rotation,
@@ -24,8 +24,8 @@ LENGTHS = np.array([0.1, 0.2, 0.2, 0.1])
     ("way", "expected"),
     [
         (InPlace(), LOCAL),
-        (Share(0.125), LOCAL / 8),
-        (Track(LENGTHS / 3.0), np.full(4, (0.1 + 0.8 + 0.25) / 3)),
+        (DutyFactor(0.125), LOCAL / 8),
+        (UniformTrack(LENGTHS / 3.0), np.full(4, (0.1 + 0.8 + 0.25) / 3)),
     ],
 )
 def test_rates(way, expected):
@@ -38,14 +38,14 @@ def test_rates(way, expected):
 def test_volume_is_kept():
     """requirement: what a strip loses over its whole track is what the contact takes off it."""
     track = 3.0
-    rate = Track(LENGTHS / track).rate(LOCAL)
+    rate = UniformTrack(LENGTHS / track).rate(LOCAL)
     assert track * rate[0] == pytest.approx(LENGTHS @ LOCAL, rel=1e-14)
 
 
 def test_share_and_rows_say_the_same():
     """requirement: ``rate = share local + reach (rows·local)``, as the principle has it."""
     turning = rings(np.array([1.0, 2.0, 2.0, 3.0]), np.array([1.0, 2.0, 1.0, 2.0]), 0.2)
-    for way in (InPlace(), Share(0.3), Track(LENGTHS), turning):
+    for way in (InPlace(), DutyFactor(0.3), UniformTrack(LENGTHS), turning):
         common = 0.0 if way.rows is None else way.reach(4) @ (way.rows @ LOCAL)
         np.testing.assert_allclose(way.rate(LOCAL), way.share * LOCAL + common)
         np.testing.assert_allclose(way.operator(4) @ LOCAL, way.rate(LOCAL))
@@ -58,7 +58,7 @@ def test_a_share_of_the_wear():
     r = 0.07 + 0.05 * x
     weights, down, load = 2 * np.pi * r * w * 0.05, np.ones((40, 1)), np.array([4e6])
     shared = steady_pressure(
-        weights, down, down, load, laws, 10 * r, spread=[InPlace(), Share(0.1)]
+        weights, down, down, load, laws, 10 * r, spread=[InPlace(), DutyFactor(0.1)]
     )
     tenth = steady_pressure(weights, down, down, load, [laws[0], PowerWear(8e-22, 2.0)], 10 * r)
     np.testing.assert_allclose(shared.pressure, tenth.pressure, rtol=1e-11)
@@ -75,7 +75,7 @@ def block_on_strip(tilting):
         np.column_stack([np.full(30, 0.04), 0 * z, z]), length * 0.01, (1, 0, 0), motions, 1.0,
         0.3, (0, 0, -1),
     )  # fmt: skip
-    return z, patch, Track(length / 2.0)
+    return z, patch, UniformTrack(length / 2.0)
 
 
 @pytest.mark.parametrize("tilting", [False, True])

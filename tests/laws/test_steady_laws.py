@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from thermowear.errors import ComputationError
-from thermowear.laws import InPlace, PowerWear, Track, steady_pressure
+from thermowear.laws import InPlace, PowerWear, UniformTrack, steady_pressure
 from thermowear.laws.by_name import registered_laws
 from thermowear.laws.formulas import FormulaWear
 from thermowear.laws.from_python import wear_rate
@@ -32,7 +32,9 @@ def steady(laws, modes=ONE, load=(FORCE,), **more):
 
 
 @pytest.mark.parametrize("exponents", [(1.0, 1.0), (0.6, 2.0), (3.0, 0.5)])
-@pytest.mark.parametrize("spread", [[InPlace(), InPlace()], [InPlace(), Track(np.full(N, 1e-3))]])
+@pytest.mark.parametrize(
+    "spread", [[InPlace(), InPlace()], [InPlace(), UniformTrack(np.full(N, 1e-3))]]
+)
 @pytest.mark.parametrize("modes", [ONE, ROCKING])
 def test_powers_as_functions_lead_to_the_closed_form(exponents, spread, modes):
     """requirement: any law by the interface alone; friction in equilibrium, tracks, tilting."""

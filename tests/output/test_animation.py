@@ -13,7 +13,7 @@ from thermowear.case.starters import starter_text
 from thermowear.output.pictures.animation import make
 from thermowear.output.pictures.animation.curves import top
 from thermowear.output.pictures.animation.scene import duration
-from thermowear.output.pictures.animation.section import Section, outline
+from thermowear.output.pictures.animation.section import SectionPanel, outline
 from thermowear.output.pictures.animation.states import read_film
 
 from ..conftest import COLD_RUNNING_IN
@@ -73,7 +73,7 @@ def test_axes_stand_still(folder):
 
 def test_colours_mean_the_same_in_all_frames(folder):
     """requirement: one colour range for all states, except few largest samples."""
-    section = Section(read_film(folder))
+    section = SectionPanel(read_film(folder))
     low, high = section.limits
     for _, _, _, values in section._fields.values():
         assert values.min() >= low
@@ -83,7 +83,7 @@ def test_colours_mean_the_same_in_all_frames(folder):
 def test_body_1_sinks_as_it_wears(folder):
     """requirement: bodies are drawn displaced, consistent with the approach."""
     film = read_film(folder)
-    section = Section(film)
+    section = SectionPanel(film)
     heights = []
     for state in film.states:
         points, triangles, body, _ = section._fields[id(state)]

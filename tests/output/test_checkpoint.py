@@ -108,7 +108,7 @@ def test_a_head_of_something_else_is_refused(about, tmp_path):
         '{"array": "b"}',
         '{"rows": "HistoryRow", "of": {"time": {"array": "a"}}}',
         '{"rows": "HistoryRow", "of": {"time": 3}}',
-        '{"state": "WornContact", "of": {}}',
+        '{"state": "InterfaceState", "of": {}}',
         '{"state": "Popen", "of": {}}',
         '{"dict": [1]}',
         "{}",

@@ -4,7 +4,7 @@ import io
 
 from rich.console import Console
 
-from thermowear.output.console import Progress
+from thermowear.output.console import ConsoleProgress
 from thermowear.simulation import HistoryRow
 
 
@@ -15,7 +15,7 @@ def row(time):
 def shown(terminal):
     text = io.StringIO()
     console = Console(file=text, force_terminal=terminal, width=120, color_system=None)
-    with Progress(console) as progress:
+    with ConsoleProgress(console) as progress:
         progress.phase("mesh")
         for number in range(3):
             progress.step(number, row(0.5 * number), 0.25)

@@ -6,7 +6,7 @@ from scipy.integrate import dblquad, quad
 from scipy.optimize import brentq
 
 from thermowear.reference import annular_punch, block_on_disk, brake_block, disk_brake, flat_face
-from thermowear.reference.drum_brake import DrumBrake
+from thermowear.reference.drum_brake import DrumBrakeShoe
 
 EXPONENTS = (0.3, 0.5, 1.0, 2.0, 4.0)
 
@@ -137,7 +137,7 @@ SHOE = {"radius": 0.15, "pivot_distance": 0.125, "width": 0.04, "start": 0.0}
 
 def test_brake_in_print():
     """requirement: Shigley, problem 16-1: 734 kPa on the leading shoe."""
-    shoe = DrumBrake(**SHOE, end=np.radians(120), friction=-0.28)
+    shoe = DrumBrakeShoe(**SHOE, end=np.radians(120), friction=-0.28)
     moment = 2200 * 2 * 0.125 * np.cos(np.radians(30))
     assert moment / shoe.actuating_moment(1.0) == pytest.approx(734e3, rel=1e-3)
 
@@ -146,7 +146,7 @@ def test_brake_in_print():
 @pytest.mark.parametrize("friction", [-0.3, 0.3])
 def test_long_shoe_law(start, end, friction):
     """requirement: closed integrals of the law, against sums over small pieces."""
-    shoe = DrumBrake(**SHOE | {"start": start}, end=end, friction=friction)
+    shoe = DrumBrakeShoe(**SHOE | {"start": start}, end=end, friction=friction)
     θ = np.linspace(start, end, 100001)
     largest = 5e5
     p = largest * np.sin(θ) / np.sin(θ).max()
@@ -167,7 +167,7 @@ def test_long_shoe_law(start, end, friction):
 
 def test_leading_shoe_bears_more():
     """requirement: the ratio of pressures under equal actuating moments."""
-    leading, trailing = (DrumBrake(**SHOE, end=2.0, friction=f) for f in (-0.3, 0.3))
+    leading, trailing = (DrumBrakeShoe(**SHOE, end=2.0, friction=f) for f in (-0.3, 0.3))
     ratio = trailing.actuating_moment(1.0) / leading.actuating_moment(1.0)
     assert leading.leading_over_trailing() == pytest.approx(ratio, rel=1e-12)
     assert trailing.leading_over_trailing() == pytest.approx(ratio, rel=1e-12)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermowear.case.tables.schema import Mesh
+from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.cylinder_on_block import CylinderOnBlock
 from thermowear.geometry.mesh.tagged import TaggedMesh
 
@@ -18,7 +18,7 @@ def cylinder(radius: float, zone: float, elements: int, half: bool = False) -> T
         block_height=f"{2 * radius!r} m",
         half=half,
     )
-    return geometry.build(Mesh(elements=elements, grading=0.5), (-zone, zone))
+    return geometry.build(MeshTable(elements=elements, grading=0.5), (-zone, zone))
 
 
 def ball(radius: float, zone: float, elements: int, angle: float) -> TaggedMesh:

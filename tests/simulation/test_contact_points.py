@@ -7,9 +7,9 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
-from thermowear.simulation.geometry_update.gap_wear import KeptWear, movable_body
+from thermowear.simulation.geometry_update.gap_wear import GapWear, movable_body
 from thermowear.simulation.model.building import build
-from thermowear.simulation.model.setup_cache import Parts
+from thermowear.simulation.model.setup_cache import SetupCache
 from thermowear.simulation.model.worn_geometry import along
 from thermowear.timer import Phases
 from thermowear.verification.starter import run_starter, starter
@@ -31,7 +31,7 @@ CYLINDER = (
 def grooved(depth):
     """The system whose block has lost a depth at the abscissae of the contact points."""
     system = build(starter(*CYLINDER), MPI.COMM_SELF, Phases())
-    kept = KeptWear(system)
+    kept = GapWear(system)
     face, body = kept.faces[1], movable_body(system, kept.geometry.mesh, 1)
     amounts = face.amounts(depth(system.pairing.points[:, 0]))
     points = body.followed(body.outlined(face.displacement(amounts)))
@@ -42,7 +42,7 @@ def grooved(depth):
         depth=np.stack([np.zeros(len(system.weights)), face.depths(amounts)]),
         updates=1,
     )
-    return build(system.case, MPI.COMM_SELF, Phases(), None, Parts(), worn)
+    return build(system.case, MPI.COMM_SELF, Phases(), None, SetupCache(), worn)
 
 
 def test_the_unworn_gap_stays_where_faces_are_slanted():

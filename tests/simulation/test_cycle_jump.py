@@ -11,8 +11,8 @@ from thermowear.contact.friction.gross_slip import FullSliding
 from thermowear.contact.friction.stick_slip_state import StickSlipState
 from thermowear.errors import ComputationError
 from thermowear.simulation.cycles.cycle_jump import adaptive_jumps, fixed_jumps
-from thermowear.simulation.cycles.increments import Behind, Instant
-from thermowear.simulation.cycles.load_path import Leg
+from thermowear.simulation.cycles.increments import Increment, RestartPoint
+from thermowear.simulation.cycles.load_path import LoadSegment
 
 RATES = np.array([[1.0, 3.0, 0.0]])
 AREAS = np.array([1.0, 2.0, 1.0])
@@ -31,7 +31,7 @@ class Growing:
 
     def start(self):
         nothing = np.zeros((1, 3))
-        return Behind(0, state_of(nothing))
+        return RestartPoint(0, state_of(nothing))
 
     def rate(self, worn, repeats):
         return RATES / (1 + worn)
@@ -44,10 +44,10 @@ class Growing:
             gained = repeats / 2 * self.rate(state.worn, repeats)
             lost = state.dissipated + (gained * AREAS)[0]
             state = replace(state, worn=state.worn + gained, dissipated=lost)
-            leg = Leg(
+            leg = LoadSegment(
                 number - 1.5 + half / 2, number - 1 + half / 2, 0, number, repeats, False, half == 2
             )
-            yield Instant(leg.end, leg, True, state)
+            yield Increment(leg.end, leg, True, state)
 
     def settled(self, end, worn):
         self.settled_at.append(end.leg.cycle)
@@ -101,7 +101,7 @@ def test_the_estimate_is_that_of_the_halves():
     for start, span in ((20, 10), (200, 100), (30, 7)):
         cycles = Growing()
         state = one_by_one(start)
-        behind = Behind(start, state, span)
+        behind = RestartPoint(start, state, span)
         (turn,) = turns(run(cycles, 0.1, (start + span,), behind=behind))
         assert turn.jump.cycles == span
         n1 = span - span // 2

@@ -11,7 +11,7 @@ from thermowear.parallel import sum_over_ranks
 from thermowear.simulation.interface.contact_solver import Slope
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.model.building import build
-from thermowear.simulation.model.conditions import Surroundings
+from thermowear.simulation.model.conditions import ConditionModel
 from thermowear.timer import Phases
 
 from ..conftest import EXPLORES
@@ -45,7 +45,7 @@ def test_no_wrong_pressure_is_returned(tables, method):
     for _ in range(TRIES):
         gap, force = random_problem(system, rng)
         object.__setattr__(system.holder.drives[0], "load", force)
-        conditions = Surroundings(system).at(0.0, nothing, None, everywhere)
+        conditions = ConditionModel(system).at(0.0, nothing, None, everywhere)
         found = interface_problem(system)._method.solve(
             gap, Slope.on_the_spot(nothing), None, conditions, None
         )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.reference.drum_brake import DrumBrake
+from thermowear.reference.drum_brake import DrumBrakeShoe
 
 from .space import BRAKE, changed
 
@@ -86,7 +86,7 @@ def test_a_shoe_that_begins_on_the_line_of_its_pivot(b):
     case = tw.load(changed(SHOE, {"wear": {"shoe": law}}))
     i = tw.run(case).interface
     angle = np.arctan2(i.x, i.y) + np.radians(45)
-    exact = DrumBrake(0.1, math.hypot(0.07, 0.07), 0.04, 0.0, math.radians(105), 0.35, b)
+    exact = DrumBrakeShoe(0.1, math.hypot(0.07, 0.07), 0.04, 0.0, math.radians(105), 0.35, b)
     expected = exact.pressure(angle, 200.0)
     np.testing.assert_allclose(i.pressure, expected, atol=1e-4 * expected.max(), rtol=0)
     assert angle.min() == pytest.approx(0.0, abs=1e-12)

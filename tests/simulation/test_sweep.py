@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.bulk.direct_solver import Factor
+from thermowear.bulk.direct_solver import DirectSolver
 from thermowear.simulation.analyses import sweep as module
 from thermowear.simulation.analyses.sweep import Series, groups
 
@@ -31,13 +31,13 @@ def block(*changes: str, base=SMALL):
 def factors(monkeypatch):
     """Counts factorisations."""
     made = []
-    original = Factor.__init__
+    original = DirectSolver.__init__
 
     def counted(self, *given, **more):
         made.append(1)
         original(self, *given, **more)
 
-    monkeypatch.setattr(Factor, "__init__", counted)
+    monkeypatch.setattr(DirectSolver, "__init__", counted)
     return made
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.reference import annular_punch as reference
-from thermowear.simulation.interface.sdirk import Trial, next_step
+from thermowear.simulation.interface.sdirk import TrialStep, next_step
 from thermowear.simulation.time import time_loop as transient
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
@@ -204,7 +204,7 @@ def test_a_jump_of_the_pressure_is_located_and_passed(monkeypatch, pointwise):
 
     def advanced(problem, before, time, step):
         tried.append(step)
-        return Trial(state, 0.1)
+        return TrialStep(state, 0.1)
 
     monkeypatch.setattr(transient, "advance_with_error", advanced)
     settings = SimpleNamespace(tolerance=1e-3, type="transient")

@@ -10,7 +10,7 @@ from .. import load
 from ..case import Case, as_plain
 from ..errors import CaseError, UnwritableError
 from ..output.checkpoint import CHECKPOINT
-from ..output.console import Progress, Terminal, print_discretisations, print_summary
+from ..output.console import ConsoleProgress, Terminal, print_discretisations, print_summary
 from ..output.folder import ResultsFolder
 from ..output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from ..parallel import on_root
@@ -24,7 +24,7 @@ from .discretisations import COMPARED, side_by_side
 class Recorder(Observer):
     """Observer that writes to the results folder and to the console, on rank 0."""
 
-    def __init__(self, comm, folder, progress: Progress | None = None):
+    def __init__(self, comm, folder, progress: ConsoleProgress | None = None):
         self._comm = comm
         self._folder = folder
         self._progress = progress
@@ -74,7 +74,7 @@ class Recorder(Observer):
 class SavingRecorder(Recorder):
     """Recorder that also writes checkpoints."""
 
-    def __init__(self, comm, folder, progress: Progress | None, case: Case):
+    def __init__(self, comm, folder, progress: ConsoleProgress | None, case: Case):
         super().__init__(comm, folder, progress)
         self._case = case
 
@@ -111,7 +111,7 @@ def run_session(chosen, comm, import_seconds: float) -> int:
         since = "the beginning" if saved is None else f"{saved.progress.time:g} s"
         console.print(f"resumed from {since}")
     try:
-        with Progress(console) as progress:
+        with ConsoleProgress(console) as progress:
             shown = progress if comm.rank == 0 else None
             recorder = SavingRecorder(comm, folder, shown, case)
             phases = Phases(recorder.phase)

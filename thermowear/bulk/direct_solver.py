@@ -24,7 +24,7 @@ _COLUMNS = 128
 """Block size of right-hand sides (ICNTL(27)); twice as fast as the default of MUMPS, measured."""
 
 
-class Factor:
+class DirectSolver:
     """Triangular factorisation (MUMPS) of a PETSc matrix.
 
     Parameters

@@ -7,7 +7,7 @@ from .full.full_system import FullContact, FullSolution
 from .operators.condensation import CondensedContact, condense
 from .operators.heat import InterfaceHeat, ThermalState
 from .operators.heat_condensation import condense_distortion, condense_heat
-from .operators.holder import Drive, Holder, hold
+from .operators.holder import Holder, RigidMode, hold
 from .operators.pressure import pressure_basis
 from .operators.sliding import Sliding, sliding
 from .operators.tangential import FrictionalContact, condense_tangential
@@ -17,12 +17,10 @@ from .search.face import Face, gather_face
 from .search.pairing import Pairing, pair
 from .search.surface import Surface
 from .search.zones import contact_zones
-from .solvers.signorini import ContactSolution, solve_contact
+from .solvers.signorini import SignoriniSolution, solve_contact
 
 __all__ = [
     "CondensedContact",
-    "ContactSolution",
-    "Drive",
     "Face",
     "FrictionalContact",
     "FullContact",
@@ -31,6 +29,8 @@ __all__ = [
     "InterfaceHeat",
     "Loads",
     "Pairing",
+    "RigidMode",
+    "SignoriniSolution",
     "Sliding",
     "StickSlipState",
     "Surface",

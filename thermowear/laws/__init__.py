@@ -6,7 +6,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from .by_name import registered_laws
-from .distribution import InPlace, Rings, Share, Spreading, Track, rings
+from .distribution import Distribution, DutyFactor, InPlace, Rings, UniformTrack, rings
 from .from_python import interface_law, wear_rate
 from .interfaces import InterfaceLaw, WearRate
 from .motions import RigidMotion, rotation, translation
@@ -45,6 +45,8 @@ _PRINCIPLE = {
 
 __all__ = [
     "ContactPatch",
+    "Distribution",
+    "DutyFactor",
     "InPlace",
     "InterfaceLaw",
     "Minimum",
@@ -54,10 +56,8 @@ __all__ = [
     "RigidMotion",
     "Rings",
     "SelfLocking",
-    "Share",
-    "Spreading",
     "SteadyWear",
-    "Track",
+    "UniformTrack",
     "WearRate",
     "WearVectors",
     "admissible_changes",

@@ -21,7 +21,7 @@ _ALIKE = 0.5
 """Smallest number of points on a circle of a polar mesh, relative to the mean number."""
 
 
-class Spreading(Protocol):
+class Distribution(Protocol):
     """Map from the local wear rate of a body to its rate at the points.
 
     Attributes
@@ -62,7 +62,7 @@ class Spreading(Protocol):
 
 
 @dataclass(frozen=True)
-class Share:
+class DutyFactor:
     """Each point is in the contact for a part of the time: a disk under a pad.
 
     Attributes
@@ -90,14 +90,14 @@ class Share:
 
 
 @dataclass(frozen=True)
-class InPlace(Share):
+class InPlace(DutyFactor):
     """The body wears where it is pressed."""
 
     share: float = 1.0
 
 
 @dataclass(frozen=True)
-class Track:
+class UniformTrack:
     """All points of a track pass through the whole contact: a strip, or a drum under a shoe.
 
     The mean hardly changes with the pressures: their sum is the load.

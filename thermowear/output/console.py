@@ -24,7 +24,7 @@ class Terminal(Console):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-class Progress:
+class ConsoleProgress:
     """Progress as one live line on a terminal, as plain lines otherwise.
 
     Parameters
@@ -38,7 +38,7 @@ class Progress:
         self._last = 0.0
         self._unsaid = ""
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> ConsoleProgress:
         if self._status is not None:
             self._status.start()
         return self

@@ -17,7 +17,7 @@ from scipy.integrate import quad
 
 
 @dataclass(frozen=True)
-class DrumBrake:
+class DrumBrakeShoe:
     """Dimensions of a shoe, friction and wear exponent.
 
     Attributes

@@ -16,7 +16,7 @@ from dolfinx import fem
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..direct_solver import Factor
+from ..direct_solver import DirectSolver
 from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 
@@ -47,7 +47,7 @@ class Conduction:
         Mask of prescribed temperatures.
     given : ndarray, shape (n_owned,)
         Prescribed rise in the fixed values, zero elsewhere [K].
-    factor : Factor or EvenFactor
+    factor : DirectSolver or EvenFactor
         Factorisation of conductivity plus bath, with prescribed temperatures eliminated.
     lifted : ndarray, shape (n_owned,)
         Nodal heat on the free values equivalent to the prescribed temperatures [W].
@@ -66,7 +66,7 @@ class Conduction:
     bath: PETSc.Mat
     fixed: np.ndarray
     given: np.ndarray
-    factor: Factor | EvenFactor
+    factor: DirectSolver | EvenFactor
     lifted: np.ndarray
     advection: Advection | None
     even: EvenPaths | None
@@ -216,7 +216,7 @@ def factorised(
     fixed: np.ndarray,
     symmetric: bool,
     even: EvenPaths | None,
-) -> Factor | EvenFactor:
+) -> DirectSolver | EvenFactor:
     """Factorise conductivity plus bath, rows and columns of prescribed temperatures eliminated."""
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
@@ -225,7 +225,7 @@ def factorised(
         return even.factor(matrix, fixed, known)
     first = matrix.getOwnershipRange()[0]
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
-    return Factor(matrix, known, dim=space.mesh.topology.dim)
+    return DirectSolver(matrix, known, dim=space.mesh.topology.dim)
 
 
 def _column_sums(matrix: PETSc.Mat) -> np.ndarray:

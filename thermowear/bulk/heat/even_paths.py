@@ -14,7 +14,7 @@ from dolfinx import fem
 
 from ...parallel import sum_over_ranks
 from ..bodies import Bodies
-from ..direct_solver import Factor
+from ..direct_solver import DirectSolver
 from ..field import owned
 from .advection import Passage
 
@@ -57,13 +57,13 @@ class EvenPaths:
         return fixed, given
 
     def factor(self, matrix: PETSc.Mat, fixed: np.ndarray, symmetry: str) -> EvenFactor:
-        """Factorise a matrix of all values with `fixed` values eliminated; see `Factor`."""
+        """Factorise a matrix of all values with `fixed` values eliminated; see `DirectSolver`."""
         join = self._prolongation(matrix)
         small = matrix.ptap(join)
         first = small.getOwnershipRange()[0]
         held = np.flatnonzero(self.joined(fixed[:, None].astype(float))[:, 0] > 0)
         small.zeroRowsColumns((held + first).astype(PETSc.IntType), diag=1.0)
-        return EvenFactor(self, Factor(small, symmetry, dim=self._dim))
+        return EvenFactor(self, DirectSolver(small, symmetry, dim=self._dim))
 
     def joined(self, loads: np.ndarray | sp.csr_matrix):
         """Loads on the unknowns from loads on the nodal values, by columns."""
@@ -106,18 +106,18 @@ class EvenPaths:
 
 
 class EvenFactor:
-    """Factorised matrix for values that are uniform along paths; interface of `Factor`."""
+    """Factorised matrix for values that are uniform along paths; interface of `DirectSolver`."""
 
-    def __init__(self, paths: EvenPaths, factor: Factor):
+    def __init__(self, paths: EvenPaths, factor: DirectSolver):
         self._paths = paths
         self._factor = factor
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
-        """Solve for one or several right-hand sides, see `Factor.solve`."""
+        """Solve for one or several right-hand sides, see `DirectSolver.solve`."""
         return self._solved(self._factor.solve, loads)
 
     def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
-        """Solve with the transposed matrix, see `Factor.solve_transposed`."""
+        """Solve with the transposed matrix, see `DirectSolver.solve_transposed`."""
         return self._solved(self._factor.solve_transposed, loads)
 
     def _solved(self, solve, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:

@@ -31,7 +31,7 @@ from .heat_equation import ThermalMaterial
 _SAME = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
 
 
-class Factor(Protocol):
+class PropertyMultiplier(Protocol):
     """Property as a function of temperature [K], relative to its value at ambient."""
 
     def value(self, x: np.ndarray) -> np.ndarray: ...
@@ -49,13 +49,13 @@ class VaryingConductivity:
     ----------
     matrix : petsc4py.PETSc.Mat
         Conductivity matrix of the part at its constant conductivity [W/K].
-    factor : Factor
+    factor : PropertyMultiplier
     ambient : float
         Ambient temperature [K].
     """
 
     matrix: PETSc.Mat
-    factor: Factor
+    factor: PropertyMultiplier
     ambient: float
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
@@ -76,14 +76,14 @@ class VaryingExpansion:
     part : str
     matrix : petsc4py.PETSc.Mat
         Matrix of nodal forces of the part at its constant expansion [N/K].
-    factor : Factor
+    factor : PropertyMultiplier
     ambient : float
         Ambient temperature [K].
     """
 
     part: str
     matrix: PETSc.Mat
-    factor: Factor
+    factor: PropertyMultiplier
     ambient: float
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
@@ -142,7 +142,7 @@ def varying_conduction(
     bodies: Bodies,
     model: Model,
     materials: dict[str, ThermalMaterial],
-    factors: Mapping[str, Factor],
+    factors: Mapping[str, PropertyMultiplier],
     ambient: float,
 ) -> VaryingConduction:
     """Add temperature-dependent conductivities; parameters as in `conduction`, factors by part."""
@@ -161,7 +161,10 @@ def varying_conduction(
 
 
 def varying_expansion(
-    elastic: Elasticity, space: fem.FunctionSpace, factors: Mapping[str, Factor], ambient: float
+    elastic: Elasticity,
+    space: fem.FunctionSpace,
+    factors: Mapping[str, PropertyMultiplier],
+    ambient: float,
 ) -> tuple[VaryingExpansion, ...]:
     """Temperature-dependent expansions from factors by part."""
     return tuple(

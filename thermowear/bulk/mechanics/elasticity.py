@@ -15,7 +15,7 @@ from dolfinx.fem.petsc import assemble_matrix
 
 from ..bodies import Bodies
 from ..compiled import compiled
-from ..direct_solver import Factor
+from ..direct_solver import DirectSolver
 from ..field import lagrange_space, owned
 from ..kinematics import Model, section_measure
 
@@ -43,7 +43,7 @@ class Elasticity:
         Stiffness without supports: its residual contains the support reactions.
     fixed : ndarray of bool, shape (n_owned,)
         Mask of values held at zero.
-    factor : Factor
+    factor : DirectSolver
         Factorisation of the supported stiffness.
     lame : tuple of dolfinx.fem.Function
         λ, μ and thermal modulus times α of the model, constant on each body [Pa, Pa/K].
@@ -54,7 +54,7 @@ class Elasticity:
     space: fem.FunctionSpace
     stiffness: PETSc.Mat
     fixed: np.ndarray
-    factor: Factor
+    factor: DirectSolver
     lame: tuple[fem.Function, fem.Function, fem.Function]
 
     def stress(self, u, rise=None):
@@ -161,7 +161,7 @@ def elasticity(
     stiffness = assemble_matrix(compiled(form))
     stiffness.assemble()
     fixed = fixed_values(bodies, model, space, clamped, {0: symmetric, 1: rollers})
-    factor = Factor(supported(stiffness, fixed), dim=mesh.topology.dim)
+    factor = DirectSolver(supported(stiffness, fixed), dim=mesh.topology.dim)
     return Elasticity(bodies, model, space, stiffness, fixed, factor, lame)
 
 

@@ -20,7 +20,7 @@ from dolfinx.fem.petsc import assemble_matrix
 
 from ...parallel import sum_over_ranks
 from ..compiled import assembled, compiled
-from ..direct_solver import Factor
+from ..direct_solver import DirectSolver
 from ..field import owned
 from .elasticity import supported
 
@@ -148,7 +148,7 @@ class _SurplusBlock:
             assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on it
         matrix.assemble()
         self._matrix = supported(matrix, fixed)
-        self._factor = Factor(self._matrix, dim=dim) if dim == 2 else None
+        self._factor = DirectSolver(self._matrix, dim=dim) if dim == 2 else None
         self._iteration = None if dim == 2 else _conjugate_gradients(self._matrix)
 
     def solve(self, loads: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from .law_values import NamedLaw, checked, named_law, written
 from .multipliers import must_increase, must_match
 
 
-class PressureConductance(Section):
+class PressureConductanceTable(Section):
     """Conductance in proportion to the pressure, see `laws.coefficients.conductance`.
 
     Attributes
@@ -32,7 +32,7 @@ class PressureConductance(Section):
     coefficient: units.PerLength
 
 
-class TabulatedConductance(Section):
+class TabulatedConductanceTable(Section):
     """Conductance by straight lines between given pressures, constant beyond the ends.
 
     Attributes
@@ -62,8 +62,8 @@ class TabulatedConductance(Section):
 
 
 _KINDS: dict[str, type[Section]] = {
-    "pressure": PressureConductance,
-    "table": TabulatedConductance,
+    "pressure": PressureConductanceTable,
+    "table": TabulatedConductanceTable,
 }
 _CONSTANT = TypeAdapter(units.HeatTransfer)
 _VARIABLE = re.compile(rf"(?<![\w.])({'|'.join(INTERFACE_VARIABLES)})(?!\w)", re.ASCII)
@@ -96,7 +96,7 @@ def _written(value: Any) -> Any:
 
 
 Conductance = Annotated[
-    float | PressureConductance | TabulatedConductance | Expression | NamedLaw,
+    float | PressureConductanceTable | TabulatedConductanceTable | Expression | NamedLaw,
     PlainValidator(_read),
     PlainSerializer(_written),
 ]

@@ -13,7 +13,7 @@ from .history import FactorHistory, History
 FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
 
 
-class Holder(Section):
+class HolderTable(Section):
     """Rigid holder of body 1.
 
     Attributes
@@ -39,7 +39,7 @@ class Holder(Section):
         return any(name.startswith("rotation") for name in self.free)
 
 
-class Load(Section):
+class LoadTable(Section):
     """Loads that press body 1 on body 2.
 
     Exactly one of force, mean pressure and approach; a holder that can only rotate may have a
@@ -90,7 +90,7 @@ class Load(Section):
     history: History | None = None
 
 
-class Motion(Section):
+class MotionTable(Section):
     """Sliding motion.
 
     Attributes
@@ -113,7 +113,7 @@ class Motion(Section):
     history: FactorHistory | None = None
 
     @property
-    def one_way(self) -> Motion:
+    def one_way(self) -> MotionTable:
         """Copy with the mean speed of a reciprocating motion as a velocity along +x."""
         if self.amplitude is None or self.frequency is None:
             return self

@@ -12,7 +12,7 @@ from ...errors import quoted
 from ..values import units
 from ..values.section import Section, Switch
 from .conductance import Conductance
-from .history import Course, TemperatureHistory
+from .history import TemperatureHistory, TimeHistory
 
 
 def _parse_partition(value: Any) -> Any:
@@ -51,7 +51,7 @@ GivenTemperature = Annotated[
 """Constant [K], or history of a temperature."""
 
 
-class Heat(Section):
+class HeatTable(Section):
     """Heat sources, thermal boundary conditions and thermal properties of the interface.
 
     Friction heats the faces while the bodies slide; bodies in contact conduct also at rest.
@@ -101,7 +101,7 @@ class Heat(Section):
     power: dict[str, units.Power] = {}
 
     @property
-    def histories(self) -> Mapping[str, Course]:
+    def histories(self) -> Mapping[str, TimeHistory]:
         """Time histories by key."""
         found = {
             f"temperature.{surface}": value

@@ -18,7 +18,7 @@ _PATH = TypeAdapter(UserFile)
 _CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
 
 
-class Course(Section):
+class TimeHistory(Section):
     """Base of what is given at instants: straight lines between them, constant before and after.
 
     A table of lists, or a CSV file with a column for each of them: the name of the file instead of
@@ -91,7 +91,7 @@ def _charge(error: ValidationError, columns: Columns) -> None:
             raise ValueError(f"{columns.name}, line {line}: {place[0]}: {said}") from None
 
 
-class FactorHistory(Course):
+class FactorHistory(TimeHistory):
     """Time-dependent factor of the speed or of the friction.
 
     Attributes
@@ -117,7 +117,7 @@ class FactorHistory(Course):
         return self.course.value(self.factor, time)
 
 
-class TemperatureHistory(Course):
+class TemperatureHistory(TimeHistory):
     """Temperature of a surface, or of the surroundings.
 
     Attributes
@@ -141,7 +141,7 @@ class TemperatureHistory(Course):
         return self.course.value(self.temperature, time)
 
 
-class History(Course):
+class History(TimeHistory):
     """Loads of the holder of body 1 at instants; straight lines between them.
 
     Attributes

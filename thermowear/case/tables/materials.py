@@ -11,7 +11,7 @@ from ...errors import quoted
 from ..values import units
 from ..values.section import Number, Section
 from .geometry import Geometry
-from .multipliers import ExpansionFactor, TemperatureFactor
+from .multipliers import ExpansionTable, TemperatureTable
 
 
 class Properties(Section):
@@ -36,8 +36,8 @@ class Properties(Section):
     density: units.Density | None = None
     specific_heat: units.SpecificHeat | None = None
     hardness: units.Pressure | None = None
-    conductivity_factor: TemperatureFactor | None = None
-    expansion_factor: ExpansionFactor | None = None
+    conductivity_factor: TemperatureTable | None = None
+    expansion_factor: ExpansionTable | None = None
 
     @property
     def effusivity(self) -> float:
@@ -49,21 +49,21 @@ class Properties(Section):
         return math.sqrt(k * rho * c)
 
 
-class Material(Properties):
+class MaterialTable(Properties):
     """Material of a cell set in a body."""
 
 
-class Body(Properties):
+class BodyTable(Properties):
     """Material of a body, and of cell sets in it.
 
     Attributes
     ----------
-    materials : dict of str to Material
+    materials : dict of str to MaterialTable
         Materials by cell set of a mesh file. All other cells of the body have the body's own
         material, which may be omitted if every cell set of the body has one.
     """
 
-    materials: dict[str, Material] = {}
+    materials: dict[str, MaterialTable] = {}
 
     @property
     def has_own(self) -> bool:
@@ -71,7 +71,7 @@ class Body(Properties):
         return bool(self.model_fields_set - {"materials"})
 
 
-def resolve_like(bodies: dict[str, Body], name: str) -> str:
+def resolve_like(bodies: dict[str, BodyTable], name: str) -> str:
     """Name of the body at the end of a chain of ``like`` references.
 
     Raises
@@ -88,13 +88,15 @@ def resolve_like(bodies: dict[str, Body], name: str) -> str:
     return seen[-1]
 
 
-def check_named(bodies: dict[str, Body], name: str) -> None:
+def check_named(bodies: dict[str, BodyTable], name: str) -> None:
     """Raise a `ValueError` if `like` names no body."""
     if name not in bodies:
         raise ValueError(f"like = {quoted(name)} names no body; one of: {', '.join(bodies)}")
 
 
-def material_of(geometry: Geometry, bodies: dict[str, Body], part: str) -> tuple[str, Properties]:
+def material_of(
+    geometry: Geometry, bodies: dict[str, BodyTable], part: str
+) -> tuple[str, Properties]:
     """Path of the table that defines the material of a part, and this material.
 
     Raises

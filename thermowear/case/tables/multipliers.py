@@ -30,7 +30,7 @@ def must_match(key: str, values: tuple[float, ...], places: tuple[float, ...], w
         raise KeyFault(key, f"has {len(values)} values for {len(places)} {what}")
 
 
-class Factor(Section):
+class MultiplierTable(Section):
     """Factor by straight lines between given places, constant beyond the ends.
 
     Attributes
@@ -55,36 +55,36 @@ class Factor(Section):
         return Table1D(self.at, self.factor)
 
 
-class TemperatureFactor(Factor):
+class TemperatureTable(MultiplierTable):
     """A factor that depends on the temperature [K]."""
 
     at: tuple[units.Temperature, ...]
 
 
-class ExpansionFactor(TemperatureFactor):
+class ExpansionTable(TemperatureTable):
     """A factor of the secant coefficient of expansion, which may vanish."""
 
     factor: tuple[NotNegative, ...]
 
 
-class PressureFactor(Factor):
+class PressureTable(MultiplierTable):
     """A factor that depends on the pressure [Pa]."""
 
     at: tuple[units.LeastPressure, ...]
 
 
-class SpeedFactor(Factor):
+class SpeedTable(MultiplierTable):
     """A factor that depends on the sliding speed [m/s]."""
 
     at: tuple[units.Speed, ...]
 
 
-class Factors(Section):
+class MultiplierTables(Section):
     """Factors that multiply each other."""
 
-    temperature: TemperatureFactor | None = None
-    pressure: PressureFactor | None = None
-    speed: SpeedFactor | None = None
+    temperature: TemperatureTable | None = None
+    pressure: PressureTable | None = None
+    speed: SpeedTable | None = None
 
     @property
     def depends_on(self) -> tuple[str, ...]:

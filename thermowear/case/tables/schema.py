@@ -16,14 +16,14 @@ from ...laws.plausible import typical_value
 from ..values import units
 from ..values.section import Number, Section, Switch
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
-from .driving import Holder, Load, Motion
+from .driving import HolderTable, LoadTable, MotionTable
 from .geometry import Pressing
 from .geometry_type import AnyGeometry
-from .heat import Heat
-from .history import Course, FactorHistory
+from .heat import HeatTable
+from .history import FactorHistory, TimeHistory
 from .law_values import Friction, law_of
-from .materials import Body, Properties, material_of
-from .multipliers import Factors
+from .materials import BodyTable, Properties, material_of
+from .multipliers import MultiplierTables
 from .wear import WearTable
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
@@ -58,7 +58,7 @@ class FaceMesh(Section):
     grading: Grading | None = None
 
 
-class Mesh(Section):
+class MeshTable(Section):
     """Discretisation.
 
     Attributes
@@ -84,14 +84,14 @@ class Mesh(Section):
         return own.elements or self.elements, own.grading or self.grading
 
 
-class Contact(Section):
+class ContactTable(Section):
     """The interface.
 
     Attributes
     ----------
     friction : float, Expression or NamedLaw
         Coefficient of friction in the direction of sliding.
-    friction_factor : Factors
+    friction_factor : MultiplierTables
         Its multipliers: tables of the mean face temperature, the pressure and the speed.
     friction_history : FactorHistory or None
         Time-dependent factor of the friction in a transient analysis.
@@ -117,7 +117,7 @@ class Contact(Section):
     """
 
     friction: Friction = 0.0
-    friction_factor: Factors = Factors()
+    friction_factor: MultiplierTables = MultiplierTables()
     friction_history: FactorHistory | None = None
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
     compliance: units.Compliance | None = None
@@ -146,14 +146,14 @@ class Case(Section):
     title: str = ""
     model: Literal["axisymmetric", "plane-strain", "plane-stress", "3d"]
     geometry: AnyGeometry
-    mesh: Mesh = Mesh()
-    bodies: dict[str, Body]
-    holder: Holder = Holder()
-    load: Load
-    motion: Motion | None = None
-    contact: Contact = Contact()
+    mesh: MeshTable = MeshTable()
+    bodies: dict[str, BodyTable]
+    holder: HolderTable = HolderTable()
+    load: LoadTable
+    motion: MotionTable | None = None
+    contact: ContactTable = ContactTable()
     wear: WearTable = WearTable()
-    heat: Heat | None = None
+    heat: HeatTable | None = None
     analysis: Annotated[
         Initial | Steady | Transient | Fretting | Reciprocating | Stability,
         Field(discriminator="type"),
@@ -200,9 +200,9 @@ class Case(Section):
         return self.wear.cycles if in_analysis is None else in_analysis
 
     @property
-    def histories(self) -> dict[str, Course]:
+    def histories(self) -> dict[str, TimeHistory]:
         """Time histories by the path of their key."""
-        found: dict[str, Course | None] = {
+        found: dict[str, TimeHistory | None] = {
             "load.history": self.load.history,
             "motion.history": None if self.motion is None else self.motion.history,
             "contact.friction_history": self.contact.friction_history,

@@ -23,7 +23,7 @@ from ...laws.interfaces import WearRate
 from ..values.section import KeyFault, Number, Section
 from ..values.units import parse, registry
 from .law_values import RateOfWear, wear_rate_of
-from .multipliers import Factors
+from .multipliers import MultiplierTables
 
 _EXAMPLE = "2e-7 1/MPa"
 _OF_POWER = ("coefficient", "per", "pressure_exponent", "velocity_exponent")
@@ -48,7 +48,7 @@ def _text(value) -> str:
 Coefficient = Annotated[Any, BeforeValidator(_coefficient), PlainSerializer(_text, return_type=str)]
 
 
-class Wear(Section):
+class BodyWearTable(Section):
     """Wear law of one body: a coefficient with exponents, or a rate.
 
     Attributes
@@ -66,7 +66,7 @@ class Wear(Section):
         ``"in-place"``: the body wears where it is pressed; ``"track"``: a body 2 that passes under
         body 1 wears along its whole track: evenly under a plane body 1; a turning disk at each
         radius, by the part of a turn for which it is under the pad.
-    factor : Factors
+    factor : MultiplierTables
         Of the coefficient, by the temperature of the body's own face, pressure and speed.
     """
 
@@ -76,7 +76,7 @@ class Wear(Section):
     pressure_exponent: Annotated[Number, Field(ge=0.1, le=10.0)] = 1.0
     velocity_exponent: Annotated[Number, Field(ge=0.0, le=10.0)] = 1.0
     spread: Literal["in-place", "track"] = "in-place"
-    factor: Factors = Factors()
+    factor: MultiplierTables = MultiplierTables()
 
     @model_validator(mode="after")
     def _one_law(self):
@@ -149,7 +149,7 @@ def _update(value: Any) -> Any:
 
 
 class WearTable(Section):
-    """Wear laws by body, and beside them how wear is followed: a mapping of bodies to `Wear`.
+    """Wear laws by body, a mapping to `BodyWearTable`, and settings of the geometry updates.
 
     Attributes
     ----------
@@ -167,7 +167,7 @@ class WearTable(Section):
 
     AUTOMATIC: ClassVar[float] = 0.01
 
-    __pydantic_extra__: dict[str, Wear]
+    __pydantic_extra__: dict[str, BodyWearTable]
 
     update: Annotated[float | Literal["auto", "never"], BeforeValidator(_update)] = "auto"
     cycles: Annotated[int, Field(ge=1, strict=True)] | None = None
@@ -180,7 +180,7 @@ class WearTable(Section):
             return math.inf
         return self.AUTOMATIC if self.update == "auto" else float(self.update)
 
-    def __getitem__(self, body: str) -> Wear:
+    def __getitem__(self, body: str) -> BodyWearTable:
         return self._laws[body]
 
     def __contains__(self, body: object) -> bool:
@@ -195,12 +195,12 @@ class WearTable(Section):
     def keys(self) -> KeysView[str]:
         return self._laws.keys()
 
-    def values(self) -> ValuesView[Wear]:
+    def values(self) -> ValuesView[BodyWearTable]:
         return self._laws.values()
 
-    def items(self) -> ItemsView[str, Wear]:
+    def items(self) -> ItemsView[str, BodyWearTable]:
         return self._laws.items()
 
     @property
-    def _laws(self) -> dict[str, Wear]:
+    def _laws(self) -> dict[str, BodyWearTable]:
         return self.__pydantic_extra__

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..tables.heat import Heat
+from ..tables.heat import HeatTable
 from ..tables.schema import Case
 
 Fault = tuple[str, str]
@@ -69,7 +69,7 @@ def thermal_needs(case: Case) -> Iterator[Need]:
         yield from ((part, key, f" because {why}") for part in parts for key in keys)
 
 
-def _surfaces(case: Case, heat: Heat) -> Iterator[Fault]:
+def _surfaces(case: Case, heat: HeatTable) -> Iterator[Fault]:
     """Thermal boundary conditions: heat sink, and at most one condition per surface."""
     lasts = not heat.transient  # a stability analysis needs a steady base state
     leaves = heat.advection == "resolved" and case.geometry.rotation_center is None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..tables.analyses import Fretting, Reciprocating
-from ..tables.driving import Motion
+from ..tables.driving import MotionTable
 from ..tables.history import History
 from ..tables.schema import Case
 
@@ -106,7 +106,9 @@ def _end_conditions(case: Case, analysis: Reciprocating) -> Iterator[Fault]:
         yield "wear.cycles", "only one of analysis.end_time and wear.cycles can be given"
 
 
-def _reciprocating_motion(case: Case, analysis: Reciprocating, motion: Motion) -> Iterator[Fault]:
+def _reciprocating_motion(
+    case: Case, analysis: Reciprocating, motion: MotionTable
+) -> Iterator[Fault]:
     """Amplitude and frequency only; output times before the end of the last cycle."""
     for key in ("amplitude", "frequency"):
         if getattr(motion, key) is None:

@@ -32,7 +32,7 @@ _SETTLED = 1e-6  # of the depth worn off in the increment
 
 
 @dataclass(frozen=True)
-class Profile:
+class WornProfile:
     """Where a wearing body has its worn profile.
 
     Attributes
@@ -67,7 +67,7 @@ class Profile:
         return self.seen(slip).T * self.areas / self.areas[:, None]
 
 
-def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> Profile:
+def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> WornProfile:
     """The worn profile of a body (0 is body 1) in the basis of the pressure.
 
     Parameters
@@ -81,7 +81,7 @@ def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> Profile:
     areas = weighted.sum(axis=0)
     share = float(pairing.weights @ pairing.share / pairing.weights.sum())
     moves = 1.0 - share if body == 0 else -share
-    return Profile((pairing.position @ weighted) / areas, areas, moves)
+    return WornProfile((pairing.position @ weighted) / areas, areas, moves)
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class SlipWear:
     ----------
     laws : tuple of WearRate
         Of the wearing bodies; they depend on neither temperature nor depth.
-    profiles : tuple of Profile
+    profiles : tuple of WornProfile
         Of the same bodies.
     friction : float
         Coefficient.
@@ -103,7 +103,7 @@ class SlipWear:
     """
 
     laws: tuple[WearRate, ...]
-    profiles: tuple[Profile, ...]
+    profiles: tuple[WornProfile, ...]
     friction: float
     duration: float
     repeats: int = 1

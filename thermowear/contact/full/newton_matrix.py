@@ -7,7 +7,7 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.direct_solver import Factor
+from ...bulk.direct_solver import DirectSolver
 from ...bulk.mechanics.elasticity import Elasticity, supported
 from ...errors import ComputationError
 from ..operators.traces import distributed
@@ -31,7 +31,7 @@ class NewtonMatrix:
     subtracted : ndarray, shape (n,)
         b.
     symmetry : str
-        As for `Factor`.
+        As for `DirectSolver`.
     """
 
     def __init__(
@@ -59,10 +59,10 @@ class NewtonMatrix:
         self._constant = self._matrix.copy()
         self._constant.zeroEntries()
         self._constant.axpy(1.0, fixed, _SUBSET)
-        self._factor: Factor | None = None
+        self._factor: DirectSolver | None = None
         self._factors = np.zeros(0)
 
-    def factor(self, factors: np.ndarray) -> Factor:
+    def factor(self, factors: np.ndarray) -> DirectSolver:
         """Triangular factors for values of a, shape (n,).
 
         Raises
@@ -78,7 +78,7 @@ class NewtonMatrix:
         self._constant.copy(self._matrix, _SAME)
         self._matrix.axpy(1.0, self._product, _SUBSET)
         if self._factor is None:
-            self._factor = Factor(self._matrix, self._symmetry)
+            self._factor = DirectSolver(self._matrix, self._symmetry)
         else:
             self._factor.repeat()
         if self._symmetry == "symmetric" and self._factor.negative_pivots:

@@ -15,7 +15,7 @@ from ..operators.traction import (
     displacement_slopes,
     on_every_facet,
 )
-from ..search.pairing import Pairing, Side
+from ..search.pairing import PairedFace, Pairing
 from ..search.quadrature import lobatto
 
 GAMMA = 10.0
@@ -108,7 +108,7 @@ def _largest_at(point: np.ndarray, values: np.ndarray) -> np.ndarray:
     return largest
 
 
-def _areas(elastic: Elasticity, side: Side) -> np.ndarray:
+def _areas(elastic: Elasticity, side: PairedFace) -> np.ndarray:
     """Area of each facet of a face, shape (n_facets,) [m²]."""
     face = side.face
     x, w = lobatto(face.nodes.shape[1] + 4)

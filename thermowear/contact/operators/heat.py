@@ -47,7 +47,7 @@ class ThermalState:
 
 
 @dataclass(frozen=True)
-class Resting:
+class BaselineResponse:
     """What the bodies do without any heat at the contact: given temperatures, or heat stored.
 
     Attributes
@@ -165,7 +165,7 @@ class HeatExchange:
     rise: np.ndarray
     crossing: np.ndarray
 
-    def state(self, friction_heat: np.ndarray, resting: Resting) -> ThermalState:
+    def state(self, friction_heat: np.ndarray, resting: BaselineResponse) -> ThermalState:
         """Temperatures and fluxes due to friction heat [W/m²] at the points, shape (n,)."""
         alone = self._alone @ friction_heat + np.concatenate(resting.rise)
         T1, T2 = np.split(self.rise @ alone, 2)
@@ -212,8 +212,8 @@ def at_rest(
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     comm,
     per_rise: np.ndarray | None = None,
-) -> Resting:
+) -> BaselineResponse:
     """What a nodal rise (n_owned,) does to faces and, with `per_rise`, to the weak gap."""
     T1, T2 = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
     opening = None if per_rise is None else sum_over_ranks(comm, per_rise.T @ rise)
-    return Resting((T1, T2), opening)
+    return BaselineResponse((T1, T2), opening)

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from ...bulk.heat.conduction import Conduction
 from ...parallel import sum_over_ranks
 from .condensation import CondensedContact
-from .heat import HeatExchange, InterfaceHeat, Resting
+from .heat import BaselineResponse, HeatExchange, InterfaceHeat
 from .traces import distributed
 
 
@@ -33,7 +33,7 @@ class ThermalDistortion:
         first, second = exchange.per_friction_heat
         return self.per_flux[0] @ first + self.per_flux[1] @ second
 
-    def at_rest(self, exchange: HeatExchange, resting: Resting) -> np.ndarray:
+    def at_rest(self, exchange: HeatExchange, resting: BaselineResponse) -> np.ndarray:
         """Weak gap of coupled faces without friction heat, shape (m,)."""
         assert resting.opening is not None
         first, second = exchange.into_bath(np.concatenate(resting.rise))

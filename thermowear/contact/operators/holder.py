@@ -11,7 +11,7 @@ from ..search.pairing import Pairing
 
 
 @dataclass(frozen=True)
-class Drive:
+class RigidMode:
     """A motion of the holder and what is given along it: either of them.
 
     Attributes
@@ -41,7 +41,7 @@ class Holder:
 
     Attributes
     ----------
-    drives : tuple of Drive
+    drives : tuple of RigidMode
         The motions that it makes, k free ones and those that are given.
     closing : ndarray, shape (n, n_drives)
         R of each: how much a unit of it closes the gap at the points.
@@ -49,7 +49,7 @@ class Holder:
         T of each: generalised force on it per pressure and area.
     """
 
-    drives: tuple[Drive, ...]
+    drives: tuple[RigidMode, ...]
     closing: np.ndarray
     carrying: np.ndarray
 
@@ -99,7 +99,9 @@ class Holder:
         return self.carrying.T @ (weights * pressure)
 
 
-def hold(pairing: Pairing, pull: np.ndarray, drives: list[Drive] | tuple[Drive, ...]) -> Holder:
+def hold(
+    pairing: Pairing, pull: np.ndarray, drives: list[RigidMode] | tuple[RigidMode, ...]
+) -> Holder:
     """Make the holder.
 
     Parameters
@@ -107,7 +109,7 @@ def hold(pairing: Pairing, pull: np.ndarray, drives: list[Drive] | tuple[Drive, 
     pairing : Pairing
     pull : ndarray, shape (n, gdim)
         ``n + mu e``, see `pairing`.
-    drives : sequence of Drive
+    drives : sequence of RigidMode
     """
     points = pairing.on_body_1
     moved = np.array([drive.motion.at(points) for drive in drives]).reshape(-1, *points.shape)

@@ -13,10 +13,10 @@ import scipy.sparse as sp
 from dolfinx import fem
 
 from ...bulk.field import basis_element, owned
-from ..search.pairing import Pairing, Side
+from ..search.pairing import PairedFace, Pairing
 
 
-def value_trace(space: fem.FunctionSpace, side: Side) -> sp.csr_matrix:
+def value_trace(space: fem.FunctionSpace, side: PairedFace) -> sp.csr_matrix:
     """Eᵀ of a scalar space: shape (n_owned, n_points). Every rank calls.
 
     ``E v`` are the values of a field at the points of one side.
@@ -66,7 +66,7 @@ def distributed(space: fem.FunctionSpace, trace: sp.csr_matrix) -> PETSc.Mat:
     )
 
 
-def _local_values(space: fem.FunctionSpace, side: Side):
+def _local_values(space: fem.FunctionSpace, side: PairedFace):
     """Local nodes, points and basis values at the points whose cell this rank owns."""
     mesh = space.mesh
     mine = np.flatnonzero(side.face.rank[side.facet] == mesh.comm.rank)
@@ -96,7 +96,7 @@ def _oriented(mesh, element, cells: np.ndarray, values: np.ndarray) -> np.ndarra
     return result
 
 
-def reference_points(side: Side, chosen: np.ndarray, cell_type) -> np.ndarray:
+def reference_points(side: PairedFace, chosen: np.ndarray, cell_type) -> np.ndarray:
     """Reference coordinates of points on facets of their cells."""
     import basix
 

@@ -14,7 +14,7 @@ from ...bulk.field import reference_element
 from ...bulk.mechanics.elasticity import Elasticity
 from ...compat import coordinate_element, geometry_dofmap
 from ...parallel import sum_over_ranks
-from ..search.pairing import Pairing, Side
+from ..search.pairing import PairedFace, Pairing
 from .traces import gather_rows, reference_points
 
 
@@ -39,7 +39,7 @@ def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
 
 
 def cell_traction(
-    elastic: Elasticity, side: Side, chosen: np.ndarray, normals: np.ndarray
+    elastic: Elasticity, side: PairedFace, chosen: np.ndarray, normals: np.ndarray
 ) -> np.ndarray:
     """Traction along normals per nodal displacement of the cell, shape (n, nodes, 2) [Pa/m].
 
@@ -48,7 +48,7 @@ def cell_traction(
     Parameters
     ----------
     elastic : Elasticity
-    side : Side
+    side : PairedFace
     chosen : ndarray of int, shape (n,)
         Entries of the side, all in cells of this rank.
     normals : ndarray, shape (n, 2)
@@ -71,7 +71,7 @@ def thermal_traction(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
     return at_points(elastic.lame[2], pairing.sides[0])
 
 
-def at_points(function: fem.Function, side: Side) -> np.ndarray:
+def at_points(function: fem.Function, side: PairedFace) -> np.ndarray:
     """Values of a function that is constant on each cell, shape (n,). Every rank calls."""
     comm = function.function_space.mesh.comm
     mine = side.face.rank[side.facet] == comm.rank
@@ -128,12 +128,12 @@ def _tabulated(element, reference: np.ndarray) -> np.ndarray:
     return element.tabulate(1, reference)[..., 0]
 
 
-def on_every_facet(pairing: Pairing) -> tuple[Side, np.ndarray, np.ndarray]:
+def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray]:
     """Points on body 1, those that two facets share on each, with their part of the area.
 
     Returns
     -------
-    side : Side
+    side : PairedFace
         More entries than there are points.
     point : ndarray of int
         Which point each entry is.
@@ -151,4 +151,4 @@ def on_every_facet(pairing: Pairing) -> tuple[Side, np.ndarray, np.ndarray]:
     facet = np.concatenate([side.facet, side.facet[meeting] + 1])
     t = np.concatenate([side.t, np.zeros(len(meeting))])
     point = np.concatenate([np.arange(len(s)), meeting])
-    return Side(side.face, facet, t), point, np.concatenate([share, 1 - share[meeting]])
+    return PairedFace(side.face, facet, t), point, np.concatenate([share, 1 - share[meeting]])

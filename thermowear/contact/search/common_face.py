@@ -94,7 +94,7 @@ class Opposite:
 
 
 @dataclass(frozen=True)
-class Line:
+class NormalLines:
     """Lines from points to the planes that touch the other face where they meet.
 
     Attributes
@@ -144,7 +144,7 @@ def met(
     facet: np.ndarray,
     t: np.ndarray,
     locate: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
-) -> tuple[np.ndarray, np.ndarray, Line]:
+) -> tuple[np.ndarray, np.ndarray, NormalLines]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
 
     From the closest point on, the line along m, or n where faces wear, is followed to the plane
@@ -206,7 +206,7 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     return np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
 
 
-def _line(points, out, soft, other, facet, t) -> Line:
+def _line(points, out, soft, other, facet, t) -> NormalLines:
     against, softer = other.smooth_normals(facet, t)[0], other.soft(facet)
     share = soft / (soft + softer)
     normals, _ = _direction((1 - share)[:, None] * out - share[:, None] * against, out)
@@ -215,7 +215,7 @@ def _line(points, out, soft, other, facet, t) -> Line:
     steep = np.minimum(np.einsum("ni,ni->n", along, against), -_FLATTEST)
     to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
     cosine = np.einsum("ni,ni->n", out, against)
-    return Line(normals, to_plane[:, None] * along, share, cosine)
+    return NormalLines(normals, to_plane[:, None] * along, share, cosine)
 
 
 def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndarray]:

@@ -38,7 +38,7 @@ _TWICE = 1e-3
 
 
 @dataclass(frozen=True)
-class Side:
+class PairedFace:
     """Where the contact points lie on one face.
 
     Attributes
@@ -77,7 +77,7 @@ class Pairing:
         Of the unloaded, unworn bodies along the normal [m].
     share : ndarray, shape (n,)
         s_1: what body 1 takes of the approach of opposite points.
-    sides : tuple of Side
+    sides : tuple of PairedFace
         On body 1 and body 2.
     unpaired : float
         Part of the face of body 1 that has nothing opposite and cannot touch.
@@ -91,7 +91,7 @@ class Pairing:
     normals: np.ndarray
     gap: np.ndarray
     share: np.ndarray
-    sides: tuple[Side, Side]
+    sides: tuple[PairedFace, PairedFace]
     unpaired: float
     pieces: Rule
 
@@ -172,8 +172,8 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
     summed = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
     normals = summed / np.linalg.norm(summed, axis=1, keepdims=True)
     sides = (
-        Side(face_1, facet[first], t[first]),
-        Side(face_2, pairs.facet[first], pairs.t[first]),
+        PairedFace(face_1, facet[first], t[first]),
+        PairedFace(face_2, pairs.facet[first], pairs.t[first]),
     )
     return Pairing(
         points=on_common[first],

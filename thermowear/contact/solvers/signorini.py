@@ -26,7 +26,7 @@ class NoEquilibrium(ComputationError):
 
 @serialisable
 @dataclass(frozen=True)
-class ContactSolution:
+class SignoriniSolution:
     """Coefficients of the pressure, rigid motion of the holder, and which coefficients press.
 
     Attributes
@@ -48,7 +48,7 @@ def solve_contact(
     load: np.ndarray,
     start: np.ndarray | None = None,
     force_modes: np.ndarray | None = None,
-) -> ContactSolution:
+) -> SignoriniSolution:
     """Solve by a primal-dual active set, and by Lemke's method where that runs in circles.
 
     Parameters
@@ -68,7 +68,7 @@ def solve_contact(
 
     Returns
     -------
-    ContactSolution
+    SignoriniSolution
         Checked: every inequality holds for every coefficient to 1e-9 of its scale.
 
     Raises
@@ -85,7 +85,7 @@ def solve_contact(
     return replace(solution, motion=solution.motion + origin)
 
 
-def _solve(problem: _Problem, start: np.ndarray | None) -> ContactSolution:
+def _solve(problem: _Problem, start: np.ndarray | None) -> SignoriniSolution:
     """Active sets from the expected one and from full contact, then Lemke's method."""
     everywhere = np.ones(len(problem.gap), dtype=bool)
     for active in (everywhere,) if start is None else (start, everywhere):
@@ -108,16 +108,16 @@ class _Problem:
     load: np.ndarray
     force_modes: np.ndarray
 
-    def residual(self, solution: ContactSolution) -> np.ndarray:
+    def residual(self, solution: SignoriniSolution) -> np.ndarray:
         return self.compliance @ solution.coefficients + self.gap - self.modes @ solution.motion
 
-    def scales(self, solution: ContactSolution) -> tuple[np.ndarray, np.ndarray]:
+    def scales(self, solution: SignoriniSolution) -> tuple[np.ndarray, np.ndarray]:
         """Sizes that errors of each coefficient and weak gap are measured against."""
         λ = np.abs(solution.coefficients)
         return np.full(len(λ), λ.max()), np.abs(self.compliance) @ λ + np.abs(self.gap)
 
 
-def _active_set(problem: _Problem, active: np.ndarray) -> ContactSolution | None:
+def _active_set(problem: _Problem, active: np.ndarray) -> SignoriniSolution | None:
     """Primal-dual active set from a first guess; None where it runs in circles or dry."""
     seen = set()
     gap, held = problem.gap, len(problem.load) == 0
@@ -133,7 +133,7 @@ def _active_set(problem: _Problem, active: np.ndarray) -> ContactSolution | None
     return None
 
 
-def _with_active(problem: _Problem, active: np.ndarray) -> ContactSolution | None:
+def _with_active(problem: _Problem, active: np.ndarray) -> SignoriniSolution | None:
     """The linear problem with closed contact at the active coefficients, none where singular."""
     count, k = int(active.sum()), len(problem.load)
     if count < k:
@@ -153,10 +153,10 @@ def _with_active(problem: _Problem, active: np.ndarray) -> ContactSolution | Non
         return None
     coefficients = np.zeros(len(problem.gap))
     coefficients[active] = unknowns[:count] / size
-    return ContactSolution(coefficients, unknowns[count:] / stretch, active)
+    return SignoriniSolution(coefficients, unknowns[count:] / stretch, active)
 
 
-def _pressing(problem: _Problem, solution: ContactSolution) -> np.ndarray:
+def _pressing(problem: _Problem, solution: SignoriniSolution) -> np.ndarray:
     """Which coefficients should press next: those that do, and those that penetrate."""
     residual = problem.residual(solution)
     scales = problem.scales(solution)
@@ -164,7 +164,7 @@ def _pressing(problem: _Problem, solution: ContactSolution) -> np.ndarray:
     return presses | (~solution.active & (residual < -_TOLERANCE * scales[1]))
 
 
-def _checked(problem: _Problem, solution: ContactSolution) -> ContactSolution:
+def _checked(problem: _Problem, solution: SignoriniSolution) -> SignoriniSolution:
     λ = solution.coefficients
     residual = problem.residual(solution)
     force_scale, gap_scale = problem.scales(solution)
@@ -178,7 +178,7 @@ def _checked(problem: _Problem, solution: ContactSolution) -> ContactSolution:
     )
     if wrong or not np.all(np.isfinite(λ)):
         raise NoEquilibrium("contact: no pressure satisfies the contact conditions at this load")
-    return ContactSolution(np.maximum(λ, 0.0), solution.motion, solution.active)
+    return SignoriniSolution(np.maximum(λ, 0.0), solution.motion, solution.active)
 
 
 def _pressing_by_lemke(problem: _Problem) -> np.ndarray:

@@ -19,7 +19,7 @@ _STEPS = 16  # along which a mean over a part of the stroke is taken
 
 
 @dataclass(frozen=True)
-class Track:
+class StrokeGrid:
     """A grid along the face of body 2.
 
     Attributes
@@ -60,7 +60,7 @@ class Track:
 
 def track(
     pairings: Sequence[Pairing], lengths: Sequence[float], spacing: float, thickness: float
-) -> Track:
+) -> StrokeGrid:
     """A grid of equal cells along all of the face that is touched.
 
     Parameters
@@ -80,7 +80,7 @@ def track(
     cells = max(1, int(np.ceil((last - first) / spacing - 1e-9)))
     areas = np.full(cells + 1, thickness * (last - first) / cells)
     areas[[0, -1]] /= 2
-    return Track(np.linspace(first, last, cells + 1), areas)
+    return StrokeGrid(np.linspace(first, last, cells + 1), areas)
 
 
 def on_body_2(pairing: Pairing) -> np.ndarray:

@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 
 from ..search.face import Face
 from ..search.facets import lagrange
-from ..search.pairing import Pairing, Side
+from ..search.pairing import PairedFace, Pairing
 from ..search.surface import Surface
 
 _ROUGH = 1e-8
@@ -56,7 +56,7 @@ def node_normals(face: Face | Surface) -> np.ndarray:
 
 
 def ways_between(
-    sides: tuple[Side, Side], directions: tuple[np.ndarray, ...], gone: np.ndarray
+    sides: tuple[PairedFace, PairedFace], directions: tuple[np.ndarray, ...], gone: np.ndarray
 ) -> np.ndarray:
     """Ways on which body 2 lies opposite, unit vectors at contact points, shape (n, gdim).
 
@@ -64,7 +64,7 @@ def ways_between(
 
     Parameters
     ----------
-    sides : tuple of Side
+    sides : tuple of PairedFace
     directions : tuple of ndarray, shape (n_nodes, gdim)
         Of the nodes of both faces, see `Paths`.
     gone : ndarray, shape (2,)
@@ -76,7 +76,7 @@ def ways_between(
     return ways / np.linalg.norm(ways, axis=1, keepdims=True)
 
 
-def _ways_at(side: Side, directions: np.ndarray) -> np.ndarray:
+def _ways_at(side: PairedFace, directions: np.ndarray) -> np.ndarray:
     """Ways of the points of a face between those of its nodes, unit vectors (n, gdim)."""
     values = _polynomials(_order(side.face), side.t)
     ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])

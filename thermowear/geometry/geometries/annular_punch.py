@@ -17,8 +17,8 @@ from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
 from ..mesh.tagged import TaggedMesh
 from ..meshing.blocks import growing
-from ..meshing.face_profiles import Arc, Profile, Straight
-from .stacked import Section, Stacked
+from ..meshing.face_profiles import Arc, FaceProfile, Straight
+from .stacked import Rectangle, Stacked
 
 _STEEPEST = math.radians(80)
 """Largest slope of a face for which its cells remain well shaped."""
@@ -126,15 +126,15 @@ class AnnularPunch(Stacked):
                 )
 
     @property
-    def upper(self) -> Section:
-        return Section(self.inner_radius, self.outer_radius, self.punch_height)
+    def upper(self) -> Rectangle:
+        return Rectangle(self.inner_radius, self.outer_radius, self.punch_height)
 
     @property
-    def lower(self) -> Section:
-        return Section(0.0, self.plate_radius, self.plate_height)
+    def lower(self) -> Rectangle:
+        return Rectangle(0.0, self.plate_radius, self.plate_height)
 
     @property
-    def profile(self) -> Profile:
+    def profile(self) -> FaceProfile:
         """Profile of both faces."""
         middle = (self.inner_radius + self.outer_radius) / 2
         if self.torus_radius is not None:

@@ -14,7 +14,7 @@ from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
 from ..mesh.tagged import TaggedMesh
-from ..meshing.quads import Body, Sheet, grid, mesh_body, tagged_bodies
+from ..meshing.quads import MeshedBody, Sheet, grid, mesh_body, tagged_bodies
 from .on_block import near, within
 
 
@@ -103,7 +103,9 @@ class BeamOnFoundation(PlaneGeometry):
         }
         return tagged_bodies(bodies, claims)
 
-    def _rectangle(self, bottom: float, top: float, elements: int, rows: tuple[int, int]) -> Body:
+    def _rectangle(
+        self, bottom: float, top: float, elements: int, rows: tuple[int, int]
+    ) -> MeshedBody:
         """Cells over the whole length, with the number of rows within limits."""
         columns = self._columns(elements)
         wanted = round((top - bottom) / np.diff(columns).max())

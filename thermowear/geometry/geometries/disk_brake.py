@@ -16,7 +16,7 @@ from typing import Literal
 from ...case.tables.geometry import keyed
 from ..meshing.blocks import SAME
 from .pads_on_disk import PadsOnDisk
-from .stacked import Section, Stacked
+from .stacked import Rectangle, Stacked
 
 
 class DiskBrake(PadsOnDisk, Stacked):
@@ -45,12 +45,12 @@ class DiskBrake(PadsOnDisk, Stacked):
         ) and math.isclose(self.pad_outer_radius, self.disk_outer_radius, rel_tol=SAME)
 
     @property
-    def upper(self) -> Section:
-        return Section(self.pad_inner_radius, self.pad_outer_radius, self.pad_thickness)
+    def upper(self) -> Rectangle:
+        return Rectangle(self.pad_inner_radius, self.pad_outer_radius, self.pad_thickness)
 
     @property
-    def lower(self) -> Section:
-        return Section(self.disk_inner_radius, self.disk_outer_radius, self.disk_thickness / 2)
+    def lower(self) -> Rectangle:
+        return Rectangle(self.disk_inner_radius, self.disk_outer_radius, self.disk_thickness / 2)
 
     @property
     def rollers(self) -> tuple[str, ...]:

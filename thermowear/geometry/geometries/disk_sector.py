@@ -13,7 +13,7 @@ import numpy as np
 
 from ..meshing.blocks import SAME, Interval, graded_face, growing, smallest
 from ..meshing.hexes import Lattice, ends_of, level, mesh_lattice
-from ..meshing.quads import Body, tagged_bodies
+from ..meshing.quads import MeshedBody, tagged_bodies
 from .pads_on_disk import PadsOnDisk
 
 _WIDEST = math.radians(30)
@@ -85,14 +85,14 @@ class DiskSector(PadsOnDisk):
             },
         )
 
-    def _pad(self, order: int, elements: int, grading: float) -> Body:
+    def _pad(self, order: int, elements: int, grading: float) -> MeshedBody:
         radii, angles = self._face(elements, grading)
         thin, largest = self._sizes(radii, angles, elements)
         rows = growing(0.0, self.pad_thickness, thin, grading, largest)
         ends = ends_of(radii), ends_of(angles), ends_of(rows)
         return mesh_lattice(Lattice(ends, _cylindrical_map), order)
 
-    def _disk(self, order: int, elements: int, grading: float) -> Body:
+    def _disk(self, order: int, elements: int, grading: float) -> MeshedBody:
         radii, angles = self._face(elements, grading)
         thin, largest = self._sizes(radii, angles, elements)
         inside = growing(self.pad_inner_radius, self.disk_inner_radius, thin, grading, largest)

@@ -12,8 +12,8 @@ from ...case.tables.plane_geometry import HalvableGeometry
 from ...case.values.units import Length
 from ...errors import CaseError
 from ..meshing.face_ends import face_ends, growth, row_ratio
-from ..meshing.outlines import Block, ringed_body
-from ..meshing.quads import Body, mesh_body, tagged_bodies
+from ..meshing.outlines import RectangularOutline, ringed_body
+from ..meshing.quads import MeshedBody, mesh_body, tagged_bodies
 
 ORDER = 3
 """Order of the cells; nodes lie on an arc, points between them within 3e-4 h⁴/R³ of it."""
@@ -77,12 +77,12 @@ class OnBlock(Geometry):
         """Keys of body 1 that bound the contact, and its largest distance from x = 0 [m]."""
         raise NotImplementedError
 
-    def upper_body(self, mesh, zone: tuple[float, float]) -> tuple[Body, dict[str, Claim]]:
+    def upper_body(self, mesh, zone: tuple[float, float]) -> tuple[MeshedBody, dict[str, Claim]]:
         """Mesh body 1 for a contact zone.
 
         Returns
         -------
-        Body
+        MeshedBody
         claims : dict of str to callable
             Predicates of its surfaces by the last word of their names, see `tagged_bodies`.
         """
@@ -112,7 +112,7 @@ class OnBlock(Geometry):
         upper, block = self.bodies
         upper_body, upper_claims = self.upper_body(mesh, zone)
         ends, *rows = self.block_ends(mesh, zone)
-        outline = Block(self.block_reach, self.block_height, self.right_only)
+        outline = RectangularOutline(self.block_reach, self.block_height, self.right_only)
         sheets = ringed_body(outline, ends, rows, growth(mesh.face(block)[0]))
         claims = {f"{upper}_{part}": claim for part, claim in upper_claims.items()}
         claims |= {f"{block}_{part}": c for part, c in self._claims(self.block_span(ends)).items()}

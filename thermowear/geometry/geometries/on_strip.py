@@ -14,7 +14,7 @@ from ...case.values.section import KeyFault
 from ...case.values.units import Length
 from ..meshing.blocks import SAME
 from ..meshing.face_ends import growth
-from .stacked import Section, Stacked
+from .stacked import Rectangle, Stacked
 
 
 class OnStrip(Stacked, PlaneGeometry):
@@ -63,10 +63,10 @@ class OnStrip(Stacked, PlaneGeometry):
         return self.upper.right - self.upper.left
 
     @property
-    def lower(self) -> Section:
+    def lower(self) -> Rectangle:
         middle = (self.upper.left + self.upper.right) / 2
         reach = self.strip_length / 2
-        return Section(middle - reach, middle + reach, self.strip_height)
+        return Rectangle(middle - reach, middle + reach, self.strip_height)
 
     @property
     def track(self) -> float:

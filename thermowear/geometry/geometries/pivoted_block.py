@@ -13,7 +13,7 @@ from pydantic import model_validator
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
 from .on_strip import OnStrip
-from .stacked import Section
+from .stacked import Rectangle
 
 
 class PivotedBlock(OnStrip):
@@ -52,5 +52,5 @@ class PivotedBlock(OnStrip):
         return 0.0, self.pivot_height
 
     @property
-    def upper(self) -> Section:
-        return Section(self.face_start, self.face_end, self.block_height)
+    def upper(self) -> Rectangle:
+        return Rectangle(self.face_start, self.face_end, self.block_height)

@@ -13,7 +13,7 @@ from pydantic import model_validator
 from ...case.values.units import Distance, Length
 from ..meshing.blocks import Interval
 from .on_strip import OnStrip
-from .stacked import Section
+from .stacked import Rectangle
 
 
 class PunchOnStrip(OnStrip):
@@ -42,8 +42,8 @@ class PunchOnStrip(OnStrip):
         return self
 
     @property
-    def upper(self) -> Section:
-        return Section(-self.width / 2, self.width / 2, self.height)
+    def upper(self) -> Rectangle:
+        return Rectangle(-self.width / 2, self.width / 2, self.height)
 
     @property
     def lower_face(self) -> tuple[float, float]:

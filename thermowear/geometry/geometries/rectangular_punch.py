@@ -16,7 +16,7 @@ from ...case.values.section import KeyFault
 from ...case.values.units import Length
 from ..meshing.blocks import Interval, graded_face, growing, smallest
 from ..meshing.hexes import Lattice, ends_of, level, mesh_lattice
-from ..meshing.quads import Body, tagged_bodies
+from ..meshing.quads import MeshedBody, tagged_bodies
 
 
 class RectangularPunch(Geometry):
@@ -91,13 +91,13 @@ class RectangularPunch(Geometry):
             },
         )
 
-    def _punch(self, elements: int, grading: float) -> Body:
+    def _punch(self, elements: int, grading: float) -> MeshedBody:
         x, y = self._face(elements, grading)
         thin, largest = self._sizes(x, y, elements)
         z = growing(0.0, self.height, thin, grading, largest)
         return _boxes(x, y, z)
 
-    def _block(self, elements: int, grading: float) -> Body:
+    def _block(self, elements: int, grading: float) -> MeshedBody:
         x, y = self._face(elements, grading)
         thin, largest = self._sizes(x, y, elements)
         x, y = (
@@ -127,6 +127,6 @@ class RectangularPunch(Geometry):
         return np.all(np.abs(p[..., :2].mean(axis=1)) < half, axis=1)
 
 
-def _boxes(x: list[Interval], y: list[Interval], z: list[Interval]) -> Body:
+def _boxes(x: list[Interval], y: list[Interval], z: list[Interval]) -> MeshedBody:
     """Boxes between the element ends along the axes."""
     return mesh_lattice(Lattice((ends_of(x), ends_of(y), ends_of(z)), lambda p: p), 1)

@@ -18,7 +18,7 @@ Beside = tuple[list[Interval], list[Interval]]
 
 
 @dataclass(frozen=True)
-class Section:
+class Rectangle:
     """Rectangle: x (or radius) at its left and right, and its height [m]."""
 
     left: float
@@ -45,12 +45,12 @@ class Stacked(Geometry):
         return 1
 
     @property
-    def upper(self) -> Section:
+    def upper(self) -> Rectangle:
         """Section of body 1."""
         raise NotImplementedError
 
     @property
-    def lower(self) -> Section:
+    def lower(self) -> Rectangle:
         """Section of body 2."""
         raise NotImplementedError
 

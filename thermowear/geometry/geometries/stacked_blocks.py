@@ -14,7 +14,7 @@ import numpy as np
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.units import Length
 from ..meshing.blocks import growing, sizes
-from ..meshing.quads import Body, Sheet, grid, mesh_body, tagged_bodies
+from ..meshing.quads import MeshedBody, Sheet, grid, mesh_body, tagged_bodies
 from .on_block import Claim, near
 
 _THIN_ROWS = 3
@@ -72,7 +72,7 @@ class StackedBlocks(PlaneGeometry):
         blocks = {body: self._block(end, *mesh.face(body)) for body, end in ends.items()}
         return tagged_bodies(blocks, claims)
 
-    def _block(self, end: float, elements: int, grading: float) -> Body:
+    def _block(self, end: float, elements: int, grading: float) -> MeshedBody:
         """Block from the contact to y = `end`."""
         largest = abs(end) / elements
         first = largest * grading**_THIN_ROWS

@@ -8,7 +8,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 
-class Profile(Protocol):
+class FaceProfile(Protocol):
     """Meridian of a face.
 
     Attributes

@@ -15,7 +15,7 @@ from ..mesh.limits import MOST_HEXAHEDRA, check_count
 from ..mesh.nodes import reference_nodes
 from ..mesh.orders import boundary
 from .blocks import Interval, sizes
-from .quads import Body
+from .quads import MeshedBody
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Lattice:
     closed: bool = False
 
 
-def mesh_lattice(lattice: Lattice, order: int) -> Body:
+def mesh_lattice(lattice: Lattice, order: int) -> MeshedBody:
     """Mesh a lattice with cells of an order."""
     check_count(*(len(ends) - 1 for ends in lattice.ends), most=MOST_HEXAHEDRA)
     u, v, w = (_nodes(ends, order) for ends in lattice.ends)
@@ -50,7 +50,7 @@ def mesh_lattice(lattice: Lattice, order: int) -> Body:
     place = first + within.T[:, None]
     place[1] %= len(v)
     cells = np.ravel_multi_index(tuple(place), shape)
-    return Body(points, cells, boundary("hexahedron", order, cells))
+    return MeshedBody(points, cells, boundary("hexahedron", order, cells))
 
 
 def ends_of(intervals: list[Interval]) -> np.ndarray:

@@ -46,7 +46,7 @@ class Disc:
 
 
 @dataclass(frozen=True)
-class Block:
+class RectangularOutline:
     """Rectangle below y = 0, an `Outline`; `side` is the distance of its sides from x = 0."""
 
     side: float

@@ -38,7 +38,7 @@ class Sheet:
 
 
 @dataclass(frozen=True)
-class Body:
+class MeshedBody:
     """Meshed body, of quadrilaterals in the plane or of hexahedra in space.
 
     Attributes
@@ -99,23 +99,23 @@ def ruled(
     return Sheet(cells, place)
 
 
-def mesh_body(sheets: list[Sheet], order: int) -> Body:
+def mesh_body(sheets: list[Sheet], order: int) -> MeshedBody:
     """Cells of all sheets, with coinciding nodes merged."""
     nodes = np.concatenate([_nodes(sheet, order) for sheet in sheets])
     points, cells = _joined(nodes)
     zone = np.repeat([sheet.zone for sheet in sheets], [len(sheet.corners) for sheet in sheets])
     zones = {str(name): np.flatnonzero(zone == name) for name in np.unique(zone) if name}
-    return Body(points, cells, boundary("quadrilateral", order, cells), zones)
+    return MeshedBody(points, cells, boundary("quadrilateral", order, cells), zones)
 
 
 def tagged_bodies(
-    bodies: dict[str, Body], surfaces: dict[str, Callable[[np.ndarray], np.ndarray]]
+    bodies: dict[str, MeshedBody], surfaces: dict[str, Callable[[np.ndarray], np.ndarray]]
 ) -> TaggedMesh:
     """Assemble meshed bodies and name their boundary.
 
     Parameters
     ----------
-    bodies : dict of str to Body
+    bodies : dict of str to MeshedBody
         Bodies by name, body 1 first.
     surfaces : dict of str to callable
         Predicate of each surface, named ``body_surface``: maps the coordinates of the nodes of

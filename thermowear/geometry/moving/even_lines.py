@@ -11,7 +11,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from .skeleton import Line
+from .skeleton import OutlinePiece
 
 _UNEVEN = 1.6
 """Largest length ratio of the two edges of a pair."""
@@ -22,7 +22,7 @@ Span = tuple[float, float, float]
 """Start, middle and end of a pair, as edge numbers and fractions."""
 
 
-def even(lines: list[Line]) -> list[np.ndarray]:
+def even(lines: list[OutlinePiece]) -> list[np.ndarray]:
     """Edge ends of the new division of each line, as numbers and fractions of its edges."""
     spans = [_pairs(_sizes(line)) for line in lines]
     while True:
@@ -61,7 +61,7 @@ def _parts(span: Span, divided: np.bool) -> list[Span]:
     return [(a, (a + b) / 2, b) for a, b in ((start, middle), (middle, end))]
 
 
-def _limits(lines: list[Line], lengths: list[np.ndarray]) -> list[np.ndarray]:
+def _limits(lines: list[OutlinePiece], lengths: list[np.ndarray]) -> list[np.ndarray]:
     """Largest length of the pairs of each line, given by their neighbours."""
     at = defaultdict(list)
     for line, own in zip(lines, lengths, strict=True):
@@ -74,11 +74,11 @@ def _limits(lines: list[Line], lengths: list[np.ndarray]) -> list[np.ndarray]:
     return found
 
 
-def _sizes(line: Line) -> np.ndarray:
+def _sizes(line: OutlinePiece) -> np.ndarray:
     return np.linalg.norm(line.edges[:, -1] - line.edges[:, 0], axis=1)
 
 
-def _lengths(line: Line, spans: list[Span]) -> np.ndarray:
+def _lengths(line: OutlinePiece, spans: list[Span]) -> np.ndarray:
     """Lengths of pairs, with uniform chord length within each edge [m]."""
     so_far = np.concatenate([[0.0], np.cumsum(_sizes(line))])
     start, _, end = np.array(spans).T

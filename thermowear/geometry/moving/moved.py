@@ -29,7 +29,7 @@ _SYMMETRIC = {
 
 
 @dataclass(frozen=True)
-class Side:
+class OutlineSide:
     """Side: smooth part of a body's outline adjacent to an end of its worn face.
 
     Attributes
@@ -139,7 +139,7 @@ class MovableBody:
         known = np.unique(self._edges)
         return self._mesh.points + extended(self._mesh, self._cells, known, outlined)
 
-    def _slide_displacement(self, side: Side, way: float) -> np.ndarray:
+    def _slide_displacement(self, side: OutlineSide, way: float) -> np.ndarray:
         """Displacement of the nodes of a side along it, given that of its first node [m]."""
         points = self._mesh.points[side.nodes]
         if not side.is_corner:
@@ -150,7 +150,7 @@ class MovableBody:
         before = np.minimum(to, 0.0)[:, None] * side.inward  # a face that has grown
         return where + before - points
 
-    def _side(self, ends: np.ndarray) -> Side:
+    def _side(self, ends: np.ndarray) -> OutlineSide:
         """Side that begins at the first of the two end nodes of the face."""
         points, at = self._mesh.points, defaultdict(list)
         on_face = set(self.face.tolist())
@@ -171,10 +171,10 @@ class MovableBody:
             direction = _unit(points[onward[0][-1]] - points[onward[0][-2]])
         along = np.concatenate(nodes)
         if len(along) == 1:
-            return Side(along, np.zeros(2), False)
+            return OutlineSide(along, np.zeros(2), False)
         inward = _unit(points[along[1]] - points[along[0]])
         from_face = _unit(points[ends[0]] - points[ends[1]])
-        return Side(along, inward, bool(inward @ from_face < _CORNER))
+        return OutlineSide(along, inward, bool(inward @ from_face < _CORNER))
 
 
 def extended(

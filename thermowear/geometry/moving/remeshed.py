@@ -19,7 +19,7 @@ from ..mesh.tagged import TaggedMesh
 from .even_lines import even
 from .moved import extended
 from .new_face import NewFace, divided
-from .skeleton import Line, skeleton
+from .skeleton import OutlinePiece, skeleton
 
 _ALGORITHMS = (6, 8, 5)
 """gmsh's algorithms: frontal-Delaunay, its variant for quads, Delaunay; the best one varies."""
@@ -80,7 +80,7 @@ def meshed_anew(
 
 
 def _meshed(
-    mesh: TaggedMesh, parts: tuple[str, ...], lines: list[Line], algorithm: int
+    mesh: TaggedMesh, parts: tuple[str, ...], lines: list[OutlinePiece], algorithm: int
 ) -> TaggedMesh:
     """Mesh a body within its boundary lines."""
     every = np.concatenate([line.edges.reshape(-1, 2) for line in lines])
@@ -106,7 +106,7 @@ def _meshed(
         return _read(model, mesh, tags, lines, corners, (middle, size))
 
 
-def _edges_intersect(lines: list[Line]) -> bool:
+def _edges_intersect(lines: list[OutlinePiece]) -> bool:
     """Test whether chords of edges intersect."""
     starts = np.concatenate([line.edges[:, 0] for line in lines])
     ends = np.concatenate([line.edges[:, -1] for line in lines])
@@ -121,7 +121,7 @@ def _signed_areas(starts: np.ndarray, ends: np.ndarray, points: np.ndarray) -> n
     return way[..., 0] * to[..., 1] - way[..., 1] * to[..., 0]
 
 
-def _draw(model, lines: list[Line]) -> list[np.ndarray]:
+def _draw(model, lines: list[OutlinePiece]) -> list[np.ndarray]:
     """Add lines and their edges to a gmsh model; returns the node numbers of each line."""
     points = {
         end: line.edges[i, i] for line in lines for i, end in zip((0, -1), line.ends, strict=True)
@@ -146,7 +146,7 @@ def _draw(model, lines: list[Line]) -> list[np.ndarray]:
     return result
 
 
-def _loops(model, lines: list[Line], tag: int) -> list[int]:
+def _loops(model, lines: list[OutlinePiece], tag: int) -> list[int]:
     """Loops of lines around a part, the outer one first."""
     following = {}
     for number, line in enumerate(lines, start=1):
@@ -167,7 +167,7 @@ def _loops(model, lines: list[Line], tag: int) -> list[int]:
 
 
 def _read(
-    model, mesh: TaggedMesh, tags: list[int], lines: list[Line], corners, scale
+    model, mesh: TaggedMesh, tags: list[int], lines: list[OutlinePiece], corners, scale
 ) -> TaggedMesh:
     """Body as meshed by gmsh, with the nodes of its lines moved back to their exact positions."""
     numbers, places, _ = model.mesh.getNodes()

@@ -22,7 +22,7 @@ Label = tuple[int, tuple[int, ...], bool]
 
 
 @dataclass(frozen=True)
-class Line:
+class OutlinePiece:
     """Boundary line of one or two parts.
 
     Attributes
@@ -45,12 +45,12 @@ class Line:
     parts: dict[int, bool]
     is_face: bool
 
-    def backwards(self) -> Line:
+    def backwards(self) -> OutlinePiece:
         """Copy with reversed direction."""
         parts = {part: not left for part, left in self.parts.items()}
         return replace(self, ends=self.ends[::-1], edges=self.edges[::-1, ::-1], parts=parts)
 
-    def cut(self, ends: np.ndarray) -> Line:
+    def cut(self, ends: np.ndarray) -> OutlinePiece:
         """Copy with another division into edges.
 
         Parameters
@@ -72,7 +72,7 @@ class Line:
         return replace(self, edges=edges)
 
 
-def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list[Line]:
+def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list[OutlinePiece]:
     """Boundary lines of a body of a plane mesh.
 
     Parameters
@@ -109,7 +109,7 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
         along = {part: bool(left_of == forward) for part, left_of in beside[first].items()}
         ends = int(chain[0][0]), int(chain[-1][-1])
         surface, _, is_face = labels[key]
-        lines.append(Line(ends, mesh.points[np.array(chain)], surface, along, is_face))
+        lines.append(OutlinePiece(ends, mesh.points[np.array(chain)], surface, along, is_face))
     return lines
 
 

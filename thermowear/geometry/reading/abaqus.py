@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .contents import Block, Contents, numbering, parsed
+from .contents import CellBlock, MeshContents, numbering, parsed
 
 _PLANE = re.compile(r"(CPS|CPE|CPEG|CAX|M3D|STRI|S|DC2D|DCAX|WARP2D|R3D)(3|4|6|8|9)(?!\d)")
 _LINE = re.compile(r"(T2D|T3D|B2|B3|SAX|R2D|RAX|DC1D|W2D|W3D)\d*")
@@ -37,7 +37,7 @@ Member = int | str | tuple[int, int, int] | np.ndarray
 """Member of a set: a number, the name of another set, a range (first, last, step), or numbers."""
 
 
-def read_abaqus(text: str) -> Contents:
+def read_abaqus(text: str) -> MeshContents:
     """Read the text of an input file.
 
     Raises
@@ -130,7 +130,7 @@ class _Deck:
         elif kind == "ELEMENT" and all(len(row) > 1 and _is_side(row[1]) for row in rows):
             self.surfaces[name] = [(_member(row[0]), int(row[1][1:])) for row in rows]
 
-    def result(self) -> Contents:
+    def result(self) -> MeshContents:
         if max(len(self.node_sets), len(self.element_sets), len(self.surfaces)) > _MOST_SETS:
             raise ValueError(f"it has more than {_MOST_SETS} sets")
         tags, points = self._nodes()
@@ -148,17 +148,17 @@ class _Deck:
         for block in self.blocks:
             mine = {n: np.flatnonzero(np.isin(block.numbers, found)) for n, found in sets.items()}
             own = {name: at for name, at in mine.items() if len(at)}
-            blocks.append(Block(block.kind, positions(block.nodes), own))
+            blocks.append(CellBlock(block.kind, positions(block.nodes), own))
         for name, sides in self.surfaces.items():
             lines = [self._sides(of, side, sets) for of, side in sides]
             nodes = positions(np.concatenate([np.empty((0, 2), int), *lines]))
             if len(nodes):
-                blocks.append(Block("line", nodes, {name: np.arange(len(nodes))}))
+                blocks.append(CellBlock("line", nodes, {name: np.arange(len(nodes))}))
         node_sets = {
             name: np.sort(positions(_resolved(name, self.node_sets, tags)))
             for name in self.node_sets
         }
-        return Contents(points, blocks, node_sets)
+        return MeshContents(points, blocks, node_sets)
 
     def _merge(self) -> None:
         """Merge the elements of all cards of one type."""

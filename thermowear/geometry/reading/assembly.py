@@ -11,7 +11,7 @@ from ..mesh.nodes import CORNERS
 from ..mesh.orders import boundary, compact
 from ..mesh.tagged import TaggedMesh
 from .cell_checks import oriented
-from .contents import Block, Contents
+from .contents import CellBlock, MeshContents
 
 _TYPES = {corners: name for name, corners in CORNERS.items()}
 _ORDERS = {(3, 3): 1, (3, 6): 2, (3, 10): 3, (4, 4): 1, (4, 8): 2, (4, 9): 2, (4, 16): 3}
@@ -33,7 +33,7 @@ class Named:
     body: int | None = None
 
 
-def assemble(contents: Contents, bodies: list[Named], surfaces: list[Named]) -> TaggedMesh:
+def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named]) -> TaggedMesh:
     """Select the cells of the bodies and the edges of the surfaces.
 
     Raises
@@ -102,7 +102,7 @@ def _unknown(part: Named, known: list[str], what: str) -> CaseError:
     return CaseError(f"{part.key}: the file has no {what} named {part.in_file!r}; {names}")
 
 
-def _cells_of(contents: Contents, body: Named) -> Block:
+def _cells_of(contents: MeshContents, body: Named) -> CellBlock:
     """Cells of a body, in one block."""
     blocks = [b for b in contents.blocks if b.dim == 2 and len(b.sets.get(body.in_file, ()))]
     if not blocks:
@@ -116,14 +116,14 @@ def _cells_of(contents: Contents, body: Named) -> Block:
     shape = shapes.pop()
     if shape not in _ORDERS:
         raise CaseError(f"{body.key}: cells with {shape[1]} nodes are not supported")
-    return Block(blocks[0].kind, nodes, {})
+    return CellBlock(blocks[0].kind, nodes, {})
 
 
 def _describe(shapes) -> str:
     return " and ".join(f"{_TYPES.get(c, 'cell')}s of {n} nodes" for c, n in sorted(shapes))
 
 
-def _check_one_type(found: list[Block]) -> None:
+def _check_one_type(found: list[CellBlock]) -> None:
     shapes = {(block.corners, block.nodes.shape[1]) for block in found}
     if len(shapes) > 1:
         raise CaseError(
@@ -132,7 +132,7 @@ def _check_one_type(found: list[Block]) -> None:
         )
 
 
-def _check_disjoint(found: list[Block], bodies: list[Named]) -> None:
+def _check_disjoint(found: list[CellBlock], bodies: list[Named]) -> None:
     """Reject cells that belong to both bodies or occur twice."""
     cells = np.sort(np.concatenate([b.nodes[:, : b.corners] for b in found]), axis=1)
     double = len(cells) - len(np.unique(cells, axis=0))
@@ -159,7 +159,11 @@ def _with_centre_nodes(
 
 
 def _edges_of(
-    contents: Contents, surface: Named, edges: list[np.ndarray], bodies: list[Named], copies: int
+    contents: MeshContents,
+    surface: Named,
+    edges: list[np.ndarray],
+    bodies: list[Named],
+    copies: int,
 ) -> np.ndarray:
     """Boundary edges of a surface; the nodes of body i are those of the file plus i * copies."""
     original = [of_body - i * copies for i, of_body in enumerate(edges)]
@@ -173,7 +177,7 @@ def _edges_of(
 
 
 def _members(
-    contents: Contents, surface: Named, edges: list[np.ndarray], bodies: list[Named]
+    contents: MeshContents, surface: Named, edges: list[np.ndarray], bodies: list[Named]
 ) -> list[np.ndarray]:
     """Masks of the boundary edges of each body on a surface, given by its lines or nodes."""
     name = surface.in_file
@@ -204,7 +208,7 @@ def _pairs(nodes: np.ndarray) -> np.ndarray:
 
 
 def _check_lines(
-    contents: Contents,
+    contents: MeshContents,
     surface: Named,
     wanted: list[np.ndarray],
     own: np.ndarray,

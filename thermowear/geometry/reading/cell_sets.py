@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import CaseError
 from ..mesh.tagged import TaggedMesh
 from .assembly import Named
-from .contents import Block, Contents
+from .contents import CellBlock, MeshContents
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Union:
     key: str
 
 
-def joined(contents: Contents, bodies: list[Union]) -> tuple[Contents, list[Named]]:
+def joined(contents: MeshContents, bodies: list[Union]) -> tuple[MeshContents, list[Named]]:
     """Merge the cell sets of each body; returns the contents and the names of the merged sets.
 
     Raises
@@ -45,7 +45,7 @@ def joined(contents: Contents, bodies: list[Union]) -> tuple[Contents, list[Name
 
 
 def divided(
-    mesh: TaggedMesh, contents: Contents, bodies: list[Named], sets: list[Named]
+    mesh: TaggedMesh, contents: MeshContents, bodies: list[Named], sets: list[Named]
 ) -> TaggedMesh:
     """Mesh with cell sets of its bodies as separate parts, listed after the bodies.
 
@@ -53,7 +53,7 @@ def divided(
     ----------
     mesh : TaggedMesh
         Mesh of the bodies.
-    contents : Contents
+    contents : MeshContents
         Contents of its file.
     bodies, sets : list of Named
         `Named.body` of a set is the body that contains it.
@@ -93,19 +93,19 @@ def divided(
     return replace(mesh, cell_tags=tags, bodies=names)
 
 
-def _count(blocks: list[Block], name: str) -> int:
+def _count(blocks: list[CellBlock], name: str) -> int:
     """Number of plane cells in a set."""
     return sum(len(block.sets.get(name, ())) for block in blocks if block.dim == 2)
 
 
-def _with_union(block: Block, names: tuple[str, ...], union: str) -> Block:
+def _with_union(block: CellBlock, names: tuple[str, ...], union: str) -> CellBlock:
     found = [block.sets[name] for name in names if name in block.sets]
     if not found:
         return block
     return replace(block, sets=block.sets | {union: np.unique(np.concatenate(found))})
 
 
-def _members(contents: Contents, body: str, name: str) -> np.ndarray:
+def _members(contents: MeshContents, body: str, name: str) -> np.ndarray:
     """Mask of the cells of a body, in the order of `assemble`, that are in a set."""
     return np.concatenate(
         [

@@ -28,7 +28,7 @@ _SHOWN = 40
 
 
 @dataclass
-class Block:
+class CellBlock:
     """Elements of one type.
 
     Attributes
@@ -55,19 +55,19 @@ class Block:
 
 
 @dataclass
-class Contents:
+class MeshContents:
     """Contents of a mesh file.
 
     Attributes
     ----------
     points : ndarray, shape (n_points, 2 or 3)
         Coordinates in the file's unit of length.
-    blocks : list of Block
+    blocks : list of CellBlock
     node_sets : dict of str to ndarray of int
     """
 
     points: np.ndarray
-    blocks: list[Block]
+    blocks: list[CellBlock]
     node_sets: dict[str, np.ndarray] = field(default_factory=dict)
 
     def names(self, dim: int) -> list[str]:
@@ -75,7 +75,7 @@ class Contents:
         found = [block.sets for block in self.blocks if block.dim == dim]
         return sorted({name for sets in found for name in sets})
 
-    def checked(self) -> Contents:
+    def checked(self) -> MeshContents:
         """Copy without point elements, after checks of the others.
 
         Raises
@@ -96,7 +96,7 @@ class Contents:
                 raise ValueError(f"an element of type {block.kind} has a node twice")
         if self.points.ndim != 2 or self.points.shape[1] not in (2, 3):
             raise ValueError("nodes must have two or three coordinates")
-        return Contents(self.points, blocks, self.node_sets)
+        return MeshContents(self.points, blocks, self.node_sets)
 
 
 def numbering(numbers: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:

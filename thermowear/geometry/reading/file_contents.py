@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ...errors import CaseError
 from .abaqus import read_abaqus
-from .contents import Contents, shown
+from .contents import MeshContents, shown
 from .gmsh_file import read_gmsh
 from .isolated import read_isolated
 
@@ -28,10 +28,10 @@ class _Kind:
 
     name: str
     heads: tuple[bytes, ...]
-    read: Callable[[Path], Contents]
+    read: Callable[[Path], MeshContents]
 
 
-def read_contents(path: Path) -> Contents:
+def read_contents(path: Path) -> MeshContents:
     """Read a mesh file; its ending selects the format.
 
     Raises
@@ -79,15 +79,15 @@ def _check_file(path: Path, kind: _Kind) -> None:
         )
 
 
-def _read_abaqus(path: Path) -> Contents:
+def _read_abaqus(path: Path) -> MeshContents:
     return read_abaqus(path.read_text(encoding="utf-8-sig", errors="replace"))
 
 
-def _read_gmsh(path: Path) -> Contents:
+def _read_gmsh(path: Path) -> MeshContents:
     return read_gmsh(path.read_bytes().removeprefix(b"\xef\xbb\xbf"))
 
 
-def _by_libraries(path: Path) -> Contents:
+def _by_libraries(path: Path) -> MeshContents:
     return read_isolated(path, path.suffix.lower())
 
 

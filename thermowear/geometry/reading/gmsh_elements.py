@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .contents import Block
+from .contents import CellBlock
 from .gmsh_numbers import Binary, Numbers, Text
 
 _CELLS = {
@@ -40,7 +40,7 @@ class Elements:
     nodes: np.ndarray
     groups: list[np.ndarray]
 
-    def named(self, names: dict[tuple[int, int], str], positions) -> Block:
+    def named(self, names: dict[tuple[int, int], str], positions) -> CellBlock:
         """Block with node indices instead of numbers, and sets by the names of groups."""
         dim = {"vert": 0, "line": 1}.get(self.kind[:4], 2)
         sets: dict[str, list[np.ndarray]] = {}
@@ -49,7 +49,7 @@ class Elements:
                 members = np.flatnonzero(np.abs(of_groups) == group)
                 sets.setdefault(names.get((dim, int(group)), str(group)), []).append(members)
         unions = {name: np.unique(np.concatenate(parts)) for name, parts in sets.items()}
-        return Block(self.kind, positions(self.nodes), unions)
+        return CellBlock(self.kind, positions(self.nodes), unions)
 
 
 def _kind(number: int) -> str:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from .contents import Contents, numbering, shown
+from .contents import MeshContents, numbering, shown
 from .gmsh_elements import elements_2, elements_4, entities, nodes_2, nodes_4
 from .gmsh_numbers import Binary, Numbers, Text
 
@@ -24,7 +24,7 @@ _SECTION = re.compile(rb"\$(\w+)[ \t]*\r?\n")
 _NAME = re.compile(r'\s*(\d+)\s+(-?\d+)\s+"([^"\n]*)"\s*')
 
 
-def read_gmsh(data: bytes) -> Contents:
+def read_gmsh(data: bytes) -> MeshContents:
     """Read the bytes of a file.
 
     Raises
@@ -50,7 +50,7 @@ def read_gmsh(data: bytes) -> Contents:
     for source in sources.values():
         source.finished()
     positions = numbering(tags)
-    return Contents(points, [block.named(names, positions) for block in blocks])
+    return MeshContents(points, [block.named(names, positions) for block in blocks])
 
 
 def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .contents import Block, Contents
+from .contents import CellBlock, MeshContents
 
 _READER = Path(__file__).with_name("isolated_reader.py")
 _SECONDS = 60
@@ -28,7 +28,7 @@ _LONGEST = 300
 """Largest number of characters of an error message."""
 
 
-def read_isolated(path: Path, ending: str) -> Contents:
+def read_isolated(path: Path, ending: str) -> MeshContents:
     """Read a .vtu, .xdmf or .med file.
 
     Raises
@@ -58,14 +58,14 @@ def read_isolated(path: Path, ending: str) -> Contents:
     return _unpacked(done.stdout)
 
 
-def _unpacked(data: bytes) -> Contents:
+def _unpacked(data: bytes) -> MeshContents:
     with np.load(io.BytesIO(data), allow_pickle=False) as file:
         arrays = dict(file)
     about = json.loads(str(arrays["about"]))
     blocks = [
-        Block(kind, arrays[f"nodes_{index}"], {}) for index, kind in enumerate(about["kinds"])
+        CellBlock(kind, arrays[f"nodes_{index}"], {}) for index, kind in enumerate(about["kinds"])
     ]
     for number, (index, name) in enumerate(about["sets"]):
         blocks[index].sets[name] = arrays[f"set_{number}"]
     sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(about["node_sets"])}
-    return Contents(arrays["points"], blocks, sets)
+    return MeshContents(arrays["points"], blocks, sets)

@@ -10,7 +10,7 @@ import numpy as np
 from .dimensions import Dimension
 from .parser import Parser, Units
 from .tokens import fault
-from .tree import Call, Constant, Extreme, Node, Power, Product, Sum, Variable
+from .tree import Call, ConstantNode, Extreme, Node, Power, Product, Sum, Variable
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Expression:
     @property
     def constant(self) -> float | None:
         """Value of an expression without variables."""
-        return self.node.value if isinstance(self.node, Constant) else None
+        return self.node.value if isinstance(self.node, ConstantNode) else None
 
     def value(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
         """Value in SI at arrays of the variables, of their common shape."""

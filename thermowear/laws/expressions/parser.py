@@ -22,7 +22,7 @@ import numpy as np
 from .dimensions import Dimension
 from .functions import EXTREMES, FUNCTIONS, KNOWN
 from .tokens import Token, fault, tokens
-from .tree import Call, Constant, Extreme, Node, Power, Product, Sum, Variable
+from .tree import Call, ConstantNode, Extreme, Node, Power, Product, Sum, Variable
 from .unit_text import unit_end
 
 Units = Callable[[str], tuple[float, Dimension]]
@@ -55,7 +55,7 @@ class Parsed:
     @property
     def constant(self) -> float | None:
         """Value of a constant."""
-        return self.node.value if isinstance(self.node, Constant) else None
+        return self.node.value if isinstance(self.node, ConstantNode) else None
 
 
 class Parser:
@@ -213,7 +213,7 @@ class Parser:
         self._at += 1
         end = unit_end(self._tokens, self._at, self._variables)
         if end == self._at:
-            return Parsed(Constant(number), Dimension(), token.start)
+            return Parsed(ConstantNode(number), Dimension(), token.start)
         start = self._next.start
         text = self._text[start : self._tokens[end - 1].end]
         try:
@@ -224,7 +224,7 @@ class Parser:
             raise fault(token.start, "a number must be finite in SI, too")
         literal = "plain" if end == self._at + 1 else "compound"
         self._at = end
-        return Parsed(Constant(number * factor), dimension, token.start, literal)
+        return Parsed(ConstantNode(number * factor), dimension, token.start, literal)
 
     def _named(self) -> Parsed:
         token = self._next
@@ -293,4 +293,4 @@ class Parser:
             value = float(node.at({}, "")[0])
         if not np.isfinite(value):
             raise fault(start, f"the value of this part is {value:g}: not a finite number")
-        return Parsed(Constant(value), dimension, start)
+        return Parsed(ConstantNode(value), dimension, start)

@@ -33,7 +33,7 @@ def _chain(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Constant:
+class ConstantNode:
     """A number."""
 
     value: float
@@ -109,7 +109,7 @@ class Power:
         exponent, exponent_slope = self.exponent.at(values, by)
         value = np.power(base, exponent)
         slope = _chain(exponent * np.power(base, exponent - 1.0), base_slope)
-        if not isinstance(self.exponent, Constant):
+        if not isinstance(self.exponent, ConstantNode):
             logarithm = np.log(np.where(value == 0.0, 1.0, base))
             slope = slope + _chain(value * logarithm, exponent_slope)
         return value, slope

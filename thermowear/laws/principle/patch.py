@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..distribution import Spreading
+from ..distribution import Distribution
 from ..motions import RigidMotion
 from ..power_wear import PowerWear
 from .steady import SteadyWear, steady_pressure
@@ -83,7 +83,7 @@ class ContactPatch:
         return (self.weights * pressure) @ np.cross(arms, self.traction)
 
     def steady(
-        self, load, laws: Sequence[PowerWear], spread: Sequence[Spreading] | None = None
+        self, load, laws: Sequence[PowerWear], spread: Sequence[Distribution] | None = None
     ) -> SteadyWear:
         """The steady state under a load along each motion; see `steady_pressure`."""
         return steady_pressure(

@@ -18,7 +18,7 @@ from typing import TypeGuard
 import numpy as np
 
 from ...errors import ComputationError
-from ..distribution import InPlace, Spreading
+from ..distribution import Distribution, InPlace
 from ..interfaces import Values, WearRate
 from ..power_wear import PowerWear
 from .interior_point import solve
@@ -61,7 +61,7 @@ def steady_pressure(
     load: np.ndarray,
     laws: Sequence[WearRate],
     speed: np.ndarray,
-    spread: Sequence[Spreading] | None = None,
+    spread: Sequence[Distribution] | None = None,
     factors: np.ndarray | None = None,
     temperature: np.ndarray | None = None,
     friction: Values = 0.0,
@@ -83,7 +83,7 @@ def steady_pressure(
         Of the wearing bodies, one or two; rates that grow with the pressure.
     speed : ndarray, shape (n,)
         Sliding speed [m/s].
-    spread : sequence of Spreading, optional
+    spread : sequence of Distribution, optional
         Where the wear of each body goes; by default each wears in place.
     factors : ndarray, shape (n_wearing, n), optional
         Of the wear rates at the points, by default 1.
@@ -161,7 +161,7 @@ def _in_closed_form(law: WearRate) -> TypeGuard[PowerWear]:
 
 
 def _common(
-    laws: Sequence[BoundLaw], factors: np.ndarray, spread: Sequence[Spreading]
+    laws: Sequence[BoundLaw], factors: np.ndarray, spread: Sequence[Distribution]
 ) -> Common | None:
     """The means of the bodies' rates that points have in common; None without any."""
     n = factors.shape[1]

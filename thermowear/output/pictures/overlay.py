@@ -26,7 +26,7 @@ singularities at corners of unworn faces would hide all other values."""
 
 
 @dataclass(frozen=True)
-class Panel:
+class OverlayPanel:
     """Panel of a picture.
 
     Attributes
@@ -43,14 +43,14 @@ class Panel:
     from_zero: bool = False
 
 
-def draw_overlay(runs: Mapping[str, Path], panels: Sequence[Panel], path: Path) -> None:
+def draw_overlay(runs: Mapping[str, Path], panels: Sequence[OverlayPanel], path: Path) -> None:
     """Draw quantities of several runs for comparison.
 
     Parameters
     ----------
     runs : dict of str to Path
         Results folders by their legend entry.
-    panels : sequence of Panel
+    panels : sequence of OverlayPanel
     path : Path
         Picture to write.
     """

@@ -11,7 +11,7 @@ from typing import Any
 
 from ...errors import CaseError
 from .columns import Table, output_times, read_columns, shown_table
-from .figures import Balance, Figure, balances, key_figures
+from .figures import BalanceFigure, Figure, balances, key_figures
 from .glance import table_lines
 from .verdict import Verdict, verdict
 
@@ -53,14 +53,14 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Contents:
+class ReportContents:
     """Contents of a report.
 
     Attributes
     ----------
     title : str
     verdict : Verdict
-    balances : list of Balance
+    balances : list of BalanceFigure
     groups : dict of str to list of Figure
     pictures : list of Picture
     drawable : bool
@@ -77,7 +77,7 @@ class Contents:
 
     title: str
     verdict: Verdict
-    balances: list[Balance]
+    balances: list[BalanceFigure]
     groups: dict[str, list[Figure]]
     pictures: list[Picture]
     drawable: bool
@@ -88,7 +88,7 @@ class Contents:
     folder: Path
 
 
-def read_contents(folder: Path) -> Contents:
+def read_contents(folder: Path) -> ReportContents:
     """Read a results folder, finished or not.
 
     Raises
@@ -106,7 +106,7 @@ def read_contents(folder: Path) -> Contents:
         summary_file, case_file = folder / "summary.json", folder / "case.resolved.toml"
         summary = _object(summary_file) if summary_file.is_file() else {}
         text, case = _toml(case_file) if case_file.is_file() else ("", {})
-        return Contents(
+        return ReportContents(
             title=str(summary.get("title") or case.get("title") or folder.absolute().name),
             verdict=verdict(run, summary),
             balances=balances(summary),

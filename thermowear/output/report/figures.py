@@ -120,7 +120,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Balance:
+class BalanceFigure:
     """Result of a balance check; `good` is None if there is nothing to balance."""
 
     label: str
@@ -145,16 +145,16 @@ def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
     return groups
 
 
-def balances(summary: dict[str, Any]) -> list[Balance]:
+def balances(summary: dict[str, Any]) -> list[BalanceFigure]:
     """Balance errors of a summary compared with the allowed limit."""
     found = []
     for key, kept in BALANCES.items():
         error = summary.get(key)
         if isinstance(error, int | float):
             text = f"{error:.1e}" if math.isfinite(error) else NOTHING
-            found.append(Balance(kept.name, f"{text} (allowed {ALLOWED:g})", holds(error)))
+            found.append(BalanceFigure(kept.name, f"{text} (allowed {ALLOWED:g})", holds(error)))
         elif key in summary:
-            found.append(Balance(kept.name, NOTHING, None))
+            found.append(BalanceFigure(kept.name, NOTHING, None))
     return found
 
 

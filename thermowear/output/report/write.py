@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from ..report_file import put
-from .contents import Contents, read_contents
+from .contents import ReportContents, read_contents
 from .engineering import NOTHING
 
 _UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -35,7 +35,7 @@ def write_report(folder: Path) -> Path:
     return path
 
 
-def page(contents: Contents) -> str:
+def page(contents: ReportContents) -> str:
     """Render the contents as HTML; all text is escaped."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 

@@ -10,7 +10,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
 
 from .keys import Axis
-from .record import Record
+from .record import VariantRecord
 
 LINES = ("-", "--", "-.", ":")
 _LEGEND_LIMIT = 6
@@ -26,7 +26,7 @@ class Layout:
 
     Attributes
     ----------
-    record : Record
+    record : VariantRecord
     colored : int
         Index of the key shown by colour, or along the horizontal axis.
     lined : int or None
@@ -35,7 +35,7 @@ class Layout:
         Title of each column of panels, and mask of its variants.
     """
 
-    record: Record
+    record: VariantRecord
     colored: int
     lined: int | None
     columns: list[tuple[str, np.ndarray]]
@@ -72,7 +72,7 @@ class Layout:
         return "-" if self.lined is None else LINES[places[self.lined]]
 
 
-def lay_out(record: Record) -> Layout:
+def lay_out(record: VariantRecord) -> Layout:
     """Assign the swept keys to visual channels.
 
     The numeric key with most values is shown by colour, the next key with few values by line style;

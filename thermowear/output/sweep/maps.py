@@ -14,14 +14,14 @@ from .. import tables
 from ..pictures.curves import STYLE
 from ..pictures.maps import triangulated
 from ..quantities import INTERFACE
-from .record import Record
+from .record import VariantRecord
 
 _MOST = 12
 _ACROSS = 4
 _LEVELS = 12
 
 
-def draw_shape_maps(record: Record, path: Path) -> None:
+def draw_shape_maps(record: VariantRecord, path: Path) -> None:
     """Draw maps of up to twelve variants with a common scale; of more, evenly spaced ones."""
     count = min(len(record.folders), _MOST)
     chosen = np.unique(np.linspace(0, len(record.folders) - 1, count).round().astype(int))
@@ -55,6 +55,6 @@ def draw_shape_maps(record: Record, path: Path) -> None:
         figure.savefig(path)
 
 
-def _named(record: Record, variant: int) -> str:
+def _named(record: VariantRecord, variant: int) -> str:
     places = zip(record.axes, record.places[variant], strict=True)
     return "\n".join(f"{axis.key} = {axis.words[place]}" for axis, place in places)

@@ -14,7 +14,7 @@ from ..pictures.curves import STYLE
 from ..quantities import INTERFACE, Quantity
 from .layout import LINES, Layout, is_wide
 from .legend import add_legend, tallest
-from .record import Record
+from .record import VariantRecord
 
 _EQUAL = 1e-6
 """Relative difference below which numbers are considered equal."""
@@ -112,7 +112,7 @@ def _others(layout: Layout) -> list[int]:
     return [k for k in range(len(axes)) if k != layout.colored and len(axes[k].words) > 1]
 
 
-def _numbers(record: Record) -> dict[str, np.ndarray]:
+def _numbers(record: VariantRecord) -> dict[str, np.ndarray]:
     """Numbers present in all variants, and the position of the largest pressure."""
     found = record.numbers | {"place": np.array([_place(f) for f in record.folders])}
     known = {name: found[name] for name in _NUMBERS if name in found}

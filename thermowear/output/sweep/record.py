@@ -15,7 +15,7 @@ from .keys import Axis, axis
 
 
 @dataclass(frozen=True)
-class Record:
+class VariantRecord:
     """Completed variants of a sweep.
 
     Attributes
@@ -35,14 +35,14 @@ class Record:
     folders: list[Path]
     numbers: dict[str, np.ndarray]
 
-    def only(self, chosen: np.ndarray) -> Record:
+    def only(self, chosen: np.ndarray) -> VariantRecord:
         """Subset of the variants by a mask."""
         folders = [folder for folder, takes in zip(self.folders, chosen, strict=True) if takes]
         numbers = {name: values[chosen] for name, values in self.numbers.items()}
-        return Record(self.axes, self.places[chosen], folders, numbers)
+        return VariantRecord(self.axes, self.places[chosen], folders, numbers)
 
 
-def read_sweep(folder: Path) -> Record:
+def read_sweep(folder: Path) -> VariantRecord:
     """Read the completed variants of a sweep.
 
     Raises
@@ -68,7 +68,7 @@ def read_sweep(folder: Path) -> Record:
             if k > status
         }
         folders = [folder / f"{int(row[0]):03d}" for row in rows]
-        return Record(axes, places, folders, numbers).only(done)
+        return VariantRecord(axes, places, folders, numbers).only(done)
     except (IndexError, KeyError) as error:
         raise ValueError(f"{folder}: run.json and sweep.csv are not of the same sweep") from error
 

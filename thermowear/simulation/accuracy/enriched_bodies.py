@@ -18,7 +18,7 @@ from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
 from ...bulk.mechanics.surface_load import pressure_work, surface_work
 from ...bulk.mechanics.surplus import surplus_space
-from ...contact.operators.heat import InterfaceHeat, Resting
+from ...contact.operators.heat import BaselineResponse, InterfaceHeat
 from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import gap_trace, value_trace, vector_trace
 from ...parallel import sum_over_ranks
@@ -152,7 +152,7 @@ def warmer_faces(system: System, model: Model, contact: ContactState, state: Bod
     )
     exchange = face.exchange(contact.conditions.conductance)
     none = np.zeros(len(face.weights))
-    coupled = exchange.state(none, Resting((seen[:, 0], seen[:, 1])))
+    coupled = exchange.state(none, BaselineResponse((seen[:, 0], seen[:, 1])))
     change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
     details = _levelled(alone - seen.T, face, contact.conditions.conductance)
     return WarmerFaces(np.array(coupled.rise) + details, problem, change)

@@ -30,7 +30,7 @@ from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
 from ...laws import steady_pressure
 from ..model.building import sliding_of
-from ..model.conditions import Conditions
+from ..model.conditions import InterfaceConditions
 from ..model.system import System
 from ..results.outcome import Outcome
 from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
@@ -218,7 +218,9 @@ def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
     return np.where(least[facet] > 0.0, least[facet], np.maximum(depth, 0.0)) / mean
 
 
-def _finer_principle(system: System, pressure: np.ndarray, conditions: Conditions) -> np.ndarray:
+def _finer_principle(
+    system: System, pressure: np.ndarray, conditions: InterfaceConditions
+) -> np.ndarray:
     """The steady pressure by a finer quadrature: the only error that the principle makes."""
     if system.worn is not None:
         raise ComputationError("not estimated on moved meshes")
@@ -232,7 +234,7 @@ def _finer_principle(system: System, pressure: np.ndarray, conditions: Condition
     return pressure * (1 + change / (exponent * moving))
 
 
-def _exponent(system: System, pressure: np.ndarray, conditions: Conditions) -> float:
+def _exponent(system: System, pressure: np.ndarray, conditions: InterfaceConditions) -> float:
     """Least exponent of the pressure in the wear rates, ``p h'(p)/h(p)``, where it presses."""
     pressing, least = pressure > 0, np.inf
     for row, law in enumerate(system.laws.values()):

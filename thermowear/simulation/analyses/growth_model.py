@@ -20,7 +20,7 @@ from ...contact.operators.heat_condensation import condense_heat
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import FrictionHeat
-from ..model.conditions import Conditions
+from ..model.conditions import InterfaceConditions
 from ..model.system import System
 
 _NEW = 1e-12
@@ -58,7 +58,7 @@ class GrowthModel:
     system : System
         With its heat, whose capacity is known.
     heat : FrictionHeat
-    conditions : Conditions
+    conditions : InterfaceConditions
         Of the state that is disturbed.
     elastic : ndarray, shape (m, m)
         A, see `laws.stability`.
@@ -70,7 +70,7 @@ class GrowthModel:
         self,
         system: System,
         heat: FrictionHeat,
-        conditions: Conditions,
+        conditions: InterfaceConditions,
         elastic: np.ndarray,
         space: LoadFree,
     ):

@@ -20,7 +20,7 @@ from ...laws.stability import (
 )
 from ..heat.friction_heat import FrictionHeat
 from ..model.building import build
-from ..model.conditions import Conditions
+from ..model.conditions import InterfaceConditions
 from ..model.system import System
 from .growth_model import Growing, GrowthModel
 
@@ -60,10 +60,10 @@ class DisturbedContact:
         With its heat.
     pressure : ndarray, shape (n,)
         [Pa]
-    conditions : Conditions
+    conditions : InterfaceConditions
     """
 
-    def __init__(self, system: System, pressure: np.ndarray, conditions: Conditions):
+    def __init__(self, system: System, pressure: np.ndarray, conditions: InterfaceConditions):
         assert system.thermal is not None  # the case has been checked
         self._system, self._pressure, self._conditions = system, pressure, conditions
         self._bodies = system.thermal

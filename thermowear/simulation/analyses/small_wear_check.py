@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...case.tables.analyses import Fretting, Reciprocating
-from ..geometry_update.gap_wear import KeptWear
+from ..geometry_update.gap_wear import GapWear
 from ..model.system import System
 from ..results.result import Interface
 
@@ -23,7 +23,7 @@ def not_small(system: System, interface: Interface) -> str | None:
     analysis, allowed = system.case.analysis, system.case.wear.largest_kept
     if not isinstance(analysis, Fretting | Reciprocating):
         return None
-    fraction = KeptWear(system).fraction(np.array([interface.wear_1, interface.wear_2]))
+    fraction = GapWear(system).fraction(np.array([interface.wear_1, interface.wear_2]))
     if fraction <= allowed:
         return None
     return (

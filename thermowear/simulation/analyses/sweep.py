@@ -8,7 +8,7 @@ from typing import Any
 from ...case.tables.schema import Case
 from ...timer import Phases
 from ..model.building import build
-from ..model.setup_cache import Parts, inputs
+from ..model.setup_cache import SetupCache, inputs
 from ..model.system import System
 from ..results.result import Result
 from ..runtime.observer import Observer
@@ -31,7 +31,7 @@ class Series:
 
             comm = MPI.COMM_WORLD
         self.comm = comm
-        self._parts = Parts()
+        self._parts = SetupCache()
 
     def run(
         self, case: Case, observer: Observer | None = None, phases: Phases | None = None

@@ -16,7 +16,7 @@ from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.update_counts import UpdateCounts
 from ..interface.body_state import BodyState, ContactState
 from ..interface.interface_problem import InterfaceProblem
-from ..model.conditions import Conditions
+from ..model.conditions import InterfaceConditions
 from ..model.rigid_modes import reference_point
 from ..model.system import System
 from ..model.worn_geometry import WornGeometry
@@ -24,7 +24,7 @@ from ..results.recording import interface_at
 from ..results.result import Interface
 from ..results.rows import HeatRow, HistoryRow
 from ..results.summary import normal_force
-from ..runtime.frames import Film
+from ..runtime.frames import FrameRecorder
 from ..runtime.observer import Observer
 from ..time.time_loop import Moment
 
@@ -91,7 +91,7 @@ class RunningInRecord:
         self.outputs: dict[float, Interface] = {}
         self._loop = loop
         self._observer = observer
-        self._film = Film(loop.system.case, observer)
+        self._film = FrameRecorder(loop.system.case, observer)
         self._speed = 0.0
         self._last: Moment
 
@@ -233,7 +233,7 @@ class RunningInRecord:
             error=moment.error,
         )
 
-    def _heat_row(self, moment: Moment, conditions: Conditions) -> HeatRow:
+    def _heat_row(self, moment: Moment, conditions: InterfaceConditions) -> HeatRow:
         pressure, balance = moment.state.pressure, self._problem.heat_balance(moment.state)
         T1, T2 = self._problem.face_temperatures(moment.state)
         return HeatRow(

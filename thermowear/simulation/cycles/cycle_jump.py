@@ -24,7 +24,7 @@ import numpy as np
 from ...contact.friction.gross_slip import FullSliding
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...errors import ComputationError
-from .increments import Behind, Instant, Jump
+from .increments import Increment, Jump, RestartPoint
 
 _SAFETY, _SHORTER, _LONGER = 0.9, 0.2, 5.0
 
@@ -35,7 +35,7 @@ class Cycles(Protocol):
     areas: np.ndarray
     """Of the coefficients of the depths, shape (m,) [m²]."""
 
-    def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Instant]:
+    def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Increment]:
         """The increments of a cycle, which stands for all since the one of the state.
 
         Raises
@@ -43,11 +43,13 @@ class Cycles(Protocol):
         ComputationError
         """
 
-    def settled(self, end: Instant, worn: np.ndarray) -> StickSlipState:
+    def settled(self, end: Increment, worn: np.ndarray) -> StickSlipState:
         """The same loads on other worn depths, shape (n_wearing, m) [m], energy as it was."""
 
 
-def fixed_jumps(cycles: Cycles, numbers: Iterable[int], behind: Behind) -> Iterator[Instant]:
+def fixed_jumps(
+    cycles: Cycles, numbers: Iterable[int], behind: RestartPoint
+) -> Iterator[Increment]:
     """Compute the cycles of these numbers, each for all since the one before."""
     for number in numbers:
         if number > behind.cycle:
@@ -55,12 +57,12 @@ def fixed_jumps(cycles: Cycles, numbers: Iterable[int], behind: Behind) -> Itera
             for instant in cycles.cycle(behind.state, number, span):
                 state = instant.state
                 yield _marked(instant, Jump(span, math.nan, span))
-            behind = Behind(number, state, span)
+            behind = RestartPoint(number, state, span)
 
 
 def adaptive_jumps(
-    cycles: Cycles, stops: Iterable[int], behind: Behind, tolerance: float, longest: float
-) -> Iterator[Instant]:
+    cycles: Cycles, stops: Iterable[int], behind: RestartPoint, tolerance: float, longest: float
+) -> Iterator[Increment]:
     """Go through all cycles in jumps whose errors are within a tolerance.
 
     Parameters
@@ -68,7 +70,7 @@ def adaptive_jumps(
     cycles : Cycles
     stops : iterable of int
         Cycles that no jump passes, the last one included, in order.
-    behind : Behind
+    behind : RestartPoint
     tolerance : float
         Of the largest depth worn.
     longest : float
@@ -76,7 +78,7 @@ def adaptive_jumps(
 
     Yields
     ------
-    Instant
+    Increment
         Of the cycles that the jumps are made of; jumps whose error is too large leave no trace.
 
     Raises
@@ -94,7 +96,7 @@ def adaptive_jumps(
                     instant = replace(instant, jump=replace(instant.jump, following=following))
                 yield instant
             assert instant.jump is not None  # it ends the jump
-            behind = Behind(instant.leg.cycle, instant.state, instant.jump.following)
+            behind = RestartPoint(instant.leg.cycle, instant.state, instant.jump.following)
 
 
 def _at_most(wanted: float, left: int) -> int:
@@ -102,7 +104,9 @@ def _at_most(wanted: float, left: int) -> int:
     return left if wanted >= left else max(1, int(min(wanted, math.ceil(left / 2))))
 
 
-def _jumped(cycles: Cycles, behind: Behind, wanted: int, tolerance: float) -> Iterable[Instant]:
+def _jumped(
+    cycles: Cycles, behind: RestartPoint, wanted: int, tolerance: float
+) -> Iterable[Increment]:
     """The instants of a jump, over half the cycles again and again where its error is too large."""
     start, state, span, whole = behind.cycle, behind.state, wanted, None
     while span > 1:
@@ -135,7 +139,7 @@ class _DoneTwice:
     n1, n2 : int
     start, whole : StickSlipState
         Before it, and after it as a whole.
-    end : Instant
+    end : Increment
         Of the second part.
     """
 
@@ -143,7 +147,7 @@ class _DoneTwice:
     n2: int
     start: StickSlipState
     whole: StickSlipState
-    end: Instant
+    end: Increment
 
     @property
     def part(self) -> float:
@@ -162,7 +166,7 @@ class _DoneTwice:
         largest = float(self.end.state.worn.max(initial=0.0))
         return float(np.abs(self.wrong).max(initial=0.0)) / largest if largest > 0.0 else 0.0
 
-    def corrected(self, cycles: Cycles) -> Instant:
+    def corrected(self, cycles: Cycles) -> Increment:
         """The end without the error."""
         if self.part == 0.0:
             return self.end
@@ -190,7 +194,7 @@ def _forward(gains: np.ndarray, areas: np.ndarray) -> np.ndarray:
     return kept * np.maximum(gains @ areas / volumes, 0.0)[:, None]
 
 
-def _marked(instant: Instant, jump: Jump) -> Instant:
+def _marked(instant: Increment, jump: Jump) -> Increment:
     """With the jump that it ends, if it does."""
     ends = instant.ends_leg and instant.leg.ends_cycle
     return replace(instant, jump=jump) if ends else instant

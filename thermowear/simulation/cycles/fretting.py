@@ -11,7 +11,7 @@ import numpy as np
 from ...case.tables.analyses import Fretting
 from ...case.tables.schema import Case
 from ...contact.friction.loads import Loads
-from ...contact.friction.slip_wear import Profile, SlipWear, profile
+from ...contact.friction.slip_wear import SlipWear, WornProfile, profile
 from ...contact.friction.stick_slip import advance, follow
 from ...contact.friction.stick_slip_state import StickSlipState, unloaded
 from ...contact.operators.tangential import FrictionalContact, condense_tangential
@@ -22,8 +22,8 @@ from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer
 from .cycle_jump import adaptive_jumps, fixed_jumps
 from .fretting_record import Fretted, FrettingRecord
-from .increments import Behind, Instant
-from .load_path import Leg, by_fixed_jumps, cycle_legs, first_pass, to_stop_at
+from .increments import Increment, RestartPoint
+from .load_path import LoadSegment, by_fixed_jumps, cycle_legs, first_pass, to_stop_at
 
 _ACROSS = (1.0, 0.0)
 
@@ -67,7 +67,9 @@ def _translations(case: Case) -> np.ndarray:
 class _Path:
     """The way of a contact through the history of loads of its case, and through its cycles."""
 
-    def __init__(self, system: System, contact: FrictionalContact, profiles: tuple[Profile, ...]):
+    def __init__(
+        self, system: System, contact: FrictionalContact, profiles: tuple[WornProfile, ...]
+    ):
         settings, history = system.case.analysis, system.case.load.history
         assert isinstance(settings, Fretting)
         assert history is not None  # the case has been checked
@@ -76,25 +78,25 @@ class _Path:
         self._contact, self._friction = contact, system.friction
         self._laws, self._profiles = tuple(system.laws.values()), profiles
 
-    def instants(self, last: Instant | None = None) -> Iterator[Instant]:
+    def instants(self, last: Increment | None = None) -> Iterator[Increment]:
         """Each increment's end: to where the cycles begin, then through them.
 
         All of them, or those after one from which it can go on.
         """
         history, settings = self._history, self._settings
-        behind, passed = Behind(0, unloaded(self._contact, len(self._laws))), -math.inf
+        behind, passed = RestartPoint(0, unloaded(self._contact, len(self._laws))), -math.inf
         if last is not None:
             assert last.behind is not None
             behind, passed = last.behind, last.leg.end
         if behind.cycle == 0:
             legs = (leg for leg in first_pass(history, settings.output_times) if leg.end > passed)
             for instant in self._along(legs, behind.state):
-                behind = Behind(0, instant.state)
+                behind = RestartPoint(0, instant.state)
                 yield instant
         if history.cycle is not None:
             yield from self.going_on(behind)
 
-    def going_on(self, behind: Behind) -> Iterator[Instant]:
+    def going_on(self, behind: RestartPoint) -> Iterator[Increment]:
         """Each increment's end in the cycles after one of them."""
         count = int(self._case.cycles or 1)
         history, settings = self._history, self._settings
@@ -106,18 +108,18 @@ class _Path:
         numbers = by_fixed_jumps(history, settings, count, settings.jump)
         return fixed_jumps(self, numbers, behind)
 
-    def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Instant]:
+    def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Increment]:
         """See `cycle_jump.Cycles`."""
         times = self._settings.output_times
         return self._along(cycle_legs(self._history, times, number, repeats), state)
 
-    def settled(self, end: Instant, worn: np.ndarray) -> StickSlipState:
+    def settled(self, end: Increment, worn: np.ndarray) -> StickSlipState:
         """See `cycle_jump.Cycles`."""
         state, loads = replace(end.state, worn=worn), _loads(self._case, end.leg.instant)
         settled = advance(self._contact, self._friction, state, loads, self._wear(0.0))
         return replace(settled, dissipated=state.dissipated)
 
-    def _along(self, legs: Iterator[Leg], state: StickSlipState) -> Iterator[Instant]:
+    def _along(self, legs: Iterator[LoadSegment], state: StickSlipState) -> Iterator[Increment]:
         count = self._settings.increments
         for leg in legs:
             loads, step = _loads(self._case, leg.instant), (leg.end - leg.start) / count
@@ -125,7 +127,7 @@ class _Path:
             states = follow(self._contact, self._friction, [loads], count, state, wear)
             for number, state in enumerate(states, start=1):
                 time = leg.end if number == count else leg.start + number * step
-                yield Instant(time, leg, number == count, state)
+                yield Increment(time, leg, number == count, state)
 
     def _wear(self, duration: float, repeats: int = 1) -> SlipWear:
         return SlipWear(self._laws, self._profiles, self._friction, duration, repeats)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.friction.slip_wear import Profile
+from ...contact.friction.slip_wear import WornProfile
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...laws.motions import translation
 from ...serialise import serialisable
@@ -15,10 +15,10 @@ from ..model.system import System
 from ..results.recording import interface_at
 from ..results.result import FrictionHistory, FrictionInterface, Interface
 from ..results.rows import CycleRow, LoadRow
-from ..runtime.frames import Film, Shown
+from ..runtime.frames import FrameRecorder, Shown
 from ..runtime.observer import Observer
 from .fretting_tables import FrettingTables
-from .increments import Instant, Jump
+from .increments import Increment, Jump
 
 
 @serialisable
@@ -28,7 +28,7 @@ class Fretted:
 
     Attributes
     ----------
-    last : Instant
+    last : Increment
         From which it can go on.
     per_cycle : ndarray, shape (2, n)
         Depths that a cycle of it wears off both bodies [m].
@@ -36,7 +36,7 @@ class Fretted:
     cycles : list of CycleRow
     """
 
-    last: Instant
+    last: Increment
     per_cycle: np.ndarray
     rows: list[LoadRow]
     cycles: list[CycleRow]
@@ -54,7 +54,7 @@ class FrettingRecord:
     system : System
     translations : ndarray, shape (k, 2)
         Of the holder.
-    profiles : tuple of Profile
+    profiles : tuple of WornProfile
         Of the wearing bodies.
     observer : Observer
         Told of each of them.
@@ -66,7 +66,7 @@ class FrettingRecord:
         self,
         system: System,
         translations: np.ndarray,
-        profiles: tuple[Profile, ...],
+        profiles: tuple[WornProfile, ...],
         observer: Observer,
     ):
         self.outputs: dict[float, Interface] = {}
@@ -75,16 +75,16 @@ class FrettingRecord:
         self._translations = translations
         self._profiles = profiles
         self._observer = observer
-        self._film = Film(system.case, observer)
+        self._film = FrameRecorder(system.case, observer)
         self._rows: list[LoadRow] = []
         self._cycles: list[CycleRow] = []
         self._frictions: dict[float, FrictionInterface] = {}
-        self._now: list[Instant] = []  # of the cycle that is computed
-        self._turn: Instant | None = None  # where the last jump ended
-        self._begin: tuple[Instant, int] | None = None  # to go on from, and its number of rows
+        self._now: list[Increment] = []  # of the cycle that is computed
+        self._turn: Increment | None = None  # where the last jump ended
+        self._begin: tuple[Increment, int] | None = None  # to go on from, and its number of rows
         self._per_cycle = np.zeros((2, len(system.weights)))
 
-    def go_on(self, before: Fretted) -> Instant:
+    def go_on(self, before: Fretted) -> Increment:
         """Take up what was kept before."""
         last = before.last
         self._turn = None if last.jump is None else last
@@ -102,7 +102,7 @@ class FrettingRecord:
         last, count = self._begin
         return Fretted(last, self._per_cycle, self._rows[:count], self._cycles)
 
-    def keep(self, instant: Instant) -> None:
+    def keep(self, instant: Increment) -> None:
         """Take up the end of an increment."""
         leg = instant.leg
         self.last = instant.state
@@ -124,7 +124,7 @@ class FrettingRecord:
                 self._observer.output(leg.end, self.outputs[leg.end], self._frictions[leg.end])
         self._keep_frame(instant)
 
-    def _keep_frame(self, instant: Instant) -> None:
+    def _keep_frame(self, instant: Increment) -> None:
         """Show ends of cycles, or of increments where there is but one cycle."""
         one = (self._system.case.cycles or 1) == 1
         if one or instant.jump is not None:

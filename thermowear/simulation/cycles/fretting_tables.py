@@ -8,7 +8,7 @@ from ...contact.friction.stick_slip_state import StickSlipState
 from ..model.system import System
 from ..results.result import FrictionInterface
 from ..results.rows import CycleRow, LoadRow
-from .increments import Instant, Jump
+from .increments import Increment, Jump
 
 _SLIDES = 1 - 1e-6  # of friction's limit
 
@@ -26,7 +26,7 @@ class FrettingTables:
         both[list(system.laws)] = state.worn @ system.basis.T
         return both
 
-    def row(self, instant: Instant) -> LoadRow:
+    def row(self, instant: Increment) -> LoadRow:
         """The end of an increment."""
         system, state = self._system, instant.state
         w, pressure = system.weights, system.basis @ state.pressure
@@ -48,7 +48,7 @@ class FrettingTables:
             wear_volume_2=float(volumes[1]),
         )
 
-    def cycle(self, instants: list[Instant], jump: Jump) -> CycleRow:
+    def cycle(self, instants: list[Increment], jump: Jump) -> CycleRow:
         """The cycle of some instants, the last of a jump."""
         w, last = self._system.weights, instants[-1]
         end = self.depths(last.state)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...serialise import serialisable
-from .load_path import Leg
+from .load_path import LoadSegment
 
 
 @serialisable
@@ -32,14 +32,14 @@ class Jump:
 
 @serialisable
 @dataclass(frozen=True)
-class Instant:
+class Increment:
     """The end of an increment.
 
     Attributes
     ----------
     time : float
         [s]
-    leg : Leg
+    leg : LoadSegment
     ends_leg : bool
     state : StickSlipState
     jump : Jump or None
@@ -47,7 +47,7 @@ class Instant:
     """
 
     time: float
-    leg: Leg
+    leg: LoadSegment
     ends_leg: bool
     state: StickSlipState
     jump: Jump | None = None
@@ -58,16 +58,16 @@ class Instant:
         return self.ends_leg and self.leg.is_output
 
     @property
-    def behind(self) -> Behind | None:
+    def behind(self) -> RestartPoint | None:
         """What going on takes: where a jump ends, or a leg before the first cycle; else None."""
         if self.jump is not None:
-            return Behind(self.leg.cycle, self.state, self.jump.following)
+            return RestartPoint(self.leg.cycle, self.state, self.jump.following)
         before = self.ends_leg and self.leg.cycle == 0
-        return Behind(0, self.state) if before else None
+        return RestartPoint(0, self.state) if before else None
 
 
 @dataclass(frozen=True)
-class Behind:
+class RestartPoint:
     """Where going on begins: all that it takes.
 
     Attributes

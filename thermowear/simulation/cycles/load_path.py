@@ -15,7 +15,7 @@ _SAME = 1e-9  # of the history: instants so near to each other are one
 
 @serialisable
 @dataclass(frozen=True)
-class Leg:
+class LoadSegment:
     """A straight line of the loads.
 
     Attributes
@@ -42,7 +42,7 @@ class Leg:
     ends_cycle: bool
 
 
-def first_pass(history: History, output_times: tuple[float, ...]) -> Iterator[Leg]:
+def first_pass(history: History, output_times: tuple[float, ...]) -> Iterator[LoadSegment]:
     """The legs before the first cycle.
 
     The first one has no duration: it loads the bodies at the first instant.
@@ -50,13 +50,13 @@ def first_pass(history: History, output_times: tuple[float, ...]) -> Iterator[Le
     begin = history.time[-1] if history.cycle is None else history.cycle[0]
     start = history.time[0]
     for instant, time, is_output in _corners(history, -math.inf, begin, 0.0, output_times):
-        yield Leg(start, time, instant, 0, 1, is_output, False)
+        yield LoadSegment(start, time, instant, 0, 1, is_output, False)
         start = time
 
 
 def cycle_legs(
     history: History, output_times: tuple[float, ...], number: int, repeats: int = 1
-) -> Iterator[Leg]:
+) -> Iterator[LoadSegment]:
     """The legs of a cycle of a history that has one; time goes on through all cycles.
 
     Parameters
@@ -74,7 +74,7 @@ def cycle_legs(
     shift = (number - 1) * (last - begin)
     start = begin + shift
     for instant, time, is_output in _corners(history, begin, last, shift, output_times):
-        yield Leg(start, time, instant, number, repeats, is_output, instant == last)
+        yield LoadSegment(start, time, instant, number, repeats, is_output, instant == last)
         start = time
 
 

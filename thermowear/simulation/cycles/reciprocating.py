@@ -18,7 +18,7 @@ from ..results.outcome import Outcome
 from ..results.recording import interface_at
 from ..results.result import Interface, TrackHistory, WornTrack
 from ..results.rows import HistoryRow
-from ..runtime.frames import Film
+from ..runtime.frames import FrameRecorder
 from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer
 from ..time.step_sizes import AnySize, StepSizes
@@ -107,7 +107,7 @@ class _Record:
         self._system = system
         self._problem = problem
         self._observer = observer
-        self._film = Film(system.case, observer)
+        self._film = FrameRecorder(system.case, observer)
 
     def go_on(self, before: Reciprocated) -> Moment:
         """Take up what was kept before."""

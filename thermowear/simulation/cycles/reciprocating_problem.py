@@ -28,10 +28,10 @@ import numpy as np
 
 from ...contact.solvers.coupled_positions import CoupledSolution, solve_coupled
 from ...contact.solvers.signorini import solve_contact
-from ...contact.wear.track import Track, track
+from ...contact.wear.track import StrokeGrid, track
 from ...errors import ComputationError
-from ..interface.contact_solver import Contact
-from ..interface.sdirk import WornContact
+from ..interface.contact_solver import ContactSolution
+from ..interface.sdirk import InterfaceState
 from ..model.system import System
 from .stroke import Position, condensed, spreading
 
@@ -72,13 +72,13 @@ class ReciprocatingProblem:
 
     Attributes
     ----------
-    track : Track
+    track : StrokeGrid
         Grid of the depths of body 2.
     areas : tuple of ndarray, shape (m,) and (n_nodes,)
         That the depths of body 1 and of body 2 stand for [m²].
     """
 
-    track: Track
+    track: StrokeGrid
     areas: tuple[np.ndarray, np.ndarray]
 
     def __init__(self, system: System, stroke: list[Position]):
@@ -106,7 +106,7 @@ class ReciprocatingProblem:
         m = self._contacts.gap.shape[1]
         return depths[0, :m], depths[0, m:]
 
-    def start(self) -> WornContact:
+    def start(self) -> InterfaceState:
         """The unworn faces, in contact in all positions."""
         all_of = self._contacts
         each = zip(all_of.compliance, all_of.gap, all_of.modes, all_of.force_modes, strict=True)
@@ -120,7 +120,7 @@ class ReciprocatingProblem:
         )
         nothing = np.zeros(all_of.seen.shape[2])
         contact = self._contact(CoupledSolution(λ, motion, active, nothing))
-        return WornContact(np.zeros_like(self.rates(contact.pressure)), contact)
+        return InterfaceState(np.zeros_like(self.rates(contact.pressure)), contact)
 
     def rates(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates of all depths, means over the cycle, shape (1, N) [m/s].
@@ -132,7 +132,7 @@ class ReciprocatingProblem:
         """
         return np.einsum("bjnm,bjm->n", self._spread, self._local(pressure))[None]
 
-    def of_cycle(self, contact: Contact) -> CycleContact:
+    def of_cycle(self, contact: ContactSolution) -> CycleContact:
         """What the contacts of a cycle are together."""
         at_points = [
             system.basis @ λ for system, λ in zip(self._systems, contact.pressure, strict=True)
@@ -150,7 +150,9 @@ class ReciprocatingProblem:
         """Nothing changes its course."""
         return ()
 
-    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
+    def difference(
+        self, before: InterfaceState, one: InterfaceState, other: InterfaceState
+    ) -> float:
         """Largest difference of two pressures [Pa]."""
         return float(np.abs(one.pressure - other.pressure).max())
 
@@ -158,11 +160,11 @@ class ReciprocatingProblem:
         """Contact does not hold point by point."""
         return 0.0, np.inf
 
-    def difference_inside(self, one: WornContact, other: WornContact) -> float:
+    def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
         """Nothing is warm."""
         return 0.0
 
-    def first_step(self, state: WornContact) -> float:
+    def first_step(self, state: InterfaceState) -> float:
         """A step in which wear is small against the elastic deflection of the bodies [s]."""
         opened = np.einsum("jmn,jn->jm", self._contacts.compliance, state.pressure)
         fastest = float(self.rates(state.pressure).max())
@@ -172,7 +174,7 @@ class ReciprocatingProblem:
         """Of pressures nothing is known: the ones of the principle do not move to and fro."""
         return steady
 
-    def distance(self, state: WornContact, steady: np.ndarray | None) -> float:
+    def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
         """How uneven the wear rates are, which are uniform along both faces in the end.
 
         Their largest deviation from their means, relative to these, but for the ends of the faces:
@@ -181,20 +183,20 @@ class ReciprocatingProblem:
         parts = zip(self.split(self.rates(state.pressure)), self._places, strict=True)
         return max(_unevenness(rate, place) for rate, place in parts if rate.any())
 
-    def begin(self, state: WornContact) -> WornContact:
+    def begin(self, state: InterfaceState) -> InterfaceState:
         """Nothing is chosen for a step."""
         return state
 
     def stage(
-        self, before: WornContact, step: float, time: float, guess: WornContact
-    ) -> WornContact:
+        self, before: InterfaceState, step: float, time: float, guess: InterfaceState
+    ) -> InterfaceState:
         """The end of an implicit Euler step of wear."""
         contact = self._solve(before.worn[0], step, guess.contact)
         return replace(
             before, worn=before.worn + step * self.rates(contact.pressure), contact=contact
         )
 
-    def _solve(self, worn: np.ndarray, step: float, guess: Contact) -> Contact:
+    def _solve(self, worn: np.ndarray, step: float, guess: ContactSolution) -> ContactSolution:
         """Contact at the end of a step, by Newton's method for the wear laws.
 
         A step of it starts half way back where the last one went too far.
@@ -205,7 +207,7 @@ class ReciprocatingProblem:
             Depths before the step [m].
         step : float
             [s]
-        guess : Contact
+        guess : ContactSolution
 
         Raises
         ------
@@ -233,9 +235,9 @@ class ReciprocatingProblem:
             pressure, least = back * pressure + (1 - back) * guess.pressure, min(error, least)
         raise ComputationError("contact: Newton's method for the implicit step of wear failed")
 
-    def _contact(self, solution: CoupledSolution) -> Contact:
+    def _contact(self, solution: CoupledSolution) -> ContactSolution:
         motion = np.array([self._holder.amounts(d) for d in solution.motion])
-        return Contact(np.maximum(solution.coefficients, 0.0), motion, solution)
+        return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
 
     def _local(self, pressure: np.ndarray) -> np.ndarray:
         """Rates of the wearing bodies where they touch, shape (n_wearing, J, m) [m/s]."""

@@ -13,11 +13,11 @@ from ...contact.operators.holder import hold
 from ...contact.operators.sliding import sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.solvers.coupled_positions import CoupledContacts
-from ...contact.wear.track import Track
+from ...contact.wear.track import StrokeGrid
 from ...errors import CaseError
 from ..model.contact_points import contact_points
 from ..model.rigid_modes import drives
-from ..model.setup_cache import Parts
+from ..model.setup_cache import SetupCache
 from ..model.system import System
 
 _UNPAIRED = 1e-6
@@ -113,11 +113,11 @@ def moved(system: System, offset: float, way: int) -> System:
         slides=slides,
         pull=pull,
         speed=slides.speed,
-        parts=Parts(),  # other points: nothing condensed to them is at hand
+        parts=SetupCache(),  # other points: nothing condensed to them is at hand
     )
 
 
-def condensed(stroke: list[Position], grid: Track) -> CoupledContacts:
+def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
     """The contacts in all positions. Every rank calls."""
     systems = [position.system for position in stroke]
     contacts = [system.contact for system in systems]
@@ -138,7 +138,7 @@ def condensed(stroke: list[Position], grid: Track) -> CoupledContacts:
     )
 
 
-def spreading(contacts: CoupledContacts, grid: Track, shares: np.ndarray) -> np.ndarray:
+def spreading(contacts: CoupledContacts, grid: StrokeGrid, shares: np.ndarray) -> np.ndarray:
     """Mean rates of the depths of either body per its local rates, shape (2, J, N, m)."""
     count, m, total = contacts.seen.shape
     result = np.zeros((2, count, total, m))

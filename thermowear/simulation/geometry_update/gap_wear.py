@@ -36,7 +36,7 @@ _TILT = 0.1
 """A tilt counts for so much: of two ends of an element, against its size."""
 
 
-class KeptWear:
+class GapWear:
     """Wear kept in the gap of a system, and what the nodes of its faces can take up of it.
 
     Parameters

@@ -21,12 +21,12 @@ from ...laws.motions import combined
 from ...parallel import on_root
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
-from ..interface.sdirk import WornContact
+from ..interface.sdirk import InterfaceState
 from ..model.building import build
-from ..model.setup_cache import Parts
+from ..model.setup_cache import SetupCache
 from ..model.system import System
 from ..model.worn_geometry import WornGeometry, along
-from .gap_wear import KeptWear, lacking_in_shape, movable_body
+from .gap_wear import GapWear, lacking_in_shape, movable_body
 from .remesh import FLOOR, carrying_error, improved, on_new_faces
 from .smooth_wear import worn_in
 
@@ -45,19 +45,19 @@ class Updated:
     ----------
     system : System
     problem : InterfaceProblem
-    state : WornContact
+    state : InterfaceState
     change : float
         Of pressure and temperatures by the update, relative to their means.
     """
 
     system: System
     problem: InterfaceProblem
-    state: WornContact
+    state: InterfaceState
     change: float
 
 
 def updated(
-    system: System, problem: InterfaceProblem, kept: KeptWear, state: WornContact, time: float
+    system: System, problem: InterfaceProblem, kept: GapWear, state: InterfaceState, time: float
 ) -> Updated:
     """Move the meshes of a system by the wear that it keeps in the gap. Every rank calls.
 
@@ -71,7 +71,7 @@ def updated(
         worn, renewed = _moved(system, kept, state)
     try:
         following = build(
-            system.case, system.comm, system.phases, system.inputs.zone, Parts(), worn
+            system.case, system.comm, system.phases, system.inputs.zone, SetupCache(), worn
         )
     except CaseError as fault:  # said of bodies as they are given; here they have been computed
         raise ComputationError(
@@ -94,7 +94,7 @@ def updated(
     return Updated(replace(following, worn=worn), after, found, change)
 
 
-def _change(after: System, state: WornContact, found: WornContact) -> float:
+def _change(after: System, state: InterfaceState, found: InterfaceState) -> float:
     """How much an update has changed the pressure and, relative to their rise, temperatures.
 
     In the mean over the area; pressures that vanish in the end count for no more than `_FADED`.
@@ -135,7 +135,7 @@ def _carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.n
     return rows, error
 
 
-def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeometry, bool]:
+def _moved(system: System, kept: GapWear, state: InterfaceState) -> tuple[WornGeometry, bool]:
     """Where the nodes go, and whether bodies have been meshed anew."""
     before, faces, depth = kept.geometry, kept.faces, kept.due(kept.depth(state.worn))
     amounts = {index: face.amounts(depth[index]) for index, face in faces.items()}
@@ -174,7 +174,7 @@ def _moved(system: System, kept: KeptWear, state: WornContact) -> tuple[WornGeom
     return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
 
 
-def _lacking(system: System, before: WornGeometry, state: WornContact) -> np.ndarray:
+def _lacking(system: System, before: WornGeometry, state: InterfaceState) -> np.ndarray:
     """Depth that the initial shape lacks of the unworn face at the points, shape (n,) [m].
 
     The first update goes over from gaps along the normals of the unworn faces, which turn away from
@@ -190,7 +190,7 @@ def _lacking(system: System, before: WornGeometry, state: WornContact) -> np.nda
     return in_shape + np.interp(x, x[reached], (lacking - in_shape)[reached])
 
 
-def _kept_points(system: System, state: WornContact, renewed: dict[int, NewFace]) -> Rule | None:
+def _kept_points(system: System, state: InterfaceState, renewed: dict[int, NewFace]) -> Rule | None:
     """Contact points that stay where they are on the facets of body 1; None in a section.
 
     Where contact holds point by point they stay in a section, too: no interpolation finds the gap

@@ -23,13 +23,13 @@ from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import advance_with_error
 from ..interface.steady import SteadyState
 from ..model.building import build
-from ..model.setup_cache import Parts
+from ..model.setup_cache import SetupCache
 from ..model.system import System
 from ..model.worn_geometry import WornGeometry
 from ..runtime.observer import Observer
 from ..time.step_sizes import Limited, StepSizes
 from ..time.time_loop import Moment, is_over, moments
-from .gap_wear import KeptWear
+from .gap_wear import GapWear
 from .geometry_update import updated
 from .update_counts import UpdateCounts
 from .wider_zone import meshed_wider, wider_zone
@@ -115,7 +115,7 @@ class OuterLoop:
         zone = unworn.inputs.zone if zone is None else zone
         if worn is None and zone == unworn.inputs.zone:
             return
-        self.system = build(unworn.case, unworn.comm, unworn.phases, zone, Parts(), worn)
+        self.system = build(unworn.case, unworn.comm, unworn.phases, zone, SetupCache(), worn)
         self.problem, self.steady = interface_problem(self.system), self._principle(self.system)
 
     def moments(self, last: Moment | None = None) -> Iterator[Moment]:
@@ -132,7 +132,7 @@ class OuterLoop:
             if kept is not None and last is not None and self._is_due(kept, fraction, last):
                 system, problem, last = self._update(system, problem, kept, last)
                 steady = self._principle(system)
-                kept, fraction = KeptWear(system), 0.0
+                kept, fraction = GapWear(system), 0.0
             for moment in self._told(moments(problem, settings, steady, self._sizes, last)):
                 if kept is not None:
                     before, fraction = fraction, kept.fraction(kept.depth(moment.state.worn))
@@ -183,9 +183,9 @@ class OuterLoop:
                 f"cannot be wider: {self._narrow}"
             ) from None
 
-    def _kept_wear(self, system: System, last: Moment | None) -> tuple[KeptWear | None, float]:
+    def _kept_wear(self, system: System, last: Moment | None) -> tuple[GapWear | None, float]:
         """The wear kept in the gap, where meshes can be moved at all, and its fraction."""
-        kept = KeptWear(system) if self._moves else None
+        kept = GapWear(system) if self._moves else None
         if kept is None or last is None:
             return kept, 0.0
         return kept, kept.fraction(kept.depth(last.state.worn))
@@ -219,7 +219,7 @@ class OuterLoop:
         """Whether meshes can be moved at all."""
         return bool(np.isfinite(self.allowed))
 
-    def _is_due(self, kept: KeptWear, fraction: float, moment: Moment) -> bool:
+    def _is_due(self, kept: GapWear, fraction: float, moment: Moment) -> bool:
         """Whether even what the nodes can take up of the wear is too much to be kept.
 
         Not at the end of the run.

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
 from ...contact.search.face import Face
-from ...contact.search.pairing import Pairing, Side
+from ...contact.search.pairing import PairedFace, Pairing
 from ...errors import ComputationError
 from ...geometry.mesh.shapes import quality
 from ...geometry.mesh.tagged import TaggedMesh
@@ -98,7 +98,7 @@ def carrying_error(worn: WornGeometry, pairing: Pairing) -> float:
     return float(np.abs(back(after) - worn.depth).max() / np.abs(worn.depth).max())
 
 
-def _behind_former(side: Side, new: NewFace) -> np.ndarray:
+def _behind_former(side: PairedFace, new: NewFace) -> np.ndarray:
     """How far the curve of a new face lies behind the former one at points of that, (n,) [m]."""
     assert isinstance(side.face, Face)
     former = replace(side.face, nodes=new.former)

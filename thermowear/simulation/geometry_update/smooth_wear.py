@@ -8,13 +8,13 @@ from ...contact.wear.unresolved_gap import unseen
 from ...laws.distribution import InPlace
 from ...laws.motions import combined
 from ..interface.interface_problem import InterfaceProblem
-from ..interface.sdirk import WornContact
+from ..interface.sdirk import InterfaceState
 from ..model.system import System
 from ..results.recording import interface_at
 
 
 def worn_in(
-    system: System, problem: InterfaceProblem, state: WornContact, time: float
+    system: System, problem: InterfaceProblem, state: InterfaceState, time: float
 ) -> np.ndarray:
     """Depths worn off as they are where faces that press fit point by point. Every rank calls.
 

@@ -10,7 +10,7 @@ from ...errors import CaseError
 from ...laws.distribution import InPlace
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
-from ..interface.sdirk import WornContact
+from ..interface.sdirk import InterfaceState
 from ..model.building import build
 from ..model.system import System
 from .face_limits import beyond
@@ -46,8 +46,8 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
 
 
 def meshed_wider(
-    system: System, problem: InterfaceProblem, state: WornContact, time: float, zone: Zone
-) -> tuple[System, InterfaceProblem, WornContact] | str:
+    system: System, problem: InterfaceProblem, state: InterfaceState, time: float, zone: Zone
+) -> tuple[System, InterfaceProblem, InterfaceState] | str:
     """Go on with unworn meshes for a wider zone, all wear in the gap. Every rank calls.
 
     Returns

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 
 from ...balances import relative
-from ...contact.operators.heat import Resting, ThermalState, at_rest
+from ...contact.operators.heat import BaselineResponse, ThermalState, at_rest
 from ...contact.operators.heat_condensation import condense_heat
 from ...parallel import sum_over_ranks
-from ..model.conditions import Conditions
+from ..model.conditions import InterfaceConditions
 from ..model.interface_laws import partition
 from ..model.system import System
 from ..model.thermal_system import ThermalSystem
 from .condensed_distortion import CondensedDistortion
-from .heat_stages import ConductedHeat, ConductingStage, FrozenHeat, HeatOperators
-from .heat_states import HeatBalance, StoredHeat, Warmth
+from .heat_stages import ConductingStage, HeatOperators, InitialHeat, LinearHeatStep
+from .heat_states import HeatBalance, StoredHeat, TemperatureField
 
 _MEMORY = 1e9
 """Bytes that the operators of all sizes of steps may take on a rank."""
@@ -64,7 +64,7 @@ class FrictionHeat:
             (self._system.inputs.conduction, self._distorts),
             lambda: self.at_rest(thermal.conduction.solve(load.heat)),
         )
-        return ConductedHeat(operators, load, load.heat, resting)
+        return LinearHeatStep(operators, load, load.heat, resting)
 
     def after(self, before: StoredHeat, step: float, time: float) -> ConductingStage:
         """The end of an implicit Euler step, at a time [s]; every rank calls."""
@@ -76,20 +76,20 @@ class FrictionHeat:
         operators, load = self._steps[step], self._thermal.loads.at(time)
         supplied = load.heat + before.content / step
         alone = load.on(operators.conduction).solve(supplied)
-        return ConductedHeat(operators, load, supplied, self.at_rest(alone))
+        return LinearHeatStep(operators, load, supplied, self.at_rest(alone))
 
     @cached_property
-    def frozen(self) -> FrozenHeat:
+    def frozen(self) -> InitialHeat:
         """The first moment; every rank calls."""
         conduction = self._thermal.conduction
         rise = np.where(conduction.fixed, conduction.given, self._thermal.initial)
         resting = self.at_rest(rise)
         largest = max(float(np.abs(resting.rise).max()), self._largest(rise))
-        return FrozenHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(3), largest), resting)
+        return InitialHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(3), largest), resting)
 
-    def at_moment(self, stored: StoredHeat) -> FrozenHeat:
+    def at_moment(self, stored: StoredHeat) -> InitialHeat:
         """A later moment, of which the temperatures are known; every rank calls."""
-        return FrozenHeat(stored, self.at_rest(stored.rise))
+        return InitialHeat(stored, self.at_rest(stored.rise))
 
     def take_over(self, former: FrictionHeat, stored: StoredHeat, rise: np.ndarray) -> StoredHeat:
         """Heat of bodies whose mesh was another one; every rank calls.
@@ -152,7 +152,7 @@ class FrictionHeat:
     def recall(self, memory: Any) -> None:
         """Answer as another one did that had this memory."""
 
-    def lasting(self, conditions: Conditions, pressure: np.ndarray) -> Warmth:
+    def lasting(self, conditions: InterfaceConditions, pressure: np.ndarray) -> TemperatureField:
         """Temperatures that do not change any more, under a pressure (n,) [Pa]."""
         conduction, face = self._thermal.conduction, self._thermal.face
         faces = self.steady.faces(conditions, pressure)
@@ -164,11 +164,11 @@ class FrictionHeat:
         scale = max(made + load.magnitude, conduction.turnover(rise, heat))
         if made + load.magnitude == 0.0:  # hardly anything may flow at all
             scale = max(scale, conduction.rounding(rise))
-        return Warmth(faces, rise, relative(lost - made - load.prescribed, scale))
+        return TemperatureField(faces, rise, relative(lost - made - load.prescribed, scale))
 
-    def momentary(self, stored: StoredHeat, faces: ThermalState) -> Warmth:
+    def momentary(self, stored: StoredHeat, faces: ThermalState) -> TemperatureField:
         """Temperatures that are followed in time; the balance is that of all the heat so far."""
-        return Warmth(faces, stored.rise, self.balance(stored).error)
+        return TemperatureField(faces, stored.rise, self.balance(stored).error)
 
     def balance(self, stored: StoredHeat) -> HeatBalance:
         """Where all the heat so far has gone; every rank calls."""
@@ -214,7 +214,7 @@ class FrictionHeat:
         through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
         return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
 
-    def at_rest(self, rise: np.ndarray) -> Resting:
+    def at_rest(self, rise: np.ndarray) -> BaselineResponse:
         """What a nodal rise (n_owned,) does to the interface; every rank calls."""
         per_rise = self.condensed.per_rise if self._distorts else None
         return at_rest(rise, self._thermal.face.traces, self._system.comm, per_rise)

@@ -10,9 +10,9 @@ from typing import Protocol
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
-from ...contact.operators.heat import HeatExchange, InterfaceHeat, Resting, ThermalState
+from ...contact.operators.heat import BaselineResponse, HeatExchange, InterfaceHeat, ThermalState
 from ...contact.operators.heat_condensation import ThermalDistortion
-from ..model.conditions import Conditions
+from ..model.conditions import InterfaceConditions
 from ..model.thermal_loads import ThermalLoad
 from .heat_states import StoredHeat
 
@@ -70,7 +70,7 @@ class HeatOperators:
             self._exchange = (key, self.face.exchange(conductance))
         return self._exchange[1]
 
-    def compliance(self, conditions: Conditions, basis: np.ndarray) -> np.ndarray:
+    def compliance(self, conditions: InterfaceConditions, basis: np.ndarray) -> np.ndarray:
         """``H diag(mu v) Ψ``, shape (m, m)."""
         key = conditions.conductance.tobytes() + conditions.heating.tobytes()
         if self._compliance is None or self._compliance[0] != key:
@@ -82,13 +82,13 @@ class HeatOperators:
 class HeatStage(Protocol):
     """Heat at one moment, as contact sees it."""
 
-    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
 
-    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+    def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
         """What heat does to the condensed interface."""
 
-    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+    def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Whether the last coupling is right under the pressure that it has led to.
 
         Where it is not, the next one is nearer.
@@ -111,7 +111,7 @@ class ConductingStage(HeatStage, Protocol):
 
 
 @dataclass(frozen=True)
-class ConductedHeat:
+class LinearHeatStep:
     """Conduction at one moment: its operators, and what the bodies bring along.
 
     Attributes
@@ -121,13 +121,13 @@ class ConductedHeat:
     supplied : ndarray, shape (n_owned,)
         Nodal heat beside that of the contact: of the loads, and what the bodies have stored before,
         per time [W].
-    resting : Resting
+    resting : BaselineResponse
     """
 
     operators: HeatOperators
     load: ThermalLoad
     supplied: np.ndarray
-    resting: Resting
+    resting: BaselineResponse
 
     @property
     def unheated(self) -> ThermalState:
@@ -135,7 +135,7 @@ class ConductedHeat:
         nothing = np.zeros(len(self.resting.rise[0]))
         return ThermalState(self.resting.rise, (nothing, nothing))
 
-    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
         exchange = self.operators.exchange(conditions.conductance)
         return exchange.state(conditions.heating * pressure, self.resting)
@@ -145,7 +145,7 @@ class ConductedHeat:
         heat = self.operators.face.nodal_heat(faces, bath=True) + self.supplied
         return self.load.on(self.operators.conduction).solve(heat)
 
-    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+    def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
         """What heat does to the condensed interface."""
         operators = self.operators
         exchange = operators.exchange(conditions.conductance)
@@ -154,12 +154,12 @@ class ConductedHeat:
             operators.distortion.at_rest(exchange, self.resting),
         )
 
-    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+    def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Linear heat is right at once."""
         return True
 
 
-class FrozenHeat:
+class InitialHeat:
     """The first moment, in which no friction heat has flowed yet.
 
     Attributes
@@ -169,19 +169,19 @@ class FrozenHeat:
         Of the faces.
     """
 
-    def __init__(self, stored: StoredHeat, resting: Resting):
+    def __init__(self, stored: StoredHeat, resting: BaselineResponse):
         nothing = np.zeros(len(resting.rise[0]))
         self.stored = stored
         self.initial = ThermalState(resting.rise, (nothing, nothing))
         self._resting = resting
 
-    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         return self.initial
 
-    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+    def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
         opening, m = self._resting.opening, basis.shape[1]
         assert opening is not None
         return Coupling(np.zeros((m, m)), opening)
 
-    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+    def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         return True

@@ -45,7 +45,7 @@ class StoredHeat:
 
 
 @dataclass(frozen=True)
-class Warmth:
+class TemperatureField:
     """How warm bodies and faces are.
 
     Attributes

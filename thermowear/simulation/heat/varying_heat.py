@@ -12,16 +12,16 @@ from functools import cached_property
 import numpy as np
 
 from ...bulk.heat.varying import VaryingConduction, VaryingExpansion
-from ...contact.operators.heat import Resting, ThermalState, at_rest
+from ...contact.operators.heat import BaselineResponse, ThermalState, at_rest
 from ...contact.operators.heat_condensation import condense_heat, gap_per_rise
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..model.conditions import Conditions
+from ..model.conditions import InterfaceConditions
 from ..model.system import System
 from ..model.thermal_loads import ThermalLoad
 from ..model.thermal_system import ThermalSystem
 from .friction_heat import FrictionHeat
-from .heat_stages import ConductedHeat, Coupling
+from .heat_stages import Coupling, LinearHeatStep
 from .heat_states import StoredHeat
 from .tangents import LastTangents, TangentOperators, Tangents
 
@@ -81,9 +81,9 @@ class VaryingFrictionHeat(FrictionHeat):
             tangents, load = Tangents(self, None, reference), self._thermal.loads.at(0.0)
             self._lasting = VaryingHeat(self, tangents, load, load.heat, rise, change)
 
-    def at_rest(self, rise: np.ndarray) -> Resting:
+    def at_rest(self, rise: np.ndarray) -> BaselineResponse:
         faces = at_rest(rise, self._thermal.face.traces, self._system.comm).rise
-        return Resting(faces, self._opening(rise))
+        return BaselineResponse(faces, self._opening(rise))
 
     def tangent(self, rise: np.ndarray, step: float | None) -> TangentOperators:
         """Operators for small changes of a rise (n_owned,); every rank calls."""
@@ -108,14 +108,16 @@ class VaryingFrictionHeat(FrictionHeat):
         load: ThermalLoad,
         supplied: np.ndarray,
         rise: np.ndarray,
-    ) -> ConductedHeat:
+    ) -> LinearHeatStep:
         """Linear heat about a rise, by operators of a rise that is near; every rank calls."""
         heat = self._conduction.remainder(rise, operators.reference) + supplied
         alone = load.on(operators.conduction).solve(heat)
         traces, comm = self._thermal.face.traces, self._system.comm
         faces = at_rest(alone, traces, comm).rise
         changed = sum_over_ranks(comm, operators.per_rise.T @ (alone - rise))
-        return ConductedHeat(operators, load, heat, Resting(faces, self._opening(rise) + changed))
+        return LinearHeatStep(
+            operators, load, heat, BaselineResponse(faces, self._opening(rise) + changed)
+        )
 
     def far(self, rise: np.ndarray, other: np.ndarray) -> float:
         """How different two rises are, relative to the larger one; every rank calls."""
@@ -146,7 +148,7 @@ class VaryingHeat:
     tangents : Tangents
     load : ThermalLoad
     supplied : ndarray, shape (n_owned,)
-        See `ConductedHeat` [W].
+        See `LinearHeatStep` [W].
     rise : ndarray, shape (n_owned,)
         To start from [K].
     change : float, optional
@@ -179,7 +181,7 @@ class VaryingHeat:
         """The faces without any heat at the contact, about."""
         return self._linear.unheated
 
-    def faces(self, conditions: Conditions, pressure: np.ndarray) -> ThermalState:
+    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
         return self._newton(lambda: self._linear.faces(conditions, pressure))
 
@@ -188,11 +190,11 @@ class VaryingHeat:
         self._newton(lambda: faces)
         return self._rise
 
-    def coupling(self, conditions: Conditions, basis: np.ndarray) -> Coupling:
+    def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
         """What heat does to the condensed interface, about the last temperatures."""
         return self._linear.coupling(conditions, basis)
 
-    def holds(self, conditions: Conditions, pressure: np.ndarray) -> bool:
+    def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Whether the last coupling holds under a pressure; the next one is about its heat."""
         return self._moved(self._linear.faces(conditions, pressure)) <= _SETTLED
 

@@ -9,15 +9,15 @@ import numpy as np
 from ...balances import relative, require
 from ...compat import coordinate_element
 from ...contact.operators.heat import ThermalState
-from ...contact.operators.holder import Drive
+from ...contact.operators.holder import RigidMode
 from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import vector_trace
-from ...contact.search.pairing import Side
+from ...contact.search.pairing import PairedFace
 from ...laws.motions import translation
 from ...parallel import sum_over_ranks
-from ..heat.heat_states import Warmth
+from ..heat.heat_states import TemperatureField
 from ..heat.varying_heat import friction_heat
-from ..model.conditions import Conditions, Surroundings
+from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
 
 
@@ -28,16 +28,16 @@ class ContactState:
     Attributes
     ----------
     pressure : ndarray, shape (n,) [Pa]
-    conditions : Conditions
-    warmth : Warmth or None
+    conditions : InterfaceConditions
+    warmth : TemperatureField or None
         None without heat.
     shear : ndarray or None, shape (n,)
         Traction of sticking and slipping on body 1, see `contact.tangential` [Pa].
     """
 
     pressure: np.ndarray
-    conditions: Conditions
-    warmth: Warmth | None
+    conditions: InterfaceConditions
+    warmth: TemperatureField | None
     shear: np.ndarray | None = None
 
 
@@ -45,7 +45,7 @@ def contact_state(
     system: System, pressure: np.ndarray, shear: np.ndarray | None = None
 ) -> ContactState:
     """Of a contact whose conditions depend on nothing but where it touches. Every rank calls."""
-    conditions = Surroundings(system).at(0.0, pressure, None, pressure > 0)
+    conditions = ConditionModel(system).at(0.0, pressure, None, pressure > 0)
     heat = friction_heat(system)
     warmth = None if heat is None else heat.lasting(conditions, pressure)
     return ContactState(pressure, conditions, warmth, shear)
@@ -145,7 +145,7 @@ def _force_error(system: System, contact: ContactState, displacement, loads) -> 
     return max(relative(e, s) for e, s in zip(errors, scales, strict=True))
 
 
-def _with_rotations(system: System) -> list[Drive]:
+def _with_rotations(system: System) -> list[RigidMode]:
     """Motions of the holder that the elements can follow without strain.
 
     Rotations are linear in the coordinates: cells whose edges are curved by polynomials of a higher
@@ -156,7 +156,7 @@ def _with_rotations(system: System) -> list[Drive]:
     return [d for d in system.holder.drives if not (curved and d.motion.rotation.any())]
 
 
-def _work(system: System, contact: ContactState, drives, side: Side) -> np.ndarray:
+def _work(system: System, contact: ContactState, drives, side: PairedFace) -> np.ndarray:
     """Of the traction of the contact on motions of a body, at the points of its face, (k, n)."""
     points = side.face.points(side.facet, side.t)
     moved = np.array([drive.motion.at(points) for drive in drives])
@@ -166,11 +166,11 @@ def _work(system: System, contact: ContactState, drives, side: Side) -> np.ndarr
     return system.weights * np.einsum("kni,ni->kn", moved, traction)
 
 
-def _across(system: System) -> list[Drive]:
+def _across(system: System) -> list[RigidMode]:
     """Translations along the axes that balance whatever the holder does, without a load."""
     gdim = system.pairing.points.shape[1]
     axes = [system.press] if system.case.model == "axisymmetric" else np.eye(gdim)
-    return [Drive(translation(axis), amount=0.0) for axis in axes]
+    return [RigidMode(translation(axis), amount=0.0) for axis in axes]
 
 
 def _part(load: np.ndarray, largest: np.ndarray) -> float:

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.operators.condensation import CondensedContact
-from ...contact.solvers.signorini import ContactSolution, NoEquilibrium, solve_contact
+from ...contact.solvers.signorini import NoEquilibrium, SignoriniSolution, solve_contact
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
 from ..model.system import System
-from .contact_solver import Contact, Slope, WearRates, newton_with_wear
+from .contact_solver import ContactSolution, Slope, WearRates, newton_with_wear
 
 _TURNS = 60
 _HOT = (
@@ -50,14 +50,18 @@ class CondensedMethod:
         )
         self.note: str | None = None
 
-    def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
+    def solve(
+        self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None
+    ) -> ContactSolution:
         try:
             return self._balanced(gap, slope, guess, conditions, heat, pointwise)
         except NoEquilibrium as error:
             cold = _LOCKED if conditions.friction.any() else _TIPPED
             raise ComputationError(f"{error}; {cold if heat is None else _HOT}") from None
 
-    def _balanced(self, gap, slope, guess: Contact | None, conditions, heat, pointwise) -> Contact:
+    def _balanced(
+        self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise
+    ) -> ContactSolution:
         bodies, load = self._rubbed(conditions.friction), conditions.load
         edge = self._space(bodies, pointwise)
         gap, compliance = gap + self._dead, bodies.compliance
@@ -90,7 +94,7 @@ class CondensedMethod:
         coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
         active = np.ones(len(coefficients), dtype=bool)
         still = np.zeros(contact.modes.shape[1])
-        start = Contact(pressure, still, ContactSolution(coefficients, still, active))
+        start = ContactSolution(pressure, still, SignoriniSolution(coefficients, still, active))
         rigid, resting = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
         return newton_with_wear(
             lambda worn, slope, last: self._solved(
@@ -101,14 +105,14 @@ class CondensedMethod:
             start,
         ).pressure
 
-    def opening(self, contact: Contact) -> float:
+    def opening(self, contact: ContactSolution) -> float:
         return float(self._opened(contact).max())
 
-    def bending(self, contact: Contact) -> float:
+    def bending(self, contact: ContactSolution) -> float:
         opened = self._opened(contact)[contact.memory.active]
         return float(np.ptp(opened)) if opened.size else 0.0
 
-    def _opened(self, contact: Contact) -> np.ndarray:
+    def _opened(self, contact: ContactSolution) -> np.ndarray:
         """Change of the gap by the bodies' deformation, means over the basis functions (m,) [m]."""
         opened = self._contact.compliance @ contact.memory.coefficients
         return opened / self._contact.weighted.sum(axis=0)
@@ -148,9 +152,9 @@ class CondensedMethod:
         resting: np.ndarray,
         gap: np.ndarray,
         slope: Slope,
-        guess: Contact | None,
+        guess: ContactSolution | None,
         load: np.ndarray,
-    ) -> Contact:
+    ) -> ContactSolution:
         """Contact of bodies with a compliance (m, m) and a weak gap at rest (m,)."""
         space = bodies if edge is None else edge
         start = None if guess is None else guess.memory.active
@@ -171,4 +175,6 @@ class CondensedMethod:
             apart = (pressure == 0.0) * edge.at_points(left)
             seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
             solution = replace(solution, coefficients=seen, active=active)
-        return Contact(pressure, self._system.holder.amounts(solution.motion), solution, apart)
+        return ContactSolution(
+            pressure, self._system.holder.amounts(solution.motion), solution, apart
+        )

@@ -8,18 +8,18 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...errors import ComputationError
-from ...laws.distribution import Spreading
+from ...laws.distribution import Distribution
 from ...laws.interfaces import WearRate
 from ...serialise import serialisable
 from ..heat.heat_stages import HeatStage
-from ..model.conditions import Conditions
+from ..model.conditions import InterfaceConditions
 
 _NEWTON_STEPS = 40
 
 
 @serialisable
 @dataclass(frozen=True)
-class Contact:
+class ContactSolution:
     """A solved contact.
 
     Attributes
@@ -40,7 +40,7 @@ class Contact:
     apart: np.ndarray | None = None
 
 
-class ContactMethod(Protocol):
+class ContactSolver(Protocol):
     """A way to solve contact with given loads: condensed, or on the full system.
 
     Attributes
@@ -55,11 +55,11 @@ class ContactMethod(Protocol):
         self,
         gap: np.ndarray,
         slope: Slope,
-        guess: Contact | None,
-        conditions: Conditions,
+        guess: ContactSolution | None,
+        conditions: InterfaceConditions,
         heat: HeatStage | None,
         pointwise: np.ndarray | None = None,
-    ) -> Contact:
+    ) -> ContactSolution:
         """Contact of bodies with friction heat and a local compliance.
 
         Parameters
@@ -68,8 +68,8 @@ class ContactMethod(Protocol):
             Without pressure, heat and motion of the holder [m].
         slope : Slope
             Gap that the pressures open in addition to the bodies [m/Pa].
-        guess : Contact or None
-        conditions : Conditions
+        guess : ContactSolution or None
+        conditions : InterfaceConditions
         heat : HeatStage or None
         pointwise : ndarray of bool, shape (n,), optional
             At the edge of the wear, where contact is to hold one by one: `contact.wear_edge`.
@@ -88,21 +88,23 @@ class ContactMethod(Protocol):
             From `WearEdge.points`.
         """
 
-    def steady(self, pressure: np.ndarray, rates: WearRates, conditions: Conditions) -> np.ndarray:
+    def steady(
+        self, pressure: np.ndarray, rates: WearRates, conditions: InterfaceConditions
+    ) -> np.ndarray:
         """Steady pressure as the method discretises it, from that of the principle [Pa].
 
         Parameters
         ----------
         pressure : ndarray, shape (n,) [Pa]
         rates : WearRates
-        conditions : Conditions
+        conditions : InterfaceConditions
             That the steady state leads to.
         """
 
-    def opening(self, contact: Contact) -> float:
+    def opening(self, contact: ContactSolution) -> float:
         """Largest change of the gap by the bodies' deformation [m]."""
 
-    def bending(self, contact: Contact) -> float:
+    def bending(self, contact: ContactSolution) -> float:
         """By how much that differs over the area that presses [m]."""
 
 
@@ -150,14 +152,14 @@ class WearRates:
     ----------
     laws : list of WearRate
         Of the wearing bodies.
-    spreads : list of Spreading
+    spreads : list of Distribution
         Of the same bodies.
-    conditions : Conditions
+    conditions : InterfaceConditions
     """
 
     laws: list[WearRate]
-    spreads: list[Spreading]
-    conditions: Conditions
+    spreads: list[Distribution]
+    conditions: InterfaceConditions
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates, shape (n_wearing, n) [m/s]."""
@@ -179,7 +181,9 @@ class WearRates:
         return Slope(point, np.vstack(rows), np.hstack(reach))
 
 
-def newton_with_wear(solve, rates: WearRates, step: float, guess: Contact) -> Contact:
+def newton_with_wear(
+    solve, rates: WearRates, step: float, guess: ContactSolution
+) -> ContactSolution:
     """Newton's method on contact with wear that grows with the pressure.
 
     Parameters
@@ -189,7 +193,7 @@ def newton_with_wear(solve, rates: WearRates, step: float, guess: Contact) -> Co
     rates : WearRates
     step : float
         [s]
-    guess : Contact
+    guess : ContactSolution
 
     Raises
     ------

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from ..heat.varying_heat import friction_heat
 from ..model.system import System
 from .condensed_method import CondensedMethod
-from .contact_solver import ContactMethod
+from .contact_solver import ContactSolver
 from .full_method import FullMethod
 from .interface_problem import InterfaceProblem
 
@@ -30,7 +30,7 @@ def interface_problem(
     return problem
 
 
-def _solver(system: System) -> ContactMethod:
+def _solver(system: System) -> ContactSolver:
     if system.case.contact.method == "condensed":
         return CondensedMethod(system)
     with system.phases("contact operators"):

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...contact.operators.heat import ThermalState
 from ...errors import ComputationError
-from ..model.conditions import Conditions, Surroundings
+from ..model.conditions import ConditionModel, InterfaceConditions
 from .anderson import Mixing
 
 _DAMPED = 0.5
@@ -20,7 +20,7 @@ _TURNS = 100
 _LEAST_RISE = 1.0  # K
 
 
-class State(Protocol):
+class TrialState(Protocol):
     """What conditions depend on."""
 
     @property
@@ -36,11 +36,11 @@ class State(Protocol):
         """Depths worn off the wearing bodies, shape (n_wearing, n) [m]."""
 
 
-Found = TypeVar("Found", bound=State)
+Found = TypeVar("Found", bound=TrialState)
 
 
 @dataclass(frozen=True)
-class Supposed:
+class Trial:
     """A state that is tried."""
 
     pressure: np.ndarray
@@ -49,13 +49,13 @@ class Supposed:
 
 
 def self_consistent(
-    surroundings: Surroundings,
+    surroundings: ConditionModel,
     time: float,
-    start: State,
-    respond: Callable[[Conditions], Found],
+    start: TrialState,
+    respond: Callable[[InterfaceConditions], Found],
     complaint: str,
     closed: np.ndarray | None = None,
-) -> tuple[Conditions, Found]:
+) -> tuple[InterfaceConditions, Found]:
     """Find a state whose conditions lead to itself.
 
     Half of the way is gone in each turn at first: where there are several states, that ends in the
@@ -64,10 +64,10 @@ def self_consistent(
 
     Parameters
     ----------
-    surroundings : Surroundings
+    surroundings : ConditionModel
     time : float
         [s]
-    start : State
+    start : TrialState
     respond : callable
         The state that given conditions lead to.
     complaint : str
@@ -80,7 +80,7 @@ def self_consistent(
     ComputationError
     """
 
-    def conditions_of(state: State) -> Conditions:
+    def conditions_of(state: TrialState) -> InterfaceConditions:
         touching = state.pressure > 0 if closed is None else closed
         return surroundings.at(time, state.pressure, state.faces, touching, state.worn)
 
@@ -100,24 +100,24 @@ def self_consistent(
     raise ComputationError(complaint)
 
 
-def _scales(found: State) -> tuple[float, float]:
+def _scales(found: TrialState) -> tuple[float, float]:
     rise = 0.0 if found.faces is None else float(np.max(np.abs(found.faces.rise)))
     return float(found.pressure.max()) or 1.0, max(rise, _LEAST_RISE)
 
 
-def _stacked(state: State, found: State) -> np.ndarray:
+def _stacked(state: TrialState, found: TrialState) -> np.ndarray:
     """A state as one vector without dimension, by the scales of what was found."""
     pascal, kelvin = _scales(found)
     rises = () if state.faces is None else state.faces.rise
     return np.concatenate([state.pressure / pascal, *(rise / kelvin for rise in rises)])
 
 
-def _unstacked(vector: np.ndarray, found: State) -> Supposed:
+def _unstacked(vector: np.ndarray, found: TrialState) -> Trial:
     """The inverse; it presses where what was found does."""
     pascal, kelvin = _scales(found)
     pressure, *rises = np.split(vector, 1 if found.faces is None else 3)
     pressing = np.where(found.pressure > 0, np.maximum(pressure, 1e-9), 0.0) * pascal
     if found.faces is None:
-        return Supposed(pressing, None, found.worn)
+        return Trial(pressing, None, found.worn)
     rise = (rises[0] * kelvin, rises[1] * kelvin)
-    return Supposed(pressing, ThermalState(rise, found.faces.flux), found.worn)
+    return Trial(pressing, ThermalState(rise, found.faces.flux), found.worn)

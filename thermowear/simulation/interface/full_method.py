@@ -20,7 +20,7 @@ from ...parallel import sum_over_ranks
 from ..model.contact_points import pressure_degree
 from ..model.system import System
 from .anderson import Mixing
-from .contact_solver import Contact, WearRates
+from .contact_solver import ContactSolution, WearRates
 
 _PASSES = 60
 _SETTLED = 1e-9  # of the largest pressure
@@ -49,7 +49,9 @@ class FullMethod:
         self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
         self._last_deflection: tuple[np.ndarray, EdgeDeflection] | None = None
 
-    def solve(self, gap, slope, guess: Contact | None, conditions, heat, pointwise=None) -> Contact:
+    def solve(
+        self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None
+    ) -> ContactSolution:
         start, load = None if guess is None else guess.memory, conditions.load
         slope = slope.point  # means are of turning disks in space, which is for condensed contact
         edge = self._deflection(pointwise)
@@ -75,14 +77,14 @@ class FullMethod:
         """The principle point by point: the full system has no pressure space of its own."""
         return pressure
 
-    def opening(self, contact: Contact) -> float:
+    def opening(self, contact: ContactSolution) -> float:
         return float(np.abs(self._opened(contact)).max())
 
-    def bending(self, contact: Contact) -> float:
+    def bending(self, contact: ContactSolution) -> float:
         opened = self._opened(contact)[contact.pressure > 0.0]
         return float(np.ptp(opened)) if opened.size else 0.0
 
-    def _opened(self, contact: Contact) -> np.ndarray:
+    def _opened(self, contact: ContactSolution) -> np.ndarray:
         """Change of the gap by the bodies' deformation at the points, shape (n,) [m]."""
         system = self._system
         return sum_over_ranks(system.comm, system.trace.T @ contact.memory.displacement)
@@ -116,9 +118,9 @@ class FullMethod:
     def _solved(self, gap, slope, start, load, nodal_loads, traction, edge) -> FullSolution:
         return self._contact.solve(gap, load, slope, nodal_loads, traction, start, edge)
 
-    def _result(self, solution: FullSolution) -> Contact:
+    def _result(self, solution: FullSolution) -> ContactSolution:
         motion = self._system.holder.amounts(solution.motion)
-        return Contact(solution.pressure, motion, solution)
+        return ContactSolution(solution.pressure, motion, solution)
 
 
 def _full_contact(system: System) -> tuple[FullContact, str | None]:

@@ -10,14 +10,14 @@ import numpy as np
 from ...contact.wear.edge_times import closing_times
 from ...contact.wear.wear_edge import WearEdge
 from ..heat.friction_heat import FrictionHeat
-from ..heat.heat_stages import FrozenHeat, HeatStage
+from ..heat.heat_stages import HeatStage, InitialHeat
 from ..heat.heat_states import HeatBalance
-from ..model.conditions import Conditions, Surroundings
+from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
 from .body_state import ContactState
-from .contact_solver import Contact, ContactMethod, Slope, WearRates, newton_with_wear
-from .fixed_point import Supposed, self_consistent
-from .sdirk import WornContact
+from .contact_solver import ContactSolution, ContactSolver, Slope, WearRates, newton_with_wear
+from .fixed_point import Trial, self_consistent
+from .sdirk import InterfaceState
 from .steady import SteadyState
 
 _UNWORN = (
@@ -39,15 +39,15 @@ class InterfaceProblem:
     Parameters
     ----------
     system : System
-    method : ContactMethod
+    method : ContactSolver
     heat : FrictionHeat or None
     """
 
-    def __init__(self, system: System, method: ContactMethod, heat: FrictionHeat | None):
+    def __init__(self, system: System, method: ContactSolver, heat: FrictionHeat | None):
         self._system = system
         self._method = method
         self._heat = heat
-        self._surroundings = Surroundings(system)
+        self._surroundings = ConditionModel(system)
         self._edge = WearEdge(system.pairing.sides[0].facet, system.basis, system.weights)
         self._gap = system.pairing.gap - system.holder.imposed
         self._softness = np.full(len(self._gap), system.softness)
@@ -65,7 +65,7 @@ class InterfaceProblem:
         """What the user should know about the settings of the method."""
         return self._method.note
 
-    def unworn(self) -> WornContact:
+    def unworn(self) -> InterfaceState:
         """Contact of the unworn faces at the temperatures that its friction leads to.
 
         The points that exchange heat are found by iteration.
@@ -79,25 +79,25 @@ class InterfaceProblem:
 
     def _lasting(
         self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
-    ) -> WornContact:
+    ) -> InterfaceState:
         """Contact of faces with given wear, at the temperatures that its friction leads to."""
         heat = None if self._heat is None else self._heat.steady
 
-        def respond(conditions: Conditions) -> WornContact:
+        def respond(conditions: InterfaceConditions) -> InterfaceState:
             contact = self._contact(worn, 0.0, conditions, heat, None, pointwise)
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
-            return WornContact(worn, contact, faces=faces)
+            return InterfaceState(worn, contact, faces=faces)
 
         faces = None if heat is None else heat.unheated
-        start = Supposed(self._guess.pressure, faces, worn)
+        start = Trial(self._guess.pressure, faces, worn)
         return self_consistent(self._surroundings, time, start, respond, _UNWORN)[1]
 
-    def worn(self, depth: np.ndarray, guess: Contact | None = None) -> Contact:
+    def worn(self, depth: np.ndarray, guess: ContactSolution | None = None) -> ContactSolution:
         """Contact of faces from which a depth (n,) is worn, without heat [m]."""
-        conditions = self.conditions(WornContact(self._nothing(), self._guess), 0.0)
+        conditions = self.conditions(InterfaceState(self._nothing(), self._guess), 0.0)
         return self._contact(depth[None], 0.0, conditions, None, guess)
 
-    def start(self) -> WornContact:
+    def start(self) -> InterfaceState:
         """The unworn faces at time 0."""
         if not self._transient:
             return self.unworn()
@@ -107,17 +107,17 @@ class InterfaceProblem:
     def take_over(
         self,
         former: InterfaceProblem,
-        state: WornContact,
+        state: InterfaceState,
         worn: np.ndarray,
         rise: np.ndarray | None,
         time: float,
-    ) -> WornContact:
+    ) -> InterfaceState:
         """A state of a problem of the same bodies before their meshes were moved.
 
         Parameters
         ----------
         former : InterfaceProblem
-        state : WornContact
+        state : InterfaceState
             Of that problem.
         worn : ndarray, shape (n_wearing, n)
             Its depths at the points of this problem [m].
@@ -142,17 +142,17 @@ class InterfaceProblem:
     def _frozen(
         self,
         worn: np.ndarray,
-        heat: FrozenHeat,
+        heat: InitialHeat,
         time: float,
         pointwise: np.ndarray | None = None,
-    ) -> WornContact:
+    ) -> InterfaceState:
         """Contact at a moment of which the temperatures are known."""
-        guess = WornContact(worn, self._guess, faces=heat.initial)
+        guess = InterfaceState(worn, self._guess, faces=heat.initial)
         conditions = self.conditions(guess, time)
         contact = self._contact(worn, 0.0, conditions, heat, None, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
 
-    def begin(self, state: WornContact) -> WornContact:
+    def begin(self, state: InterfaceState) -> InterfaceState:
         """A state with the points at which contact holds one by one in the next step.
 
         None before the edge of the contact is that of the wear. With the distance ξ from an edge
@@ -174,8 +174,8 @@ class InterfaceProblem:
         return replace(state, pointwise=edge)
 
     def stage(
-        self, before: WornContact, step: float, time: float, guess: WornContact
-    ) -> WornContact:
+        self, before: InterfaceState, step: float, time: float, guess: InterfaceState
+    ) -> InterfaceState:
         """The end of an implicit Euler step of wear, and of heat where it is followed in time.
 
         What depends on the state is that of the end of the step, but for the points that exchange
@@ -183,24 +183,24 @@ class InterfaceProblem:
         """
         heat, last = self._heat_at_end(before, step, time), guess.contact
 
-        def respond(conditions: Conditions) -> WornContact:
+        def respond(conditions: InterfaceConditions) -> InterfaceState:
             nonlocal last
             last = self._contact(before.worn, step, conditions, heat, last, before.pointwise)
             faces = None if heat is None else heat.faces(conditions, last.pressure)
             worn = before.worn + step * self._rates(conditions)(last.pressure)
-            return WornContact(worn, last, before.peak, faces, pointwise=before.pointwise)
+            return InterfaceState(worn, last, before.peak, faces, pointwise=before.pointwise)
 
         conditions, found = self_consistent(
             self._surroundings, time, guess, respond, _STEP, closed=guess.pressure > 0
         )
         return self._moved_on(before, found, step, conditions, heat)
 
-    def conditions(self, state: WornContact, time: float) -> Conditions:
+    def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
         """What holds at the interface in a state at a time [s]."""
         touching = state.pressure > 0
         return self._surroundings.at(time, state.pressure, state.faces, touching, state.worn)
 
-    def contact_state(self, state: WornContact, time: float) -> ContactState:
+    def contact_state(self, state: InterfaceState, time: float) -> ContactState:
         """What a state does to the bodies; every rank calls."""
         conditions, warmth = self.conditions(state, time), None
         if self._heat is not None and state.stored is not None and state.faces is not None:
@@ -209,26 +209,28 @@ class InterfaceProblem:
             warmth = self._heat.lasting(conditions, state.pressure)
         return ContactState(state.pressure, conditions, warmth)
 
-    def hottest(self, state: WornContact) -> float:
+    def hottest(self, state: InterfaceState) -> float:
         """Highest temperature of both faces [K]; NaN without heat."""
         if self._heat is None or state.faces is None:
             return float("nan")
         return float(np.max(state.faces.rise)) + self._heat.ambient
 
-    def face_temperatures(self, state: WornContact) -> tuple[np.ndarray, np.ndarray]:
+    def face_temperatures(self, state: InterfaceState) -> tuple[np.ndarray, np.ndarray]:
         """Of both faces at the points [K], where there is heat."""
         assert self._heat is not None
         assert state.faces is not None
         T1, T2 = state.faces.rise
         return T1 + self._heat.ambient, T2 + self._heat.ambient
 
-    def heat_balance(self, state: WornContact) -> HeatBalance:
+    def heat_balance(self, state: InterfaceState) -> HeatBalance:
         """Of all the heat so far, where it is followed in time; every rank calls."""
         assert self._heat is not None
         assert state.stored is not None
         return self._heat.balance(state.stored)
 
-    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
+    def difference(
+        self, before: InterfaceState, one: InterfaceState, other: InterfaceState
+    ) -> float:
         """Difference of two pressures, the largest one where they are continuous in time [Pa].
 
         A point at which contact holds by itself begins to press at once when the edge of the wear
@@ -251,7 +253,10 @@ class InterfaceProblem:
         return float(max(mean, abs(largest - expected), _RISE * (largest - earlier)))
 
     def edge_steps(
-        self, states: tuple[WornContact, WornContact, WornContact], step: float, time: float
+        self,
+        states: tuple[InterfaceState, InterfaceState, InterfaceState],
+        step: float,
+        time: float,
     ) -> tuple[float, float]:
         """Steps that end right behind a time at which the edge of the wear reaches a point.
 
@@ -269,14 +274,14 @@ class InterfaceProblem:
             following = min(following, _SETTLING * self._settling(states[2], time, begun))
         return (1 + _BEHIND) * reached if np.isfinite(reached) else 0.0, following
 
-    def _settling(self, state: WornContact, time: float, points: np.ndarray) -> float:
+    def _settling(self, state: InterfaceState, time: float, points: np.ndarray) -> float:
         """Shortest time in which wear takes up the deflection under the pressure of points [s]."""
         assert state.pointwise is not None
         slope = self._rates(self.conditions(state, time)).slope(state.pressure).point[points]
         yielding = self._method.yielding(state.pointwise)[points]
         return float((yielding[slope > 0.0] / slope[slope > 0.0]).min(initial=np.inf))
 
-    def difference_inside(self, one: WornContact, other: WornContact) -> float:
+    def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""
         if self._heat is None or one.stored is None or other.stored is None:
             return 0.0
@@ -295,7 +300,7 @@ class InterfaceProblem:
         """Times up to an end at which something changes its course [s]."""
         return self._surroundings.corners(end)
 
-    def first_step(self, state: WornContact) -> float:
+    def first_step(self, state: InterfaceState) -> float:
         """A step in which wear is small against the bodies' deflection, and heat goes not far [s].
 
         May be infinite.
@@ -315,13 +320,13 @@ class InterfaceProblem:
         conditions = steady.conditions
         return self._method.steady(steady.wear.pressure, self._rates(conditions), conditions)
 
-    def distance(self, state: WornContact, steady: np.ndarray | None) -> float:
+    def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
         """Largest difference to a steady pressure, relative to the largest of that; NaN without."""
         if steady is None:
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
 
-    def _rates(self, conditions: Conditions) -> WearRates:
+    def _rates(self, conditions: InterfaceConditions) -> WearRates:
         return WearRates(self._laws, self._spreads, conditions)
 
     def _nothing(self) -> np.ndarray:
@@ -329,20 +334,20 @@ class InterfaceProblem:
         return np.zeros((len(self._laws), len(self._gap)))
 
     @property
-    def _guess(self) -> Contact:
+    def _guess(self) -> ContactSolution:
         """The mean pressure, all over the face."""
         area = float(self._system.weights.sum())
         pressure = np.full(len(self._gap), (self._system.case.force() or area) / area)
-        return Contact(pressure, np.zeros(0), None)
+        return ContactSolution(pressure, np.zeros(0), None)
 
-    def _heat_at_end(self, before: WornContact, step: float, time: float) -> HeatStage | None:
+    def _heat_at_end(self, before: InterfaceState, step: float, time: float) -> HeatStage | None:
         if self._heat is None:
             return None
         if before.stored is None:
             return self._heat.steady
         return self._heat.after(before.stored, step, time)
 
-    def _moved_on(self, before, state, step, conditions, heat) -> WornContact:
+    def _moved_on(self, before, state, step, conditions, heat) -> InterfaceState:
         """A state with what has accumulated in a step."""
         worn = before.worn + step * self._rates(conditions)(state.pressure)
         stored = None
@@ -356,11 +361,11 @@ class InterfaceProblem:
         self,
         worn: np.ndarray,
         step: float,
-        conditions: Conditions,
+        conditions: InterfaceConditions,
         heat: HeatStage | None,
-        guess: Contact | None,
+        guess: ContactSolution | None,
         pointwise: np.ndarray | None = None,
-    ) -> Contact:
+    ) -> ContactSolution:
         """Contact at the end of an implicit step of wear, by Newton's method.
 
         Each Newton step is a contact problem of its own: wear that grows with the pressure adds
@@ -369,7 +374,7 @@ class InterfaceProblem:
         gap = self._gap + worn.sum(axis=0)
         if conditions.released:  # the holder stays where it is
             motion = np.zeros(len(self._system.holder.drives)) if guess is None else guess.motion
-            return Contact(np.zeros(len(gap)), motion, None)
+            return ContactSolution(np.zeros(len(gap)), motion, None)
 
         def solve(opened, slope, last):
             softer = slope.softer_by(self._softness)

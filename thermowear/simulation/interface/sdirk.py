@@ -10,7 +10,7 @@ import numpy as np
 from ...contact.operators.heat import ThermalState
 from ...serialise import serialisable
 from ..heat.heat_states import StoredHeat
-from .contact_solver import Contact
+from .contact_solver import ContactSolution
 
 _γ = 1 - 1 / np.sqrt(2)
 
@@ -21,14 +21,14 @@ _LEAST_RISE = 10.0  # K; errors of smaller rises are held against this one
 
 @serialisable
 @dataclass(frozen=True)
-class WornContact:
+class InterfaceState:
     """State of a running-in.
 
     Attributes
     ----------
     worn : ndarray, shape (n_wearing, n)
         Depths worn off [m].
-    contact : Contact
+    contact : ContactSolution
     peak : float
         Largest pressure before [Pa].
     faces : ThermalState or None
@@ -40,7 +40,7 @@ class WornContact:
     """
 
     worn: np.ndarray
-    contact: Contact
+    contact: ContactSolution
     peak: float = 0.0
     faces: ThermalState | None = None
     stored: StoredHeat | None = None
@@ -56,13 +56,15 @@ class WornContact:
         """Pressure so far [Pa]."""
         return max(self.peak, float(self.pressure.max()))
 
-    def towards(self, other: WornContact, part: float) -> WornContact:
+    def towards(self, other: InterfaceState, part: float) -> InterfaceState:
         """What accumulates moved on by a part of the way to another state."""
         stored = self.stored
         if stored is not None and other.stored is not None:
             stored = stored.towards(other.stored, part)
         worn = self.worn + part * (other.worn - self.worn)
-        return WornContact(worn, other.contact, self.largest, other.faces, stored, self.pointwise)
+        return InterfaceState(
+            worn, other.contact, self.largest, other.faces, stored, self.pointwise
+        )
 
 
 class WearProblem(Protocol):
@@ -71,24 +73,24 @@ class WearProblem(Protocol):
     Depths have shape (n_rows, n); what they open is their sum over the rows.
     """
 
-    def start(self) -> WornContact:
+    def start(self) -> InterfaceState:
         """The unworn faces, at time 0."""
 
-    def begin(self, state: WornContact) -> WornContact:
+    def begin(self, state: InterfaceState) -> InterfaceState:
         """A state with what is chosen anew for each step, the same for all that it is made of."""
 
     def stage(
-        self, before: WornContact, step: float, time: float, guess: WornContact
-    ) -> WornContact:
+        self, before: InterfaceState, step: float, time: float, guess: InterfaceState
+    ) -> InterfaceState:
         """The end of an implicit Euler step.
 
         Parameters
         ----------
-        before : WornContact
+        before : InterfaceState
             What has accumulated before the step.
         step, time : float
             Its size and its end [s].
-        guess : WornContact
+        guess : InterfaceState
             A state near to the result.
 
         Raises
@@ -96,25 +98,30 @@ class WearProblem(Protocol):
         ComputationError
         """
 
-    def difference(self, before: WornContact, one: WornContact, other: WornContact) -> float:
+    def difference(
+        self, before: InterfaceState, one: InterfaceState, other: InterfaceState
+    ) -> float:
         """Difference of two pressures, the largest one where they are continuous in time [Pa].
 
         Parameters
         ----------
-        before : WornContact
+        before : InterfaceState
             At the beginning of the step.
-        one, other : WornContact
+        one, other : InterfaceState
             At its end; all of the pressure where what was chosen for the step does not do for them.
         """
 
     def edge_steps(
-        self, states: tuple[WornContact, WornContact, WornContact], step: float, time: float
+        self,
+        states: tuple[InterfaceState, InterfaceState, InterfaceState],
+        step: float,
+        time: float,
     ) -> tuple[float, float]:
         """Steps that end right behind a time at which the edge of the wear reaches a point.
 
         Parameters
         ----------
-        states : tuple of WornContact
+        states : tuple of InterfaceState
             At the beginning of a step, in its middle and at its end.
         step, time : float
             Its size and its end [s].
@@ -127,23 +134,25 @@ class WearProblem(Protocol):
             The largest that may follow this step; may be infinite [s].
         """
 
-    def difference_inside(self, one: WornContact, other: WornContact) -> float:
+    def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
         """Largest difference of temperatures inside the bodies, where that matters [K]."""
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end that steps must not pass over [s]."""
 
-    def first_step(self, state: WornContact) -> float:
+    def first_step(self, state: InterfaceState) -> float:
         """A step to begin with [s]; may be infinite."""
 
     def steady(self, steady) -> np.ndarray:
         """Pressure of the discrete interface in a steady state [Pa]."""
 
-    def distance(self, state: WornContact, steady: np.ndarray | None) -> float:
+    def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
         """How far from the steady state; NaN where that is not known."""
 
 
-def advance(problem: WearProblem, state: WornContact, time: float, step: float) -> WornContact:
+def advance(
+    problem: WearProblem, state: InterfaceState, time: float, step: float
+) -> InterfaceState:
     """One step of the two-stage, second-order, L-stable diagonally implicit Runge-Kutta method.
 
     It is stiffly accurate, so the contact conditions hold at the end of the step, and its weights
@@ -156,30 +165,32 @@ def advance(problem: WearProblem, state: WornContact, time: float, step: float) 
 
 
 @dataclass(frozen=True)
-class Trial:
+class TrialStep:
     """A step that has been tried.
 
     Attributes
     ----------
-    state : WornContact
+    state : InterfaceState
         At its end.
     error : float
     reached, following : float
         See `WearProblem.edge_steps` [s].
     """
 
-    state: WornContact
+    state: InterfaceState
     error: float
     reached: float = 0.0
     following: float = np.inf
 
 
-def advance_with_error(problem: WearProblem, state: WornContact, time: float, step: float) -> Trial:
+def advance_with_error(
+    problem: WearProblem, state: InterfaceState, time: float, step: float
+) -> TrialStep:
     """Two half steps, and their error from the difference to a whole one (Richardson).
 
     Returns
     -------
-    Trial
+    TrialStep
         The state after the two half steps. Its error is the largest of those of pressure (see
         `WearProblem.difference`), of wear, and of
         temperatures that are followed in time: relative to the largest pressure, to the largest
@@ -206,7 +217,7 @@ def advance_with_error(problem: WearProblem, state: WornContact, time: float, st
         ]
         errors.append(problem.difference_inside(halves, whole) / largest)
     edge = problem.edge_steps((state, middle, halves), step, time + step)
-    return Trial(halves, max(errors) / 3.0, *edge)
+    return TrialStep(halves, max(errors) / 3.0, *edge)
 
 
 def _relative(errors: np.ndarray | float, scale: float, allowed: float = 0.0) -> float:

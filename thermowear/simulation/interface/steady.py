@@ -10,10 +10,10 @@ from scipy.optimize import linprog
 from ...contact.operators.heat import ThermalState
 from ...laws import SteadyWear, steady_pressure
 from ..heat.varying_heat import friction_heat
-from ..model.conditions import Conditions, Surroundings
+from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
 from .body_state import ContactState
-from .fixed_point import Supposed, self_consistent
+from .fixed_point import Trial, self_consistent
 
 _NONE = (
     "no steady state found: each turn of the principle changes friction, wear or conductance, so "
@@ -35,7 +35,7 @@ class SteadyState:
     contact: ContactState
 
     @property
-    def conditions(self) -> Conditions:
+    def conditions(self) -> InterfaceConditions:
         """What holds at the interface in it."""
         return self.contact.conditions
 
@@ -54,14 +54,14 @@ def steady_state(system: System) -> SteadyState:
     area = float(system.weights.sum())
     even = np.full(len(system.weights), (system.case.force() or area) / area)
     nothing = np.zeros((len(system.laws), len(even)))
-    start = Supposed(even, None if heat is None else heat.steady.unheated, nothing)
+    start = Trial(even, None if heat is None else heat.steady.unheated, nothing)
 
-    def respond(conditions: Conditions) -> _Worn:
+    def respond(conditions: InterfaceConditions) -> _Worn:
         wear = _principle(system, conditions)
         faces = None if heat is None else heat.steady.faces(conditions, wear.pressure)
         return _Worn(wear, faces, nothing)
 
-    conditions, found = self_consistent(Surroundings(system), 0.0, start, respond, _NONE)
+    conditions, found = self_consistent(ConditionModel(system), 0.0, start, respond, _NONE)
     warmth = None if heat is None else heat.lasting(conditions, found.pressure)
     return SteadyState(found.wear, ContactState(found.pressure, conditions, warmth))
 
@@ -79,7 +79,7 @@ class _Worn:
         return self.wear.pressure
 
 
-def _principle(system: System, conditions: Conditions) -> SteadyWear:
+def _principle(system: System, conditions: InterfaceConditions) -> SteadyWear:
     """The steady state under given conditions."""
     holder = system.rubbing(conditions.friction).holder
     return steady_pressure(

@@ -21,7 +21,7 @@ from .contact_points import contact_points, facing_parts, worn_contact_points
 from .elastic_system import dead_load, dead_resultant, elastic_system
 from .interface_laws import partition
 from .rigid_modes import drives
-from .setup_cache import Parts, inputs
+from .setup_cache import SetupCache, inputs
 from .system import System
 from .thermal_system import ThermalSystem, thermal_system
 from .wear_shares import closes_by_wear, softness_of_parts
@@ -33,7 +33,7 @@ def build(
     comm,
     phases: Phases,
     zone: tuple[float, float] | None = None,
-    parts: Parts | None = None,
+    parts: SetupCache | None = None,
     worn: WornGeometry | None = None,
 ) -> System:
     """Mesh, pair and assemble a case. Every rank calls.
@@ -45,7 +45,7 @@ def build(
     phases : Phases
     zone : tuple of float, optional
         Range of x to mesh for, by default where the case expects contact [m].
-    parts : Parts, optional
+    parts : SetupCache, optional
         Of systems built before on the same ranks; what this one can share is not made again.
     worn : WornGeometry, optional
         Where the nodes of the mesh are now; none of the parts may be of other places.
@@ -55,7 +55,7 @@ def build(
     CaseError
         If the geometry cannot be meshed or paired.
     """
-    parts, made_from = Parts() if parts is None else parts, inputs(case, zone)
+    parts, made_from = SetupCache() if parts is None else parts, inputs(case, zone)
     geometry = case.geometry
     model = section_model(case.model, geometry.thickness_factor, geometry.sector)
     with phases("mesh"):

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ...case.tables.history import FactorHistory, History
-from ...case.tables.wear import Wear
+from ...case.tables.wear import BodyWearTable
 from ...contact.operators.heat import ThermalState
 from ...errors import ComputationError
 from ...laws.coefficients.multipliers import Multipliers
@@ -22,7 +22,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class Conditions:
+class InterfaceConditions:
     """Arrays of shape (n,) unless stated otherwise.
 
     Attributes
@@ -70,12 +70,12 @@ class Conditions:
         """Whether nothing presses the bodies together any more."""
         return self.load.size > 0 and not self.load.any()
 
-    def differ(self, other: Conditions) -> float:
+    def differ(self, other: InterfaceConditions) -> float:
         """Largest relative difference."""
         pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
         return max(_difference(a, b) for a, b in pairs)
 
-    def settled(self, other: Conditions) -> bool:
+    def settled(self, other: InterfaceConditions) -> bool:
         """Whether they are the same, but for rounding."""
         return self is other or self.differ(other) <= _SETTLED
 
@@ -117,14 +117,14 @@ class _WearingBody:
     friction_exponent: float
 
     @classmethod
-    def of(cls, index: int, wear: Wear) -> _WearingBody:
+    def of(cls, index: int, wear: BodyWearTable) -> _WearingBody:
         """From the table of the case."""
         stress = wear.law is None and wear.per == "friction-stress"
         exponent = wear.pressure_exponent if stress else 0.0
         return cls(index, wear.variables, wear.factor.multipliers, exponent)
 
 
-class Surroundings:
+class ConditionModel:
     """The conditions of a case at any time, pressure and temperature.
 
     Parameters
@@ -140,7 +140,7 @@ class Surroundings:
         self._friction_law = friction_law(self._case)
         self._varies, self._friction_varies = self._case.varies, self._case.friction_varies
         self._courses = list(self._case.histories.values())
-        self._lasting: tuple[bytes, Conditions] | None = None
+        self._lasting: tuple[bytes, InterfaceConditions] | None = None
 
     def at(
         self,
@@ -149,7 +149,7 @@ class Surroundings:
         faces: ThermalState | None,
         closed: np.ndarray,
         depth: np.ndarray | None = None,
-    ) -> Conditions:
+    ) -> InterfaceConditions:
         """Conditions in a state.
 
         Parameters
@@ -171,7 +171,7 @@ class Surroundings:
             self._lasting = (key, self._present(time, pressure, faces, closed, None))
         return self._lasting[1]
 
-    def _present(self, time, pressure, faces, closed, depth) -> Conditions:
+    def _present(self, time, pressure, faces, closed, depth) -> InterfaceConditions:
         system, case = self._system, self._case
         load, motion = case.load.history, case.motion
         pressed = _part(load, time)
@@ -180,7 +180,7 @@ class Surroundings:
         temperatures = self._temperatures(faces)
         own = None if temperatures is None else [temperatures[body.index] for body in self._wearing]
         friction = self._friction(time, temperatures, pressure, speed)
-        return Conditions(
+        return InterfaceConditions(
             load=pressed * system.holder.load + system.holder.dead,
             speed=speed,
             friction=friction,

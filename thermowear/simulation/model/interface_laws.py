@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...case.tables.conductance import PressureConductance, TabulatedConductance
+from ...case.tables.conductance import PressureConductanceTable, TabulatedConductanceTable
 from ...case.tables.facing import Facing
 from ...case.tables.law_values import law_of
 from ...case.tables.schema import Case
@@ -32,9 +32,9 @@ def conductance_law(case: Case, facing: Facing) -> InterfaceLaw | None:
     """
     assert case.heat is not None
     given = case.heat.conductance
-    if isinstance(given, TabulatedConductance):
+    if isinstance(given, TabulatedConductanceTable):
         return laws.TabulatedConductance(given.table)
-    if isinstance(given, PressureConductance):
+    if isinstance(given, PressureConductanceTable):
         k, hardness = (
             laws.harmonic_mean(*facing.of(case.located_material, key))
             for key in ("conductivity", "hardness")

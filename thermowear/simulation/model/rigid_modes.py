@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...case.tables.schema import Case
-from ...contact.operators.holder import Drive
+from ...contact.operators.holder import RigidMode
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion, rotation, translation
 
@@ -15,7 +15,9 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
 _TURNS = {"rotation-x": (1.0, 0.0, 0.0), "rotation-y": (0.0, 1.0, 0.0)}
 
 
-def drives(case: Case, pairing: Pairing, dead: Callable[[RigidMotion], float]) -> tuple[Drive, ...]:
+def drives(
+    case: Case, pairing: Pairing, dead: Callable[[RigidMotion], float]
+) -> tuple[RigidMode, ...]:
     """The motions that the holder makes, along the press first, and what is given along each.
 
     A force acts along the press at the point of the load, so that its generalised force on any
@@ -30,9 +32,9 @@ def drives(case: Case, pairing: Pairing, dead: Callable[[RigidMotion], float]) -
     """
     names, approach = case.holder.free, case.approach()
     return tuple(
-        Drive(m, amount=approach, dead=float(dead(m)))
+        RigidMode(m, amount=approach, dead=float(dead(m)))
         if approach is not None and name == "z"
-        else Drive(m, load=_load(case, m, names), dead=float(dead(m)))
+        else RigidMode(m, load=_load(case, m, names), dead=float(dead(m)))
         for name, m in ((name, _motion(case, name, pairing)) for name in names)
     )
 

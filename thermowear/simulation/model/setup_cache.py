@@ -15,7 +15,7 @@ _EXCHANGE = ("conductance", "gap_conductance", "partition")
 """Keys of heat that say how it crosses the interface; the bodies conduct without knowing them."""
 
 
-class Parts:
+class SetupCache:
     """The last part of each kind, with what it was made from.
 
     A case that would make it from the same gets the very same part.
@@ -35,7 +35,7 @@ class Parts:
 
 
 @dataclass(frozen=True)
-class Inputs:
+class CacheKeys:
     """What the parts of a system are made from; loads, friction and wear are in none of it.
 
     Attributes
@@ -61,7 +61,7 @@ class Inputs:
         return self.mesh[-1]
 
 
-def inputs(case: Case, zone: tuple[float, float] | None = None) -> Inputs:
+def inputs(case: Case, zone: tuple[float, float] | None = None) -> CacheKeys:
     """What the parts of a case are made from, meshed for a zone (by default the expected one)."""
     if zone is None:
         zone = case.geometry.expected_zone(case.pressing())
@@ -76,11 +76,11 @@ def inputs(case: Case, zone: tuple[float, float] | None = None) -> Inputs:
     points = (mesh, softness_of_parts(case), closes_by_wear(case))
     elasticity = (points, hot, _chosen(materials, lambda key: key in elastic))
     if case.heat is None:
-        return Inputs(mesh, points, elasticity, ())
+        return CacheKeys(mesh, points, elasticity, ())
     bodies = _chosen(materials, lambda key: key not in ("hardness", *elastic))
     heat = {key: value for key, value in case.heat.model_dump().items() if key not in _EXCHANGE}
     carried = case.motion if heat.get("advection") == "resolved" else None
-    return Inputs(mesh, points, elasticity, (elasticity, bodies, heat, carried))
+    return CacheKeys(mesh, points, elasticity, (elasticity, bodies, heat, carried))
 
 
 def _chosen(tables: dict[str, dict], chooses: Callable[[str], bool]) -> dict[str, dict]:

@@ -17,14 +17,14 @@ from ...contact.operators.holder import Holder, hold
 from ...contact.operators.sliding import Sliding
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
-from ...laws.distribution import InPlace, Share, Spreading, Track, rings
+from ...laws.distribution import Distribution, DutyFactor, InPlace, UniformTrack, rings
 from ...laws.interfaces import WearRate
 from ...laws.motions import RigidMotion
 from ...parallel import sum_over_ranks
 from ...timer import Phases
 from .contact_points import facing_parts
 from .elastic_system import dead_resultant
-from .setup_cache import Inputs, Parts
+from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem
 from .wear_laws import wear_laws
 from .worn_geometry import WornGeometry
@@ -55,9 +55,9 @@ class System:
         Nodal forces of forces and pressures on surfaces [N].
     thermal : ThermalSystem or None
     phases : Phases
-    parts : Parts
+    parts : SetupCache
         Those that it shares with the systems of other cases.
-    inputs : Inputs
+    inputs : CacheKeys
         What they are made from.
     worn : WornGeometry or None
         Where the meshes have been moved to the worn faces. The gap of the pairing is even then that
@@ -77,8 +77,8 @@ class System:
     dead_load: np.ndarray | None
     thermal: ThermalSystem | None
     phases: Phases
-    parts: Parts
-    inputs: Inputs
+    parts: SetupCache
+    inputs: CacheKeys
     worn: WornGeometry | None = None
 
     @property
@@ -126,11 +126,11 @@ class System:
         return wear_laws(self.case)
 
     @cached_property
-    def spreads(self) -> dict[int, Spreading]:
+    def spreads(self) -> dict[int, Distribution]:
         """Where the wear of each wearing body goes, by its index."""
         return {index: self._spread(index) for index in self.laws}
 
-    def _spread(self, index: int) -> Spreading:
+    def _spread(self, index: int) -> Distribution:
         geometry = self.case.geometry
         if self.case.wear[geometry.bodies[index]].spread == "in-place":
             return InPlace()
@@ -138,9 +138,9 @@ class System:
             arms = self.pairing.points[:, :2] - np.array(geometry.rotation_center)
             return rings(np.linalg.norm(arms, axis=1), self.weights, geometry.duty)
         if geometry.track is None:
-            return Share(geometry.sector)
+            return DutyFactor(geometry.sector)
         assert geometry.thickness_factor is not None  # tracks are those of plane models
-        return Track(self.weights / geometry.thickness_factor / geometry.track)
+        return UniformTrack(self.weights / geometry.thickness_factor / geometry.track)
 
     def worn_volumes(self, worn: np.ndarray) -> np.ndarray:
         """Volumes lost by the bodies, all of their tracks, from depths (2, n), shape (2,) [m³]."""

@@ -13,7 +13,7 @@ from ...bulk.heat.heat_equation import given_rises
 from ...bulk.heat.surface_heat import surface_heat
 from ...bulk.kinematics import Model
 from ...bulk.surface_area import surface_area
-from ...case.tables.heat import Heat
+from ...case.tables.heat import HeatTable
 from ...case.tables.history import TemperatureHistory
 
 
@@ -95,7 +95,7 @@ def temperature_at(given: TemperatureHistory | float, time: float) -> float:
 
 
 def thermal_loads(
-    heat: Heat,
+    heat: HeatTable,
     bodies: Bodies,
     model: Model,
     conduction: Conduction,
@@ -105,7 +105,7 @@ def thermal_loads(
 
     Parameters
     ----------
-    heat : Heat
+    heat : HeatTable
     bodies : Bodies
     model : Model
     conduction : Conduction

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...case.tables.schema import Case
-from ...case.tables.wear import Wear
+from ...case.tables.wear import BodyWearTable
 from ...laws import PowerWear
 from ...laws.interfaces import WearRate
 
@@ -19,7 +19,7 @@ def wear_laws(case: Case) -> dict[int, WearRate]:
     }
 
 
-def _power(wear: Wear, friction: float) -> PowerWear:
+def _power(wear: BodyWearTable, friction: float) -> PowerWear:
     κ, b, a = wear.coefficient_si(), wear.pressure_exponent, wear.velocity_exponent
     if wear.per == "friction-stress":
         return PowerWear.per_friction_stress(κ, friction, b, a)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
-from ...contact.search.pairing import Pairing, Side
+from ...contact.search.pairing import PairedFace, Pairing
 from ...contact.search.refinement import Rule
 from ...contact.search.surface import Surface
 from ...geometry.mesh.tagged import TaggedMesh
@@ -97,7 +97,7 @@ class WornGeometry:
         return depth
 
 
-def behind(side: Side, new: NewFace) -> np.ndarray:
+def behind(side: PairedFace, new: NewFace) -> np.ndarray:
     """How far a face divided anew lies behind the curve that it is on, at points of it [m]."""
     on_curve = new.on_curve(side.facet + side.t)
     out = side.face.normals(side.facet, side.t)

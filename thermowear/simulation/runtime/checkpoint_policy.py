@@ -13,7 +13,7 @@ from .checkpoint_data import Progress, Saved
 from .observer import Observer
 
 
-class Record(Protocol):
+class KeptStates(Protocol):
     """What an analysis keeps of the states that it goes through."""
 
     def keep(self, state: Any) -> None:
@@ -30,12 +30,12 @@ class Saving:
     ----------
     system : System
         That the analysis begins with.
-    record : Record
+    record : KeptStates
     observer : Observer
         Told of what is to be saved.
     """
 
-    def __init__(self, system: System, record: Record, observer: Observer):
+    def __init__(self, system: System, record: KeptStates, observer: Observer):
         settings = system.case.analysis
         assert isinstance(settings, Timed | Fretting)
         self._system = system

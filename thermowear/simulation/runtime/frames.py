@@ -16,7 +16,7 @@ from .observer import Observer
 Shown = tuple[ContactState, RigidMotion, BodyState, Interface]
 
 
-class Film:
+class FrameRecorder:
     """Steps of an analysis, evenly by their number, at most so many.
 
     An error-controlled loop takes short steps where much happens: its steps are the clock that

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from ...errors import ComputationError, UnwritableError
 from ..model.system import System
-from .checkpoint_policy import Record, Saving
+from .checkpoint_policy import KeptStates, Saving
 from .observer import Observer
 from .stop_signal import StopRequest, interrupted
 
@@ -18,7 +18,7 @@ def go_through(
     system: System,
     phase: str,
     states: Iterable[State],
-    record: Record,
+    record: KeptStates,
     observer: Observer,
     last: State | None = None,
 ) -> tuple[State, BaseException | None]:
@@ -34,7 +34,7 @@ def go_through(
         Name of the phase that it counts for.
     states : iterable
         At least one, unless it goes on from a last one.
-    record : Record
+    record : KeptStates
     observer : Observer
     last : object, optional
         State that it goes on from.

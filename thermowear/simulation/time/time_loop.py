@@ -11,7 +11,7 @@ import numpy as np
 from ...case.tables.analyses import Timed
 from ...errors import ComputationError
 from ...serialise import serialisable
-from ..interface.sdirk import Trial, WearProblem, WornContact, advance_with_error, next_step
+from ..interface.sdirk import InterfaceState, TrialStep, WearProblem, advance_with_error, next_step
 from .step_sizes import AnySize, StepSizes, ends
 
 _FAR_SMALLER = 1e-3
@@ -28,7 +28,7 @@ class Moment:
     ----------
     time, step : float
         End and size of the step that led here [s].
-    state : WornContact
+    state : InterfaceState
     error : float
         Error estimate of the step.
     is_output : bool
@@ -45,7 +45,7 @@ class Moment:
 
     time: float
     step: float
-    state: WornContact
+    state: InterfaceState
     error: float
     is_output: bool
     distance: float
@@ -134,7 +134,7 @@ def _next(
 
 def _accept(
     problem, last: Moment, way, rounding: float, smallest: float, settings
-) -> tuple[Trial, float, float]:
+) -> tuple[TrialStep, float, float]:
     """Repeat a step with smaller sizes until its error is within the tolerance.
 
     Steps that are to end behind the time of an event must do so once they are rounded, too.
@@ -144,7 +144,7 @@ def _accept(
 
     Returns
     -------
-    trial : Trial
+    trial : TrialStep
     step, following : float
         Its size, and that of the next one, as far as errors allow [s].
     """

@@ -15,7 +15,7 @@ from ...simulation import Result
 from ...simulation.analyses.positioning import prepare
 from ...simulation.interface.factory import interface_problem
 from ...simulation.interface.interface_problem import InterfaceProblem
-from ...simulation.interface.sdirk import WornContact, advance
+from ...simulation.interface.sdirk import InterfaceState, advance
 from ...timer import Phases
 from ..check import Check, compare
 from ..computed import computed
@@ -111,8 +111,8 @@ def _orders() -> Iterator[Check]:
 
 
 def _march(
-    problem: InterfaceProblem, state: WornContact, begin: float, end: float, steps: int
-) -> WornContact:
+    problem: InterfaceProblem, state: InterfaceState, begin: float, end: float, steps: int
+) -> InterfaceState:
     """State after equal steps from begin to end."""
     step = (end - begin) / steps
     for k in range(steps):
@@ -120,7 +120,7 @@ def _march(
     return state
 
 
-def _difference(state: WornContact, other: WornContact) -> float:
+def _difference(state: InterfaceState, other: InterfaceState) -> float:
     """Largest difference of the face temperatures [K]."""
     assert state.faces is not None
     assert other.faces is not None

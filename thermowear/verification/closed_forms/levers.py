@@ -8,7 +8,7 @@ import numpy as np
 
 from ...laws import SelfLocking
 from ...reference import brake_block as lever
-from ...reference.drum_brake import DrumBrake
+from ...reference.drum_brake import DrumBrakeShoe
 from ..check import Check, compare
 from . import patches as cases
 from .rows import CLOSED_FORM, EXPONENTS, MPA, dissipation, printed, worst
@@ -68,7 +68,7 @@ def case_7() -> Iterator[Check]:
     moment = 2.2e3 * 2 * 0.125 * np.cos(np.radians(30))
     torques, tops = {}, {}
     for sense, shoe in ((-1, "leading"), (1, "trailing")):
-        law = DrumBrake(*size, *ends, sense * friction)
+        law = DrumBrakeShoe(*size, *ends, sense * friction)
         case = cases.drum_brake(1.0, sense, moment, *size, ends, friction, probes=(np.pi / 2,))
         steady = case.steady()
         tops[shoe] = steady.pressure[-1]
@@ -81,7 +81,7 @@ def case_7() -> Iterator[Check]:
         torques[shoe] = -sense * case.patch.moment(steady.pressure, (0.0, 0.0, 0.0))[2]
         quantity = f"torque, {shoe} [N m]"
         yield compare("case-7", quantity, torques[shoe], law.torque(tops[shoe]), 1e-9, SHIGLEY)
-    ratio = DrumBrake(*size, *ends, friction).leading_over_trailing()
+    ratio = DrumBrakeShoe(*size, *ends, friction).leading_over_trailing()
     for what, values in (("pressures", tops), ("torques", torques)):
         found = values["leading"] / values["trailing"]
         yield compare("case-7", f"leading over trailing, {what} [1]", found, ratio, 1e-9, SHIGLEY)
@@ -97,7 +97,7 @@ def _random_shoes() -> Iterator[Check]:
         radius, near, width = rng.uniform((0.1, 0.6, 0.02), (0.2, 0.9, 0.06))
         start, end = rng.uniform((0.2, 1.8), (0.6, 2.4))
         size = (radius, near * radius, width)
-        law = DrumBrake(*size, start, end, sense * friction, b)
+        law = DrumBrakeShoe(*size, start, end, sense * friction, b)
         case = cases.drum_brake(b, sense, moment, *size, (start, end), friction)
         θ = np.arctan2(case.patch.points[:, 1], case.patch.points[:, 0])
         name = f", b = {b:.3g}, mu = {sense * friction:.3g}"

@@ -9,14 +9,14 @@ from matplotlib.lines import Line2D
 
 from ...quantities import HISTORY, INTERFACE, Quantity
 from ..curves import BODIES, abscissa, wrapped
-from .states import Film, State
+from .states import Film, FrameState
 
 _AXIS_END = 1.06  # end of an axis relative to the largest value
 _SINGULAR, _MOST = 3.0, 0.9
 """Peaks are clipped if they exceed the first factor times the quantile of the second."""
 _FAINT = {"color": "0.6", "linewidth": 1.2}
 
-Curve = Callable[[State], tuple[np.ndarray, np.ndarray]]
+Curve = Callable[[FrameState], tuple[np.ndarray, np.ndarray]]
 
 
 class PressureCurve:
@@ -39,7 +39,7 @@ class PressureCurve:
         axis.set_xlabel(abscissa(states[-1].interface, self._film.model)[0])
         _legend(axis)
 
-    def show(self, state: State) -> None:
+    def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
         self._line.set_data(*self._curve(state))
 
@@ -81,7 +81,7 @@ class WearCurves:
         axis.set_xlabel(abscissa(states[-1].interface, self._film.model)[0])
         _legend(axis)
 
-    def show(self, state: State) -> None:
+    def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
         for name, curve in self._curves.items():
             self._lines[name].set_data(*curve(state))
@@ -92,7 +92,7 @@ class WearCurves:
         return [kinds[int(name[-1]) - 1] for name in self._curves]
 
 
-class Course:
+class TimeCurve:
     """History of the largest temperature or pressure, with a mark at the current time."""
 
     def __init__(self, film: Film):
@@ -117,7 +117,7 @@ class Course:
         self._mark = axis.axvline(self._time[0], color="tab:red", linewidth=1.2)
         (self._dot,) = axis.plot([], [], "o", color="tab:red", markersize=6, clip_on=False)
 
-    def show(self, state: State) -> None:
+    def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
         time = max(state.time, self._time[0])
         self._mark.set_xdata([time, time])
@@ -153,7 +153,7 @@ def _along(name: str) -> Curve:
     )
 
 
-def _wear_of_body_2(state: State) -> tuple[np.ndarray, np.ndarray]:
+def _wear_of_body_2(state: FrameState) -> tuple[np.ndarray, np.ndarray]:
     """Wear depths of body 2 along the contact, or along the track if body 1 reciprocates."""
     if state.track is None:
         return _along("wear_2")(state)

@@ -8,10 +8,10 @@ from pathlib import Path
 from ....errors import CaseError
 from ...frames import FRAMES, frame_files
 from ..maps import is_surface
-from .curves import Course, PressureCurve, WearCurves
+from .curves import PressureCurve, TimeCurve, WearCurves
 from .palette import common_palette
-from .scene import Panel, Scene
-from .section import Section
+from .scene import Scene, ScenePanel
+from .section import SectionPanel
 from .states import Film, read_film
 from .writers import GIF, MP4, ffmpeg, write_gif, write_mp4
 
@@ -70,14 +70,14 @@ def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
 
 def _in_a_plane(film: Film) -> Scene:
     wear = WearCurves(film)
-    beside: list[Panel] = [PressureCurve(film)]
-    return Scene(film, Section(film), beside + [wear] * wear.shows_something, Course(film))
+    beside: list[ScenePanel] = [PressureCurve(film)]
+    return Scene(film, SectionPanel(film), beside + [wear] * wear.shows_something, TimeCurve(film))
 
 
 def _in_space(film: Film) -> Scene:
     from .solid import Solid, face_maps
 
-    return Scene(film, Solid(film), face_maps(film), Course(film))
+    return Scene(film, Solid(film), face_maps(film), TimeCurve(film))
 
 
 if __name__ == "__main__":

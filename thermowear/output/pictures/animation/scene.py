@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ..curves import STYLE
-from .states import Film, State
+from .states import Film, FrameState
 
 _DPI = 100
 _WIDTH, _HEIGHT = 9.0, 5.6  # inches
@@ -21,13 +21,13 @@ _SCALE = 1.5  # width of colour bar and labels of the bodies [inches]
 _STYLE = STYLE | {"font.size": 9}
 
 
-class Panel(Protocol):
+class ScenePanel(Protocol):
     """Interface of the panels of the picture."""
 
     def prepare(self, figure: Figure, axis) -> None:
         """Draw the static elements."""
 
-    def show(self, state: State) -> None:
+    def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
 
 
@@ -37,15 +37,15 @@ class Scene:
     Parameters
     ----------
     film : Film
-    bodies : Panel
+    bodies : ScenePanel
         Panel with `shape`, its height over width, and `colors`, the name of its colour map.
-    beside : list of Panel
+    beside : list of ScenePanel
         One or two panels of curves along the contact.
-    course : Panel
+    course : ScenePanel
         Panel over time.
     """
 
-    def __init__(self, film: Film, bodies, beside: list[Panel], course: Panel):
+    def __init__(self, film: Film, bodies, beside: list[ScenePanel], course: ScenePanel):
         self.colors = bodies.colors
         self._panels = {"bodies": bodies, "course": course}
         self._panels |= {f"beside {k}": panel for k, panel in enumerate(beside)}
@@ -62,13 +62,13 @@ class Scene:
         self._figure.draw_without_rendering()
         self._figure.set_layout_engine("none")
 
-    def picture(self, state: State) -> np.ndarray:
+    def picture(self, state: FrameState) -> np.ndarray:
         """Pixels of the picture of a state, shape (height, width, 3)."""
         self._fill(state)
         self._canvas.draw()
         return np.asarray(self._canvas.buffer_rgba())[..., :3].copy()
 
-    def _fill(self, state: State) -> None:
+    def _fill(self, state: FrameState) -> None:
         with mpl.rc_context(_STYLE):
             for panel in self._panels.values():
                 panel.show(state)

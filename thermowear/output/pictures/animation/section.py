@@ -12,13 +12,13 @@ from scipy.spatial import cKDTree
 from ...coordinates import in_model
 from ...quantities import INTERFACE
 from ..windows import Extent, around_contact, common_limits, is_small, whole, within
-from .states import Film, State, field_of, read_fields
+from .states import Film, FrameState, field_of, read_fields
 
 _SCALE = 0.05  # width of the colour bar relative to the panel
 _SAME = 1e-5  # tolerance for identical points, relative to the size of the bodies
 
 
-class Section:
+class SectionPanel:
     """Panel with deformed 2D bodies, body 1 drawn behind body 2.
 
     The material worn off body 1 is thus hidden.
@@ -63,7 +63,7 @@ class Section:
             extend="max" if self._over else "neither",
         )
 
-    def show(self, state: State) -> None:
+    def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
         while self._drawn:
             self._drawn.pop().remove()

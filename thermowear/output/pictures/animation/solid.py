@@ -11,8 +11,8 @@ from ...quantities import INTERFACE
 from ..maps import COLORS, triangulated
 from ..solids import PIXELS, cut, render
 from ..windows import common_limits, whole
-from .scene import Panel
-from .states import Film, State, field_of
+from .scene import ScenePanel
+from .states import Film, FrameState, field_of
 
 
 class Solid:
@@ -47,11 +47,11 @@ class Solid:
         blank = np.full((PIXELS[1], PIXELS[0], 3), 255, dtype=np.uint8)
         self._image = axis.imshow(blank, interpolation="antialiased")
 
-    def show(self, state: State) -> None:
+    def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
         self._image.set_data(render(self._surfaces(state), "shown", self.colors, self.limits))
 
-    def _surfaces(self, state: State) -> list:
+    def _surfaces(self, state: FrameState) -> list:
         grid = pyvista.read(state.file)
         _, name, scale, offset = field_of(self._hot)
         grid.points = 1e3 * grid.points
@@ -82,7 +82,7 @@ class FaceMap:
         scale = ScalarMappable(Normalize(*self._limits), COLORS[self._name.split("_")[0]])
         figure.colorbar(scale, ax=axis, label=INTERFACE[self._name].axis.replace(" [", "\n["))
 
-    def show(self, state: State) -> None:
+    def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
         while self._drawn:
             self._drawn.pop().remove()
@@ -95,7 +95,7 @@ class FaceMap:
         )
 
 
-def face_maps(film: Film) -> list[Panel]:
+def face_maps(film: Film) -> list[ScenePanel]:
     """Maps of the pressure, and of the wear depth of the body with the deeper wear."""
     depths = {name: film.states[-1].interface[name].max() for name in ("wear_1", "wear_2")}
     deepest = max(depths, key=lambda name: depths[name])

@@ -19,7 +19,7 @@ _STEADY = 1e-2  # distance from the steady state up to which the final state is 
 
 
 @dataclass(frozen=True)
-class State:
+class FrameState:
     """State of the results at one time.
 
     Attributes
@@ -46,7 +46,7 @@ class Film:
 
     Attributes
     ----------
-    states : list of State
+    states : list of FrameState
     title : str
         Title of the case.
     model : str
@@ -62,7 +62,7 @@ class Film:
         True if the final state is close to the steady state.
     """
 
-    states: list[State]
+    states: list[FrameState]
     title: str
     model: str
     course: dict[str, np.ndarray]
@@ -80,7 +80,7 @@ def read_film(folder: Path) -> Film:
         If a file does not have the expected columns.
     """
     states = [
-        State(f.time, tables.read(f.interface, INTERFACE), _track(f.track), f.fields)
+        FrameState(f.time, tables.read(f.interface, INTERFACE), _track(f.track), f.fields)
         for f in frame_files(folder / FRAMES)
     ]
     name, table = next((n, t) for n, t in _COURSES.items() if (folder / n).is_file())
@@ -88,7 +88,7 @@ def read_film(folder: Path) -> Film:
     end = float(course["time"][-1])
     states = [state for state in states if state.time < end]
     last = tables.read(folder / "interface.csv", INTERFACE)
-    states.append(State(end, last, _track(folder / "track.csv"), folder / "fields.vtu"))
+    states.append(FrameState(end, last, _track(folder / "track.csv"), folder / "fields.vtu"))
     distance = _json(folder / "summary.json").get("distance_from_steady")
     return Film(
         states=states,
@@ -101,7 +101,9 @@ def read_film(folder: Path) -> Film:
     )
 
 
-def read_fields(state: State, hot: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def read_fields(
+    state: FrameState, hot: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Read the fields of 2D bodies as triangles; cells share no points.
 
     Returns

@@ -58,7 +58,7 @@ class ConsoleProgress:
         """Show an accepted step of a transient run."""
         text = (
             f"t = {row.time:.4g} s   step {number}   largest pressure "
-            f"{row.max_pressure / 1e6:.4g} MPa   distance from the steady state {distance:.2e}"
+            f"{row.max_pressure / 1e6:.4g} MPa   distance from steady {distance:.2e}"
         )
         self._say(text)
 

@@ -160,7 +160,7 @@ class GrowthModel:
         )
 
     def _extend(self, fields: np.ndarray, crossing: np.ndarray) -> None:
-        """Extend the space by fields (n_owned, q) with their heat exchange (n, q), orthonormalised."""
+        """Extend the orthonormal space by fields (n_owned, q) with their heat exchange (n, q)."""
         if self._fields is None or self._crossing is None:
             self._fields, self._crossing = fields[:, :0], crossing[:, :0]
         for least in (_NEW, 0.0):  # twice, as the rest of a small difference is not orthogonal

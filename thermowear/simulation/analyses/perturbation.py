@@ -148,7 +148,7 @@ class DisturbedContact:
 
     @cached_property
     def _thermal(self) -> np.ndarray:
-        """Thermal opening per pressure, H, at the given speed."""
+        """Weak thermal opening per pressure coefficient, H, at the given speed."""
         conduction, face = self._bodies.conduction, self._bodies.face
         per_heat = self._heat.condensed(conduction, face).per_friction_heat(
             face.exchange(self._conditions.conductance)

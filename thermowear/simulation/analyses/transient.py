@@ -53,8 +53,8 @@ def running_in(system: System, observer: Observer, before: RunningIn | None = No
 def _principle(system: System) -> SteadyState | None:
     """Steady state that a transient analysis approaches; None if there is none.
 
-    There is none without a constant load, for a growing contact, for inputs given over time, for
-    wear laws that depend on the depth, or if the steady-state principle has no solution.
+    There is none unless all holder modes are free, for a growing contact, for inputs given over
+    time, for wear laws that depend on the depth, or if the principle has no solution.
     """
     settings = system.case.analysis
     assert isinstance(settings, Transient)

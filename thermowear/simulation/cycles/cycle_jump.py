@@ -30,7 +30,7 @@ _SAFETY, _SHORTER, _LONGER = 0.9, 0.2, 5.0
 
 
 class Cycles(Protocol):
-    """Load cycles that a jump can compute."""
+    """Protocol of a contact with computable load cycles."""
 
     areas: np.ndarray
     """Areas of the basis functions of the depths, shape (m,) [m²]."""

@@ -57,7 +57,7 @@ def solve(problem):
 
 
 def violations(problem, solution):
-    """How far the conditions are from holding, written out coefficient by coefficient."""
+    """Largest violation of the conditions, evaluated coefficient by coefficient."""
     λ, τ = solution.pressure, solution.shear
     x = np.concatenate([λ, *τ.T])
     y = problem.compliance @ x + problem.offset - problem.modes @ solution.motion

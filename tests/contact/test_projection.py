@@ -51,7 +51,7 @@ def test_only_the_ends_of_a_face_have_something_beside_them():
 
 
 def test_a_face_may_reach_past_the_other():
-    """Its pieces beside the other face count where they are asked for, all others always."""
+    """Pieces beside the other face count only if requested, all others always."""
     lower, upper = chain([0.0, 1.0, 2.0], [0.0] * 3), chain([0.05, 1.05, 2.05], [0.1] * 3)
     upper = replace(upper, outward=-upper.outward)
     strict, generous = (rule(upper, lower, 4, True, 1e-9, size) for size in (1e-9, 0.05))

@@ -8,7 +8,7 @@ from thermowear.contact.search.quadrature import gauss
 from thermowear.contact.search.smooth_normals import corner_corrections, smooth_normals
 
 ENDS = np.radians([-40.0, -22.0, -2.0, 11.0, 30.0])
-"""Of facets on a circle of radius 1; some are longer than others."""
+"""End angles of facets of unequal length on a circle of radius 1."""
 
 
 def arc(order):

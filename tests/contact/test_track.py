@@ -70,7 +70,7 @@ def random_contacts(rng, k, count=4, m=7, depths=9, symmetric=True):
 
 
 def stacked(contacts, start, gains):
-    """The same as one large contact problem."""
+    """Coupled contacts stacked into one large contact problem."""
     count, m, k = contacts.modes.shape
     size, motions = count * m, count * k
     seen = contacts.seen.reshape(size, -1)

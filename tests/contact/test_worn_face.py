@@ -87,7 +87,7 @@ def test_a_curved_surface_goes_along_its_normals():
 
 
 def test_nodes_that_are_hardly_seen_go_with_their_neighbours():
-    """Where the other face ends a little beyond a row of facets."""
+    """The other face ends slightly beyond a row of facets."""
     _, (upper, lower) = gathered(two_solids(((4, 3, 2), (1, 1, 1))))
     short = lower.nodes * (0.7501, 1, 1)
     pairing = pair(upper, replace(lower, nodes=short), Spatial(), 4)

@@ -15,7 +15,7 @@ def random_laws(rng):
 
 
 def carried_load(rng, patch, x, y, eccentric):
-    """What some positive pressure carries; large numbers are near the edges of the face."""
+    """Load of a positive pressure; large `eccentric` puts it near the edges of the face."""
     angle, steepness = rng.uniform(0, 2 * np.pi), eccentric * rng.uniform()
     pressure = 1e7 * np.exp(steepness * (np.cos(angle) * x + np.sin(angle) * y))
     return patch.force_modes.T @ (patch.weights * pressure)

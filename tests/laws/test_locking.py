@@ -22,7 +22,7 @@ def block(friction, sense, motions=None, offset=0.04):
 
 
 def locking_friction(b):
-    """Where ``∫ (z - mu l) z^(1/b) dz`` vanishes."""
+    """Friction coefficient mu for which ``∫ (z - mu l) z^(1/b) dz`` vanishes."""
     return AREA @ Z ** (1 + 1 / b) / (0.04 * (AREA @ Z ** (1 / b)))
 
 
@@ -87,7 +87,7 @@ def test_outside_the_face_is_not_self_locking():
 
 
 def winding(patch, law):
-    """How often the load turns round while the wear velocity of two motions does."""
+    """Winding number of the load over one revolution of the wear velocity of two motions."""
     φ = np.linspace(-np.pi, np.pi, 1001)
     R, T = patch.normal_modes, patch.force_modes
     scale = np.abs(R).max(axis=0)

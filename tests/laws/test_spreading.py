@@ -1,4 +1,4 @@
-"""Where wear goes."""
+"""Distribution of wear: in place, as a share of the time, or along a track."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Which small disturbances grow, on matrices small enough for closed forms."""
+"""Growth of small perturbations, on matrices small enough for closed forms."""
 
 import numpy as np
 import pytest

@@ -122,7 +122,7 @@ def _integrals(corners: np.ndarray, material: Material) -> tuple[np.ndarray, np.
     y[np.abs(y) < 1e-12 * length.max()] = 0.0  # on one line
 
     def primitives(u: np.ndarray) -> np.ndarray:
-        """Of ln r, (u, -y)(u, -y)/r², y/r² and y (u, -y)(u, -y)/r⁴, and of u/r²."""
+        """Antiderivatives of ln r, (u, -y)(u, -y)/r², y/r² and y (u, -y)(u, -y)/r⁴, and of u/r²."""
         square, log = u**2 + y**2, np.log(u**2 + y**2) / 2
         angle = np.where(y == 0, 0.0, np.arctan(u / np.where(y == 0, 1.0, y)))
         turn, bend = u * y / square, y**2 / (2 * square)
@@ -168,11 +168,11 @@ class Contact:
             self._solve(self._tangents(), before, np.array([-push, force]))
 
     def _over(self) -> np.ndarray:
-        """How far the upper body has moved over the lower one."""
+        """Displacement of the upper body relative to the lower one."""
         return (self._both @ self._traction.ravel()).reshape(-1, 2) + self._holder
 
     def _tangents(self) -> np.ndarray:
-        """Of the face between both deformed ones."""
+        """Unit tangents of the mean of both deformed faces."""
         upper = self._upper.points + self._upper.moved(self._traction) + self._holder
         lower = self._lower.points - self._lower.moved(self._opposite * self._traction)
         return _unit(sum(_unit(np.gradient(face, axis=0)) for face in (upper, lower)))

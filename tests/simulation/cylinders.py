@@ -114,7 +114,7 @@ def _ring(inner: float, outer: float, height: float, count: int, rows: int = 4):
 
 
 def straightened(mesh: TaggedMesh) -> TaggedMesh:
-    """The same cells with straight edges: of the first order, without the nodes between corners."""
+    """First-order mesh of the same cells with straight edges, without mid-side nodes."""
     cells, facets = mesh.cells[:, :4], mesh.facets[:, :2]
     kept, number = np.unique(np.concatenate([cells.ravel(), facets.ravel()]), return_inverse=True)
     return replace(

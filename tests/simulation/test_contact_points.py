@@ -71,7 +71,7 @@ def test_pressures_go_on_after_an_update_of_a_steep_contact():
 
 
 def test_a_ring_whose_groove_has_coarse_walls_goes_on():
-    """Where the plate cannot follow the edge of the ring, the faces overlap on a slope."""
+    """Faces overlap on a slope if the plate cannot follow the edge of the ring."""
     result = run_starter(
         "annular-punch-running-in",
         "mesh.degree=6",

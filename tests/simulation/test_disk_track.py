@@ -41,7 +41,7 @@ def in_time():
 
 @pytest.fixture(scope="module")
 def ring():
-    """The same with pads modelled as a ring."""
+    """Pad and disk after 20 s, with the pads modelled as a ring."""
     return run(IN_TIME, RING)
 
 

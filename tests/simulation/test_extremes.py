@@ -85,7 +85,7 @@ moderate_hertz = cache(hertz)
 
 
 def scaled_hertz(stiffness: float = 1.0, thickness: float = 1e-3, size: float = 1.0) -> dict:
-    """What the moderate run becomes by similarity: pressure is that of the stiffness alone."""
+    """Moderate run scaled by similarity: pressure scales with the stiffness alone."""
     base = moderate_hertz()
     return {
         "force": base["force"] * stiffness * size * thickness / 1e-3,

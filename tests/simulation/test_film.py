@@ -1,4 +1,4 @@
-"""Which states are kept for an animation, and that keeping them changes nothing."""
+"""Selection of the animation frames, which leaves the results unchanged."""
 
 from dataclasses import astuple
 

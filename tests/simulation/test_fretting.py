@@ -29,7 +29,7 @@ def columns(result):
 
 
 def work(table, start=0):
-    """Of the holder on body 1 since an increment, by straight lines [J]."""
+    """Work of the holder on body 1 since an increment, by the trapezoidal rule [J]."""
     total = 0.0
     for force, motion in (
         ("normal_force", "approach"),

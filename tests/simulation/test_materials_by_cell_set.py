@@ -41,7 +41,7 @@ def layers(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def ring(tmp_path_factory):
-    """The same as a ring."""
+    """A lining under its backing, in a ring."""
     return write_layered(tmp_path_factory.mktemp("ring") / "ring.msh", left=50.0)
 
 

@@ -99,7 +99,7 @@ def run_one(seed: int, folder: Path, capsys) -> int | None:
 
 
 def possible(case: tw.Case, results: Path, where: str) -> None:
-    """What holds of the results of any run that has ended well."""
+    """Assert properties of the results of any successful run."""
     summary = json.loads((results / "summary.json").read_text())
     assert json.loads((results / "run.json").read_text())["status"] == "done", where
     for name in BALANCES:

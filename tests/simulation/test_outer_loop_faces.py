@@ -69,7 +69,7 @@ def test_nodes_of_a_round_face_do_not_cross_its_sides():
 
 
 def test_a_tilting_block_wears_into_a_wedge():
-    """Its turn takes its face along the strip, past the end of that of the strip, which goes on.
+    """The rotation of the block moves its face along the strip, beyond the strip's contact face.
 
     requirement: Archard's law, and forces and moments in balance about the pin.
     """

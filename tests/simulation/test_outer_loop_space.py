@@ -122,7 +122,7 @@ def test_a_pad_slides_along_its_curved_sides():
 
 
 def test_heat_of_a_body_that_loses_material_is_accounted_for():
-    """What goes with the worn material counts as lost; the balance holds at each step."""
+    """Heat of the worn material counts as lost; the balance holds at each step."""
     changes = {
         "bodies.punch.density": "7800 kg/m^3",
         "bodies.punch.specific_heat": "460 J/(kg K)",

@@ -20,7 +20,7 @@ METHODS = ("condensed", "penalty", "nitsche")
 
 
 def centre(interface):
-    """Where the resultant of the pressure acts [m]."""
+    """Position of the resultant of the pressure [m]."""
     load = interface.weight * interface.pressure
     return load @ interface.x / load.sum()
 

@@ -137,7 +137,7 @@ POSITIONED = {4: 2.8e-4, 6: 2.2e-5, 8: 6.3e-6}
 
 
 def error_of(*overrides):
-    """Of the peak over the formula, with the force that was found."""
+    """Relative error of the peak pressure over the formula at the computed force."""
     summary = solved(HERTZ, {}, *overrides).summary
     modulus = contact_modulus((210e9, 0.3), (210e9, 0.3))
     formula = line_contact(summary["normal_force_N"] / 1e-3, 10e-3, modulus).peak

@@ -59,7 +59,7 @@ def test_no_wrong_pressure_is_returned(tables, method):
 
 
 def violated(system, method, p, left, scale):
-    """Whether the pressure breaks the contact conditions in the sense of its method."""
+    """True if the pressure violates the contact conditions in the sense of its method."""
     if method == "condensed":
         weak = system.contact.weak(left) / system.contact.weighted.sum(axis=0)
         coefficients = np.linalg.lstsq(system.basis, p, rcond=None)[0]

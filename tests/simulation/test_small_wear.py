@@ -31,7 +31,7 @@ class Listening(Observer):
 
 
 def told(name, changes, *overrides):
-    """What a run says, and its result."""
+    """Notes of a run on its wear, and its result."""
     listening = Listening()
     result = solved(name, changes, *SMALL, *overrides, observer=listening)
     assert result.stopped is None

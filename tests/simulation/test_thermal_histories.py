@@ -58,7 +58,7 @@ HEATED = {
     ),
     "power": ({"power": {"upper_top": "10 W"}}, lambda t: SLAB.flux(1e5, t, DEPTH), 40.0),
 }
-"""What heats the top, the rise at the contact, and how hot the slab gets in 20 s."""
+"""Heating of the top, temperature rise at the contact, and scale of the rise in 20 s [K]."""
 
 
 @lru_cache

@@ -1,4 +1,4 @@
-"""The analyses: initial contact, steady state, running-in, fretting."""
+"""Simulation: initial contact, steady state, transient, fretting, reciprocating, stability."""
 
 from .analyses.run import run
 from .results.result import BodyFields, Frame, FrictionInterface, Interface, Result, WornTrack

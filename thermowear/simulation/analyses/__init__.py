@@ -1,1 +1,1 @@
-"""Analyses that a case can ask for."""
+"""Analyses selected by ``analysis.type`` of a case."""

@@ -1,4 +1,4 @@
-"""The steady worn shape of a contact face, as a design."""
+"""Design of a contact face: its steady worn shape."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from ..interface.steady import least_worn, steady_state
 from ..model.system import System
 from ..results.recording import along_press
 
-_SAME = 1e-9  # of the size of the face: nearer points are one
+_SAME = 1e-9  # relative to the size of the face: closer points coincide
 
 
 def steady_design(system: System, body: int) -> Design:
-    """The unloaded, unheated shape that makes a face carry the steady pressure at once.
+    """Unloaded, unheated shape of a face that carries the steady pressure from the start.
 
-    Only the distance of both faces counts: one takes all of the shape, worn or not, the other one
-    stays as it is drawn. With the least material off: ``W = R d - B u - g0``, nowhere negative,
-    where ``R d`` is a motion of the holder.
+    Only the gap counts: one face takes the whole shape, worn or not, the other one keeps its drawn
+    shape. Least material removal: ``W = R d - B u - g0``, nowhere negative, where ``R d`` is a
+    motion of the holder.
 
     Parameters
     ----------
     system : System
     body : int
-        Which face takes it: 1 or 2.
+        Body whose face takes the shape: 1 or 2.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def steady_design(system: System, body: int) -> Design:
 
 
 def _from_end_to_end(design: Design, face: Face) -> Design:
-    """A design in order along its plane face, all of it: beyond the contact as at its edge."""
+    """Design ordered along the whole plane face, constant beyond the edges of the contact."""
     same = _SAME * face.extent
     order = face.nodes.shape[1] - 1
     facet, t = np.divmod(np.arange(len(face.nodes) * order + 1), order)

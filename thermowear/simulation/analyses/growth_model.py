@@ -1,8 +1,8 @@
-"""Disturbances of a hot contact in time, by a small model of both conducting bodies.
+"""Reduced-order model of the growth of thermoelastic perturbations in time.
 
-What heat at the contact does to the bodies at a rate s is ``(K + s M)⁻¹`` times it. A small space
-of temperatures, made of such answers at some rates (a rational Krylov space; A. Ruhe, Linear
-Algebra Appl. 58 (1984) 391), holds all that matters between them.
+The temperature response to interface heat that grows at a rate s is ``(K + s M)⁻¹`` times it. A
+small space of responses at some rates (rational Krylov space; A. Ruhe, Linear Algebra Appl. 58
+(1984) 391) also approximates the responses at rates between them.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from ..model.conditions import InterfaceConditions
 from ..model.system import System
 
 _NEW = 1e-12
-"""Squared size of the part of a unit field that a space must lack to take it up."""
+"""Smallest squared norm of the new part of a unit field that extends the space."""
 _SPREAD = (1.0, 30.0, 1e3, 3e4)
-"""Rates that a model begins with, over that of heat going across the contact."""
+"""Initial rates of a model, relative to that of diffusion across the contact."""
 _SAME, _SETTLED, _TURNS = 1e-3, 1e-6, 6
 
 
 @dataclass(frozen=True)
 class Growing:
-    """A disturbance and the speed at which it grows so.
+    """Growth rate of a perturbation, and its speed.
 
     Attributes
     ----------
     factor : float
-        Of the given speed.
+        Factor of the given speed.
     rate : Rate
     """
 
@@ -45,25 +45,25 @@ class Growing:
     rate: Rate
 
     def near(self, other: Growing) -> bool:
-        """Whether both are the same, but for what a model of temperatures may lack."""
+        """True if both agree within the accuracy of the reduced model."""
         change = abs(self.rate.value - other.rate.value) <= _SETTLED * abs(other.rate.value)
         return change and abs(self.factor - other.factor) <= _SETTLED * other.factor
 
 
 class GrowthModel:
-    """Conduction projected on the answers to disturbances.
+    """Heat conduction projected on responses to perturbations.
 
     Parameters
     ----------
     system : System
-        With its heat, whose capacity is known.
+        System with a thermal model and known heat capacity.
     heat : FrictionHeat
     conditions : InterfaceConditions
-        Of the state that is disturbed.
+        Conditions of the perturbed state.
     elastic : ndarray, shape (m, m)
         A, see `laws.stability`.
     space : LoadFree
-        The disturbances, coefficients of all of the pressure space.
+        Basis of the perturbations, coefficients in the whole pressure space.
     """
 
     def __init__(
@@ -84,15 +84,15 @@ class GrowthModel:
         self._rates: list[float] = []
 
     def begin(self) -> None:
-        """Take up answers over the whole range of rates; every rank calls."""
+        """Add responses over the whole range of rates; every rank calls."""
         slowest = self._thermal.diffusivity / self._system.pairing.extent**2
         for rate in (0.0, *(part * slowest for part in _SPREAD)):
             self.add(rate)
 
     def settled(self, find: Callable[[Disturbances], Growing | None]) -> Growing | None:
-        """What is found in the model when it knows the rate well; every rank calls.
+        """Result of a search in the model, refined at the rate found; every rank calls.
 
-        The rate that is found is taken up, until it does not change any more.
+        The response at the rate found is added until the result no longer changes.
         """
         found = find(self.disturbances())
         for _ in range(_TURNS):
@@ -108,12 +108,12 @@ class GrowthModel:
         return any(abs(rate - known) <= _SAME * rate for known in self._rates)
 
     def add(self, rate: float) -> None:
-        """Take up what friction heat that grows at a rate does to the bodies; every rank calls.
+        """Add the thermal response to friction heat that grows at a rate; every rank calls.
 
         Parameters
         ----------
         rate : float
-            Zero: steady [1/s].
+            Growth rate, zero for steady state [1/s].
         """
         conduction, face = self._conducting(rate)
         exchange = face.exchange(self._conditions.conductance)
@@ -126,7 +126,7 @@ class GrowthModel:
         self._rates.append(rate)
 
     def _conducting(self, rate: float) -> tuple[Conduction, InterfaceHeat]:
-        """The bodies whose heat grows at a rate, and their faces."""
+        """Conduction and condensed interface heat for temperatures that grow at a rate."""
         steady, face = self._thermal.conduction, self._thermal.face
         if rate == 0.0:
             return steady, face
@@ -137,7 +137,7 @@ class GrowthModel:
         return growing, alike
 
     def disturbances(self) -> Disturbances:
-        """The model as it is; every rank calls."""
+        """Matrices of the present model; every rank calls."""
         system, heat, space = self._system, self._heat, self._space
         conduction, X = self._thermal.conduction, self._fields
         assert X is not None
@@ -146,7 +146,7 @@ class GrowthModel:
         T1, T2 = at.rise
         weights = system.weights[:, None]
         f = np.reshape(self._thermal.face.partition, (-1, 1))
-        exchanged = weights * self._crossing  # the law of the contact holds in each field
+        exchanged = weights * self._crossing  # each field satisfies the interface heat law
         carried = np.zeros((X.shape[1],) * 2)
         if conduction.carried is not None:
             carried = self._product(conduction.carried, X)
@@ -160,10 +160,10 @@ class GrowthModel:
         )
 
     def _extend(self, fields: np.ndarray, crossing: np.ndarray) -> None:
-        """Take up what is new of some fields (n_owned, q), and the heat that crosses (n, q)."""
+        """Extend the orthonormal space by fields (n_owned, q) with their heat exchange (n, q)."""
         if self._fields is None or self._crossing is None:
             self._fields, self._crossing = fields[:, :0], crossing[:, :0]
-        for least in (_NEW, 0.0):  # twice: what is left of a small difference is not orthogonal
+        for least in (_NEW, 0.0):  # twice, as the rest of a small difference is not orthogonal
             scale = 1 / np.sqrt(np.diag(self._gram(fields, fields)))
             known = self._gram(self._fields, fields * scale)
             fields = fields * scale - self._fields @ known

@@ -1,6 +1,6 @@
-"""Disturbances of one contact with friction heat: which stay, and which grow.
+"""Thermoelastic perturbations of a contact with friction heat: static and growing modes.
 
-The conductance is that of the contact; its own heat does not matter, as all is linear.
+Linear, with the thermal conductance of the base state; its own temperatures do not matter.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ from ..model.system import System
 from .growth_model import Growing, GrowthModel
 
 _KINDS = 24
-"""Disturbances that heat acts on most: a growing one is made up of them, see `leading`."""
+"""Number of perturbations most coupled to heat, the basis of growing ones; see `leading`."""
 _PRESSING = 1e-9
 _SLOW, _NEAR = 0.02, 0.3
-"""Parts of a speed that is known roughly, or well, from which on it is looked for what grows."""
+"""Start of the onset search as part of a speed that is known roughly, or well."""
 _SAME, _TURNS = 1e-4, 10
 
 
 @dataclass(frozen=True)
 class Disturbance:
-    """A disturbance of the pressure.
+    """Perturbation mode of the pressure.
 
     Attributes
     ----------
     factor : float
-        Of the given speed, at which it is found.
+        Factor of the given speed at which it is found.
     rate : complex
-        At which it grows and swings [1/s].
+        Growth rate (real part) and angular frequency (imaginary part) [1/s].
     shape : ndarray, shape (m,)
         Coefficients of the pressure.
     """
@@ -52,14 +52,14 @@ class Disturbance:
 
 
 class DisturbedContact:
-    """Disturbances of a contact whose touching points are known. Every rank calls.
+    """Perturbations of a contact with a given contact set. Every rank calls.
 
     Parameters
     ----------
     system : System
-        With its heat.
+        System with a thermal model.
     pressure : ndarray, shape (n,)
-        [Pa]
+        Pressure of the base state [Pa].
     conditions : InterfaceConditions
     """
 
@@ -71,31 +71,31 @@ class DisturbedContact:
 
     @property
     def stores(self) -> bool:
-        """Whether the heat capacity of the bodies is known, and with it rates."""
+        """True if the heat capacity of the bodies is known, and thus growth rates."""
         return self._bodies.conduction.capacity is not None
 
     @property
     def carries(self) -> bool:
-        """Whether a body carries heat along: disturbances then move with it, and none stays."""
+        """True if a body convects heat: perturbations then move, and no static modes exist."""
         return self._bodies.conduction.carried is not None
 
     @cached_property
     def static(self) -> StaticModes:
-        """Disturbances that stay, each at its own speed."""
+        """Static modes, each at its own critical speed."""
         return static_modes(self._elastic, self._thermal, self._space)
 
     def fastest(self, wears: bool) -> Disturbance:
-        """What grows fastest at the given speed, or dies out most slowly."""
+        """Perturbation with the largest growth rate (real part) at the given speed."""
         wear = self._wear(1.0) if wears else None
         found = self._model.settled(lambda small: Growing(1.0, small.fastest(1.0, wear)))
         assert found is not None
         return self._whole(found)
 
     def onset(self, wears: bool) -> Disturbance | None:
-        """What begins to grow as the speed rises; None where nothing does."""
+        """First perturbation to grow with increasing speed; None if none does."""
         if not self.carries:
             return self._onset(wears, _SLOW * float(np.append(self.static.factors, 1.0)[0]))
-        # upwind test functions, and the answers that the model is made of, change with the speed
+        # upwind test functions, and the responses in the model, depend on the speed
         found, factor, tried = self._onset(wears, _SLOW), 1.0, []
         for _ in range(_TURNS):
             if found is None or abs(found.factor - 1.0) <= _SAME:
@@ -120,7 +120,7 @@ class DisturbedContact:
         return None if found is None else self._whole(found)
 
     def _at(self, factor: float) -> DisturbedContact:
-        """The same contact at another speed."""
+        """Perturbed contact at another speed."""
         system, motion = self._system, self._system.case.motion
         assert motion is not None  # the case has been checked
         speeds = {"velocity": motion.velocity, "angular_velocity": motion.angular_velocity}
@@ -142,13 +142,13 @@ class DisturbedContact:
 
     @cached_property
     def _elastic(self) -> np.ndarray:
-        """A, of the bodies and of the soft layer between the faces."""
+        """Compliance A of the bodies and of the soft layer between the faces."""
         contact = self._system.contact
         return contact.compliance + self._system.softness * contact.weighted.T @ contact.basis
 
     @cached_property
     def _thermal(self) -> np.ndarray:
-        """H at the given speed."""
+        """Weak thermal opening per pressure coefficient, H, at the given speed."""
         conduction, face = self._bodies.conduction, self._bodies.face
         per_heat = self._heat.condensed(conduction, face).per_friction_heat(
             face.exchange(self._conditions.conductance)
@@ -157,7 +157,7 @@ class DisturbedContact:
 
     @cached_property
     def _space(self) -> LoadFree:
-        """All disturbances of what touches."""
+        """All load-free perturbations of the contact set."""
         contact = self._system.contact
         coefficients = np.linalg.lstsq(contact.basis, self._pressure, rcond=None)[0]
         touching = coefficients > _PRESSING * coefficients.max()
@@ -169,13 +169,13 @@ class DisturbedContact:
 
     @cached_property
     def _kinds(self) -> LoadFree:
-        """Those that a growing one is made up of."""
+        """Basis of the growing perturbations."""
         contact = self._system.contact
         depths = contact.weighted.T @ contact.basis
         return leading(self._elastic, self._thermal, depths, self._space, _KINDS)
 
     def _wear(self, factor: float) -> np.ndarray:
-        """How fast disturbances wear at a factor of the speed, in their own space."""
+        """Wear rate per perturbation at a factor of the speed, in the reduced basis."""
         system, conditions, space = self._system, self._conditions, self._kinds
         pressed = system.basis @ space.pressures
         worn = np.zeros_like(pressed)
@@ -188,7 +188,7 @@ class DisturbedContact:
 
 
 def _secant(tried: list[tuple[float, float]]) -> float:
-    """Where a function vanishes that falls about as fast as its argument rises."""
+    """Secant estimate of the root of a function with a slope of about -1."""
     (x, y), before = tried[-1], tried[:-1]
     if not before:
         return x + y

@@ -1,4 +1,4 @@
-"""Results that cannot be meant: holders that go back under load, and faces too steep to touch."""
+"""Plausibility checks: holder moved against its load, contact of strongly inclined faces."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from ..model.system import System
 from ..results.outcome import Outcome
 
 _ANALYSES = ("initial", "transient", "fretting", "reciprocating")
-"""Those that say where the holder is; a steady state has no history that would lead there."""
+"""Analyses with a defined holder position; a steady state has no history leading to one."""
 _BACK = 1e-9
-"""Of the size of the face: further back is no rounding."""
+"""Rounding tolerance of the position, relative to the size of the face."""
 _STEEP = -0.75
-"""Cosine between the outward normals of both faces where they press; up to -0.5 they are paired."""
+"""Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
 
 
 def went_back(system: System, outcome: Outcome) -> ComputationError | None:
-    """The error of a pressed holder that ends behind where it began; None where all is well.
+    """Error for a holder that has moved against its load; None if it has not.
 
     Without heat and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do positive work
-    on the holder unless the faces overlap as they are drawn.
+    on the holder unless the drawn faces overlap.
     """
     case, pairing = system.case, system.pairing
     if case.analysis.type not in _ANALYSES or case.heat is not None or case.load.surfaces:
@@ -42,7 +42,7 @@ def went_back(system: System, outcome: Outcome) -> ComputationError | None:
 
 
 def too_steep(system: System, pressure: np.ndarray) -> str | None:
-    """What to say where curved faces press that are far from parallel, None where none do."""
+    """Note on contact of faces far from parallel; None if there is none."""
     first, second = (side.face.normals(side.facet, side.t) for side in system.pairing.sides)
     cosine = np.einsum("ni,ni->n", first, second)[pressure > 0].max(initial=-1.0)
     if cosine <= _STEEP:

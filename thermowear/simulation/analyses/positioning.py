@@ -1,4 +1,4 @@
-"""System of a case, its mesh fitted to the edges of the contact where the case asks for it."""
+"""Fitting of element ends to the contact edges (``contact.positioning``)."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from ..model.building import build
 from ..model.system import System
 
 _PASSES = 12
-_SETTLED = 0.1  # of the element at the edge
+_SETTLED = 0.1  # relative to the element at the edge
 _STEEPEST = 4.0
-_LONGEST = 0.4  # of the zone: its edges never change places
+_LONGEST = 0.4  # relative to the zone, so that its edges cannot swap
 
 
 def prepare(case: Case, comm, phases: Phases) -> System:
-    """Build the system of a case, positioned where the case asks for it. Every rank calls.
+    """Build the system of a case, fitted to the contact edges if requested. Every rank calls.
 
     Raises
     ------
     CaseError, ComputationError
-        If it cannot be meshed, or the edges of the contact do not settle.
+        If it cannot be meshed, or the contact edges do not converge.
     """
     if not case.contact.positioning:
         return build(case, comm, phases)
@@ -66,9 +66,9 @@ def touching(system: System) -> tuple[float, float]:
 
 
 def _step(zone: np.ndarray, missed: np.ndarray, before) -> np.ndarray:
-    """How far to move each edge that was missed by so much: by a secant where there is one.
+    """Displacement of each zone edge, by a secant step after the first one.
 
-    Where an edge is found depends a little on where the mesh has it.
+    The position of a contact edge depends slightly on the mesh.
     """
     if before is None:
         return missed

@@ -1,4 +1,4 @@
-"""From a case to a result: the analyses, told as a story."""
+"""Run a case: set-up, analysis, checks, error estimate and result."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ def run(
         All ranks by default.
     observer : Observer, optional
     phases : Phases, optional
-        Clock that has been running already.
+        Timer that is already running.
     saved : Saved, optional
-        What `Observer.checkpoint` was told on this rank by an earlier run, to go on with; the
+        Checkpoint from `Observer.checkpoint` of an earlier run on this rank, to restart from; the
         result has the whole history, and the outputs from there on.
 
     Returns
@@ -64,8 +64,8 @@ def run(
     Raises
     ------
     ComputationError
-        If there is no answer at all; a transient run that stops on its way is returned, with what
-        stopped it, and a run whose balances do not hold likewise.
+        If there is no result at all; a transient run that stops early is returned with its error,
+        and likewise a run whose balances do not hold.
     """
     if comm is None:
         from mpi4py import MPI
@@ -83,11 +83,9 @@ def run(
 
 
 def analyse(system: System, observer: Observer, saved: Saved | None = None) -> Outcome:
-    """The analysis that the case of a system asks for; what is odd about it is said.
+    """Run the analysis of the case of a system, and note implausible results. Every rank calls.
 
-    It begins, or goes on with what was saved of an analysis of the same system.
-
-    Every rank calls.
+    Starts anew, or from the checkpoint of an analysis of the same system.
     """
     if system.pairing.unpaired > _UNPAIRED:
         percent = 100 * system.pairing.unpaired
@@ -120,7 +118,7 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
 
 
 def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
-    """The outcome with estimates of its discretisation error in the summary; warns of large ones.
+    """Add discretisation error estimates to the summary of an outcome; note large ones.
 
     Every rank calls.
     """
@@ -128,7 +126,7 @@ def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
         return outcome
     try:
         estimates = estimate_errors(outcome.system or system, outcome)
-    except (CaseError, ComputationError, LinAlgError) as error:  # the result stands without
+    except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
         return replace(
             outcome, extra=outcome.extra | {"error_estimate_missing": {"all": str(error)}}
         )
@@ -139,7 +137,7 @@ def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
 
 
 def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:
-    """What a run returns. One whose balances do not hold has failed, and keeps its results."""
+    """Result of a run; marked as failed if its balances do not hold."""
     system = outcome.system or system
     summary = summarise(system, outcome)
     return Result(
@@ -158,7 +156,7 @@ def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Res
 
 
 def _stability(system: System, observer: Observer) -> Outcome:
-    """Disturbances of the steady state, or of the cold unworn contact where there is none."""
+    """Stability of the steady state, or of the cold unworn contact if there is none."""
     free = system.holder.free
     if system.laws and len(free) and free.all():
         return stability(system, steady(system, observer), observer)

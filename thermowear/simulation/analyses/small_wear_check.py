@@ -1,4 +1,4 @@
-"""Wear that stays in the gap to the end, and what is to be said where it is not small."""
+"""Check of the small-wear assumption for analyses without geometry updates."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from ..results.result import Interface
 
 
 def not_small(system: System, interface: Interface) -> str | None:
-    """What a user should know of an analysis that moves no meshes; every rank calls.
+    """Note on an analysis without mesh motion that leaves the small-wear regime; every rank calls.
 
-    Of one that slides to and fro, the depths are those seen where body 1 passes the middle.
+    In reciprocating sliding the depths are those at mid-stroke of body 1.
 
     Returns
     -------
     str or None
-        None where the wear is small, as it is also where ``wear.update = "never"`` says so.
+        None if the wear is small, or declared small by ``wear.update = "never"``.
     """
     analysis, allowed = system.case.analysis, system.case.wear.largest_kept
     if not isinstance(analysis, Fretting | Reciprocating):

@@ -1,4 +1,4 @@
-"""Thermoelastic stability: the critical speed of a contact, what grows, and what wear does."""
+"""Thermoelastic stability: critical speeds and growth rates, with and without wear."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from ..runtime.observer import Observer
 from .perturbation import Disturbance, DisturbedContact
 
 _SHOWN = 4
-"""Static modes that are kept."""
+"""Number of static modes in the results."""
 
 
 def stability(system: System, base: Outcome, observer: Observer) -> Outcome:
-    """What becomes of disturbances of a contact. Every rank calls.
+    """Thermoelastic stability analysis of a contact. Every rank calls.
 
     Parameters
     ----------
     system : System
-        With its heat.
+        System with a thermal model.
     base : Outcome
-        Of the contact that is disturbed.
+        Outcome of the unperturbed contact.
     observer : Observer
 
     Raises
     ------
     ComputationError
-        If a body carries heat along and the heat capacity of a body is not known.
+        If a body convects heat and the heat capacity of a body is not known.
     """
     contact = DisturbedContact(system, base.contact.pressure, base.contact.conditions)
     if not contact.stores:
@@ -55,14 +55,14 @@ def stability(system: System, base: Outcome, observer: Observer) -> Outcome:
 
 
 def _static(contact: DisturbedContact) -> list[Disturbance]:
-    """Disturbances that stay, the first few."""
+    """First static modes."""
     found = contact.static
     pairs = zip(found.factors[:_SHOWN], found.shapes.T, strict=False)
     return [Disturbance(float(factor), 0j, shape) for factor, shape in pairs]
 
 
 def _in_time(system: System, contact: DisturbedContact) -> tuple[dict, list[Disturbance]]:
-    """Rates at the given speed and critical speeds, and the shapes that go with them."""
+    """Summary entries of growth rates and critical speeds, and the modes to tabulate."""
     critical, unworn = contact.onset(False), contact.fastest(False)
     onset, fastest, worn = critical, unworn, None
     if system.laws:
@@ -81,7 +81,7 @@ def _keys(
     fastest: Disturbance | None,
     unworn: Disturbance | None,
 ) -> dict:
-    """What a stability analysis adds to the summary."""
+    """Summary entries of a stability analysis."""
     motion = system.case.motion
     assert motion is not None  # the case has been checked
     given = {
@@ -104,7 +104,7 @@ def _keys(
 
 
 def _table(system: System, modes: list[Disturbance]) -> Modes:
-    """Pressures of disturbances at the contact points, the largest value of each 1."""
+    """Table of mode pressures at the contact points, each normalised to a largest value of 1."""
     points, s = system.pairing.points, system.pairing.position
     places = [*np.pad(points, ((0, 0), (0, 3 - points.shape[1]))).T, s]
     tables = [np.zeros((10, 0))]

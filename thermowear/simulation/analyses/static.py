@@ -1,4 +1,4 @@
-"""Analyses without time: contact of the unworn faces, and the steady state of wear."""
+"""Static analyses: contact of the unworn faces, and the steady state of wear."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def initial(system: System, observer: Observer) -> Outcome:
 
 
 def unworn(system: System, problem: InterfaceProblem) -> Outcome:
-    """Contact of the unworn faces, as a problem solves it."""
+    """Contact of the unworn faces, from a given interface problem."""
     with system.phases("contact"):
         found = problem.unworn()
     with system.phases("bodies"):
@@ -42,7 +42,7 @@ def unworn(system: System, problem: InterfaceProblem) -> Outcome:
 
 
 def steady(system: System, observer: Observer) -> Outcome:
-    """The steady state; the faces are as if they had worn into each other."""
+    """Steady state of wear, with faces worn to conformity."""
     with system.phases("steady principle"):
         found = steady_state(system)
     with system.phases("bodies"):
@@ -50,7 +50,7 @@ def steady(system: System, observer: Observer) -> Outcome:
         state = body_state(system, contact)
     wear = found.wear
     pressing = wear.pressure > 0
-    # the holder stands where the unworn faces would lose just enough material to fit
+    # holder position of least material removal for conforming faces
     opening = state.opening + system.softness * wear.pressure
     amounts = least_worn(system.holder.modes, opening, system.weights, pressing)
     lost = system.holder.modes @ amounts - opening
@@ -73,7 +73,7 @@ def steady(system: System, observer: Observer) -> Outcome:
 
 
 def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:
-    """Rigid-body wear velocities by the motions of the holder [m/s, rad/s]."""
+    """Rigid-body wear velocities of the free holder modes, by summary key [m/s, rad/s]."""
     found: dict[str, float | None] = {_VELOCITIES["z"]: None}
     if velocity is not None:
         names = system.case.holder.free

@@ -1,4 +1,4 @@
-"""Many cases, one after the other: what a case shares with the one before is not made again."""
+"""Sequential cases of a sweep with reuse of shared set-up results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .run import analyse, conclude
 
 
 class Series:
-    """Computes cases that share parts, see `groups`.
+    """Sequence of cases with a shared set-up cache, see `groups`.
 
     Parameters
     ----------
@@ -49,15 +49,15 @@ class Series:
         return conclude(system, analyse(system, observer), None)
 
     def _prepared(self, case: Case, phases: Phases) -> System:
-        if case.contact.positioning:  # its mesh is where this very case has its contact
+        if case.contact.positioning:  # its mesh depends on the contact of this case
             return prepare(case, self.comm, phases)
         return build(case, self.comm, phases, parts=self._parts)
 
 
 def groups(cases: Sequence[Case]) -> list[list[int]]:
-    """Numbers of the cases that share their elastic bodies, those that share more side by side.
+    """Group case numbers by equal elastic bodies, ordered within by equal thermal set-up.
 
-    Groups share nothing that costs, and may be computed at the same time.
+    Groups share no costly set-up results, and may be computed in parallel.
     """
     shared: list[tuple[Any, list[tuple[Any, list[int]]]]] = []
     for number, case in enumerate(cases):
@@ -69,7 +69,7 @@ def groups(cases: Sequence[Case]) -> list[list[int]]:
 
 
 def _of(table: list[tuple[Any, list]], key: Any, new: bool = False) -> list:
-    """The list that belongs to a key, which need not be hashable."""
+    """List of a key, which need not be hashable; created if missing or requested new."""
     for known, found in () if new else table:
         if known == key:
             return found

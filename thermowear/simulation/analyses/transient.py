@@ -1,4 +1,4 @@
-"""Running-in: contact, wear and heat in time, to an end time or to the steady state."""
+"""Transient analysis: contact, wear and heat in time, to an end time or the steady state."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from .transient_record import RunningIn, RunningInRecord
 
 
 def running_in(system: System, observer: Observer, before: RunningIn | None = None) -> Outcome:
-    """Follow contact in time, from the start or from where it has come to.
+    """Follow contact in time, from the start or from a checkpoint.
 
-    What was computed before an error or Ctrl-C is kept. What the steady state that it tends to adds
-    to the summary is there too.
+    Results computed before an error or Ctrl-C are kept. The summary includes the wear velocities of
+    the steady state that is approached.
     """
     settings = system.case.analysis
     assert isinstance(settings, Transient)
@@ -51,10 +51,10 @@ def running_in(system: System, observer: Observer, before: RunningIn | None = No
 
 
 def _principle(system: System) -> SteadyState | None:
-    """The steady state that a running-in tends to; None where there is none.
+    """Steady state that a transient analysis approaches; None if there is none.
 
-    There is none where nothing presses in the end, where the contact grows, where something is
-    given over time, where wear depends on the depth, or where the principle has no solution.
+    There is none unless all holder modes are free, for a growing contact, for inputs given over
+    time, for wear laws that depend on the depth, or if the principle has no solution.
     """
     settings = system.case.analysis
     assert isinstance(settings, Transient)

@@ -1,4 +1,4 @@
-"""What a running-in keeps of the moments that it goes through."""
+"""Record of the accepted moments and outputs of a transient analysis."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ from ..runtime.frames import FrameRecorder
 from ..runtime.observer import Observer
 from ..time.time_loop import Moment
 
-_MELTED = 5000.0  # K; no solid is as hot
-_STEEPER = 3.0  # heating now to heating so far; a load and a speed that grow evenly make 2.5 of it
+_MELTED = 5000.0  # K, above the melting point of any solid
+_STEEPER = 3.0  # heating rate over mean rate so far; linear rise of load and speed gives 2.5
 _UNSTABLE = (
     "the temperature runs away: friction heat makes the bodies bulge, so that they press and heat "
     "each other ever more (thermoelastic instability); reduce the speed or the friction"
@@ -39,25 +39,25 @@ _UNSTABLE = (
 @serialisable
 @dataclass(frozen=True)
 class RunningIn:
-    """How far a running-in has come: all that it needs to go on.
+    """Progress of a transient analysis: the data needed to restart it.
 
     Attributes
     ----------
     moment : Moment
     memory : object
-        Of the problem.
+        Internal state of the interface problem.
     speed : float
         Mean sliding speed [m/s].
     rows : list of HistoryRow
     heat : list of HeatRow
     worn : WornGeometry or None
-        Where the meshes have been moved to the worn faces.
+        Worn geometry, if meshes have been moved.
     kept : tuple of float
-        See `OuterLoop`.
+        See `OuterLoop.kept`.
     zone : tuple of float or None
         Range of x that the mesh was made for [m].
     earlier : UpdateCounts
-        Updates of meshes for narrower zones.
+        Counts of the updates of meshes for narrower zones.
     """
 
     moment: Moment
@@ -76,12 +76,12 @@ class RunningIn:
 
 
 class RunningInRecord:
-    """Rows and outputs so far.
+    """Recorder of the rows and outputs so far.
 
     Parameters
     ----------
     loop : OuterLoop
-        Which knows the system and the problem of the last moment.
+        Loop that provides the system and the problem at the last moment.
     observer : Observer
     """
 
@@ -96,7 +96,7 @@ class RunningInRecord:
         self._last: Moment
 
     def go_on(self, before: RunningIn) -> Moment:
-        """Take up what was kept before."""
+        """Restore the record of an earlier run; return the moment to restart from."""
         self._last, self._speed = before.moment, before.speed
         self.rows, self.heat = before.rows, before.heat
         self._loop.go_on(before.worn, before.kept, before.zone, before.earlier)
@@ -129,12 +129,12 @@ class RunningInRecord:
         return self._loop.problem
 
     def keep(self, moment: Moment) -> None:
-        """Take up a step.
+        """Record an accepted step.
 
         Raises
         ------
         ComputationError
-            If its balances do not hold; then the last step before it stays the last.
+            If its balances do not hold; the step before then remains the last one.
         """
         if self._problem.stores_heat:
             error = self._problem.heat_balance(moment.state).error
@@ -146,7 +146,7 @@ class RunningInRecord:
             state.require_balance()
         conditions = self._problem.conditions(moment.state, moment.time)
         speed = self._mean(conditions.speed)
-        slid = moment.step * (self._speed + speed) / 2  # no step passes a corner of the speed
+        slid = moment.step * (self._speed + speed) / 2  # steps end at kinks of the speed
         self._speed, self._last = speed, moment
         self.rows.append(self._row(moment, slid))
         self._observer.step(self.rows[-1], moment.distance)
@@ -161,12 +161,12 @@ class RunningInRecord:
         self._film.take(self._system, number, moment.time, lambda: self.bodies(moment))
 
     def watched(self, passing: Iterator[Moment]) -> Iterator[Moment]:
-        """The moments, until the faces are hotter than any solid can be.
+        """Pass the moments on while the faces are below any melting point.
 
         Raises
         ------
         ComputationError
-            That says so, as that of a step does if it fails while they get hotter ever faster.
+            If they are hotter; that of a step failing in thermal runaway is extended by the cause.
         """
         try:
             for moment in passing:
@@ -189,7 +189,7 @@ class RunningInRecord:
         return contact, motion, *interface_at(self._system, contact, motion, worn)
 
     def extra(self) -> dict:
-        """What the analysis adds to the summary."""
+        """Summary entries of a transient analysis."""
         result = {
             "steps": len(self.rows) - 1,
             "time_s": self.rows[-1].time,
@@ -208,7 +208,7 @@ class RunningInRecord:
         }
 
     def _runs_away(self) -> bool:
-        """Whether the faces have become hotter much faster than they did before."""
+        """True if the faces heat up much faster than before (thermal runaway)."""
         if not self.heat or len(self.rows) < 3:
             return False
         first, before, last = self.rows[0], self.rows[-2], self.rows[-1]
@@ -252,11 +252,11 @@ class RunningInRecord:
         )
 
     def _mean(self, values: np.ndarray) -> float:
-        """Over the face, by area."""
+        """Area mean over the face."""
         return float(np.average(values, weights=self._system.weights))
 
     def _by_body(self, worn: np.ndarray) -> np.ndarray:
-        """Rows for both bodies from rows for the wearing ones, shape (2, n)."""
+        """Expand rows of the wearing bodies to both bodies, shape (2, n)."""
         both = np.zeros((2, worn.shape[1]))
         both[list(self._system.laws)] = worn
         return both

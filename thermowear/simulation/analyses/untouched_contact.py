@@ -1,4 +1,4 @@
-"""Contacts in which nothing touches at the end."""
+"""Check for contacts that are open at the end."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ..results.outcome import Outcome
 
 
 def touching(system: System, outcome: Outcome) -> tuple[Outcome, str | None]:
-    """An outcome in which nothing touches: failed, or what should be known of it.
+    """Mark an outcome without contact as failed, or return a note on it. Every rank calls.
 
-    A constant pressing force has to be carried, or the computation has failed. A given approach, a
-    load on a surface or one that ends may leave the faces apart, and wear may take them apart: that
-    is an answer, and is said. Every rank calls.
+    A constant pressing force must be carried, or the computation has failed. A given approach, a
+    surface load or a load history may leave the faces apart, and wear may separate them: that is a
+    valid result with a note.
 
     Returns
     -------

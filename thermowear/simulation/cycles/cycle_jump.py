@@ -1,15 +1,15 @@
-"""Jumps over cycles, as long as their error allows.
+"""Cycle jumps with Richardson error control.
 
-A cycle that stands for n wears n times as much. That is not what n cycles would do one after the
-other: its error grows with ``n (n - 1)``, for one cycle has none. A jump is done in two parts, and
-done again as a whole: the difference D of the depths is ``2 n1 n2`` of the same unknown constant,
-so that the parts have the error
+A computed cycle that represents n cycles wears n times as much. Compared with n consecutive cycles
+its error grows with ``n (n - 1)``, as a single cycle has none. Each jump is computed in two parts
+and again as a whole: the difference D of the depths is ``2 n1 n2`` times the unknown error
+constant, so that the two parts have the error
 
     D (n1 (n1 - 1) + n2 (n2 - 1)) / (2 n1 n2)
 
-(Richardson). It decides how far to jump, and is taken out of the depths: what is left is of second
-order. Each increment of the cycles is implicit, see `contact.slip_wear`, so that jumps of any size
-are stable.
+(Richardson extrapolation). It controls the jump size and is subtracted from the depths, which
+leaves an error of second order. Each increment of the cycles is implicit, see
+`contact.friction.slip_wear`, so that jumps of any size are stable.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ _SAFETY, _SHORTER, _LONGER = 0.9, 0.2, 5.0
 
 
 class Cycles(Protocol):
-    """Cycles that can be computed."""
+    """Protocol of a contact with computable load cycles."""
 
     areas: np.ndarray
-    """Of the coefficients of the depths, shape (m,) [m²]."""
+    """Areas of the basis functions of the depths, shape (m,) [m²]."""
 
     def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Increment]:
-        """The increments of a cycle, which stands for all since the one of the state.
+        """Increments of a cycle that represents all cycles since that of the state.
 
         Raises
         ------
@@ -44,13 +44,13 @@ class Cycles(Protocol):
         """
 
     def settled(self, end: Increment, worn: np.ndarray) -> StickSlipState:
-        """The same loads on other worn depths, shape (n_wearing, m) [m], energy as it was."""
+        """State at equal loads and energy, for other worn depths, shape (n_wearing, m) [m]."""
 
 
 def fixed_jumps(
     cycles: Cycles, numbers: Iterable[int], behind: RestartPoint
 ) -> Iterator[Increment]:
-    """Compute the cycles of these numbers, each for all since the one before."""
+    """Compute the cycles of these numbers, each representing all since the previous one."""
     for number in numbers:
         if number > behind.cycle:
             span = number - behind.cycle
@@ -63,28 +63,28 @@ def fixed_jumps(
 def adaptive_jumps(
     cycles: Cycles, stops: Iterable[int], behind: RestartPoint, tolerance: float, longest: float
 ) -> Iterator[Increment]:
-    """Go through all cycles in jumps whose errors are within a tolerance.
+    """Compute all cycles in jumps with an error within the tolerance.
 
     Parameters
     ----------
     cycles : Cycles
     stops : iterable of int
-        Cycles that no jump passes, the last one included, in order.
+        Cycles that no jump passes over, in order, including the last one.
     behind : RestartPoint
     tolerance : float
-        Of the largest depth worn.
+        Error relative to the largest worn depth.
     longest : float
-        The most cycles of a jump.
+        Largest number of cycles of a jump.
 
     Yields
     ------
     Increment
-        Of the cycles that the jumps are made of; jumps whose error is too large leave no trace.
+        Increments of the cycles of accepted jumps; rejected jumps yield nothing.
 
     Raises
     ------
     ComputationError
-        Of a single cycle.
+        If a single cycle fails.
     """
     for stop in stops:
         while behind.cycle < stop:
@@ -100,14 +100,14 @@ def adaptive_jumps(
 
 
 def _at_most(wanted: float, left: int) -> int:
-    """Whole cycles, but none that leaves few over."""
+    """Whole number of cycles, chosen so that no short remainder is left."""
     return left if wanted >= left else max(1, int(min(wanted, math.ceil(left / 2))))
 
 
 def _jumped(
     cycles: Cycles, behind: RestartPoint, wanted: int, tolerance: float
 ) -> Iterable[Increment]:
-    """The instants of a jump, over half the cycles again and again where its error is too large."""
+    """Increments of one jump, which is halved until its error is within the tolerance."""
     start, state, span, whole = behind.cycle, behind.state, wanted, None
     while span > 1:
         n1, n2 = span - span // 2, span // 2
@@ -125,22 +125,22 @@ def _jumped(
         if error <= tolerance:
             jump = Jump(span, error, span * _growth(error, tolerance))
             return [*first, *second[:-1], replace(done_twice.corrected(cycles), jump=jump)]
-        span, whole = n1, first  # which is the whole of the next try
+        span, whole = n1, first  # the whole of the next attempt
     jump = Jump(1, 0.0, behind.following if wanted == 1 else 2.0)
     return (_marked(instant, jump) for instant in cycles.cycle(state, start + 1, 1))
 
 
 @dataclass(frozen=True)
 class _DoneTwice:
-    """A jump in two parts and as a whole; the symbols are those of the module's docstring.
+    """Jump computed in two parts and as a whole, with the symbols of the module's docstring.
 
     Attributes
     ----------
     n1, n2 : int
     start, whole : StickSlipState
-        Before it, and after it as a whole.
+        States before the jump, and after it as a whole.
     end : Increment
-        Of the second part.
+        End of the second part.
     """
 
     n1: int
@@ -151,23 +151,23 @@ class _DoneTwice:
 
     @property
     def part(self) -> float:
-        """Of the difference, that the two parts are wrong by."""
+        """Error of the two parts as a fraction of their difference from the whole."""
         single = self.n1 * (self.n1 - 1) + self.n2 * (self.n2 - 1)
         return single / (2 * self.n1 * self.n2)
 
     @property
     def wrong(self) -> np.ndarray:
-        """Depths after the two parts, too much, shape (n_wearing, m) [m]."""
+        """Excess depth after the two parts, shape (n_wearing, m) [m]."""
         return self.part * (self.whole.worn - self.end.state.worn)
 
     @property
     def error(self) -> float:
-        """Largest of them, of the largest depth; 0 where nothing wears."""
+        """Largest excess depth relative to the largest depth; 0 without wear."""
         largest = float(self.end.state.worn.max(initial=0.0))
         return float(np.abs(self.wrong).max(initial=0.0)) / largest if largest > 0.0 else 0.0
 
     def corrected(self, cycles: Cycles) -> Increment:
-        """The end without the error."""
+        """End of the second part with the estimated error subtracted."""
         if self.part == 0.0:
             return self.end
         state, before = self.end.state, self.start.worn
@@ -178,16 +178,16 @@ class _DoneTwice:
 
 
 def _growth(error: float, tolerance: float) -> float:
-    """Of the next jump; the error goes with the square of the cycles."""
+    """Size factor for the next jump; the error is quadratic in the number of cycles."""
     if error == 0.0:
         return _LONGER
     return float(np.clip(_SAFETY * math.sqrt(tolerance / error), _SHORTER, _LONGER))
 
 
 def _forward(gains: np.ndarray, areas: np.ndarray) -> np.ndarray:
-    """Depths gained, shape (n_wearing, m), without loss: what would come back others do not gain.
+    """Depth gains (n_wearing, m) with negative values clipped and the others scaled down.
 
-    Volumes stay what they are, so that they remain those of the energy.
+    Volumes are preserved, so that they remain consistent with the dissipated energy.
     """
     kept = np.maximum(gains, 0.0)
     volumes = np.where(kept.any(axis=1), kept @ areas, 1.0)
@@ -195,6 +195,6 @@ def _forward(gains: np.ndarray, areas: np.ndarray) -> np.ndarray:
 
 
 def _marked(instant: Increment, jump: Jump) -> Increment:
-    """With the jump that it ends, if it does."""
+    """Increment with the jump attached if it ends a cycle."""
     ends = instant.ends_leg and instant.leg.ends_cycle
     return replace(instant, jump=jump) if ends else instant

@@ -1,4 +1,4 @@
-"""Fretting: sticking, slipping and wear under a history of loads."""
+"""Fretting analysis: stick, slip and wear under a load history."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _ACROSS = (1.0, 0.0)
 
 
 def fretting(system: System, observer: Observer, before: Fretted | None = None) -> Outcome:
-    """Follow the history of loads and its cycles, from the start or from where it has come to.
+    """Follow the load history and its cycles, from the start or from a checkpoint.
 
-    What was computed before an error or Ctrl-C is kept.
+    Results computed before an error or Ctrl-C are kept.
     """
     translations = _translations(system.case)
     with system.phases("condense elasticity"):
@@ -57,7 +57,7 @@ def fretting(system: System, observer: Observer, before: Fretted | None = None) 
 
 
 def _translations(case: Case) -> np.ndarray:
-    """Unit motions of the holder: along the press, and across it where the history says so."""
+    """Unit holder translations: along the load, and tangential if the history prescribes it."""
     directions = [case.geometry.press_direction]
     if case.load.history is not None and case.load.history.tangential:
         directions.append(_ACROSS)
@@ -65,7 +65,7 @@ def _translations(case: Case) -> np.ndarray:
 
 
 class _Path:
-    """The way of a contact through the history of loads of its case, and through its cycles."""
+    """Increments of a contact along the load history of its case and through its cycles."""
 
     def __init__(
         self, system: System, contact: FrictionalContact, profiles: tuple[WornProfile, ...]
@@ -79,9 +79,9 @@ class _Path:
         self._laws, self._profiles = tuple(system.laws.values()), profiles
 
     def instants(self, last: Increment | None = None) -> Iterator[Increment]:
-        """Each increment's end: to where the cycles begin, then through them.
+        """Increments up to the start of the cycles, then through them.
 
-        All of them, or those after one from which it can go on.
+        Either all increments, or the ones after an increment with a restart point.
         """
         history, settings = self._history, self._settings
         behind, passed = RestartPoint(0, unloaded(self._contact, len(self._laws))), -math.inf
@@ -97,7 +97,7 @@ class _Path:
             yield from self.going_on(behind)
 
     def going_on(self, behind: RestartPoint) -> Iterator[Increment]:
-        """Each increment's end in the cycles after one of them."""
+        """Increments of the cycles after a restart point."""
         count = int(self._case.cycles or 1)
         history, settings = self._history, self._settings
         if settings.jump == "auto":
@@ -134,7 +134,7 @@ class _Path:
 
 
 def _loads(case: Case, instant: float) -> Loads:
-    """Loads at an instant of the history [s]."""
+    """Loads at a time of the history [s]."""
     history = case.load.history
     assert history is not None
     given = history.at(instant)

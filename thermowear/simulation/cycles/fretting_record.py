@@ -1,4 +1,4 @@
-"""What a fretting analysis keeps of the increments and cycles that it goes through."""
+"""Record of the increments, cycles and outputs of a fretting analysis."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from .increments import Increment, Jump
 @serialisable
 @dataclass(frozen=True)
 class Fretted:
-    """How far a fretting analysis has come: all that it needs to go on.
+    """Progress of a fretting analysis: the data needed to restart it.
 
     Attributes
     ----------
     last : Increment
-        From which it can go on.
+        Increment to restart from.
     per_cycle : ndarray, shape (2, n)
-        Depths that a cycle of it wears off both bodies [m].
+        Worn depth per cycle on both bodies [m].
     rows : list of LoadRow
     cycles : list of CycleRow
     """
@@ -47,17 +47,17 @@ class Fretted:
 
 
 class FrettingRecord:
-    """Increments, cycles and outputs so far.
+    """Recorder of the increments, cycles and outputs so far.
 
     Parameters
     ----------
     system : System
     translations : ndarray, shape (k, 2)
-        Of the holder.
+        Unit translations of the holder.
     profiles : tuple of WornProfile
-        Of the wearing bodies.
+        Worn profiles of the wearing bodies.
     observer : Observer
-        Told of each of them.
+        Observer notified of each record.
     """
 
     last: StickSlipState
@@ -79,13 +79,13 @@ class FrettingRecord:
         self._rows: list[LoadRow] = []
         self._cycles: list[CycleRow] = []
         self._frictions: dict[float, FrictionInterface] = {}
-        self._now: list[Increment] = []  # of the cycle that is computed
-        self._turn: Increment | None = None  # where the last jump ended
-        self._begin: tuple[Increment, int] | None = None  # to go on from, and its number of rows
+        self._now: list[Increment] = []  # increments of the current cycle
+        self._turn: Increment | None = None  # end of the last jump
+        self._begin: tuple[Increment, int] | None = None  # restart increment, number of rows
         self._per_cycle = np.zeros((2, len(system.weights)))
 
     def go_on(self, before: Fretted) -> Increment:
-        """Take up what was kept before."""
+        """Restore the record of an earlier run; return the increment to restart from."""
         last = before.last
         self._turn = None if last.jump is None else last
         self._now, self.last, self._begin = [last], last.state, (last, len(before.rows))
@@ -96,20 +96,20 @@ class FrettingRecord:
         return last
 
     def progress(self) -> Fretted | None:
-        """To where it can go on from: not the middle of a leg, or of a jump."""
+        """Progress up to the last restart point (end of a jump or, before cycle 1, a segment)."""
         if self._begin is None:
             return None
         last, count = self._begin
         return Fretted(last, self._per_cycle, self._rows[:count], self._cycles)
 
     def keep(self, instant: Increment) -> None:
-        """Take up the end of an increment."""
+        """Record the end of an increment."""
         leg = instant.leg
         self.last = instant.state
         self._rows.append(self._tables.row(instant))
         self._observer.load_step(self._rows[-1])
         if self._now and self._now[-1].leg.cycle != leg.cycle:
-            self._now = self._now[-1:]  # where the cycle begins
+            self._now = self._now[-1:]  # start of the cycle
         self._now.append(instant)
         if instant.behind is not None:
             self._begin = instant, len(self._rows)
@@ -125,7 +125,7 @@ class FrettingRecord:
         self._keep_frame(instant)
 
     def _keep_frame(self, instant: Increment) -> None:
-        """Show ends of cycles, or of increments where there is but one cycle."""
+        """Record a frame per jump end, or per increment if there is only one cycle."""
         one = (self._system.case.cycles or 1) == 1
         if one or instant.jump is not None:
             number = len(self._rows if one else self._cycles) - 1
@@ -136,7 +136,7 @@ class FrettingRecord:
         return contact, translation(self.last.motion @ self._translations), bodies, interface
 
     def interface(self) -> tuple[ContactState, BodyState, Interface]:
-        """Contact, bodies and interface in the last state; wear rates are means of its cycle."""
+        """Contact, bodies and interface in the last state, wear rates averaged over its cycle."""
         system, state = self._system, self.last
         pressure, shear = system.basis @ state.pressure, system.basis @ state.shear[:, 0]
         moved = translation(state.motion @ self._translations)
@@ -149,7 +149,7 @@ class FrettingRecord:
         return contact, bodies, replace(found, gap=found.gap + system.basis @ self._slid_along())
 
     def _slid_along(self) -> np.ndarray:
-        """What the profiles open more than in place, as body 1 has slid, coefficients [m]."""
+        """Gap change of the worn profiles by the slip of body 1, coefficients [m]."""
         state, nothing = self.last, np.zeros(self._system.basis.shape[1])
         if len(state.motion) < 2:
             return nothing
@@ -157,13 +157,13 @@ class FrettingRecord:
         return sum((own.seen(state.motion[1]) @ ω - ω for own, ω in pairs), start=nothing)
 
     def history(self) -> FrictionHistory:
-        """All of it."""
+        """Histories and friction tables recorded so far."""
         return FrictionHistory(
             self._rows, self._cycles, self._tables.friction(self.last), self._frictions
         )
 
     def extra(self) -> dict:
-        """What a fretting analysis adds to the summary."""
+        """Summary entries of a fretting analysis."""
         last, w = self._rows[-1], self._system.weights
         per_cycle = self._per_cycle @ w if self._cycles else (None, None)
         return {
@@ -182,7 +182,7 @@ class FrettingRecord:
         }
 
     def _cycle(self, jump: Jump) -> CycleRow:
-        """The cycle that has ended just now, the last of a jump."""
+        """Row of the cycle just ended, the last of a jump."""
         turn, last = self._turn or self._now[0], self._now[-1]
         start, end = (self._tables.depths(instant.state) for instant in (turn, last))
         self._per_cycle, self._turn = (end - start) / jump.cycles, last

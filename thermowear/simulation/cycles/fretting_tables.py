@@ -10,24 +10,24 @@ from ..results.result import FrictionInterface
 from ..results.rows import CycleRow, LoadRow
 from .increments import Increment, Jump
 
-_SLIDES = 1 - 1e-6  # of friction's limit
+_SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips
 
 
 class FrettingTables:
-    """Writes down states of a system."""
+    """Rows and tables of the fretting states of a system."""
 
     def __init__(self, system: System):
         self._system = system
 
     def depths(self, state: StickSlipState) -> np.ndarray:
-        """Depths worn off both bodies at the points, shape (2, n) [m]."""
+        """Worn depths of both bodies at the contact points, shape (2, n) [m]."""
         system = self._system
         both = np.zeros((2, len(system.weights)))
         both[list(system.laws)] = state.worn @ system.basis.T
         return both
 
     def row(self, instant: Increment) -> LoadRow:
-        """The end of an increment."""
+        """Load row at the end of an increment."""
         system, state = self._system, instant.state
         w, pressure = system.weights, system.basis @ state.pressure
         forces, motions = (np.append(v, [0.0, 0.0]) for v in (state.force, state.motion))
@@ -49,7 +49,7 @@ class FrettingTables:
         )
 
     def cycle(self, instants: list[Increment], jump: Jump) -> CycleRow:
-        """The cycle of some instants, the last of a jump."""
+        """Cycle row from the increments of the last cycle of a jump."""
         w, last = self._system.weights, instants[-1]
         end = self.depths(last.state)
         pressures = np.array([i.state.pressure for i in instants]) @ self._system.basis.T
@@ -68,7 +68,7 @@ class FrettingTables:
         )
 
     def friction(self, state: StickSlipState) -> FrictionInterface:
-        """Sticking and slipping in a state."""
+        """Stick and slip at the contact points in a state."""
         system = self._system
         points, pressure = system.pairing.on_body_1, system.basis @ state.pressure
         status = np.where(pressure > 0, np.where(self._sticking(state), 1, 2), 0)
@@ -85,7 +85,7 @@ class FrettingTables:
         )
 
     def _sticking(self, state: StickSlipState) -> np.ndarray:
-        """Points whose shear is below friction's limit, shape (n,)."""
+        """Mask of points with shear below the friction limit, shape (n,)."""
         basis = self._system.basis
         pressure, shear = basis @ state.pressure, basis @ state.shear[:, 0]
         return np.abs(shear) < _SLIDES * self._system.friction * pressure

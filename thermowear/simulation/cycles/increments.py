@@ -1,4 +1,4 @@
-"""Ends of increments of a history of loads, and what going on from them takes."""
+"""Ends of load increments, cycle jumps and restart points."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from .load_path import LoadSegment
 @serialisable
 @dataclass(frozen=True)
 class Jump:
-    """A way over cycles that has been gone.
+    """Accepted cycle jump.
 
     Attributes
     ----------
     cycles : int
-        How many.
+        Number of cycles.
     error : float
-        Estimated, of the largest depth worn, before it is taken out; 0 where each cycle was
-        computed, NaN where it was not estimated.
+        Estimated error relative to the largest worn depth, before its correction; 0 where each
+        cycle was computed, NaN where it was not estimated.
     following : float
-        How far to jump next, if nothing is in the way.
+        Proposed size of the next jump in cycles.
     """
 
     cycles: int
@@ -33,7 +33,7 @@ class Jump:
 @serialisable
 @dataclass(frozen=True)
 class Increment:
-    """The end of an increment.
+    """State at the end of a load increment.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Increment:
     ends_leg : bool
     state : StickSlipState
     jump : Jump or None
-        That ends here.
+        Jump that ends here.
     """
 
     time: float
@@ -54,12 +54,12 @@ class Increment:
 
     @property
     def is_output(self) -> bool:
-        """Whether it is at an output time."""
+        """True if the increment ends at an output time."""
         return self.ends_leg and self.leg.is_output
 
     @property
     def behind(self) -> RestartPoint | None:
-        """What going on takes: where a jump ends, or a leg before the first cycle; else None."""
+        """Restart point at the end of a jump, or of a segment before cycle 1; None elsewhere."""
         if self.jump is not None:
             return RestartPoint(self.leg.cycle, self.state, self.jump.following)
         before = self.ends_leg and self.leg.cycle == 0
@@ -68,15 +68,15 @@ class Increment:
 
 @dataclass(frozen=True)
 class RestartPoint:
-    """Where going on begins: all that it takes.
+    """Data to restart the load path from.
 
     Attributes
     ----------
     cycle : int
-        Number of the last one; 0 before the first.
+        Number of the last computed cycle; 0 before the first.
     state : StickSlipState
     following : float
-        How many cycles the next jump is wanted to have.
+        Proposed size of the next jump in cycles.
     """
 
     cycle: int

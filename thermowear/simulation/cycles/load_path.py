@@ -1,4 +1,4 @@
-"""The way through a history of loads and through the repetitions of its cycle."""
+"""Load segments of a load history and of the repetitions of its cycle."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from ...case.tables.analyses import Fretting
 from ...case.tables.history import History
 from ...serialise import serialisable
 
-_SAME = 1e-9  # of the history: instants so near to each other are one
+_SAME = 1e-9  # relative to the duration of the history: closer times are equal
 
 
 @serialisable
 @dataclass(frozen=True)
 class LoadSegment:
-    """A straight line of the loads.
+    """Segment of the load history with linearly varying loads.
 
     Attributes
     ----------
     start, end : float
-        When it begins and ends [s].
+        Start and end time [s].
     instant : float
-        Of the history: its loads are those at the end [s].
+        Time in the history with the loads of the end [s].
     cycle : int
         Number of the cycle, 0 before the first one.
     repeats : int
-        How many cycles it stands for.
+        Number of cycles that it represents.
     is_output : bool
-        Whether the end is one of the output times.
+        True if the end is an output time.
     ends_cycle : bool
     """
 
@@ -43,9 +43,9 @@ class LoadSegment:
 
 
 def first_pass(history: History, output_times: tuple[float, ...]) -> Iterator[LoadSegment]:
-    """The legs before the first cycle.
+    """Load segments before the first cycle.
 
-    The first one has no duration: it loads the bodies at the first instant.
+    The first one has no duration: it applies the loads of the first time of the history.
     """
     begin = history.time[-1] if history.cycle is None else history.cycle[0]
     start = history.time[0]
@@ -57,17 +57,17 @@ def first_pass(history: History, output_times: tuple[float, ...]) -> Iterator[Lo
 def cycle_legs(
     history: History, output_times: tuple[float, ...], number: int, repeats: int = 1
 ) -> Iterator[LoadSegment]:
-    """The legs of a cycle of a history that has one; time goes on through all cycles.
+    """Load segments of a cycle of a periodic history; time continues through all cycles.
 
     Parameters
     ----------
     history : History
     output_times : tuple of float
-        Those that fall into it are hit [s].
+        Output times, each the end of a segment if it lies in the cycle [s].
     number : int
-        Of the cycle, from 1 on.
+        Number of the cycle, from 1.
     repeats : int
-        How many cycles it stands for: the last of them.
+        Number of cycles that it represents, itself the last.
     """
     assert history.cycle is not None
     begin, last = history.cycle
@@ -79,9 +79,9 @@ def cycle_legs(
 
 
 def by_fixed_jumps(history: History, settings: Fretting, cycles: int, jump: int) -> list[int]:
-    """Numbers of the cycles that are computed, each for all since the one before.
+    """Numbers of the computed cycles, each representing all since the previous one.
 
-    Those are the first one, which begins unlike the others, and all with output times.
+    Includes the first cycle, which starts from a different state, and all with output times.
     """
     by_jump = range(jump, cycles, jump)
     of_outputs = {math.ceil(passed) for passed in _passed(history, settings)}
@@ -89,9 +89,9 @@ def by_fixed_jumps(history: History, settings: Fretting, cycles: int, jump: int)
 
 
 def to_stop_at(history: History, settings: Fretting, cycles: int) -> list[int]:
-    """Numbers of the cycles that no jump may pass.
+    """Numbers of the cycles that no jump may pass over.
 
-    A cycle with an output time before its end is computed for itself.
+    A cycle with an output time before its end is computed individually.
     """
     found = {1, cycles}
     for passed in _passed(history, settings):
@@ -100,7 +100,7 @@ def to_stop_at(history: History, settings: Fretting, cycles: int) -> list[int]:
 
 
 def _passed(history: History, settings: Fretting) -> Iterator[float]:
-    """How many cycles are over at the output times, those after the first pass."""
+    """Numbers of cycles elapsed at the output times after the first pass."""
     if history.cycle is None:
         return
     begin, last = history.cycle
@@ -114,12 +114,12 @@ def _passed(history: History, settings: Fretting) -> Iterator[float]:
 def _corners(
     history: History, begin: float, end: float, shift: float, outputs: tuple[float, ...]
 ) -> list[tuple[float, float, bool]]:
-    """Instants of the history in ``begin < instant <= end`` at which a leg ends.
+    """Times of the history in ``begin < instant <= end`` at which a load segment ends.
 
     Returns
     -------
     list of tuple
-        Instant, the time then [s], and whether that is an output time.
+        Time in the history [s], time in the analysis [s], True for an output time.
     """
     near = _SAME * (history.time[-1] - history.time[0])
     times = {t: t + shift for t in (*history.time, end) if begin < t <= end}

@@ -1,4 +1,4 @@
-"""Wear of bodies that slide to and fro, in time, to an end time or to the steady state."""
+"""Reciprocating sliding wear in time, to an end time or to the steady state."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .stroke import positions
 @serialisable
 @dataclass(frozen=True)
 class Reciprocated:
-    """How far a reciprocating analysis has come: all that it needs to go on.
+    """Progress of a reciprocating analysis: the data needed to restart it.
 
     Attributes
     ----------
@@ -49,9 +49,9 @@ class Reciprocated:
 def reciprocating(
     system: System, observer: Observer, before: Reciprocated | None = None
 ) -> Outcome:
-    """Wear averaged over cycles, from the start or from where it has come to.
+    """Follow the cycle-averaged wear in time, from the start or from a checkpoint.
 
-    What was computed before an error or Ctrl-C is kept.
+    Results computed before an error or Ctrl-C are kept.
     """
     problem = ReciprocatingProblem(system, positions(system))
     record = _Record(system, problem, observer)
@@ -74,7 +74,7 @@ def reciprocating(
 
 
 def _in_time(case: Case) -> Reciprocating:
-    """Settings with an end time where there is a number of cycles."""
+    """Settings of the analysis, with the end time from the number of cycles if given."""
     settings, count = case.analysis, case.cycles
     assert isinstance(settings, Reciprocating)
     if count is None:
@@ -83,20 +83,20 @@ def _in_time(case: Case) -> Reciprocating:
 
 
 def _sizes(case: Case) -> StepSizes:
-    """Of steps over at most so many cycles as one may stand for."""
+    """Step sizes limited to the largest allowed jump (``wear.max_jump``)."""
     longest = case.wear.max_jump
     return AnySize() if longest is None else AnySize(longest / _frequency(case))
 
 
 def _frequency(case: Case) -> float:
-    """Of the cycles [Hz]."""
+    """Frequency of the reciprocating motion [Hz]."""
     assert case.motion is not None  # the case has been checked
     assert case.motion.frequency is not None
     return case.motion.frequency
 
 
 class _Record:
-    """Rows and outputs so far."""
+    """Recorder of the rows and outputs so far."""
 
     last: Moment
 
@@ -110,7 +110,7 @@ class _Record:
         self._film = FrameRecorder(system.case, observer)
 
     def go_on(self, before: Reciprocated) -> Moment:
-        """Take up what was kept before."""
+        """Restore the record of an earlier run; return the moment to restart from."""
         self.last, self.rows = before.moment, before.rows
         self._observer.resumed(self.rows)
         return self.last
@@ -119,7 +119,7 @@ class _Record:
         return Reciprocated(self.last, self.rows)
 
     def keep(self, moment: Moment) -> None:
-        """Take up a step."""
+        """Record an accepted step."""
         self.last = moment
         self.rows.append(self._row(moment))
         self._observer.step(self.rows[-1], moment.distance)
@@ -134,7 +134,7 @@ class _Record:
         self._film.take(self._system, number, moment.time, shown, self.worn_track)
 
     def in_the_middle(self) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
-        """Contact, motion of the holder, bodies and interface where body 1 passes the middle."""
+        """Contact, motion of the holder, bodies and interface at mid-stroke of body 1."""
         system, state = self._system, self.last.state
         worn, rates = (self._seen(v) for v in (state.worn, self._problem.rates(state.pressure)))
         found = interface_problem(system).worn(worn.sum(axis=0))
@@ -143,7 +143,7 @@ class _Record:
         return contact, motion, *interface_at(system, contact, motion, worn, rates)
 
     def worn_track(self) -> WornTrack:
-        """Depths along the face of body 2."""
+        """Worn depths and wear rates along the face of body 2."""
         state, face = self.last.state, self._system.pairing.sides[1].face
         rates = self._problem.rates(state.pressure)
         ends = face.position(np.arange(len(face.nodes)), np.ones(len(face.nodes)))
@@ -155,7 +155,7 @@ class _Record:
         return WornTrack(x, self._problem.split(state.worn)[1], self._problem.split(rates)[1])
 
     def extra(self) -> dict:
-        """What a reciprocating analysis adds to the summary."""
+        """Summary entries of a reciprocating analysis."""
         row, pressure = self.rows[-1], self.last.state.pressure
         volumes = self._volumes(self._problem.rates(pressure))
         lengths = (area.sum() for area in self._problem.areas)
@@ -174,7 +174,7 @@ class _Record:
         }
 
     def _seen(self, depths: np.ndarray) -> np.ndarray:
-        """Depths (or rates) of both bodies at the points in the middle, shape (2, n)."""
+        """Depths (or rates) of both bodies at the mid-stroke points, shape (2, n)."""
         system, (on_1, on_2) = self._system, self._problem.split(depths)
         hats = self._problem.track.hats(system.pairing)
         return np.array([system.basis @ on_1, hats @ on_2])

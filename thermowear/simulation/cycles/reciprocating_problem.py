@@ -1,23 +1,22 @@
-"""Contact and wear of a body that slides to and fro, averaged over its cycles.
+"""Cycle-averaged contact and wear in reciprocating sliding.
 
-A cycle wears little, so that depths stay the same during one of them. Body 1 loses W1 at its own
-points x, body 2 loses W2 at its points ξ. At each position X_j the contact is that of the gap
+The wear of one cycle is small, so that depths are constant during a cycle. Body 1 loses W1 at its
+points x, body 2 loses W2 at its points ξ. At each position X_j the contact has the gap
 
     g0 + W1(x) + W2(x + X_j) + C_j p_j - R d_j,
 
-and the rates, means over the cycle with shares c_j, are those of the local speeds v_j::
+and the rates, averaged over the cycle with time shares c_j, follow from the local speeds v_j::
 
     W1'(x) = Σ_j c_j κ1 p_j(x)^b |v_j|^a,      W2'(ξ) = Σ_j c_j κ2 p_j(ξ - X_j)^b |v_j|^a
 
-W1 has coefficients in the basis of the pressure, like the wear of fretting; W2 see `contact.track`.
+W1 has coefficients in the pressure basis, like fretting wear; for W2 see `contact.wear.track`.
 
-What is known of the end. Pressures that last need ``W1'(x) + W2'(x + X) = V(X)`` wherever the faces
-touch, V being the rate of the approach of a holder that does not turn. Along x that says
-``W1''(x) = -W2''(x + X)`` for all X, so that both slopes are one constant and its negative: none,
-where one half of the stroke is like the other. Both rates are uniform then, whatever the pressures
-are, and for ``a = b = 1`` the load fixes them: with the mean speed v, the half-width h and the
-thickness t of body 1, and the amplitude A, ``W1' = κ1 F v / (2 h t)`` and
-``W2' = κ2 F v / (2 (h + A) t)``.
+Steady state. Steady pressures need ``W1'(x) + W2'(x + X) = V(X)`` wherever the faces touch, V being
+the approach rate of a holder that does not rotate. The derivative along x gives
+``W1''(x) = -W2''(x + X)`` for all X, so that both slopes are opposite constants, which vanish for a
+symmetric stroke. Both rates are then uniform for any pressures, and for ``a = b = 1`` the load
+determines them: with the mean speed v, the half-width h and the thickness t of body 1, and the
+amplitude A, ``W1' = κ1 F v / (2 h t)`` and ``W2' = κ2 F v / (2 (h + A) t)``.
 """
 
 from __future__ import annotations
@@ -36,22 +35,22 @@ from ..model.system import System
 from .stroke import Position, condensed, spreading
 
 _NEWTON_STEPS = 40
-_SETTLED = 1e-11  # of the largest local rate
-_INNER = 0.9  # of the faces: their ends are left out of the distance from the steady state
+_SETTLED = 1e-11  # relative to the largest local rate
+_INNER = 0.9  # part of the faces that the distance from the steady state covers, without their ends
 
 
 @dataclass(frozen=True)
 class CycleContact:
-    """The contacts of a cycle, all positions together.
+    """Contact quantities of a cycle over all positions.
 
     Attributes
     ----------
     max_pressure : float
-        Anywhere [Pa].
+        Maximum over positions and points [Pa].
     contact_area : float
         Mean [m²].
     motion : ndarray, shape (n_drives,)
-        Of the holder, mean [m or rad].
+        Mean amplitudes of the rigid modes of the holder [m or rad].
     """
 
     max_pressure: float
@@ -60,10 +59,10 @@ class CycleContact:
 
 
 class ReciprocatingProblem:
-    """The bodies in all positions, and the depths that they lose.
+    """Contact in all positions of the stroke, coupled by the worn depths.
 
-    Depths stand in one row, the coefficients of body 1 before the nodes of body 2, N together.
-    Pressures have a row a position, shape (J, m).
+    Depths form one row of N values: coefficients of body 1, then nodal values of body 2.
+    Pressures have one row per position, shape (J, m).
 
     Parameters
     ----------
@@ -75,7 +74,7 @@ class ReciprocatingProblem:
     track : StrokeGrid
         Grid of the depths of body 2.
     areas : tuple of ndarray, shape (m,) and (n_nodes,)
-        That the depths of body 1 and of body 2 stand for [m²].
+        Areas of the depth values of body 1 and of body 2 [m²].
     """
 
     track: StrokeGrid
@@ -91,7 +90,7 @@ class ReciprocatingProblem:
         pairings = [there.pairing for there in self._systems]
         lengths = [position.length for position in stroke]
         self._length = float(system.pairing.position[-1])
-        # no position feels what is finer than its part of the stroke, or than the pressure
+        # resolution is limited by the parts of the stroke and by the pressure basis
         spacing = max(float(np.mean(lengths)), self._length / system.basis.shape[1])
         self.track = track(pairings, lengths, spacing, factor)
         self._contacts = condensed(stroke, self.track)
@@ -107,7 +106,7 @@ class ReciprocatingProblem:
         return depths[0, :m], depths[0, m:]
 
     def start(self) -> InterfaceState:
-        """The unworn faces, in contact in all positions."""
+        """Contact of the unworn faces in all positions."""
         all_of = self._contacts
         each = zip(all_of.compliance, all_of.gap, all_of.modes, all_of.force_modes, strict=True)
         found = [
@@ -123,7 +122,7 @@ class ReciprocatingProblem:
         return InterfaceState(np.zeros_like(self.rates(contact.pressure)), contact)
 
     def rates(self, pressure: np.ndarray) -> np.ndarray:
-        """Wear rates of all depths, means over the cycle, shape (1, N) [m/s].
+        """Wear rates of all depths, averaged over the cycle, shape (1, N) [m/s].
 
         Parameters
         ----------
@@ -133,7 +132,7 @@ class ReciprocatingProblem:
         return np.einsum("bjnm,bjm->n", self._spread, self._local(pressure))[None]
 
     def of_cycle(self, contact: ContactSolution) -> CycleContact:
-        """What the contacts of a cycle are together."""
+        """Contact quantities of the cycle over all positions."""
         at_points = [
             system.basis @ λ for system, λ in zip(self._systems, contact.pressure, strict=True)
         ]
@@ -147,7 +146,7 @@ class ReciprocatingProblem:
         )
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Nothing changes its course."""
+        """No times with kinks in the conditions."""
         return ()
 
     def difference(
@@ -157,40 +156,40 @@ class ReciprocatingProblem:
         return float(np.abs(one.pressure - other.pressure).max())
 
     def edge_steps(self, states, step: float, time: float) -> tuple[float, float]:
-        """Contact does not hold point by point."""
+        """No limit: contact is not enforced pointwise."""
         return 0.0, np.inf
 
     def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
-        """Nothing is warm."""
+        """Zero: there are no temperatures."""
         return 0.0
 
     def first_step(self, state: InterfaceState) -> float:
-        """A step in which wear is small against the elastic deflection of the bodies [s]."""
+        """Step in which wear is small compared with the elastic deflection of the bodies [s]."""
         opened = np.einsum("jmn,jn->jm", self._contacts.compliance, state.pressure)
         fastest = float(self.rates(state.pressure).max())
         return 1e-3 * float((opened / self.areas[0]).max()) / fastest if fastest > 0.0 else np.inf
 
     def steady(self, steady) -> np.ndarray:
-        """Of pressures nothing is known: the ones of the principle do not move to and fro."""
+        """No steady pressure: the steady-state principle does not cover reciprocating motion."""
         return steady
 
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
-        """How uneven the wear rates are, which are uniform along both faces in the end.
+        """Nonuniformity of the wear rates, which are uniform along both faces in the steady state.
 
-        Their largest deviation from their means, relative to these, but for the ends of the faces:
-        where the punch turns round its corner carries half the load, and no mesh resolves that.
+        Largest relative deviation from the mean, excluding the ends of the faces: at the turning
+        points the punch corner carries half the load, which no mesh resolves.
         """
         parts = zip(self.split(self.rates(state.pressure)), self._places, strict=True)
         return max(_unevenness(rate, place) for rate, place in parts if rate.any())
 
     def begin(self, state: InterfaceState) -> InterfaceState:
-        """Nothing is chosen for a step."""
+        """Return the state: no pre-step selection is needed."""
         return state
 
     def stage(
         self, before: InterfaceState, step: float, time: float, guess: InterfaceState
     ) -> InterfaceState:
-        """The end of an implicit Euler step of wear."""
+        """End of an implicit Euler step of wear."""
         contact = self._solve(before.worn[0], step, guess.contact)
         return replace(
             before, worn=before.worn + step * self.rates(contact.pressure), contact=contact
@@ -199,7 +198,7 @@ class ReciprocatingProblem:
     def _solve(self, worn: np.ndarray, step: float, guess: ContactSolution) -> ContactSolution:
         """Contact at the end of a step, by Newton's method for the wear laws.
 
-        A step of it starts half way back where the last one went too far.
+        An iterate is damped by half if its residual has not decreased.
 
         Parameters
         ----------
@@ -240,11 +239,11 @@ class ReciprocatingProblem:
         return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
 
     def _local(self, pressure: np.ndarray) -> np.ndarray:
-        """Rates of the wearing bodies where they touch, shape (n_wearing, J, m) [m/s]."""
+        """Local wear rates of the wearing bodies, shape (n_wearing, J, m) [m/s]."""
         return self._each(pressure, [law.rate for law in self._laws.values()])
 
     def _slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Their derivatives by the pressure [m/s/Pa]."""
+        """Derivatives of the local wear rates with respect to pressure [m/s/Pa]."""
         return self._each(pressure, [law.slope for law in self._laws.values()])
 
     def _each(self, pressure: np.ndarray, functions) -> np.ndarray:

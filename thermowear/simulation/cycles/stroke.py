@@ -1,4 +1,4 @@
-"""A body 1 that slides to and fro: where it is, how fast it slides there, and its contact there."""
+"""Discretised stroke of a reciprocating body 1: positions, mean speeds and contact systems."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ _UNPAIRED = 1e-6
 
 @dataclass(frozen=True)
 class Position:
-    """Body 1 at a place of its stroke, sliding one way, for a part of the stroke around it.
+    """Position of body 1 with a sliding direction, representing the stroke around it.
 
     Attributes
     ----------
     offset : float
-        Along x from the middle [m].
+        Offset along x from mid-stroke [m].
     length : float
-        Of the part of the stroke [m].
+        Length of the part of the stroke [m].
     speed : float
-        Mean in that part [m/s].
+        Mean speed in that part [m/s].
     share : float
-        Of the cycle that it takes.
+        Fraction of the cycle time.
     system : System
-        The bodies there.
+        Bodies in this position.
     """
 
     offset: float
@@ -49,10 +49,10 @@ class Position:
 
 
 def positions(system: System) -> list[Position]:
-    """The middles of the parts of the stroke that take equal times, from one end to the other.
+    """Midpoints of stroke parts of equal duration, from one end to the other.
 
-    Shares and mean speeds make both the period and the length of the stroke exact. Without friction
-    in the section both ways are alike; otherwise they follow one another.
+    Time shares and mean speeds reproduce the period and the length of the stroke exactly. Without
+    friction in the section both sliding directions are equivalent; otherwise both are listed.
     """
     settings, motion = system.case.analysis, system.case.motion
     assert isinstance(settings, Reciprocating)
@@ -76,12 +76,12 @@ def positions(system: System) -> list[Position]:
 
 
 def moved(system: System, offset: float, way: int) -> System:
-    """The same bodies, body 1 moved along x and sliding along +x (way 1) or -x (way -1).
+    """System with body 1 moved along x and sliding along +x (way 1) or -x (way -1).
 
     Raises
     ------
     CaseError
-        If it leaves the face of body 2.
+        If body 1 leaves the face of body 2.
     """
     case, elastic, geometry = system.case, system.elastic, system.case.geometry
     face_1, face_2 = (side.face for side in system.pairing.sides)
@@ -113,12 +113,12 @@ def moved(system: System, offset: float, way: int) -> System:
         slides=slides,
         pull=pull,
         speed=slides.speed,
-        parts=SetupCache(),  # other points: nothing condensed to them is at hand
+        parts=SetupCache(),  # other contact points: no cached condensation applies
     )
 
 
 def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
-    """The contacts in all positions. Every rank calls."""
+    """Condensed contacts in all positions. Every rank calls."""
     systems = [position.system for position in stroke]
     contacts = [system.contact for system in systems]
     compliances, gaps, seen = [], [], []
@@ -139,7 +139,7 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
 
 
 def spreading(contacts: CoupledContacts, grid: StrokeGrid, shares: np.ndarray) -> np.ndarray:
-    """Mean rates of the depths of either body per its local rates, shape (2, J, N, m)."""
+    """Operators from local wear rates to cycle-averaged rates of depths, shape (2, J, N, m)."""
     count, m, total = contacts.seen.shape
     result = np.zeros((2, count, total, m))
     result[0, :, :m] = np.eye(m)

@@ -1,4 +1,4 @@
-"""Contacts that reach beyond where the face was meshed for them."""
+"""Limits of the contact zone that the faces are meshed for."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..model.system import System
 
 
 def beyond(system: System) -> tuple[bool, bool]:
-    """Whether the first and the last end of the face lie beyond where it is to touch."""
+    """Test whether the first and the last end of the face lie outside the expected zone."""
     case, x = system.case, system.pairing.points[:, 0]
     zone = case.geometry.expected_zone(case.pressing())
     if zone is None:
@@ -18,6 +18,6 @@ def beyond(system: System) -> tuple[bool, bool]:
 
 
 def outgrown(system: System, pressure: np.ndarray) -> bool:
-    """Whether it presses at an end of the face that should lie beyond the contact."""
+    """True if the contact reaches an end of the face that lies outside the expected zone."""
     ends = zip(beyond(system), (0, -1), strict=True)
     return any(lies_beyond and pressure[end] > 0 for lies_beyond, end in ends)

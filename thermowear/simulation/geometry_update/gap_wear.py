@@ -1,4 +1,4 @@
-"""How much wear is kept in the gap, held against the sizes of the bodies."""
+"""Wear kept in the gap, relative to the dimensions of the bodies."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ from ..model.system import System
 from ..model.worn_geometry import WornGeometry, along
 
 _STEEPEST = 0.2
-"""Slope of the walls of a groove in a mesh."""
+"""Largest slope of groove walls in a mesh."""
 _TILT = 0.1
-"""A tilt counts for so much: of two ends of an element, against its size."""
+"""Weight of the element tilt: depth difference of its ends relative to its size."""
 
 
 class GapWear:
-    """Wear kept in the gap of a system, and what the nodes of its faces can take up of it.
+    """Wear kept in the gap of a system, and its part that the nodes of the faces can follow.
 
     Parameters
     ----------
     system : System
-        Of a section.
+        System with contact faces of a section or of a solid.
     """
 
     def __init__(self, system: System):
@@ -52,19 +52,19 @@ class GapWear:
         self._thickness = {index: _thickness(system, index) for index in self.bodies}
 
     def depth(self, worn: np.ndarray) -> np.ndarray:
-        """Kept depths off both bodies, shape (2, n), from all the wear of those that wear [m]."""
+        """Depths kept in the gap (2, n) from the total depths of the wearing bodies [m]."""
         both = np.zeros((2, worn.shape[1]))
         both[list(self._system.laws)] = worn
         return both - self._system.moved
 
     @cached_property
     def geometry(self) -> WornGeometry:
-        """Where the meshes are; every rank calls."""
+        """Worn geometry of the present meshes; every rank calls."""
         return self._system.worn or _unworn(self._system, self.bodies)
 
     @cached_property
     def faces(self) -> dict[int, WornFace]:
-        """The faces that move, by index of the body."""
+        """Moving faces by index of the body."""
         ways = zip(self.geometry.directions, self.geometry.held, strict=True)
         paths = [Paths(directions, held) for directions, held in ways]
         pairing = self._system.pairing
@@ -73,17 +73,17 @@ class GapWear:
         return {index: WornFace(pairing, index, paths[index]) for index in self.bodies}
 
     def movable(self, depth: np.ndarray) -> np.ndarray:
-        """What the nodes of the faces can take up of a depth (2, n) [m]."""
+        """Part of a depth (2, n) that nodal displacements of the faces represent [m]."""
         result, due = np.zeros_like(depth), self.due(depth)
         for index, face in self.faces.items():
             result[index] = face.depths(face.amounts(due[index]))
         return result
 
     def due(self, depth: np.ndarray) -> np.ndarray:
-        """What of a depth (2, n) the faces should take up [m].
+        """Part of a depth (2, n) that the faces should follow [m].
 
-        All of it, but for the walls of a groove: where a face goes on beside the contact its end
-        stays, and from there it goes down no steeper than cells can follow.
+        All of it except at the walls of a groove: where a face continues beside the contact its end
+        is held, and the slope from there is limited to `_STEEPEST` for the cells to follow.
         """
         result = np.zeros_like(depth)
         for index in self.bodies:
@@ -92,18 +92,18 @@ class GapWear:
         return result
 
     def fraction(self, depth: np.ndarray) -> float:
-        """The largest of the ratios of a depth (2, n) of both bodies to their sizes.
+        """Largest ratio of a depth (2, n) of both bodies to their dimensions.
 
-        To the thickness behind the face, to the radius of curvature of either face, and a tenth of
-        the tilt of an element: the difference of the depth at its ends, by its size.
+        Dimensions are the thickness behind the face and the radius of curvature of either face; a
+        tenth of the element tilt (depth difference of its ends over its size) counts, too.
         """
         return max((self._of_body(index, depth[index]) for index in self.bodies), default=0.0)
 
     def _from_held_end(self, index: int) -> np.ndarray:
-        """How far the points are from where the face ends and stays, shape (n,) [m]."""
+        """Distances of the points from the held ends of the face, shape (n,) [m]."""
         side, held = self._system.pairing.sides[index], self.geometry.held[index]
         if isinstance(side.face, Surface):
-            stays = cKDTree(nodes_of(side.face)[held])  # infinitely far where none stays
+            stays = cKDTree(nodes_of(side.face)[held])  # infinite distance if no node is held
             return stays.query(side.face.points(side.facet, side.t))[0]
         before = side.face.position(side.facet, side.t)
         ways = before, side.face.sizes.sum() - before
@@ -121,7 +121,7 @@ class GapWear:
 
 
 def _unworn(system: System, bodies: list[int]) -> WornGeometry:
-    """The geometry before its first update."""
+    """Geometry before its first update."""
     pairing, comm = system.pairing, system.comm
     mesh, paths = on_root(comm, lambda: _ways(system))
     directions = tuple(path.directions for path in paths)
@@ -145,7 +145,7 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
 
 
 def lacking_in_shape(pairing: Pairing) -> np.ndarray:
-    """Depth that the initial shape lacks of the faces as they were meshed, shape (n,) [m]."""
+    """Gap of the initial shape minus that of the meshed faces, shape (n,) [m]."""
     first, second = pairing.sides
     return pairing.gap - np.einsum("ni,ni->n", pairing.normals, second.points - first.points)
 
@@ -153,13 +153,13 @@ def lacking_in_shape(pairing: Pairing) -> np.ndarray:
 def _along_ways(
     pairing: Pairing, directions: tuple[np.ndarray, ...], bodies: list[int]
 ) -> tuple[Pairing, np.ndarray]:
-    """Contact points whose places on body 2 lie on the ways of the nodes of the bodies that wear.
+    """Pairing with points on body 2 projected along the node directions of the wearing bodies.
 
     Returns
     -------
     pairing : Pairing
     gap : ndarray, shape (n,)
-        Between these places along the normals [m].
+        Gap between the paired points along the normals [m].
     """
     first, second = pairing.sides
     gone = np.isin([0, 1], bodies or [0, 1]).astype(float)
@@ -170,7 +170,7 @@ def _along_ways(
 
 
 def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
-    """The unworn mesh, and how the nodes of its faces may go."""
+    """Unworn mesh, and the paths of the nodes of its faces."""
     mesh = system.case.tagged_mesh(system.inputs.zone)
     paths = []
     for index, side in enumerate(system.pairing.sides):
@@ -180,19 +180,19 @@ def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
 
 
 def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody | MovableSolid:
-    """A body of the mesh of a system."""
+    """Movable body of the mesh of a system, by its index."""
     geometry, face = system.case.geometry, system.pairing.sides[index].face
     movable = MovableSolid if isinstance(face, Surface) else MovableBody
     return movable(mesh, geometry.parts_of(geometry.bodies[index]), nodes_of(face))
 
 
 def _curvature(face) -> float:
-    """The largest of a face [1/m]."""
+    """Largest curvature of a face [1/m]."""
     return float(curvatures(face).max())
 
 
 def _thickness(system: System, index: int) -> float:
-    """How far a body reaches behind the middle of its contact face; every rank calls [m]."""
+    """Thickness of a body behind the middle of its contact face [m]; every rank calls."""
     pairing, geometry, bodies = system.pairing, system.case.geometry, system.bodies
     out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
     out = out / np.linalg.norm(out)

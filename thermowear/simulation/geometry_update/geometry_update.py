@@ -1,4 +1,4 @@
-"""An update of the geometry: meshes moved to their worn faces, and everything carried over."""
+"""Geometry update: mesh motion to the worn faces and transfer of the state."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ from .remesh import FLOOR, carrying_error, improved, on_new_faces
 from .smooth_wear import worn_in
 
 _SETTLED = 1e-10
-"""Of a volume."""
+"""Relative tolerance of the volume removed by the mesh motion."""
 _PASSES = 20
 _FADED = 0.1
-"""Of the largest pressure so far: changes of lower ones are held against so much."""
+"""Smallest reference pressure of a change, as a fraction of the largest so far."""
 
 
 @dataclass(frozen=True)
 class Updated:
-    """What goes on after an update.
+    """System, problem and state after a geometry update.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Updated:
     problem : InterfaceProblem
     state : InterfaceState
     change : float
-        Of pressure and temperatures by the update, relative to their means.
+        Change of pressure and temperatures by the update, relative to their means.
     """
 
     system: System
@@ -59,12 +59,12 @@ class Updated:
 def updated(
     system: System, problem: InterfaceProblem, kept: GapWear, state: InterfaceState, time: float
 ) -> Updated:
-    """Move the meshes of a system by the wear that it keeps in the gap. Every rank calls.
+    """Move the meshes of a system by the wear kept in the gap. Every rank calls.
 
     Raises
     ------
     ComputationError
-        If cells would become too thin or too slanted, or the faces cannot meet any more.
+        If cells would become too thin or too distorted, or the faces cannot be paired.
     """
     with system.phases("move meshes"):
         state = replace(state, worn=worn_in(system, problem, state, time))
@@ -73,7 +73,7 @@ def updated(
         following = build(
             system.case, system.comm, system.phases, system.inputs.zone, SetupCache(), worn
         )
-    except CaseError as fault:  # said of bodies as they are given; here they have been computed
+    except CaseError as fault:  # blames the input; here the bodies are computed
         raise ComputationError(
             f"wear: at {time:.6g} s the worn faces do not fit each other any more ({fault})"
         ) from None
@@ -95,9 +95,9 @@ def updated(
 
 
 def _change(after: System, state: InterfaceState, found: InterfaceState) -> float:
-    """How much an update has changed the pressure and, relative to their rise, temperatures.
+    """Largest relative change of pressure and temperature rise by an update.
 
-    In the mean over the area; pressures that vanish in the end count for no more than `_FADED`.
+    Area means; reference pressures are at least `_FADED` times the largest pressure so far.
     """
     fields = [(state.pressure, found.pressure, _FADED * state.largest)]
     if state.faces is not None and found.faces is not None:
@@ -114,14 +114,14 @@ def _change(after: System, state: InterfaceState, found: InterfaceState) -> floa
 
 
 def _carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.ndarray, float]:
-    """Depths worn off (n_wearing, n) at the points of the moved mesh, of the same volumes [m].
+    """Volume-preserving transfer of worn depths (n_wearing, n) to the moved mesh [m].
 
-    And what of these volumes has to be put right for that.
+    Also returns the relative volume correction that this needed.
     """
     assert after.worn is not None
     bodies = list(after.laws)
     gone = after.worn.depth[bodies]
-    # what is left in the gap is little and matters most: errors of the rest are none of the gap
+    # the small rest in the gap matters most: carry it separately from the part in the mesh
     left = after.worn.carried(worn - gone, after.pairing)
     rows = after.worn.carried(gone, after.pairing) + left
     lost = np.zeros(2) if before.worn is None else before.worn.lost
@@ -136,14 +136,14 @@ def _carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.n
 
 
 def _moved(system: System, kept: GapWear, state: InterfaceState) -> tuple[WornGeometry, bool]:
-    """Where the nodes go, and whether bodies have been meshed anew."""
+    """Geometry with the meshes moved by the wear, and True if a body has been remeshed."""
     before, faces, depth = kept.geometry, kept.faces, kept.due(kept.depth(state.worn))
     amounts = {index: face.amounts(depth[index]) for index, face in faces.items()}
     mesh, lost, quality, renewed = on_root(
         system.comm,
         lambda: _followed(system, before, faces, amounts, depth @ system.weights),
     )
-    if not quality >= FLOOR:  # not a number where cells have vanished
+    if not quality >= FLOOR:  # NaN for degenerate cells
         raise ComputationError(
             f"geometry update: cells of the worn bodies become too slanted (scaled Jacobian "
             f"{quality:.2g}, at least {FLOOR:g}); use fewer or more even elements along the "
@@ -175,12 +175,12 @@ def _moved(system: System, kept: GapWear, state: InterfaceState) -> tuple[WornGe
 
 
 def _lacking(system: System, before: WornGeometry, state: InterfaceState) -> np.ndarray:
-    """Depth that the initial shape lacks of the unworn face at the points, shape (n,) [m].
+    """Gap of the initial shape minus that of the unworn faces at the points, shape (n,) [m].
 
-    The first update goes over from gaps along the normals of the unworn faces, which turn away from
-    the ways that curved faces take, to gaps between faces where they lie. What that changes stays
-    out of the gap where wear has closed it already, and so does as much ahead of each edge of the
-    wear: it counts as far as it differs from that at the edge.
+    The first update replaces gaps along the normals of the unworn faces, which deviate from the
+    paths of the nodes of curved faces, by gaps between the actual faces. The difference is left out
+    of the gap where wear has closed it; ahead of each edge of the wear only its deviation from the
+    value at the edge counts.
     """
     lacking, pairing = before.carried(before.lacking, system.pairing), system.pairing
     reached = np.any(state.worn > 0.0, axis=0)
@@ -191,10 +191,10 @@ def _lacking(system: System, before: WornGeometry, state: InterfaceState) -> np.
 
 
 def _kept_points(system: System, state: InterfaceState, renewed: dict[int, NewFace]) -> Rule | None:
-    """Contact points that stay where they are on the facets of body 1; None in a section.
+    """Contact points to keep on the facets of body 1; None in a section.
 
-    Where contact holds point by point they stay in a section, too: no interpolation finds the gap
-    between points beside the edge of the wear so well that it closes at other ones.
+    Pointwise contact keeps them in a section, too: beside the edge of the wear no interpolation of
+    the gap is accurate enough for contact at other points.
     """
     on_surface = isinstance(system.pairing.sides[0].face, Surface)
     pointwise = state.pointwise is not None and not renewed
@@ -202,7 +202,7 @@ def _kept_points(system: System, state: InterfaceState, renewed: dict[int, NewFa
 
 
 def _volume_error(missing: np.ndarray, lost: np.ndarray) -> float:
-    """Volumes that an update takes off too little or too much, of what is lost so far."""
+    """Error of the volumes removed by an update, relative to the volume lost so far."""
     return relative(float(np.abs(missing).max()), float(np.abs(lost).max()))
 
 
@@ -213,10 +213,10 @@ def _followed(
     amounts: dict[int, np.ndarray],
     volumes: np.ndarray,
 ) -> tuple[TaggedMesh, np.ndarray, float, dict[int, NewFace]]:
-    """The mesh after its faces have moved, volumes lost (2,), its worst cell, and faces made anew.
+    """Moved mesh, volumes lost (2,), smallest scaled Jacobian, and remeshed faces.
 
-    Faces go a little further or less far than the depth worn off them, so that the meshes lose
-    the worn volumes: that of a curved layer is not quite its area times its depth.
+    Displacements of the faces are scaled slightly so that the meshes lose the worn volumes: the
+    volume of a curved layer is not exactly its area times its depth.
     """
     case, mesh = system.case, worn.mesh
     factor = section_model(
@@ -241,7 +241,7 @@ def _followed(
 
 
 def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:
-    """The temperatures of the bodies at the nodes of the moved mesh [K], and their error."""
+    """Temperature rise of the bodies transferred to the moved mesh [K], and its error."""
     assert before.thermal is not None
     assert after.thermal is not None
     geometry = before.case.geometry

@@ -1,8 +1,8 @@
-"""The outer loop of a running-in: where much is worn off, the meshes are moved to the worn faces.
+"""Outer loop of a transient analysis: meshes are moved to the worn faces when wear is large.
 
-Contact, heat and wear march in time on meshes that stay, with the wear since their last update kept
-in the gap. When that is too much, measured against the sizes of the bodies, the meshes are moved
-and time goes on from there. How much is too much follows from what the last update has changed.
+Contact, heat and wear are integrated in time on fixed meshes, with the wear since the last update
+kept in the gap. When it exceeds a fraction of the dimensions of the bodies, the meshes are moved
+and time integration continues. The fraction follows from the change by the last update.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ from .update_counts import UpdateCounts
 from .wider_zone import meshed_wider, wider_zone
 
 _CHANGE = 5e-3
-"""Of pressure and temperatures by an update: aimed at where updates are automatic."""
+"""Target change of pressure and temperatures by an automatic update."""
 _OVER = 0.1
-"""Of the fraction that is allowed: so much more may be kept."""
+"""Overshoot of the allowed fraction that a step may cause, relative to it."""
 _ROOM = 5.0
-"""Times the automatic fraction: so much may be kept where that changes little."""
+"""Upper limit of the allowed fraction, as a multiple of the automatic one."""
 
 Principle = Callable[[System], SteadyState | None]
-"""The steady state that a system tends to; None where there is none."""
+"""Steady state that a system approaches; None if there is none."""
 
 serialisable(WornGeometry)
 serialisable(TaggedMesh)
@@ -51,32 +51,32 @@ serialisable(Rule)
 
 
 class OuterLoop:
-    """Goes through the moments of a running-in and moves the meshes between them.
+    """Time loop of a transient analysis with geometry updates between its moments.
 
     Parameters
     ----------
     system : System
-        Of the unworn bodies.
+        System of the unworn bodies.
     problem : InterfaceProblem
     principle : callable
-        The steady state that a system tends to; None where there is none.
+        Function of a system for its steady state; None if there is none.
     sizes : StepSizes
     observer : Observer
 
     Attributes
     ----------
     system : System
-        Of the last moment.
+        System at the last moment.
     problem : InterfaceProblem
-        Likewise.
+        Interface problem at the last moment.
     steady : SteadyState or None
-        Likewise.
+        Steady state at the last moment.
     largest_kept : float
-        Largest fraction of the sizes of the bodies that was kept in the gap so far.
+        Largest wear kept in the gap so far, relative to the dimensions of the bodies.
     allowed : float
-        How much of them may be kept now.
+        Largest wear that may be kept now, relative to the dimensions of the bodies.
     earlier : UpdateCounts
-        Updates of meshes for narrower zones.
+        Counts of the updates of meshes for narrower zones.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class OuterLoop:
 
     @property
     def kept(self) -> tuple[float, float, float]:
-        """The largest fraction so far, what is allowed, and the largest step that may follow."""
+        """Largest fraction so far, allowed fraction, and largest next step [s]."""
         return self.largest_kept, self.allowed, self._sizes.largest
 
     def go_on(
@@ -108,7 +108,7 @@ class OuterLoop:
         zone: tuple[float, float] | None,
         earlier: UpdateCounts,
     ) -> None:
-        """Take up an earlier loop, after its last update or wider zone if there has been one."""
+        """Restore an earlier loop after its last update or wider zone, if any."""
         self.largest_kept, self.allowed, self._sizes.largest = kept
         self.earlier = earlier
         unworn = self.system
@@ -119,7 +119,7 @@ class OuterLoop:
         self.problem, self.steady = interface_problem(self.system), self._principle(self.system)
 
     def moments(self, last: Moment | None = None) -> Iterator[Moment]:
-        """The moments, see `transient.moments`."""
+        """Accepted moments, see `time_loop.moments`."""
         system, problem, steady = self.system, self.problem, self.steady
         settings = system.case.analysis
         assert isinstance(settings, Transient)
@@ -152,7 +152,7 @@ class OuterLoop:
                 return
 
     def summary(self) -> dict[str, float | int]:
-        """What the updates add to the summary; nothing where there are none."""
+        """Summary entries of the geometry updates; empty without updates."""
         worn = self.system.worn
         counts = self.earlier.counting(worn)
         if counts.updates == 0:
@@ -172,7 +172,7 @@ class OuterLoop:
         }
 
     def _told(self, passing: Iterator[Moment]) -> Iterator[Moment]:
-        """The moments; a step that fails where the contact fills its face says so."""
+        """Pass the moments on; add to an error that the contact has outgrown the meshed zone."""
         try:
             yield from passing
         except ComputationError as reason:
@@ -184,14 +184,14 @@ class OuterLoop:
             ) from None
 
     def _kept_wear(self, system: System, last: Moment | None) -> tuple[GapWear | None, float]:
-        """The wear kept in the gap, where meshes can be moved at all, and its fraction."""
+        """Wear kept in the gap (None if meshes cannot be moved), and its fraction."""
         kept = GapWear(system) if self._moves else None
         if kept is None or last is None:
             return kept, 0.0
         return kept, kept.fraction(kept.depth(last.state.worn))
 
     def _widens(self, system: System, moment: Moment) -> bool:
-        """Whether a contact that wears has outgrown its zone, before the end of the run."""
+        """True if a wearing contact has outgrown its zone before the end of the run."""
         settings = system.case.analysis
         assert isinstance(settings, Transient)
         if self._narrow or not moment.state.worn.any() or is_over(settings, self.problem, moment):
@@ -199,7 +199,7 @@ class OuterLoop:
         return wider_zone(system, moment.state.pressure) is not None
 
     def _widen(self, system: System, problem: InterfaceProblem, last: Moment):
-        """System and problem on meshes for a wider zone; the same ones where there are none."""
+        """System, problem and moment on a mesh for a wider zone; unchanged if there is none."""
         zone = wider_zone(system, last.state.pressure)
         assert zone is not None
         found = meshed_wider(system, problem, last.state, last.time, zone)
@@ -216,13 +216,13 @@ class OuterLoop:
 
     @property
     def _moves(self) -> bool:
-        """Whether meshes can be moved at all."""
+        """True if geometry updates are enabled."""
         return bool(np.isfinite(self.allowed))
 
     def _is_due(self, kept: GapWear, fraction: float, moment: Moment) -> bool:
-        """Whether even what the nodes can take up of the wear is too much to be kept.
+        """True if the kept wear that the nodes can follow exceeds the allowed fraction.
 
-        Not at the end of the run.
+        Always False at the end of the run.
         """
         settings = self.system.case.analysis
         assert isinstance(settings, Transient)
@@ -231,7 +231,7 @@ class OuterLoop:
         return kept.fraction(kept.movable(kept.depth(moment.state.worn))) > self.allowed
 
     def _look_ahead(self, fraction: float, grown: float, step: float) -> None:
-        """Choose steps so that little more is kept than is allowed."""
+        """Limit the next step so that the kept wear hardly exceeds the allowed fraction."""
         self.largest_kept = max(self.largest_kept, fraction)
         self._sizes.largest = np.inf
         if grown > 0.0:
@@ -240,10 +240,10 @@ class OuterLoop:
             self._sizes.largest = step * left / grown
 
     def _end(self, system, problem, kept, before: Moment, last: Moment):
-        """What `_update` gives at the end of a run: moved meshes leave it as they are worn then.
+        """System, problem and moment after a final update, so that the run ends with worn meshes.
 
-        Where moving them has disturbed the pressure, the step that ends the run is taken again, in
-        which that wears in; not where temperatures are followed in time, known of its end alone.
+        If the update disturbs the pressure, the last step is repeated to wear the disturbance off;
+        not for transient temperatures, which are known at the end of the step only.
         """
         pressure, grown = last.state.pressure, last.state.worn - before.state.worn
         system, problem, last = self._update(system, problem, kept, last)
@@ -257,7 +257,7 @@ class OuterLoop:
         return system, problem, replace(last, state=again.state)
 
     def _update(self, system, problem, kept, last: Moment):
-        """System and problem on meshes that are moved, and the same moment of them."""
+        """System, problem and moment after moving the meshes; adapts the allowed fraction."""
         new = updated(system, problem, kept, last.state, last.time)
         change = new.change
         automatic = system.case.wear.largest_kept

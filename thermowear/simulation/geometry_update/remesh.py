@@ -1,4 +1,4 @@
-"""Bodies of a section that are meshed anew: when that is done, and what is carried over to them."""
+"""Remeshing of the bodies of a section: criterion and transfer to the new faces."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from ..model.system import System
 from ..model.worn_geometry import WornGeometry, along
 
 FLOOR = 0.1
-"""Scaled Jacobian below which cells are no good any more."""
+"""Smallest acceptable scaled Jacobian."""
 _SOFT = 0.25
-"""The same, below which better ones are looked for,"""
+"""Scaled Jacobian below which remeshing is tried,"""
 _WORSE = 0.75
-"""and of what it was when they were new."""
+"""and the same as a fraction of that of the new mesh."""
 
 
 def improved(
@@ -34,15 +34,15 @@ def improved(
     factor: Callable[[np.ndarray], np.ndarray],
     best: float,
 ) -> tuple[TaggedMesh, NewFace | None]:
-    """A mesh in which a body is meshed anew if its cells are slanted and that makes them better.
+    """Remesh a body if its cells are distorted and the new ones are better.
 
-    Parameters are those of `geometry.remeshed.meshed_anew`, and the smallest scaled Jacobian of the
-    body when it was new.
+    Parameters are those of `geometry.moving.remeshed.meshed_anew`, and the smallest scaled Jacobian
+    of the body's first mesh.
 
     Raises
     ------
     ComputationError
-        If cells that are no good any more cannot be replaced.
+        If remeshing fails and the old cells are not acceptable.
     """
     worst = quality(mesh, parts)
     if worst >= max(FLOOR, min(_SOFT, _WORSE * best)):
@@ -57,10 +57,10 @@ def improved(
 
 
 def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) -> WornGeometry:
-    """What is known of worn faces on those that have been divided anew, by index of the body.
+    """Transfer worn-face data to the remeshed faces, by index of the body.
 
-    Where they lie behind or before the former ones, that counts as depth which the mesh has or has
-    not lost: the gap stays.
+    Offsets of the new faces from the former ones count as depth lost or gained by the mesh, so that
+    the gap is preserved.
     """
     directions, held, sizes = (list(pair) for pair in (worn.directions, worn.held, worn.sizes))
     best = worn.best.copy()
@@ -91,7 +91,7 @@ def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) 
 
 
 def carrying_error(worn: WornGeometry, pairing: Pairing) -> float:
-    """Of depths carried over to a pairing: what they miss when carried back, of the largest."""
+    """Round-trip error of depths carried over to a pairing, relative to the largest."""
     there = worn.carried(worn.depth, pairing)
     back = Akima1DInterpolator(along(pairing), there, axis=-1, method="makima")
     after = np.clip(worn.at, *along(pairing)[[0, -1]])
@@ -99,7 +99,7 @@ def carrying_error(worn: WornGeometry, pairing: Pairing) -> float:
 
 
 def _behind_former(side: PairedFace, new: NewFace) -> np.ndarray:
-    """How far the curve of a new face lies behind the former one at points of that, (n,) [m]."""
+    """Offset of the curve of a new face behind points of the former face, shape (n,) [m]."""
     assert isinstance(side.face, Face)
     former = replace(side.face, nodes=new.former)
     out = former.normals(side.facet, side.t)

@@ -1,4 +1,4 @@
-"""Worn faces that fit at every point where they press."""
+"""Smoothing of worn faces to pointwise conformity where they press."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from ..results.recording import interface_at
 def worn_in(
     system: System, problem: InterfaceProblem, state: InterfaceState, time: float
 ) -> np.ndarray:
-    """Depths worn off as they are where faces that press fit point by point. Every rank calls.
+    """Worn depths with pointwise conforming faces where they press. Every rank calls.
 
-    The means that the pressure sees, so pressure, forces and volumes, stay as they are. Each body
-    that wears where it is pressed takes the share of the difference that it has of the depth.
+    The gap is changed only orthogonally to the pressure space: pressure, forces and volumes stay.
+    The change is shared by the bodies worn in place, in proportion to their depths.
 
     Returns
     -------
     ndarray, shape (n_wearing, n)
-        [m]; those of the state where they would be less than nothing otherwise.
+        [m]; those of the state if any of them became negative otherwise.
     """
     both = np.zeros((2, state.worn.shape[1]))
     both[list(system.laws)] = state.worn
@@ -33,7 +33,7 @@ def worn_in(
     gap = interface_at(system, contact, motion, both)[1].gap
     weak = state.pressure > 0
     if state.pointwise is not None:
-        weak &= ~state.pointwise  # faces fit there already, and the pressure sees all of the gap
+        weak &= ~state.pointwise  # there faces conform already, and the gap is resolved
     excess = unseen(gap, weak, system.pairing, system.basis)
     in_place = np.array([isinstance(s, InPlace) for s in system.spreads.values()])
     ours = np.where(in_place[:, None], state.worn, 0.0)

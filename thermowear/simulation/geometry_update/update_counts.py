@@ -1,4 +1,4 @@
-"""Counters of the geometry updates of a run, beyond those of its present mesh."""
+"""Counters of the geometry updates of a run over successive meshes."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from ..model.worn_geometry import WornGeometry
 @serialisable
 @dataclass(frozen=True)
 class UpdateCounts:
-    """Number of updates, and the worst that any of them did; see `WornGeometry`.
+    """Number of updates, and their worst errors and cell quality; see `WornGeometry`.
 
-    A mesh made for a wider zone begins with no updates of its own; those before it are kept here.
+    A mesh for a wider zone starts with no updates; the counts of previous meshes are kept here.
     """
 
     updates: int = 0
@@ -25,7 +25,7 @@ class UpdateCounts:
     carrying_error: float = 0.0
 
     def counting(self, worn: WornGeometry | None) -> UpdateCounts:
-        """Those of a mesh counted in."""
+        """Counters including the updates of a mesh."""
         if worn is None:
             return self
         return UpdateCounts(

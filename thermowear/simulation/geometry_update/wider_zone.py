@@ -1,4 +1,4 @@
-"""Contacts that grow beyond the zone that their faces were meshed for: meshed anew, further out."""
+"""Remeshing for a wider zone when the contact outgrows the meshed one."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from .face_limits import beyond
 Zone = tuple[float, float]
 
 _WIDER = 1.6
-"""Times the contact: the next zone. Elements grow with it, as many as before."""
+"""Width of the next zone relative to the contact, at the same number of elements."""
 _ROUNDING = 1e-9
-"""Of the length of the face."""
+"""Tolerance of positions, relative to the length of the face."""
 
 
 def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
-    """Zone to mesh for where the contact has come half way from its zone to an end of the face.
+    """New zone if the contact has come half way from its zone to an end of the face.
 
-    None where it has not, or where the mesh knows no zone.
+    None if it has not, or if the mesh has no zone.
     """
     zone, pairing = system.inputs.zone, system.pairing
     if zone is None or isinstance(pairing.sides[0].face, Surface) or not np.any(pressure > 0):
@@ -48,12 +48,12 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
 def meshed_wider(
     system: System, problem: InterfaceProblem, state: InterfaceState, time: float, zone: Zone
 ) -> tuple[System, InterfaceProblem, InterfaceState] | str:
-    """Go on with unworn meshes for a wider zone, all wear in the gap. Every rank calls.
+    """Continue on an unworn mesh for a wider zone, all wear in the gap. Every rank calls.
 
     Returns
     -------
     system, problem, state
-        Or why there are none.
+        Or the reason (str) for which there are none.
     """
     if state.stored is not None:
         return "temperatures that are followed in time are not carried over to a wider zone"
@@ -68,13 +68,13 @@ def meshed_wider(
 
 
 def _carried(before: System, after: System, worn: np.ndarray) -> np.ndarray:
-    """Depths (n_wearing, n) at the points of another mesh of the same faces, of equal volumes [m].
+    """Volume-preserving transfer of depths (n_wearing, n) to another mesh of the faces [m].
 
-    Beyond the former face nothing was worn in place.
+    Local wear is zero beyond the former face.
     """
     x, first = np.unique(before.pairing.points[:, 0], return_index=True)
     to = after.pairing.points[:, 0]
-    rounding = _ROUNDING * (x[-1] - x[0])  # moved meshes end where new ones do but for that
+    rounding = _ROUNDING * (x[-1] - x[0])  # ends of moved and new meshes differ by rounding
     inside = (to >= x[0] - rounding) & (to <= x[-1] + rounding)
     curves = Akima1DInterpolator(x, worn[:, first], axis=-1, method="makima")
     rows = np.maximum(curves(np.clip(to, x[0], x[-1])), 0.0)

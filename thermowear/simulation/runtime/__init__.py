@@ -1,1 +1,1 @@
-"""Observers, checkpoints, frames and requests to stop of a run."""
+"""Observers, checkpoints, animation frames and stop requests of a run."""

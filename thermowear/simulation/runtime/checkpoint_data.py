@@ -1,4 +1,4 @@
-"""What is saved of an analysis on its way, and what it can go on with."""
+"""Checkpoint data of an analysis and the check that it fits the system."""
 
 from __future__ import annotations
 
@@ -12,36 +12,36 @@ from ...errors import CaseError
 from ...serialise import serialisable
 from ..model.system import System
 
-_ROUNDING = 1e-9  # of the contact's length
+_ROUNDING = 1e-9  # relative to the contact's length
 
 
 class Progress(Protocol):
-    """How far an analysis has come."""
+    """Restart data of an analysis at a time."""
 
     @property
     def time(self) -> float:
-        """[s]"""
+        """Time reached [s]."""
 
 
 @serialisable
 @dataclass(frozen=True)
 class Saved:
-    """An analysis on its way, on one rank.
+    """Checkpoint of an analysis on one rank.
 
     Attributes
     ----------
     points : ndarray, shape (n, gdim)
-        Contact points of the bodies that it began with [m].
+        Contact points of the initial bodies [m].
     gap : ndarray, shape (n,)
-        And the gap between them [m].
+        Initial gap at these points [m].
     nodes : int
-        Of this rank.
+        Number of nodes of this rank.
     moment : ndarray, shape (gdim,)
-        Sum of their coordinates [m].
+        Sum of the coordinates of these nodes [m].
     progress : Progress
     mesh : str or None
-        Checksum of a mesh that was read from a file; built geometries may differ by rounding, and
-        older checkpoints have none.
+        Checksum of a mesh read from a file; None for built geometries, which may differ by
+        rounding, and in older checkpoints.
     """
 
     points: np.ndarray
@@ -53,18 +53,18 @@ class Saved:
 
     @classmethod
     def now(cls, system: System, progress: Progress) -> Saved:
-        """An analysis that began with a system."""
+        """Checkpoint of an analysis that started with a system."""
         pairing, nodes = system.pairing, system.elastic.nodes()
         mesh = mesh_checksum(system)
         return cls(pairing.points, pairing.gap, len(nodes), nodes.sum(axis=0), progress, mesh)
 
     def of(self, system: System) -> Any:
-        """The progress, of an analysis of a system.
+        """Progress of the checkpoint, checked to belong to a system.
 
         Raises
         ------
         CaseError
-            If its bodies are not those that the analysis began with.
+            If the bodies differ from those that the analysis started with.
         """
         if self.mesh not in (None, mesh_checksum(system)):
             raise CaseError(other_mesh(system.case))
@@ -76,7 +76,7 @@ class Saved:
         return self.progress
 
     def _began_with(self, system: System) -> bool:
-        """But for rounding: on several ranks a mesh that was positioned is not bitwise the same."""
+        """Compare up to rounding: in parallel a positioned mesh is not bitwise reproducible."""
         other, near = Saved.now(system, self.progress), _ROUNDING * system.pairing.extent
         if (self.nodes, self.gap.shape) != (other.nodes, other.gap.shape):
             return False
@@ -87,5 +87,5 @@ class Saved:
 
 
 def mesh_checksum(system: System) -> str | None:
-    """Checksum of the mesh of a system that was read from a file; None of any other."""
+    """Checksum of the mesh of a system if read from a file; None otherwise."""
     return system.bodies.checksum if system.case.geometry.from_file else None

@@ -1,4 +1,4 @@
-"""Saving an analysis on its way."""
+"""Checkpoint policy: times at which an analysis saves its progress."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from .observer import Observer
 
 
 class KeptStates(Protocol):
-    """What an analysis keeps of the states that it goes through."""
+    """Record of the states of an analysis."""
 
     def keep(self, state: Any) -> None:
-        """Take up a state."""
+        """Record a state."""
 
     def progress(self) -> Progress | None:
-        """All that is needed to go on, made of what `checkpoint.pack` knows; None if not yet."""
+        """Restart data of types known to `checkpoint.pack`; None before the first restart point."""
 
 
 class Saving:
-    """Saves at output times, and when a while has passed since the last time.
+    """Checkpoints at output times, and after a wall-clock interval since the last one.
 
     Parameters
     ----------
     system : System
-        That the analysis begins with.
+        System that the analysis starts with.
     record : KeptStates
     observer : Observer
-        Told of what is to be saved.
+        Observer that receives the checkpoints.
     """
 
     def __init__(self, system: System, record: KeptStates, observer: Observer):
@@ -45,13 +45,13 @@ class Saving:
         self._last = -np.inf  # the first state is saved at once
 
     def passed(self, state) -> None:
-        """Save if it is time to; every rank calls with each state that has been kept."""
+        """Save if due; every rank calls with each recorded state."""
         waited = time.monotonic() - self._last >= self._every
         if state.is_output or self._system.comm.bcast(waited):
             self.save()
 
     def save(self) -> None:
-        """Save in any case; every rank calls."""
+        """Save unconditionally; every rank calls."""
         progress = self._record.progress()
         if progress is not None:
             with self._system.phases("checkpoint"):

@@ -1,4 +1,4 @@
-"""Which states on the way are kept for an animation."""
+"""Selection of the states that are kept as animation frames."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ Shown = tuple[ContactState, RigidMotion, BodyState, Interface]
 
 
 class FrameRecorder:
-    """Steps of an analysis, evenly by their number, at most so many.
+    """Recorder of a limited number of frames, evenly spaced by step number.
 
-    An error-controlled loop takes short steps where much happens: its steps are the clock that
-    shows it. How many there will be is not known before, so all are kept until there are too many,
-    then every second, then every fourth. What is computed does not depend on being watched.
+    An error-controlled loop takes short steps where the state changes fast, so step numbers are a
+    better clock than time. Their total is not known in advance: all steps are kept until there are
+    too many, then every second, then every fourth. The computation does not depend on frames.
 
     Parameters
     ----------
     case : Case
-        Whose analysis says how many.
+        Case whose analysis limits the number of frames.
     observer : Observer
-        Told of each of them.
+        Observer that receives the frames.
     """
 
     def __init__(self, case: Case, observer: Observer):
@@ -45,17 +45,17 @@ class FrameRecorder:
         bodies: Callable[[], Shown],
         track: Callable[[], WornTrack] | None = None,
     ) -> None:
-        """Keep a state if its turn has come. Every rank calls.
+        """Record a state if its step number is selected. Every rank calls.
 
         Parameters
         ----------
         system : System
         number : int
-            Of the step, from 0.
+            Step number, from 0.
         time : float
             [s]
         bodies : callable
-            Contact, motion of the holder, bodies and interface, which take time to compute.
+            Contact, motion of the holder, bodies and interface, evaluated only if needed.
         track : callable, optional
         """
         if not self._most:
@@ -71,7 +71,7 @@ class FrameRecorder:
 
 
 def spacing(number: int, most: int) -> int:
-    """The least power of two whose multiples from 0 to a number are at most so many."""
+    """Smallest power of two with at most `most` multiples from 0 to a number."""
     every = 1
     while number // every >= most:
         every *= 2

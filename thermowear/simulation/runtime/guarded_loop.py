@@ -1,4 +1,4 @@
-"""Going through the states of an analysis until it ends, fails, or is asked to stop."""
+"""Loop over the states of an analysis that keeps accepted states on error or interrupt."""
 
 from __future__ import annotations
 
@@ -22,36 +22,36 @@ def go_through(
     observer: Observer,
     last: State | None = None,
 ) -> tuple[State, BaseException | None]:
-    """Keep and save one state after the other; those before an error or Ctrl-C are not lost.
+    """Record and save successive states; the ones before an error or Ctrl-C are kept.
 
-    A request to stop ends it after the present state. It counts also where that is the last one:
-    what follows writes the results of a whole analysis, and says that it was interrupted.
+    A stop request ends the loop after the present state. It also counts after the last one: the
+    results of the whole analysis are then written and marked as interrupted.
 
     Parameters
     ----------
     system : System
     phase : str
-        Name of the phase that it counts for.
+        Name of the phase for timing.
     states : iterable
-        At least one, unless it goes on from a last one.
+        At least one state, unless `last` is given.
     record : KeptStates
     observer : Observer
     last : object, optional
-        State that it goes on from.
+        State to restart from.
 
     Returns
     -------
     last : object
         The last state.
     stopped : BaseException or None
-        What stopped it before the end.
+        Reason for stopping before the end.
 
     Raises
     ------
     ComputationError
-        If there was no first state.
+        If the first state fails.
     UnwritableError
-        If results cannot be written any more.
+        If results cannot be written.
     """
     saving = Saving(system, record, observer)
     stopped: BaseException | None = None

@@ -1,4 +1,4 @@
-"""Who watches a run."""
+"""Observer interface for the events of a run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .checkpoint_data import Saved
 
 
 class Observer:
-    """Told what happens during a run; the base class ignores it. Called on every rank."""
+    """Callbacks for the events of a run, no-ops in the base class. Called on every rank."""
 
     def phase(self, name: str) -> None:
         """A phase of the run begins."""
@@ -19,7 +19,7 @@ class Observer:
         """A step of a transient analysis was accepted, at a distance from the steady pressure."""
 
     def heat(self, row: HeatRow) -> None:
-        """The heat of that step, where temperatures are followed in time."""
+        """Heat balance of that step, for transient temperatures."""
 
     def load_step(self, row: LoadRow) -> None:
         """An increment of a fretting analysis was accepted."""
@@ -28,7 +28,7 @@ class Observer:
         """A cycle of a fretting analysis has ended."""
 
     def note(self, text: str) -> None:
-        """Something the user should know."""
+        """A note for the user."""
 
     def output(
         self,
@@ -40,10 +40,10 @@ class Observer:
         """An output time was reached."""
 
     def checkpoint(self, saved: Saved) -> None:
-        """The analysis could go on from here later; what is saved differs from rank to rank."""
+        """A checkpoint to restart from; its data differ from rank to rank."""
 
     def resumed(self, rows: Sequence[HistoryRow | HeatRow | LoadRow | CycleRow]) -> None:
-        """Rows of one kind that were known before the analysis went on."""
+        """Rows of one kind from before the restart."""
 
     def frame(self, frame: Frame) -> None:
         """A state of an animation was reached."""

@@ -1,4 +1,4 @@
-"""Stopping between two steps instead of in the middle of one."""
+"""Stop signals (Ctrl-C, SIGTERM) deferred to the end of a step."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopRequest:
-    """Notes Ctrl-C (and SIGTERM) while it is entered; a second one interrupts at once.
+    """Context manager that records Ctrl-C or SIGTERM; a second one interrupts at once.
 
-    A noted request outlives the block: whoever enters it asks `agreed` once more after it, when
-    signals interrupt at once again, so that none is lost in between. Where an error leaves the
-    block, a noted request turns it into an interrupt that tells the error.
+    A recorded request outlives the block: the caller checks `agreed` once more after it, when
+    signals interrupt at once again, so that none is lost in between. If an error leaves the
+    block, a recorded request turns it into an interrupt that reports the error.
 
-    Signals that the process ignores stay ignored, and outside the main thread nothing is noted:
-    there Python delivers no signals.
+    Signals ignored by the process stay ignored. Outside the main thread nothing is recorded, as
+    Python delivers no signals there.
     """
 
     def __init__(self) -> None:
@@ -42,12 +42,12 @@ class StopRequest:
         self._noted = True
 
     def agreed(self, comm) -> bool:
-        """Whether any rank was asked to stop; every rank calls."""
+        """True if any rank was asked to stop; every rank calls."""
         return self._noted if comm.size == 1 else any(comm.allgather(self._noted))
 
 
 def interrupted(reason: BaseException | None = None) -> KeyboardInterrupt:
-    """An interrupt; it tells the error that had ended the computation by then, if any."""
+    """KeyboardInterrupt that reports the error that had ended the computation, if any."""
     if reason is None:
         return KeyboardInterrupt()
     interrupt = KeyboardInterrupt(f"interrupted; the computation had failed: {reason}")

@@ -37,7 +37,7 @@ class WornGeometry:
     depth : ndarray, shape (2, n_before)
         Wear depth removed from the mesh of each body at these points [m].
     lacking : ndarray, shape (n_before,)
-        Depth of the initial shape below the unworn face [m].
+        Depth of the initial shape that the initial mesh does not contain [m].
     holder : tuple of ndarray, shape (3,)
         Translation and rotation of body 1 at the last pairing of the faces [m, rad].
     lost : ndarray, shape (2,)

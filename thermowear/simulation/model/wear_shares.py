@@ -8,7 +8,7 @@ from ...laws.plausible import typical_rate
 from .wear_laws import wear_laws
 
 LEAST = 1e-9
-"""Softness of a body with an unchanging face, relative to 1 of the other body."""
+"""Softness of a body with an unchanging face, where that of the other body is 1."""
 
 
 def softness_of_parts(case: Case) -> dict[str, float]:

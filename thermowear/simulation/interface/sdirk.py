@@ -137,7 +137,7 @@ class WearProblem(Protocol):
         """
 
     def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
-        """Largest difference of temperatures inside the bodies; 0 with friction heat alone [K]."""
+        """Largest temperature difference inside the bodies; 0 without heat beside friction [K]."""
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end that steps must hit exactly [s]."""

@@ -1,7 +1,7 @@
-"""The bodies of a system, enriched by the next degree: what that changes of a state.
+"""Change of a state by elements of the next degree (hierarchical enrichment of the bodies).
 
-The state's contact pressure and friction heat are kept; the bodies answer them a little more
-softly, and somewhat warmer, as their discretisation improves.
+Contact pressure and friction heat of the state are kept; compliance and temperature of the bodies
+change with the better discretisation.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ from ..model.thermal_system import conducting_bodies
 
 @dataclass(frozen=True)
 class WarmerFaces:
-    """What the next degree changes of temperatures.
+    """Change of the temperatures by the next degree.
 
     Attributes
     ----------
     faces : ndarray, shape (2, n)
-        Of both faces at the points [K].
+        Change at the points of both faces [K].
     problem : EnrichedProblem
     field : ndarray
-        Of the bodies, a field of that problem [K].
+        Change in the bodies, a field of that problem [K].
     """
 
     faces: np.ndarray
@@ -47,7 +47,7 @@ class WarmerFaces:
 
 
 class EnrichedBodies:
-    """The elastic bodies of a system with the surplus of the next degree. Every rank calls.
+    """Elastic bodies of a system with the surplus space of the next degree. Every rank calls.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class EnrichedBodies:
         self._trace = gap_trace(surplus, system.pairing)
 
     def opening(self, contact: ContactState, state: BodyState, warmer: WarmerFaces | None):
-        """Gap at the points that the next degree opens in a state, shape (n,) [m]."""
+        """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
         system, problem = self._system, self._problem
         loads = self._loads(contact)
         if warmer is not None:
@@ -89,7 +89,7 @@ class EnrichedBodies:
         return self._gap(problem.correction(residual))
 
     def answer(self, pressure: np.ndarray) -> np.ndarray:
-        """Gap at the points that a pressure opens, shape (n,) [m]; about."""
+        """Approximate gap opened by a pressure at the points, shape (n,) [m]."""
         loads = self._system.weights * pressure
         nodal = np.concatenate([self._system.trace @ loads, self._trace @ loads])
         return self._gap(self._problem.approximate(nodal))
@@ -100,7 +100,7 @@ class EnrichedBodies:
         return sum_over_ranks(self._system.comm, opened)
 
     def _loads(self, contact: ContactState) -> np.ndarray:
-        """Nodal loads of the contact and of loads on surfaces."""
+        """Nodal loads of the contact and of the surface loads in the enriched space."""
         system, problem = self._system, self._problem
         pairing = system.pairing
         pull = system.rubbing(contact.conditions.friction).pull
@@ -122,7 +122,7 @@ class EnrichedBodies:
 
 
 def warmer_faces(system: System, model: Model, contact: ContactState, state: BodyState):
-    """What the next degree changes of steady temperatures under a given friction heat.
+    """Change of the steady temperatures by the next degree for a given friction heat.
 
     Every rank calls.
     """
@@ -145,7 +145,7 @@ def warmer_faces(system: System, model: Model, contact: ContactState, state: Bod
             for trace, more in zip(face.traces, surplus, strict=True)
         ]
     )
-    # the nodes of the space alone could not answer a flux that levels what is between them
+    # the nodal space cannot represent the response to a flux that levels finer details
     weighted = face.weights[:, None] * face.basis
     seen = (
         face.basis @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ alone.T, rcond=None)[0]
@@ -159,9 +159,9 @@ def warmer_faces(system: System, model: Model, contact: ContactState, state: Bod
 
 
 def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:
-    """Rises of both faces (2, n) that are too short for the nodes, after their exchange of heat.
+    """Rises of both faces (2, n) below the nodal resolution after their exchange of heat [K].
 
-    As if each point had a resistance of its own in either body, that of its own heat [K].
+    Approximation: each point has a resistance of its own in either body, its rise per own flux.
     """
     own = np.abs([np.diag(response) for response in face.response])
     with np.errstate(divide="ignore"):
@@ -170,7 +170,7 @@ def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -
 
 
 def _conducting(system: System, model: Model) -> EnrichedProblem:
-    """Conduction with its surplus; corrections give heat to a bath at both faces."""
+    """Conduction with its surplus space; corrections transfer heat to a bath at both faces."""
     assert system.thermal is not None
     conduction, case, bodies = system.thermal.conduction, system.case, system.bodies
     degree = case.mesh.degree
@@ -190,7 +190,7 @@ def _conducting(system: System, model: Model) -> EnrichedProblem:
 
 
 def _on(bodies, space: fem.FunctionSpace, surfaces: list[str]) -> np.ndarray:
-    """Which owned values of a scalar space lie on surfaces."""
+    """Mask of the owned degrees of freedom of a scalar space on surfaces."""
     chosen = np.zeros(owned(space), dtype=bool)
     for surface in surfaces:
         facets = bodies.facets(surface)

@@ -1,19 +1,19 @@
-"""The discretisation error of a result, estimated from what the next degree would change.
+"""Estimate of the discretisation error of a result from its change by the next degree.
 
-* Pressure: mean of ``|p - p⁺|`` over the contact by the mean of ``p``. That exists for any
-  pressure, even where it is singular at an edge and no largest value converges. The change of the
-  largest value is a number of its own.
-* Shape: largest change of the gap that the bodies open where they press, but for a motion of the
-  holder, by the range of the shape.
-* Temperature: largest change at the faces by the largest rise at them.
+* Pressure: mean of ``|p - p⁺|`` over the contact, relative to the mean of ``p``. It exists for any
+  pressure, also for edge singularities, where no largest value converges. The change of the largest
+  value is reported separately.
+* Shape: largest change of the elastic opening in the contact area, up to a rigid motion of the
+  holder, relative to the range of the shape.
+* Temperature: largest change at the faces, relative to the largest rise there.
 
-The next degree finds most of the error, and a part is left to those that follow: where each degree
-makes an error three times smaller, one and a half times the change in all.
+The next degree finds most of the error, higher degrees the rest: if each degree reduces the error
+by a factor of three, the total is one and a half times the change.
 
-Where wear goes on up to an edge, as in contacts that grow, the pressure ends with a jump, which the
-contact points place no nearer than half their distance. That is the least error of the pressure.
+Where wear continues up to an edge, as in growing contacts, the pressure ends with a jump, which the
+contact points locate to half their distance. That is the least error of the pressure.
 
-The meshes' approximation of curved faces and errors of steps in time are not in it.
+The geometric error of curved faces and the time discretisation error are not included.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ from ..results.outcome import Outcome
 from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
 
 _FOLLOWING = 1.5
-"""All further degrees by the next one: 1 + 1/3 + 1/9 …"""
+"""Ratio of the change by all higher degrees to that by the next one: 1 + 1/3 + 1/9 …"""
 WORTH_A_WARNING = 0.05
 _FLAT = 1e-9
-"""Of the bodies' deflection: a shape of that range is rounding."""
+"""Range of a shape at rounding level, relative to the elastic deflection."""
 
 
 @dataclass(frozen=True)
 class ErrorEstimates:
-    """Relative errors, see the module; None where there is no estimate.
+    """Estimates of the relative errors, see the module; None where there is no estimate.
 
     Attributes
     ----------
     pressure, max_pressure, shape, temperature : float or None
     missing : dict of str to str
-        Why, by the quantity.
+        Reason for a missing estimate, by quantity.
     """
 
     pressure: float | None
@@ -70,7 +70,7 @@ class ErrorEstimates:
         }
 
     def warning(self) -> str | None:
-        """What is wrong by more than can be left unsaid."""
+        """Warning that lists the errors above `WORTH_A_WARNING`; None without any."""
         named = {
             "pressure": self.pressure,
             "largest pressure": self.max_pressure,
@@ -116,7 +116,7 @@ def estimate_errors(system: System, outcome: Outcome) -> ErrorEstimates:
 
 
 def _warmer(system: System, outcome: Outcome) -> tuple[WarmerFaces | None, str | None]:
-    """What the next degree changes of temperatures, or why that is not known."""
+    """Change of the temperatures by the next degree, or the reason why there is no estimate."""
     thermal, heat = system.thermal, system.case.heat
     if thermal is None or heat is None or outcome.state.thermal is None:
         return None, "isothermal"
@@ -153,9 +153,9 @@ def _of_shape(system: System, outcome: Outcome, opened: np.ndarray) -> float | N
 
 
 def _of_edges(system: System, outcome: Outcome) -> float:
-    """Mean error of a worn pressure by where it ends: half a contact point beside each edge.
+    """Mean error of a worn pressure by the position of its ends: half a contact point at each edge.
 
-    A higher degree does not see that error, as it would have the same worn gap.
+    Enrichment does not detect that error, as the worn gap is the same.
     """
     interface, weights = outcome.interface, system.weights
     side = system.pairing.sides[0]
@@ -183,7 +183,7 @@ def _is_steady(system: System) -> bool:
 def _richer_pressure(
     system: System, outcome: Outcome, bodies: EnrichedBodies, opened: np.ndarray
 ) -> np.ndarray:
-    """The pressure of a richer discretisation at the contact points [Pa]."""
+    """Pressure of an enriched discretisation at the contact points, shape (n,) [Pa]."""
     if _is_steady(system):
         return _finer_principle(system, outcome.contact.pressure, outcome.contact.conditions)
     degree = system.case.contact.pressure_degree
@@ -203,11 +203,11 @@ def _richer_pressure(
 
 
 def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
-    """Least depth that the facet of each point has lost, by the mean pressure, shape (n,) [m/Pa].
+    """Least wear depth on the facet of each point per mean pressure, shape (n,) [m/Pa].
 
-    A pressure that had been wrong for so long would have been answered by wear on the spot: what is
-    left of the gap between the functions of the pressure is the work of its error all the time.
-    Where a part of the facet has lost nothing, it is the depth at the point itself.
+    Wear acts as a local compliance against a persistent error of the pressure: the gap component
+    orthogonal to the pressure space results from the wear by that error over the whole run. Where
+    a part of the facet is unworn, the wear depth at the point itself is used.
     """
     interface, pressing = outcome.interface, outcome.contact.pressure > 0
     mean = np.average(outcome.contact.pressure[pressing], weights=system.weights[pressing])
@@ -221,7 +221,7 @@ def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
 def _finer_principle(
     system: System, pressure: np.ndarray, conditions: InterfaceConditions
 ) -> np.ndarray:
-    """The steady pressure by a finer quadrature: the only error that the principle makes."""
+    """Steady pressure by a finer quadrature, the only discretisation error of the principle."""
     if system.worn is not None:
         raise ComputationError("not estimated on moved meshes")
     if any("T" in law.variables for law in system.laws.values()):
@@ -235,7 +235,7 @@ def _finer_principle(
 
 
 def _exponent(system: System, pressure: np.ndarray, conditions: InterfaceConditions) -> float:
-    """Least exponent of the pressure in the wear rates, ``p h'(p)/h(p)``, where it presses."""
+    """Least exponent of the pressure in the wear rates in contact, ``p h'(p)/h(p)``."""
     pressing, least = pressure > 0, np.inf
     for row, law in enumerate(system.laws.values()):
         rate = conditions.wear_rate(row, law, pressure)
@@ -246,7 +246,7 @@ def _exponent(system: System, pressure: np.ndarray, conditions: InterfaceConditi
 
 
 def _finer(system: System) -> System:
-    """A system with more contact points, of which only the principle is asked."""
+    """System with more contact points, for the steady-state principle only."""
     case, model = system.case, system.elastic.model
     face_1, face_2 = (side.face for side in system.pairing.sides)
     lobatto = case.contact.pressure_degree == "lobatto"

@@ -1,1 +1,1 @@
-"""Friction heat: steady, in time, and with properties that vary."""
+"""Friction heat: steady, transient, and with temperature-dependent properties."""

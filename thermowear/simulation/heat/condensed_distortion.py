@@ -20,10 +20,10 @@ from ..model.thermal_system import ThermalSystem
 
 @dataclass(frozen=True, eq=False)
 class CondensedDistortion:
-    """Condenses the distortion by a conduction.
+    """Condensation of the thermal distortion for a conduction operator.
 
-    Operators of heat keep this, not the friction heat that keeps them: in a circle of references
-    they would stay in memory when the meshes that they are of have been given up.
+    Heat operators reference this object, not the friction heat that owns them: a reference cycle
+    would keep them in memory after their meshes have been discarded.
 
     Attributes
     ----------
@@ -35,9 +35,9 @@ class CondensedDistortion:
     thermal: ThermalSystem
 
     def __call__(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
-        """Weak gap per heat at the faces, by a conduction; every rank calls."""
+        """Condense the weak gap per heat at the faces for a conduction; every rank calls."""
         with self.system.phases("condense distortion"):
-            if conduction is not self.thermal.conduction:  # over a step of time
+            if conduction is not self.thermal.conduction:  # of a time step
                 return condense_distortion(conduction, self.per_rise, face)
             return self.system.parts.get(
                 "distortion",

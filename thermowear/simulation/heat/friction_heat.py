@@ -1,4 +1,4 @@
-"""Friction heat as part of the interface problem: it is proportional to the pressure."""
+"""Friction heat, proportional to the pressure, as part of the interface problem."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from .heat_stages import ConductingStage, HeatOperators, InitialHeat, LinearHeat
 from .heat_states import HeatBalance, StoredHeat, TemperatureField
 
 _MEMORY = 1e9
-"""Bytes that the operators of all sizes of steps may take on a rank."""
+"""Memory limit for the operators of all step sizes on a rank [bytes]."""
 _FEWEST = 3
-"""Sizes of steps whose operators are kept in any case: those of a step, its half and its double."""
+"""Least number of step sizes whose operators are kept: a step, its half and its double."""
 _FILL = {2: 100, 3: 1000}
-"""Entries of triangular factors per unknown, by dimension of the mesh."""
+"""Entries of the triangular factors per unknown, by dimension of the mesh."""
 _ROUNDING = 1e-3
-"""Of the heat that bodies have at the start: less than that is near to rounding of it."""
+"""Least scale of the heat balance, relative to the initial heat content (rounding)."""
 _SHALLOW = 1e-3
-"""Of the contact's length: heat that has gone so deep has changed nothing yet."""
+"""Penetration depth of heat in the first step, relative to the length of the contact."""
 _HARDLY = 0.1
-"""Rise of the faces that is not worth a smaller first step [K]."""
+"""Surface temperature rise allowed in the first step [K]."""
 
 
 class FrictionHeat:
-    """Couples pressure, temperature and distortion at the contact points.
+    """Coupling of pressure, temperature and distortion at the contact points.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class FrictionHeat:
 
     @cached_property
     def steady(self) -> ConductingStage:
-        """Temperatures that do not change any more."""
+        """Steady conduction."""
         thermal = self._thermal
         operators = HeatOperators(thermal.conduction, thermal.face, self.condensed)
         load = thermal.loads.at(0.0)
@@ -67,7 +67,7 @@ class FrictionHeat:
         return LinearHeatStep(operators, load, load.heat, resting)
 
     def after(self, before: StoredHeat, step: float, time: float) -> ConductingStage:
-        """The end of an implicit Euler step, at a time [s]; every rank calls."""
+        """Conduction in an implicit Euler step that ends at a time [s]; every rank calls."""
         if step not in self._steps:
             self._steps[step] = self._operators(step)
             if len(self._steps) > self._kept:
@@ -80,7 +80,7 @@ class FrictionHeat:
 
     @cached_property
     def frozen(self) -> InitialHeat:
-        """The first moment; every rank calls."""
+        """Initial temperatures, before any friction heat has flowed; every rank calls."""
         conduction = self._thermal.conduction
         rise = np.where(conduction.fixed, conduction.given, self._thermal.initial)
         resting = self.at_rest(rise)
@@ -88,22 +88,22 @@ class FrictionHeat:
         return InitialHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(3), largest), resting)
 
     def at_moment(self, stored: StoredHeat) -> InitialHeat:
-        """A later moment, of which the temperatures are known; every rank calls."""
+        """Known temperatures at a later time; every rank calls."""
         return InitialHeat(stored, self.at_rest(stored.rise))
 
     def take_over(self, former: FrictionHeat, stored: StoredHeat, rise: np.ndarray) -> StoredHeat:
-        """Heat of bodies whose mesh was another one; every rank calls.
+        """Transfer stored heat from a former mesh; every rank calls.
 
-        What they have lost with the worn material counts as lost.
+        The heat removed with the worn material counts as lost.
 
         Parameters
         ----------
         former : FrictionHeat
-            Of the former mesh.
+            Friction heat on the former mesh.
         stored : StoredHeat
-            On it.
+            Stored heat on the former mesh.
         rise : ndarray, shape (n_owned,)
-            The same temperatures on this mesh [K].
+            Transferred temperature rise on this mesh [K].
         """
         content = self._thermal.conduction.stored(rise)
         same = replace(stored, rise=rise, content=content)
@@ -118,7 +118,7 @@ class FrictionHeat:
         faces: ThermalState,
         friction_heat: np.ndarray,
     ) -> StoredHeat:
-        """What the bodies have stored at the end of an implicit Euler step.
+        """Heat stored in the bodies at the end of an implicit Euler step.
 
         Parameters
         ----------
@@ -128,9 +128,9 @@ class FrictionHeat:
         heat : ConductingStage
             From `after`.
         faces : ThermalState
-            At the end.
+            Temperatures and fluxes of the faces at the end.
         friction_heat : ndarray, shape (n,)
-            Likewise [W/m²].
+            Friction heat at the end [W/m²].
         """
         conduction, face, load = self._thermal.conduction, self._thermal.face, heat.load
         rise = heat.rise(faces)
@@ -146,14 +146,14 @@ class FrictionHeat:
         return StoredHeat(rise, content, turnover, largest)
 
     def memory(self) -> Any:
-        """What its answers depend on beside what it is asked; nothing where heat is linear."""
+        """Internal state to restart from, see `recall`; None for linear heat."""
         return None
 
     def recall(self, memory: Any) -> None:
-        """Answer as another one did that had this memory."""
+        """Restore the internal state from `memory`."""
 
     def lasting(self, conditions: InterfaceConditions, pressure: np.ndarray) -> TemperatureField:
-        """Temperatures that do not change any more, under a pressure (n,) [Pa]."""
+        """Steady temperatures under a pressure (n,) [Pa]."""
         conduction, face = self._thermal.conduction, self._thermal.face
         faces = self.steady.faces(conditions, pressure)
         rise = self.steady.rise(faces)
@@ -162,16 +162,16 @@ class FrictionHeat:
         made = float(face.weights @ (conditions.heating * pressure))
         lost = sum(conduction.losses(rise, heat))
         scale = max(made + load.magnitude, conduction.turnover(rise, heat))
-        if made + load.magnitude == 0.0:  # hardly anything may flow at all
+        if made + load.magnitude == 0.0:  # the turnover may be at rounding level
             scale = max(scale, conduction.rounding(rise))
         return TemperatureField(faces, rise, relative(lost - made - load.prescribed, scale))
 
     def momentary(self, stored: StoredHeat, faces: ThermalState) -> TemperatureField:
-        """Temperatures that are followed in time; the balance is that of all the heat so far."""
+        """Transient temperatures, with the error of the heat balance since the start."""
         return TemperatureField(faces, stored.rise, self.balance(stored).error)
 
     def balance(self, stored: StoredHeat) -> HeatBalance:
-        """Where all the heat so far has gone; every rank calls."""
+        """Heat balance since the start; every rank calls."""
         made, lost, exchanged = (float(heat) for heat in stored.turnover)
         before = self.frozen.stored.content
         gained = stored.content - before
@@ -182,12 +182,12 @@ class FrictionHeat:
     def difference(self, one: StoredHeat, other: StoredHeat) -> float:
         """Largest difference of the temperatures inside the bodies [K]; every rank calls.
 
-        Zero where friction alone heats them: their faces show the errors of a step then.
+        Zero where friction is the only heat source: the faces then show the errors of a step.
         """
         return self._largest(one.rise - other.rise)
 
     def _largest(self, rise: np.ndarray) -> float:
-        """Largest rise inside of bodies that not friction alone heats [K]; every rank calls."""
+        """Largest rise inside the bodies with other heat sources, else 0 [K]; every rank calls."""
         if not self._driven:
             return 0.0
         return max(self._system.comm.allgather(float(np.abs(rise).max(initial=0.0))))
@@ -198,10 +198,10 @@ class FrictionHeat:
         return self._thermal.ambient
 
     def first_step(self, friction_heat: float) -> float:
-        """A step to begin with: heat goes not deep in it, or makes the faces hardly warmer [s].
+        """Initial step size: small penetration depth of heat or small surface temperature rise [s].
 
-        Half-spaces under a constant flux q are warmer by ``2 q √(t/π)/√(k ρ c)``. Infinite where
-        there is no heat to begin with, neither by friction [W/m²] nor otherwise.
+        The surface of a half-space under a constant flux q warms by ``2 q √(t/π)/√(k ρ c)``.
+        Infinite without any heat source at the start, friction [W/m²] or other.
         """
         case, thermal = self._system.case, self._thermal
         if self._driven:
@@ -215,13 +215,13 @@ class FrictionHeat:
         return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
 
     def at_rest(self, rise: np.ndarray) -> BaselineResponse:
-        """What a nodal rise (n_owned,) does to the interface; every rank calls."""
+        """Interface response to a nodal rise (n_owned,); every rank calls."""
         per_rise = self.condensed.per_rise if self._distorts else None
         return at_rest(rise, self._thermal.face.traces, self._system.comm, per_rise)
 
     @cached_property
     def _kept(self) -> int:
-        """Number of sizes of steps whose operators are kept."""
+        """Number of step sizes whose operators are kept."""
         conduction, points = self._thermal.conduction, len(self._thermal.face.weights)
         dense, nodes = 12 * points**2, len(conduction.fixed)
         numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes

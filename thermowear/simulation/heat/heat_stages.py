@@ -1,4 +1,4 @@
-"""Heat at one moment, as contact sees it: conduction condensed to the interface."""
+"""Heat at one time: conduction condensed to the interface, for the contact solver."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from .heat_states import StoredHeat
 
 @dataclass(frozen=True)
 class Coupling:
-    """What heat does to the interface under some conditions.
+    """Thermal contribution to the condensed interface under given conditions.
 
     Attributes
     ----------
     compliance : ndarray, shape (m, m)
-        Weak gap per pressure coefficient, ``H diag(mu v) Ψ``: to be added to the elastic one.
+        Weak gap per pressure coefficient, ``H diag(mu v) Ψ``, added to the elastic compliance.
     resting : ndarray, shape (m,)
-        Weak gap of heat that does not come from friction [m³].
+        Weak gap by heat other than friction heat [m³].
     """
 
     compliance: np.ndarray
@@ -34,16 +34,16 @@ class Coupling:
 
 
 class HeatOperators:
-    """Conduction condensed to the interface: steady, or over a step of time of one size.
+    """Conduction condensed to the interface: steady, or over a time step of one size.
 
-    The last exchange and coupling are kept, as conditions seldom change.
+    The last exchange and coupling are cached, as conditions seldom change.
 
     Parameters
     ----------
     conduction : Conduction
     face : InterfaceHeat
     condensed : callable
-        Condenses the distortion by that conduction to the pressure space.
+        Condensation of the distortion by that conduction to the pressure space.
     """
 
     def __init__(
@@ -64,14 +64,14 @@ class HeatOperators:
         return self._condensed(self.conduction, self.face)
 
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """How heat crosses the interface for conductances at the points, shape (n,)."""
+        """Heat exchange of the faces for conductances at the points, shape (n,)."""
         key = conductance.tobytes()
         if self._exchange is None or self._exchange[0] != key:
             self._exchange = (key, self.face.exchange(conductance))
         return self._exchange[1]
 
     def compliance(self, conditions: InterfaceConditions, basis: np.ndarray) -> np.ndarray:
-        """``H diag(mu v) Ψ``, shape (m, m)."""
+        """Thermal compliance ``H diag(mu v) Ψ``, shape (m, m)."""
         key = conditions.conductance.tobytes() + conditions.heating.tobytes()
         if self._compliance is None or self._compliance[0] != key:
             per_heat = self.distortion.per_friction_heat(self.exchange(conditions.conductance))
@@ -80,31 +80,31 @@ class HeatOperators:
 
 
 class HeatStage(Protocol):
-    """Heat at one moment, as contact sees it."""
+    """Heat at one time: interface to the contact solver."""
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
 
     def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
-        """What heat does to the condensed interface."""
+        """Thermal coupling of the condensed interface."""
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
-        """Whether the last coupling is right under the pressure that it has led to.
+        """Test whether the last coupling has converged at the pressure computed with it.
 
-        Where it is not, the next one is nearer.
+        If not, relinearise for the next coupling.
         """
 
 
 class ConductingStage(HeatStage, Protocol):
-    """Heat that the bodies conduct, as opposed to that of the first moment."""
+    """Heat with conduction in the bodies, as opposed to the initial temperatures."""
 
     @property
     def load(self) -> ThermalLoad:
-        """What heats or cools the bodies beside friction."""
+        """Thermal loads beside friction."""
 
     @property
     def unheated(self) -> ThermalState:
-        """The faces without any heat at the contact."""
+        """State of the faces without any heat at the contact."""
 
     def rise(self, faces: ThermalState) -> np.ndarray:
         """Temperature rise of the bodies, shape (n_owned,) [K]."""
@@ -112,16 +112,17 @@ class ConductingStage(HeatStage, Protocol):
 
 @dataclass(frozen=True)
 class LinearHeatStep:
-    """Conduction at one moment: its operators, and what the bodies bring along.
+    """Linear conduction at one time: operators, loads and stored heat.
 
     Attributes
     ----------
     operators : HeatOperators
     load : ThermalLoad
     supplied : ndarray, shape (n_owned,)
-        Nodal heat beside that of the contact: of the loads, and what the bodies have stored before,
-        per time [W].
+        Nodal heat beside that of the contact: loads, and heat stored before the step per step
+        size [W].
     resting : BaselineResponse
+        Response of the faces without heat at the contact.
     """
 
     operators: HeatOperators
@@ -131,7 +132,7 @@ class LinearHeatStep:
 
     @property
     def unheated(self) -> ThermalState:
-        """The faces without any heat at the contact."""
+        """State of the faces without any heat at the contact."""
         nothing = np.zeros(len(self.resting.rise[0]))
         return ThermalState(self.resting.rise, (nothing, nothing))
 
@@ -146,7 +147,7 @@ class LinearHeatStep:
         return self.load.on(self.operators.conduction).solve(heat)
 
     def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
-        """What heat does to the condensed interface."""
+        """Thermal coupling of the condensed interface."""
         operators = self.operators
         exchange = operators.exchange(conditions.conductance)
         return Coupling(
@@ -155,18 +156,18 @@ class LinearHeatStep:
         )
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
-        """Linear heat is right at once."""
+        """True: linear heat converges at once."""
         return True
 
 
 class InitialHeat:
-    """The first moment, in which no friction heat has flowed yet.
+    """Given temperatures of the bodies, without friction heat.
 
     Attributes
     ----------
     stored : StoredHeat
     initial : ThermalState
-        Of the faces.
+        Temperatures of the faces, with zero flux.
     """
 
     def __init__(self, stored: StoredHeat, resting: BaselineResponse):

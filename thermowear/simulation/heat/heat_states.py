@@ -1,4 +1,4 @@
-"""How much heat bodies have, and where the heat so far has gone."""
+"""Stored heat, temperature fields and heat balance of the bodies."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ from ...serialise import serialisable
 @serialisable
 @dataclass(frozen=True)
 class StoredHeat:
-    """Heat in the bodies, where temperatures are followed in time.
+    """Heat stored in the bodies in transient conduction.
 
     Attributes
     ----------
     rise : ndarray, shape (n_owned,)
-        Of the nodes over the ambient [K].
+        Nodal temperature rise over the ambient [K].
     content : ndarray, shape (n_owned,)
-        Heat that the nodes have stored over the ambient [J].
+        Nodal heat content over the ambient [J].
     turnover : ndarray, shape (3,)
-        Heat put in so far by friction and through surfaces, heat lost, and the magnitude of all
-        that has come in or gone out [J].
+        Cumulated heat input by friction and through surfaces, heat lost, and sum of the magnitudes
+        of all heat in and out [J].
     largest : float
-        Rise of the faces so far, either way; of the bodies where not friction alone heats them [K].
+        Largest magnitude so far of the rise of the faces; also inside the bodies where friction is
+        not the only heat source [K].
     """
 
     rise: np.ndarray
@@ -35,7 +36,7 @@ class StoredHeat:
     largest: float
 
     def towards(self, other: StoredHeat, part: float) -> StoredHeat:
-        """Moved on by a part of the way to another state."""
+        """Interpolate linearly (or extrapolate) to another state by a fraction of the way."""
         return StoredHeat(
             self.rise + part * (other.rise - self.rise),
             self.content + part * (other.content - self.content),
@@ -46,15 +47,15 @@ class StoredHeat:
 
 @dataclass(frozen=True)
 class TemperatureField:
-    """How warm bodies and faces are.
+    """Temperatures of bodies and faces.
 
     Attributes
     ----------
     faces : ThermalState
     rise : ndarray, shape (n_owned,)
-        Of the nodes over the ambient [K].
+        Nodal temperature rise over the ambient [K].
     error : float
-        Relative imbalance of heat.
+        Relative error of the heat balance.
     """
 
     faces: ThermalState
@@ -64,15 +65,15 @@ class TemperatureField:
 
 @dataclass(frozen=True)
 class HeatBalance:
-    """Heat from the start on.
+    """Heat balance since the start.
 
     Attributes
     ----------
     made, stored, lost : float
-        By friction and through surfaces with a given flux or power, in the bodies, and to their
-        surroundings [J].
+        Heat input by friction and through surfaces with a given flux or power, heat stored in the
+        bodies, and heat lost to the surroundings [J].
     moved : float
-        Magnitude of all heat that has come in, gone out, or gone from one place to another [J].
+        Magnitude of all heat put in, lost, or moved inside the bodies [J].
     """
 
     made: float
@@ -82,6 +83,6 @@ class HeatBalance:
 
     @property
     def error(self) -> float:
-        """What is missing, relative to the largest of them."""
+        """Imbalance relative to the largest term."""
         scale = max(abs(self.made), abs(self.stored), abs(self.lost), self.moved)
         return relative(self.made - self.stored - self.lost, scale)

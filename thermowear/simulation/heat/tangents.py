@@ -1,6 +1,6 @@
-"""Operators of heat for small changes of the temperature, and where they were made.
+"""Tangent operators of nonlinear conduction, and the temperatures of their linearisation.
 
-They cost a factorisation: Newton's method keeps them as long as its steps go on getting smaller.
+Each needs a factorisation: Newton's method reuses it while its increments keep decreasing.
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ from .heat_stages import HeatOperators
 
 
 class ChangingHeat(Protocol):
-    """Heat of bodies whose properties change, as its tangents need it."""
+    """Heat with temperature-dependent properties: interface to its tangents."""
 
     def condensed(self, conduction: Conduction, face: InterfaceHeat) -> ThermalDistortion:
         """Thermal distortion condensed to the pressure space; every rank calls."""
 
     def gap_per_rise(self, rise: np.ndarray) -> np.ndarray:
-        """Weak gap per small change of a nodal rise, shape (n_owned, m) [m³/K]."""
+        """Derivative of the weak gap by a nodal rise, shape (n_owned, m) [m³/K]."""
 
     def tangent(self, rise: np.ndarray, step: float | None) -> TangentOperators:
-        """Operators for small changes of a rise (n_owned,); every rank calls."""
+        """Tangent operators at a rise (n_owned,); every rank calls."""
 
 
 @serialisable
 @dataclass(frozen=True)
 class LastTangents:
-    """Where the operators that are at hand were made: Newton's method goes its way by them.
+    """Linearisation points of the cached tangents, which the Newton iterates depend on.
 
     Attributes
     ----------
     steps : dict of float to (ndarray or None)
-        Rise (n_owned,) by size of step, the one that was used last at the end [K].
+        Rise (n_owned,) by step size, the last used at the end [K].
     steady : tuple or None
-        Likewise of the steady state, its last temperatures, and by how much they changed.
+        Linearisation point of the steady state, its last temperatures, and their last change.
     """
 
     steps: dict[float, np.ndarray | None]
@@ -49,7 +49,7 @@ class LastTangents:
 
 
 class TangentOperators(HeatOperators):
-    """Conduction of small changes of the temperature, condensed to the interface.
+    """Linearised conduction, condensed to the interface.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class TangentOperators(HeatOperators):
     face : InterfaceHeat
     heat : ChangingHeat
     reference : ndarray, shape (n_owned,)
-        The rise that they are changes of [K].
+        Rise at which the conduction is linearised [K].
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class TangentOperators(HeatOperators):
 
     @cached_property
     def per_rise(self) -> np.ndarray:
-        """Weak gap per nodal rise, shape (n_owned, m) [m³/K]."""
+        """Derivative of the weak gap by the nodal rise, shape (n_owned, m) [m³/K]."""
         return self._varying.gap_per_rise(self.reference)
 
     @cached_property
@@ -82,20 +82,20 @@ class TangentOperators(HeatOperators):
 
 
 class Tangents:
-    """The operators that were used last, for one size of step or for a steady state.
+    """Cache of the last tangent operators for one step size or for the steady state.
 
     Parameters
     ----------
     heat : ChangingHeat
     step : float or None
-        [s]
+        Step size [s]; None: steady state.
     reference : ndarray, optional, shape (n_owned,)
-        Rise that the first ones are made for [K].
+        Linearisation point of the first operators [K].
 
     Attributes
     ----------
     reference : ndarray or None
-        That of the last ones.
+        Linearisation point of the last operators.
     """
 
     reference: np.ndarray | None
@@ -107,10 +107,10 @@ class Tangents:
         self._last: TangentOperators | None = None
 
     def near(self, rise: np.ndarray) -> TangentOperators:
-        """Those at hand; made for a rise (n_owned,) where there are none."""
+        """Return the cached operators; make them for a rise (n_owned,) if there are none."""
         return self._last or self.at(rise if self.reference is None else self.reference)
 
     def at(self, rise: np.ndarray) -> TangentOperators:
-        """New ones for a rise."""
+        """Make and cache operators for a rise (n_owned,)."""
         self.reference, self._last = rise, self._heat.tangent(rise, self._step)
         return self._last

@@ -1,6 +1,6 @@
-"""Friction heat in bodies whose conductivity or expansion change with temperature.
+"""Friction heat in bodies with temperature-dependent conductivity or expansion.
 
-Newton's method: contact sees linear bodies, those of small changes about the last temperatures.
+Newton's method: contact is solved for bodies linearised about the last temperatures.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from .tangents import LastTangents, TangentOperators, Tangents
 
 _TURNS = 60
 _SETTLED = 1e-11
-"""Change of the temperatures, relative to the largest rise."""
+"""Tolerance of the change of the temperatures, relative to the largest rise."""
 _SLOW = 0.3
-"""Changes that get smaller by less than that ask for new operators."""
+"""Convergence rate of Newton's method above which the tangents are renewed."""
 _LEAST_RISE = 1.0  # K
 
 
 def friction_heat(system: System) -> FrictionHeat | None:
-    """The friction heat of a system; None where there is none."""
+    """Friction heat of a system; None without heat."""
     thermal = system.thermal
     if thermal is None:
         return None
@@ -42,7 +42,7 @@ def friction_heat(system: System) -> FrictionHeat | None:
 
 
 class VaryingFrictionHeat(FrictionHeat):
-    """Friction heat of bodies whose properties change; parameters as in `FrictionHeat`."""
+    """Friction heat with temperature-dependent properties; parameters as in `FrictionHeat`."""
 
     def __init__(self, system: System, thermal: ThermalSystem):
         super().__init__(system, thermal)
@@ -86,7 +86,7 @@ class VaryingFrictionHeat(FrictionHeat):
         return BaselineResponse(faces, self._opening(rise))
 
     def tangent(self, rise: np.ndarray, step: float | None) -> TangentOperators:
-        """Operators for small changes of a rise (n_owned,); every rank calls."""
+        """Tangent operators at a rise (n_owned,); every rank calls."""
         face = self._thermal.face
         with self._system.phases("condense conduction"):
             conduction = self._conduction.tangent(rise, step)
@@ -96,7 +96,7 @@ class VaryingFrictionHeat(FrictionHeat):
         return TangentOperators(conduction, face, self, rise)
 
     def gap_per_rise(self, rise: np.ndarray) -> np.ndarray:
-        """Weak gap per small change of a nodal rise, shape (n_owned, m)."""
+        """Derivative of the weak gap by a nodal rise, shape (n_owned, m) [m³/K]."""
         result = self.condensed.per_rise
         for part, per_rise in self._per_excess:
             result = result + part.slope(rise)[:, None] * per_rise
@@ -109,7 +109,7 @@ class VaryingFrictionHeat(FrictionHeat):
         supplied: np.ndarray,
         rise: np.ndarray,
     ) -> LinearHeatStep:
-        """Linear heat about a rise, by operators of a rise that is near; every rank calls."""
+        """Heat linearised about a rise, with tangents of a nearby rise; every rank calls."""
         heat = self._conduction.remainder(rise, operators.reference) + supplied
         alone = load.on(operators.conduction).solve(heat)
         traces, comm = self._thermal.face.traces, self._system.comm
@@ -120,13 +120,13 @@ class VaryingFrictionHeat(FrictionHeat):
         )
 
     def far(self, rise: np.ndarray, other: np.ndarray) -> float:
-        """How different two rises are, relative to the larger one; every rank calls."""
+        """Difference of two rises, relative to the largest value of the first; every rank calls."""
         sizes = [float(np.abs(values).max(initial=0.0)) for values in (rise - other, rise)]
         change, largest = np.max(self._system.comm.allgather(sizes), axis=0)
         return change / max(largest, _LEAST_RISE)
 
     def _opening(self, rise: np.ndarray) -> np.ndarray:
-        """Weak gap that a rise opens, shape (m,) [m³]."""
+        """Weak gap opened by a rise, shape (m,) [m³]."""
         opening = self.condensed.per_rise.T @ rise
         for part, per_rise in self._per_excess:
             opening = opening + per_rise.T @ part.excess(rise)
@@ -134,13 +134,13 @@ class VaryingFrictionHeat(FrictionHeat):
 
     @cached_property
     def _per_excess(self) -> list[tuple[VaryingExpansion, np.ndarray]]:
-        """Expansions that change, and the weak gap per nodal rise of their parts alone."""
+        """Varying expansions and the weak gap per excess rise of their parts, (n_owned, m)."""
         contact = self._system.contact
         return [(part, gap_per_rise(part.matrix, contact)) for part in self._thermal.expansions]
 
 
 class VaryingHeat:
-    """Heat at one moment, linear about the temperatures that were found last.
+    """Heat at one time, linearised about the last temperatures.
 
     Parameters
     ----------
@@ -148,11 +148,11 @@ class VaryingHeat:
     tangents : Tangents
     load : ThermalLoad
     supplied : ndarray, shape (n_owned,)
-        See `LinearHeatStep` [W].
+        Nodal heat, see `LinearHeatStep` [W].
     rise : ndarray, shape (n_owned,)
-        To start from [K].
+        Initial guess [K].
     change : float, optional
-        By how much it has changed, see `VaryingFrictionHeat.far`.
+        Last relative change of the rise, see `VaryingFrictionHeat.far`.
     """
 
     def __init__(
@@ -173,12 +173,12 @@ class VaryingHeat:
         self._linear = heat.about(tangents.near(rise), load, supplied, rise)
 
     def memory(self) -> tuple[np.ndarray | None, np.ndarray, float]:
-        """Where its tangents were made, its temperatures, and their last change."""
+        """Linearisation point of the tangents, temperatures, and their last change."""
         return self._tangents.reference, self._rise, self._last
 
     @property
     def unheated(self) -> ThermalState:
-        """The faces without any heat at the contact, about."""
+        """Linearised state of the faces without any heat at the contact."""
         return self._linear.unheated
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
@@ -191,15 +191,15 @@ class VaryingHeat:
         return self._rise
 
     def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
-        """What heat does to the condensed interface, about the last temperatures."""
+        """Thermal coupling of the condensed interface, linearised about the last temperatures."""
         return self._linear.coupling(conditions, basis)
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
-        """Whether the last coupling holds under a pressure; the next one is about its heat."""
+        """Test the convergence of the last coupling at a pressure; relinearise if not converged."""
         return self._moved(self._linear.faces(conditions, pressure)) <= _SETTLED
 
     def _newton(self, respond: Callable[[], ThermalState]) -> ThermalState:
-        """Go on to the temperatures that the faces' response to the present ones leads to."""
+        """Iterate the temperatures by Newton's method on the response of the faces."""
         for _ in range(_TURNS):
             faces = respond()
             if self._moved(faces) <= _SETTLED:
@@ -210,7 +210,7 @@ class VaryingHeat:
         )
 
     def _moved(self, faces: ThermalState) -> float:
-        """By how much the temperatures of some faces differ from the last ones; moves there."""
+        """Relative change of the temperatures for a state of the faces; relinearise there."""
         rise = self._linear.rise(faces)
         change = self._heat.far(rise, self._rise)
         if change <= _SETTLED:

@@ -1,1 +1,1 @@
-"""Interface problem: contact with wear and heat at one time, and its fixed points."""
+"""Interface problem: contact with wear and heat at one time, and its fixed-point iteration."""

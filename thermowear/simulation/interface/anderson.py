@@ -1,4 +1,4 @@
-"""Fixed points that going from one turn to the next would approach slowly, or not at all."""
+"""Anderson acceleration of fixed-point iterations."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ _REMEMBERED = 6
 
 
 class Mixing:
-    """Anderson's mixing of the last turns, without damping.
+    """Anderson mixing of the last iterates, without damping.
 
     Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715.
     """
@@ -18,7 +18,7 @@ class Mixing:
         self._missed: list[np.ndarray] = []
 
     def next(self, tried: np.ndarray, missed: np.ndarray) -> np.ndarray:
-        """What to try next, after what was tried and by how much it missed."""
+        """Next iterate from the present one and its residual (image minus iterate), shape (k,)."""
         self._tried = [*self._tried, tried][-_REMEMBERED:]
         self._missed = [*self._missed, missed][-_REMEMBERED:]
         if len(self._tried) == 1:

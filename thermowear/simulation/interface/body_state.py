@@ -1,4 +1,4 @@
-"""The bodies under a known contact pressure: temperatures, displacements, balances."""
+"""State of the bodies under a known contact pressure: temperatures, displacements, balances."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from ..model.system import System
 
 @dataclass(frozen=True)
 class ContactState:
-    """What the contact does to the bodies.
+    """Contact loads on the bodies: pressure, shear and friction heat.
 
     Attributes
     ----------
     pressure : ndarray, shape (n,) [Pa]
     conditions : InterfaceConditions
     warmth : TemperatureField or None
-        None without heat.
+        Temperatures; None without heat.
     shear : ndarray or None, shape (n,)
-        Traction of sticking and slipping on body 1, see `contact.tangential` [Pa].
+        Stick-slip traction on body 1, see `contact.operators.tangential` [Pa].
     """
 
     pressure: np.ndarray
@@ -44,7 +44,7 @@ class ContactState:
 def contact_state(
     system: System, pressure: np.ndarray, shear: np.ndarray | None = None
 ) -> ContactState:
-    """Of a contact whose conditions depend on nothing but where it touches. Every rank calls."""
+    """State of a contact whose conditions depend on the contact set alone. Every rank calls."""
     conditions = ConditionModel(system).at(0.0, pressure, None, pressure > 0)
     heat = friction_heat(system)
     warmth = None if heat is None else heat.lasting(conditions, pressure)
@@ -53,22 +53,22 @@ def contact_state(
 
 @dataclass(frozen=True)
 class BodyState:
-    """Fields of both bodies and what they do to the interface.
+    """Fields of both bodies and their effect on the interface.
 
     Attributes
     ----------
     displacement : ndarray, shape (n_owned,)
-        Without the holder's rigid motion [m].
+        Displacement without the holder's rigid motion [m].
     rise : ndarray or None, shape (n_owned,)
-        Temperature over the ambient [K].
+        Temperature rise over the ambient [K].
     opening : ndarray, shape (n,)
-        ``B u``: gap at the contact points that load and heat open [m].
+        ``B u``: change of the gap at the contact points by load and heat [m].
     thermal : ThermalState or None
         Temperatures and fluxes of the faces.
     hottest : float
         Highest temperature of the bodies [K]; NaN without heat.
     heat_error, force_error : float
-        Relative imbalance of heat and of forces; the former NaN without heat.
+        Relative errors of the balances of heat and of forces; the former NaN without heat.
     """
 
     displacement: np.ndarray
@@ -80,14 +80,14 @@ class BodyState:
     force_error: float
 
     def require_balance(self) -> None:
-        """Raise a `ComputationError` where heat or forces are not balanced."""
+        """Raise a `ComputationError` if heat or forces are not balanced."""
         require(equilibrium_relative_error=self.force_error)
         if self.thermal is not None:
             require(heat_balance_relative_error=self.heat_error)
 
 
 def body_state(system: System, contact: ContactState) -> BodyState:
-    """Solve the bodies for what the contact does to them. Every rank calls."""
+    """Solve the bodies for given contact loads. Every rank calls."""
     system = system.rubbing(contact.conditions.friction)
     pressure, shear, warmth = contact.pressure, contact.shear, contact.warmth
     thermal, rise, hottest, heat_error = None, None, float("nan"), float("nan")
@@ -110,12 +110,12 @@ def body_state(system: System, contact: ContactState) -> BodyState:
 
 
 def _force_error(system: System, contact: ContactState, displacement, loads) -> float:
-    """How far the supports' reactions are from what the holder gives and the contact carries.
+    """Relative error between support reactions and the forces of holder and contact.
 
-    Along every motion of the holder it must push body 1 with its load, or with what the contact
-    carries where the motion is given, and the support must push body 2 back; across them the
-    guides do. Moments of the contact act on each body at its own points. Relative to the sum of the
-    magnitudes, of all forces for translations.
+    Along each rigid mode the reaction on body 1 must equal the load of the holder, or the contact
+    force where the motion is given, and the support of body 2 must balance the contact; across
+    them the guides do. Moments of the contact act on each body at its own points. Relative to the
+    sum of the magnitudes, for translations of all forces.
     """
     drives = [*_with_rotations(system), *_across(system)]
     nodes = system.elastic.nodes()
@@ -132,7 +132,7 @@ def _force_error(system: System, contact: ContactState, displacement, loads) -> 
         held, supported, borne = sum_over_ranks(system.comm, np.array(parts))
         given = system.dead_resultant(drive.motion)
         found = share.sum()
-        # the largest of a history of loads may be over
+        # the load may be below the maximum of its history
         due = (
             found - given[0]
             if drive.load is None or contact.shear is not None
@@ -146,18 +146,17 @@ def _force_error(system: System, contact: ContactState, displacement, loads) -> 
 
 
 def _with_rotations(system: System) -> list[RigidMode]:
-    """Motions of the holder that the elements can follow without strain.
+    """Rigid modes of the holder that the elements represent without strain.
 
-    Rotations are linear in the coordinates: cells whose edges are curved by polynomials of a higher
-    degree than that of the displacement strain a little under them, and moments balance only
-    within the discretisation error.
+    Rotations are linear in the coordinates: in cells with a geometry of higher degree than the
+    displacement they cause small strains, and moments balance only within the discretisation error.
     """
     curved = coordinate_element(system.bodies.mesh).degree > system.case.mesh.degree
     return [d for d in system.holder.drives if not (curved and d.motion.rotation.any())]
 
 
 def _work(system: System, contact: ContactState, drives, side: PairedFace) -> np.ndarray:
-    """Of the traction of the contact on motions of a body, at the points of its face, (k, n)."""
+    """Work of the contact traction on motions of a body at the points of its face, (k, n)."""
     points = side.face.points(side.facet, side.t)
     moved = np.array([drive.motion.at(points) for drive in drives])
     traction = contact.pressure[:, None] * system.pull
@@ -167,13 +166,13 @@ def _work(system: System, contact: ContactState, drives, side: PairedFace) -> np
 
 
 def _across(system: System) -> list[RigidMode]:
-    """Translations along the axes that balance whatever the holder does, without a load."""
+    """Translations along the axes without a load, balanced independently of the holder."""
     gdim = system.pairing.points.shape[1]
     axes = [system.press] if system.case.model == "axisymmetric" else np.eye(gdim)
     return [RigidMode(translation(axis), amount=0.0) for axis in axes]
 
 
 def _part(load: np.ndarray, largest: np.ndarray) -> float:
-    """How much of the loads of the case there is."""
+    """Fraction of the loads of the case that is applied."""
     size = float(largest @ largest)
     return float(load @ largest) / size if size > 0 else 1.0

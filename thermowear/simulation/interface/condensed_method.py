@@ -1,4 +1,4 @@
-"""Contact solved on the condensed interface: small and dense."""
+"""Contact solver on the condensed interface, a small dense complementarity problem."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ _TIPPED = (
 
 
 class CondensedMethod:
-    """The contact conditions in the pressure space, with gaps measured weakly.
+    """Weak contact conditions in the pressure space.
 
-    Where the edge of the wear lies they hold point by point, see `contact.wear_edge`.
+    At the edge of the wear they hold pointwise, see `contact.wear.wear_edge`.
 
     Parameters
     ----------
@@ -85,10 +85,10 @@ class CondensedMethod:
         return space.at_points(np.diag(space.compliance(self._contact.compliance)))
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
-        """The principle in the pressure space.
+        """Steady-state principle in the pressure space.
 
-        The mean wear rates, weighted by the basis, are those of the rigid motion. That is the
-        implicit step of wear of bodies that do not yield.
+        The wear rates, weighted by the basis functions, equal the rigid-body wear velocity. That is
+        an implicit step of wear of rigid bodies.
         """
         contact, load = self._rubbed(conditions.friction), conditions.load
         coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
@@ -113,19 +113,19 @@ class CondensedMethod:
         return float(np.ptp(opened)) if opened.size else 0.0
 
     def _opened(self, contact: ContactSolution) -> np.ndarray:
-        """Change of the gap by the bodies' deformation, means over the basis functions (m,) [m]."""
+        """Change of the gap by elastic deflection, means over the basis functions, (m,) [m]."""
         opened = self._contact.compliance @ contact.memory.coefficients
         return opened / self._contact.weighted.sum(axis=0)
 
     def _rubbed(self, friction: np.ndarray) -> CondensedContact:
-        """The condensed bodies under the present friction (n,); the last one is kept."""
+        """Condensed bodies for coefficients of friction (n,); the last result is cached."""
         key = friction.tobytes()
         if self._rubbing[0] != key:
             self._rubbing = (key, self._system.rubbing(friction).contact)
         return self._rubbing[1]
 
     def _space(self, bodies: CondensedContact, points: np.ndarray | None) -> EdgeSpace | None:
-        """Pressures with one for each of some points; None without any. The last one is kept."""
+        """Pressure space with pointwise unknowns at given points, None without any; cached."""
         if points is None:
             return None
         last = self._last_space
@@ -137,7 +137,7 @@ class CondensedMethod:
     def _opening_on_the_spot(
         self, space: CondensedContact | EdgeSpace, slope: np.ndarray
     ) -> np.ndarray:
-        """Weak gaps (k, k) that pressures open on the spot [m/Pa]; the last ones are kept."""
+        """Weak gaps (k, k) per coefficient by a local compliance [m/Pa]; the last are cached."""
         last = self._last_opening
         if last is None or last[0] is not space or not np.array_equal(last[1], slope):
             opening = space.weighted.T @ (slope[:, None] * space.basis)
@@ -155,7 +155,7 @@ class CondensedMethod:
         guess: ContactSolution | None,
         load: np.ndarray,
     ) -> ContactSolution:
-        """Contact of bodies with a compliance (m, m) and a weak gap at rest (m,)."""
+        """Solve contact for a compliance (m, m) and a weak gap without pressure (m,)."""
         space = bodies if edge is None else edge
         start = None if guess is None else guess.memory.active
         if edge is not None:

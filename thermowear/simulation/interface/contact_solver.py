@@ -1,4 +1,4 @@
-"""Ways to solve contact, and what an implicit step of wear asks of them."""
+"""Interface of contact solvers, and Newton's method for an implicit step of wear."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ _NEWTON_STEPS = 40
 @serialisable
 @dataclass(frozen=True)
 class ContactSolution:
-    """A solved contact.
+    """Solution of a contact problem.
 
     Attributes
     ----------
     pressure : ndarray, shape (n,) [Pa]
     motion : ndarray, shape (n_drives,)
-        How far the holder has made each of its motions [m or rad].
+        Amount of each rigid mode of the holder [m or rad].
     memory : object
-        What the method that solved it starts from next time.
+        Warm start of the solver.
     apart : ndarray or None, shape (n,)
-        Gap of the points at which contact holds one by one: 0 where they press, NaN elsewhere;
-        None without such points [m].
+        Gap of the points with pointwise contact: 0 where they press, NaN at other points; None
+        without such points [m].
     """
 
     pressure: np.ndarray
@@ -41,12 +41,12 @@ class ContactSolution:
 
 
 class ContactSolver(Protocol):
-    """A way to solve contact with given loads: condensed, or on the full system.
+    """Solver of contact under given loads: condensed, or on the full system.
 
     Attributes
     ----------
     note : str or None
-        What the user should know about its settings.
+        Warning about the settings of the solver.
     """
 
     note: str | None
@@ -60,19 +60,19 @@ class ContactSolver(Protocol):
         heat: HeatStage | None,
         pointwise: np.ndarray | None = None,
     ) -> ContactSolution:
-        """Contact of bodies with friction heat and a local compliance.
+        """Solve contact of bodies with friction heat and a local compliance.
 
         Parameters
         ----------
         gap : ndarray, shape (n,)
-            Without pressure, heat and motion of the holder [m].
+            Gap without pressure, heat and motion of the holder [m].
         slope : Slope
-            Gap that the pressures open in addition to the bodies [m/Pa].
+            Gap per pressure in addition to the deflection of the bodies [m/Pa].
         guess : ContactSolution or None
         conditions : InterfaceConditions
         heat : HeatStage or None
         pointwise : ndarray of bool, shape (n,), optional
-            At the edge of the wear, where contact is to hold one by one: `contact.wear_edge`.
+            Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class ContactSolver(Protocol):
         """
 
     def yielding(self, points: np.ndarray) -> np.ndarray:
-        """Deflection under the pressure of single points, NaN at others, shape (n,) [m/Pa].
+        """Deflection per pressure of a single point, NaN at other points, shape (n,) [m/Pa].
 
         Parameters
         ----------
@@ -91,35 +91,35 @@ class ContactSolver(Protocol):
     def steady(
         self, pressure: np.ndarray, rates: WearRates, conditions: InterfaceConditions
     ) -> np.ndarray:
-        """Steady pressure as the method discretises it, from that of the principle [Pa].
+        """Steady pressure in the discretisation of the solver, from that of the principle [Pa].
 
         Parameters
         ----------
         pressure : ndarray, shape (n,) [Pa]
         rates : WearRates
         conditions : InterfaceConditions
-            That the steady state leads to.
+            Conditions in the steady state.
         """
 
     def opening(self, contact: ContactSolution) -> float:
-        """Largest change of the gap by the bodies' deformation [m]."""
+        """Largest change of the gap by elastic deflection [m]."""
 
     def bending(self, contact: ContactSolution) -> float:
-        """By how much that differs over the area that presses [m]."""
+        """Range of the elastic deflection over the contact area [m]."""
 
 
 @dataclass(frozen=True)
 class Slope:
-    """Derivative of a local opening of the gap by the pressures.
+    """Derivative of a gap by the pressures, ``diag(point) + reach rows``.
 
     Attributes
     ----------
     point : ndarray, shape (n,)
-        By the pressure on the spot [m/Pa].
+        Derivative by the pressure at the same point [m/Pa].
     rows : ndarray, shape (k, n)
-        Of k means by the pressures at the points [m/Pa].
+        Derivatives of k means by the pressures at the points [m/Pa].
     reach : ndarray, shape (n, k)
-        How much of each mean each point has.
+        Weight of each mean at each point.
     """
 
     point: np.ndarray
@@ -128,32 +128,32 @@ class Slope:
 
     @classmethod
     def on_the_spot(cls, point: np.ndarray) -> Slope:
-        """Without means."""
+        """Diagonal derivative, without means."""
         return cls(point, np.zeros((0, len(point))), np.zeros((len(point), 0)))
 
     def times(self, step: float) -> Slope:
-        """The same for a longer or shorter step."""
+        """Derivative scaled by a step size."""
         return Slope(step * self.point, step * self.rows, self.reach)
 
     def softer_by(self, point: np.ndarray) -> Slope:
-        """The same with something more that opens on the spot (n,) [m/Pa]."""
+        """Derivative with an additional local compliance (n,) [m/Pa]."""
         return Slope(self.point + point, self.rows, self.reach)
 
     def opened(self, pressure: np.ndarray) -> np.ndarray:
-        """By a pressure (n,) [m]."""
+        """Gap opened by a pressure (n,) [m]."""
         return self.point * pressure + self.reach @ (self.rows @ pressure)
 
 
 @dataclass(frozen=True)
 class WearRates:
-    """The wear laws at the contact points.
+    """Wear rates at the contact points under given conditions.
 
     Attributes
     ----------
     laws : list of WearRate
-        Of the wearing bodies.
+        Wear laws of the wearing bodies.
     spreads : list of Distribution
-        Of the same bodies.
+        Distributions of the wear of these bodies.
     conditions : InterfaceConditions
     """
 
@@ -169,7 +169,7 @@ class WearRates:
         return rates
 
     def slope(self, pressure: np.ndarray) -> Slope:
-        """Derivative of their sum by the pressures [m/s/Pa]."""
+        """Derivative of the sum of the wear rates by the pressures [m/s/Pa]."""
         n = len(pressure)
         point, rows, reach = np.zeros(n), [np.zeros((0, n))], [np.zeros((n, 0))]
         for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
@@ -184,12 +184,12 @@ class WearRates:
 def newton_with_wear(
     solve, rates: WearRates, step: float, guess: ContactSolution
 ) -> ContactSolution:
-    """Newton's method on contact with wear that grows with the pressure.
+    """Solve contact with pressure-dependent wear in an implicit step by Newton's method.
 
     Parameters
     ----------
     solve : callable
-        Contact for a worn depth at zero pressure (n,), its slope by the pressures, and a guess.
+        Contact for a wear depth at zero pressure (n,), its slope by the pressures, and a guess.
     rates : WearRates
     step : float
         [s]

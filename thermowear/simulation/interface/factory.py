@@ -1,4 +1,4 @@
-"""Choice of the contact solver and of the heat model of an interface problem."""
+"""Factory of interface problems: choice of the contact solver and of the heat model."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .interface_problem import InterfaceProblem
 def interface_problem(
     system: System, note: Callable[[str], None] | None = None
 ) -> InterfaceProblem:
-    """The interface of a system, solved by the method of the case. Every rank calls.
+    """Interface problem of a system, with the contact method of the case. Every rank calls.
 
     Parameters
     ----------
     system : System
     note : callable, optional
-        Told of settings that the answer may suffer from.
+        Called with a warning about settings that may impair the solution.
     """
     heat = friction_heat(system)
     problem = InterfaceProblem(system, _solver(system), heat)

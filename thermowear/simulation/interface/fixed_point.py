@@ -1,4 +1,4 @@
-"""States of the interface that lead to the very conditions that they come from."""
+"""Fixed-point iteration for state-dependent interface conditions."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from .anderson import Mixing
 
 _DAMPED = 0.5
 _NEAR = 0.05
-"""Relative miss below which turns are mixed; farther off, that may lead to another state."""
+"""Relative residual below which iterates are mixed; above it, that may lead to another state."""
 _TURNS = 100
 _LEAST_RISE = 1.0  # K
 
 
 class TrialState(Protocol):
-    """What conditions depend on."""
+    """State that the interface conditions depend on."""
 
     @property
     def pressure(self) -> np.ndarray:
-        """At the points, shape (n,) [Pa]."""
+        """Pressure at the points, shape (n,) [Pa]."""
 
     @property
     def faces(self) -> ThermalState | None:
-        """Temperatures of the faces; None without heat."""
+        """Temperatures and fluxes of the faces; None without heat."""
 
     @property
     def worn(self) -> np.ndarray:
@@ -41,7 +41,7 @@ Found = TypeVar("Found", bound=TrialState)
 
 @dataclass(frozen=True)
 class Trial:
-    """A state that is tried."""
+    """Iterate of the fixed-point iteration."""
 
     pressure: np.ndarray
     faces: ThermalState | None
@@ -56,11 +56,11 @@ def self_consistent(
     complaint: str,
     closed: np.ndarray | None = None,
 ) -> tuple[InterfaceConditions, Found]:
-    """Find a state whose conditions lead to itself.
+    """Find a state that is consistent with its own conditions.
 
-    Half of the way is gone in each turn at first: where there are several states, that ends in the
-    one that slow heating would reach, as states that heating would leave repel it. Close to it the
-    last turns are mixed.
+    The iteration begins with damping by one half: among several states it converges to the one
+    that slow heating would reach, as states unstable under heating repel it. Near the fixed point
+    Anderson mixing takes over.
 
     Parameters
     ----------
@@ -69,11 +69,11 @@ def self_consistent(
         [s]
     start : TrialState
     respond : callable
-        The state that given conditions lead to.
+        State under given conditions.
     complaint : str
-        What to say where there is none.
+        Message of the error if the iteration does not converge.
     closed : ndarray of bool, shape (n,), optional
-        Points that exchange heat by contact; by default those of the state that press.
+        Points that exchange heat by contact; by default the points in contact of each state.
 
     Raises
     ------
@@ -106,14 +106,14 @@ def _scales(found: TrialState) -> tuple[float, float]:
 
 
 def _stacked(state: TrialState, found: TrialState) -> np.ndarray:
-    """A state as one vector without dimension, by the scales of what was found."""
+    """Dimensionless vector of a state, scaled by the pressure and rise of the last response."""
     pascal, kelvin = _scales(found)
     rises = () if state.faces is None else state.faces.rise
     return np.concatenate([state.pressure / pascal, *(rise / kelvin for rise in rises)])
 
 
 def _unstacked(vector: np.ndarray, found: TrialState) -> Trial:
-    """The inverse; it presses where what was found does."""
+    """Inverse of `_stacked`, with the contact set of the last response."""
     pascal, kelvin = _scales(found)
     pressure, *rises = np.split(vector, 1 if found.faces is None else 3)
     pressing = np.where(found.pressure > 0, np.maximum(pressure, 1e-9), 0.0) * pascal

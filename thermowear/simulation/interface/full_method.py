@@ -1,4 +1,4 @@
-"""Contact solved on the full system, by penalty or by Nitsche's method."""
+"""Contact solver on the full system, by penalty or by Nitsche's method."""
 
 from __future__ import annotations
 
@@ -27,13 +27,14 @@ _SETTLED = 1e-9  # of the largest pressure
 
 
 class FullMethod:
-    """The contact conditions point by point, on all nodal displacements.
+    """Pointwise contact conditions on all nodal displacements.
 
-    Where the edge of the wear lies the points yield by themselves, see `contact.edge_deflection`.
+    At the edge of the wear points have a deflection of their own, see
+    `contact.wear.edge_deflection`.
 
-    Heat and contact are solved in turn: the bodies conduct the friction heat of a pressure, their
-    distortion changes the pressure. The turns are accelerated, as one after the other they converge
-    no faster than the speed is below the critical one.
+    Heat and contact are solved in a staggered iteration: friction heat distorts the bodies, and the
+    distortion changes the pressure. It uses Anderson acceleration, as its plain convergence rate is
+    the ratio of the speed to the critical one.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ class FullMethod:
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None
     ) -> ContactSolution:
         start, load = None if guess is None else guess.memory, conditions.load
-        slope = slope.point  # means are of turning disks in space, which is for condensed contact
+        slope = slope.point  # means occur for rotating disks in 3D, with condensed contact only
         edge = self._deflection(pointwise)
         if heat is None:
             return self._result(self._solved(gap, slope, start, load, self._dead, None, edge))
@@ -74,7 +75,7 @@ class FullMethod:
         return np.where(points, self._edge_compliance, np.nan)
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
-        """The principle point by point: the full system has no pressure space of its own."""
+        """Pressure of the principle unchanged: the full system has no pressure space."""
         return pressure
 
     def opening(self, contact: ContactSolution) -> float:
@@ -85,19 +86,19 @@ class FullMethod:
         return float(np.ptp(opened)) if opened.size else 0.0
 
     def _opened(self, contact: ContactSolution) -> np.ndarray:
-        """Change of the gap by the bodies' deformation at the points, shape (n,) [m]."""
+        """Change of the gap by elastic deflection at the points, shape (n,) [m]."""
         system = self._system
         return sum_over_ranks(system.comm, system.trace.T @ contact.memory.displacement)
 
     @cached_property
     def _edge_compliance(self) -> np.ndarray:
-        """ε of the points at the edge of the wear, shape (n,) [m/Pa]."""
+        """Compliance ε of the points at the edge of the wear, shape (n,) [m/Pa]."""
         system = self._system
         degree = pressure_degree(system.case)
         return wave_compliance(system.elastic, system.pairing, degree)
 
     def _deflection(self, points: np.ndarray | None) -> EdgeDeflection | None:
-        """What the bodies do not see of some points; None without any. The last one is kept."""
+        """Unresolved deflection at given points, None without any; the last result is cached."""
         if points is None:
             return None
         last, system = self._last_deflection, self._system
@@ -107,7 +108,7 @@ class FullMethod:
         return last[1]
 
     def _warm(self, gap, slope, start, conditions, heat, pressure, edge) -> FullSolution:
-        """Contact of bodies that the friction heat of a pressure has distorted."""
+        """Solve contact of bodies distorted by the friction heat of a pressure."""
         assert self._system.thermal is not None
         faces = heat.faces(conditions, pressure)
         forces = self._system.thermal.forces(heat.rise(faces))
@@ -124,7 +125,7 @@ class FullMethod:
 
 
 def _full_contact(system: System) -> tuple[FullContact, str | None]:
-    """The equations that the case asks for, and a warning where its numbers are out of range."""
+    """Contact equations of the case, and a warning if its parameters are out of range."""
     settings, holder = system.case.contact, system.holder
     elastic, pairing = system.elastic, system.pairing
     stress, note = None, None

@@ -1,4 +1,4 @@
-"""The interface alone: contact, friction heat and an implicit step of wear."""
+"""Interface problem: contact, friction heat and an implicit step of wear."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _UNWORN = (
     "give the contact a (smaller) heat.conductance, or reduce the speed"
 )
 _RISE = 0.1
-"""Of what the largest pressure has risen by in a step, where its points are reached one by one."""
+"""Fraction of the rise of the largest pressure in a step that counts as its error."""
 _BEHIND = 0.03
-"""Of a step: so far behind the time at which a point is expected to be reached it ends."""
+"""Delay of the end of a step behind the expected time of reaching a point, relative to the step."""
 _SETTLING = 0.4
-"""Of the time in which wear takes up the deflection under a point: step after it is reached."""
+"""Step after reaching a point, relative to the time in which wear takes up its deflection."""
 _STEP = "contact: what depends on temperature or pressure does not settle in a step"
 
 
@@ -57,30 +57,30 @@ class InterfaceProblem:
 
     @property
     def stores_heat(self) -> bool:
-        """Whether temperatures are followed in time."""
+        """True if conduction is transient."""
         return self._transient
 
     @property
     def note(self) -> str | None:
-        """What the user should know about the settings of the method."""
+        """Warning about the settings of the contact solver; None without one."""
         return self._method.note
 
     def unworn(self) -> InterfaceState:
-        """Contact of the unworn faces at the temperatures that its friction leads to.
+        """Contact of the unworn faces with the steady temperatures of its own friction heat.
 
-        The points that exchange heat are found by iteration.
+        The points that exchange heat are found by fixed-point iteration.
 
         Raises
         ------
         ComputationError
-            If the set of touching points, or what depends on the state, does not settle.
+            If the contact set or the state-dependent properties do not converge.
         """
         return self._lasting(self._nothing(), 0.0)
 
     def _lasting(
         self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
     ) -> InterfaceState:
-        """Contact of faces with given wear, at the temperatures that its friction leads to."""
+        """Contact of faces with given wear and the steady temperatures of its friction heat."""
         heat = None if self._heat is None else self._heat.steady
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
@@ -93,12 +93,12 @@ class InterfaceProblem:
         return self_consistent(self._surroundings, time, start, respond, _UNWORN)[1]
 
     def worn(self, depth: np.ndarray, guess: ContactSolution | None = None) -> ContactSolution:
-        """Contact of faces from which a depth (n,) is worn, without heat [m]."""
+        """Contact of faces with a total wear depth (n,) [m], without heat."""
         conditions = self.conditions(InterfaceState(self._nothing(), self._guess), 0.0)
         return self._contact(depth[None], 0.0, conditions, None, guess)
 
     def start(self) -> InterfaceState:
-        """The unworn faces at time 0."""
+        """State of the unworn faces at time 0."""
         if not self._transient:
             return self.unworn()
         assert self._heat is not None
@@ -112,23 +112,24 @@ class InterfaceProblem:
         rise: np.ndarray | None,
         time: float,
     ) -> InterfaceState:
-        """A state of a problem of the same bodies before their meshes were moved.
+        """Transfer a state of the same bodies from before an update of their meshes.
 
         Parameters
         ----------
         former : InterfaceProblem
+            Problem on the former meshes.
         state : InterfaceState
-            Of that problem.
+            State of the former problem.
         worn : ndarray, shape (n_wearing, n)
-            Its depths at the points of this problem [m].
+            Transferred wear depths at the points of this problem [m].
         rise : ndarray or None, shape (n_owned,)
-            Its temperatures at the nodes of this problem, where they are followed in time [K].
+            Transferred nodal temperature rise in transient conduction [K].
         time : float
             [s]
         """
         edge, geometry = state.pointwise, self._system.worn
         if edge is not None and (geometry is None or geometry.pieces is None):
-            edge = self._edge.points(worn)  # the contact points are other ones
+            edge = self._edge.points(worn)  # the contact points have changed
         if state.stored is None:
             found = self._lasting(worn, time, edge)
         else:
@@ -146,22 +147,22 @@ class InterfaceProblem:
         time: float,
         pointwise: np.ndarray | None = None,
     ) -> InterfaceState:
-        """Contact at a moment of which the temperatures are known."""
+        """Contact at given temperatures."""
         guess = InterfaceState(worn, self._guess, faces=heat.initial)
         conditions = self.conditions(guess, time)
         contact = self._contact(worn, 0.0, conditions, heat, None, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
 
     def begin(self, state: InterfaceState) -> InterfaceState:
-        """A state with the points at which contact holds one by one in the next step.
+        """Choose the points with pointwise contact for the next step.
 
-        None before the edge of the contact is that of the wear. With the distance ξ from an edge
+        None until the edge of the contact is the edge of the wear. At a distance ξ from an edge
         that travels at a speed c the pressure rises as ``ξ^θ``, ``tan πθ = 2 c / (E* k v)``:
-        ``2 p / E*`` is the slope of the bodies' deflection, ``k v p / c`` that of the worn depth
+        ``2 p / E*`` is the slope of the elastic deflection, ``k v p / c`` that of the wear depth
         (from ``k v p / c + 2 / (π E*) ∫ p(s) / (s - ξ) ds = const``, a singular integral equation;
         Muskhelishvili, Singular Integral Equations, 1953, ch. 12). Without wear θ is 1/2, and p
-        falls to zero smoothly; where wear counts for more, θ < 1/4, it is nearly a jump. Both
-        slopes are taken in the mean, by what depth and deflection differ over the contact.
+        falls to zero smoothly; where wear dominates, θ < 1/4, it is nearly a jump. The mean slopes
+        are compared, by the ranges of wear depth and deflection over the contact.
         """
         pressed = state.worn.any() and state.contact.memory is not None
         if not pressed:
@@ -176,10 +177,10 @@ class InterfaceProblem:
     def stage(
         self, before: InterfaceState, step: float, time: float, guess: InterfaceState
     ) -> InterfaceState:
-        """The end of an implicit Euler step of wear, and of heat where it is followed in time.
+        """Implicit Euler step of wear, and of heat in transient conduction.
 
-        What depends on the state is that of the end of the step, but for the points that exchange
-        heat: those that have touched before.
+        State-dependent conditions are those at the end of the step, except for the points that
+        exchange heat: the contact set of the guess.
         """
         heat, last = self._heat_at_end(before, step, time), guess.contact
 
@@ -196,12 +197,12 @@ class InterfaceProblem:
         return self._moved_on(before, found, step, conditions, heat)
 
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
-        """What holds at the interface in a state at a time [s]."""
+        """Interface conditions in a state at a time [s]."""
         touching = state.pressure > 0
         return self._surroundings.at(time, state.pressure, state.faces, touching, state.worn)
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
-        """What a state does to the bodies; every rank calls."""
+        """Contact loads of a state on the bodies; every rank calls."""
         conditions, warmth = self.conditions(state, time), None
         if self._heat is not None and state.stored is not None and state.faces is not None:
             warmth = self._heat.momentary(state.stored, state.faces)
@@ -216,14 +217,14 @@ class InterfaceProblem:
         return float(np.max(state.faces.rise)) + self._heat.ambient
 
     def face_temperatures(self, state: InterfaceState) -> tuple[np.ndarray, np.ndarray]:
-        """Of both faces at the points [K], where there is heat."""
+        """Temperatures of both faces at the points, two arrays of shape (n,) [K]; needs heat."""
         assert self._heat is not None
         assert state.faces is not None
         T1, T2 = state.faces.rise
         return T1 + self._heat.ambient, T2 + self._heat.ambient
 
     def heat_balance(self, state: InterfaceState) -> HeatBalance:
-        """Of all the heat so far, where it is followed in time; every rank calls."""
+        """Heat balance since the start in transient conduction; every rank calls."""
         assert self._heat is not None
         assert state.stored is not None
         return self._heat.balance(state.stored)
@@ -231,15 +232,15 @@ class InterfaceProblem:
     def difference(
         self, before: InterfaceState, one: InterfaceState, other: InterfaceState
     ) -> float:
-        """Difference of two pressures, the largest one where they are continuous in time [Pa].
+        """Difference of two pressures, the maximum norm where they are continuous in time [Pa].
 
-        A point at which contact holds by itself begins to press at once when the edge of the wear
-        reaches it. The largest difference of two histories is then one of the moment when that
-        happens, and no step makes it small. What converges, and is asked for, is the mean over the
-        area that presses, and the largest pressure, wherever that is. A step that reaches a point
-        with its last stage wears that too late and presses it too much, by chance alike in both
-        histories: so a rise of the largest pressure counts as well. All of the pressure counts
-        where the edge has gone beyond its points.
+        A point with pointwise contact begins to press suddenly when the edge of the wear reaches
+        it. The maximum norm of the difference of two histories then measures the time of that
+        event and does not decrease with the step. The norms that converge are the mean over the
+        contact area and the difference of the largest pressures, at any points. A step that
+        reaches a point in its last stage wears it too late and loads it too much, possibly alike
+        in both histories: a rise of the largest pressure therefore counts as well. If the edge has
+        passed beyond its points, the largest pressure itself is returned.
         """
         change = np.abs(one.pressure - other.pressure)
         if one.pointwise is None:
@@ -258,9 +259,9 @@ class InterfaceProblem:
         step: float,
         time: float,
     ) -> tuple[float, float]:
-        """Steps that end right behind a time at which the edge of the wear reaches a point.
+        """Step sizes that end right behind a time at which the edge of the wear reaches a point.
 
-        See `WearProblem`. After a step within which a pressure has begun the next one is short.
+        See `WearProblem`. The step after one in which a point has begun to press is short.
         """
         start, middle, end = (state.contact.apart for state in states)
         if start is None or middle is None or end is None:
@@ -275,7 +276,7 @@ class InterfaceProblem:
         return (1 + _BEHIND) * reached if np.isfinite(reached) else 0.0, following
 
     def _settling(self, state: InterfaceState, time: float, points: np.ndarray) -> float:
-        """Shortest time in which wear takes up the deflection under the pressure of points [s]."""
+        """Shortest time in which wear takes up the elastic deflection under single points [s]."""
         assert state.pointwise is not None
         slope = self._rates(self.conditions(state, time)).slope(state.pressure).point[points]
         yielding = self._method.yielding(state.pointwise)[points]
@@ -288,20 +289,20 @@ class InterfaceProblem:
         return self._heat.difference(one.stored, other.stored)
 
     def memory(self) -> Any:
-        """What the next states depend on beside the last one; see `recall`."""
+        """Internal state to restart from beside the last interface state; see `recall`."""
         return None if self._heat is None else self._heat.memory()
 
     def recall(self, memory: Any) -> None:
-        """Be as another problem of the same system was when it had this memory."""
+        """Restore the internal state from `memory`."""
         if self._heat is not None:
             self._heat.recall(memory)
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Times up to an end at which something changes its course [s]."""
+        """Times up to an end at which a history has a corner [s]."""
         return self._surroundings.corners(end)
 
     def first_step(self, state: InterfaceState) -> float:
-        """A step in which wear is small against the bodies' deflection, and heat goes not far [s].
+        """Initial step: wear small against elastic deflection, small penetration of heat [s].
 
         May be infinite.
         """
@@ -316,12 +317,12 @@ class InterfaceProblem:
         return step
 
     def steady(self, steady: SteadyState) -> np.ndarray:
-        """Steady pressure of the discrete interface: what a running-in of it tends to [Pa]."""
+        """Steady pressure of the discrete interface, the limit of its running-in [Pa]."""
         conditions = steady.conditions
         return self._method.steady(steady.wear.pressure, self._rates(conditions), conditions)
 
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
-        """Largest difference to a steady pressure, relative to the largest of that; NaN without."""
+        """Largest difference to a steady pressure, relative to its maximum; NaN without one."""
         if steady is None:
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
@@ -330,12 +331,12 @@ class InterfaceProblem:
         return WearRates(self._laws, self._spreads, conditions)
 
     def _nothing(self) -> np.ndarray:
-        """No wear, shape (n_wearing, n)."""
+        """Zero wear depths, shape (n_wearing, n)."""
         return np.zeros((len(self._laws), len(self._gap)))
 
     @property
     def _guess(self) -> ContactSolution:
-        """The mean pressure, all over the face."""
+        """Initial guess: the mean pressure, uniform over the face."""
         area = float(self._system.weights.sum())
         pressure = np.full(len(self._gap), (self._system.case.force() or area) / area)
         return ContactSolution(pressure, np.zeros(0), None)
@@ -348,7 +349,7 @@ class InterfaceProblem:
         return self._heat.after(before.stored, step, time)
 
     def _moved_on(self, before, state, step, conditions, heat) -> InterfaceState:
-        """A state with what has accumulated in a step."""
+        """State with the wear and heat accumulated in a step."""
         worn = before.worn + step * self._rates(conditions)(state.pressure)
         stored = None
         if before.stored is not None:
@@ -368,8 +369,8 @@ class InterfaceProblem:
     ) -> ContactSolution:
         """Contact at the end of an implicit step of wear, by Newton's method.
 
-        Each Newton step is a contact problem of its own: wear that grows with the pressure adds
-        ``step · ∂rate/∂p`` to the compliance of each point.
+        Each Newton step is a contact problem: pressure-dependent wear adds ``step · ∂rate/∂p`` to
+        the compliance of each point.
         """
         gap = self._gap + worn.sum(axis=0)
         if conditions.released:  # the holder stays where it is

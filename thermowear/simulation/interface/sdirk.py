@@ -1,4 +1,4 @@
-"""One implicit step of wear and the error it makes."""
+"""SDIRK step of wear with an error estimate, and step size control."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ _γ = 1 - 1 / np.sqrt(2)
 
 
 _ROUNDING = 1e-13  # of the largest pressure so far: no step makes smaller errors
-_LEAST_RISE = 10.0  # K; errors of smaller rises are held against this one
+_LEAST_RISE = 10.0  # K; least scale of temperature errors
 
 
 @serialisable
 @dataclass(frozen=True)
 class InterfaceState:
-    """State of a running-in.
+    """State of the interface in a running-in.
 
     Attributes
     ----------
     worn : ndarray, shape (n_wearing, n)
-        Depths worn off [m].
+        Wear depths [m].
     contact : ContactSolution
     peak : float
-        Largest pressure before [Pa].
+        Largest pressure of the earlier states [Pa].
     faces : ThermalState or None
         Temperatures and fluxes of the faces; None without heat.
     stored : StoredHeat or None
-        None where temperatures are those of a steady state at any time.
+        Stored heat in transient conduction; None if conduction is quasi-steady.
     pointwise : ndarray of bool or None, shape (n,)
-        Points at which contact holds one by one, at the edge of the wear, see `contact.wear_edge`.
+        Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
     """
 
     worn: np.ndarray
@@ -48,16 +48,16 @@ class InterfaceState:
 
     @property
     def pressure(self) -> np.ndarray:
-        """At the points, shape (n,) [Pa]."""
+        """Pressure at the points, shape (n,) [Pa]."""
         return self.contact.pressure
 
     @property
     def largest(self) -> float:
-        """Pressure so far [Pa]."""
+        """Largest pressure so far [Pa]."""
         return max(self.peak, float(self.pressure.max()))
 
     def towards(self, other: InterfaceState, part: float) -> InterfaceState:
-        """What accumulates moved on by a part of the way to another state."""
+        """Interpolate wear and stored heat linearly (or extrapolate) to another state."""
         stored = self.stored
         if stored is not None and other.stored is not None:
             stored = stored.towards(other.stored, part)
@@ -68,30 +68,30 @@ class InterfaceState:
 
 
 class WearProblem(Protocol):
-    """Contact of bodies that wear: in place, or averaged over a cycle.
+    """Contact of wearing bodies: interface to time integration, in place or averaged over a cycle.
 
-    Depths have shape (n_rows, n); what they open is their sum over the rows.
+    Wear depths have shape (n_rows, n); the gap opens by their sum over the rows.
     """
 
     def start(self) -> InterfaceState:
-        """The unworn faces, at time 0."""
+        """State of the unworn faces at time 0."""
 
     def begin(self, state: InterfaceState) -> InterfaceState:
-        """A state with what is chosen anew for each step, the same for all that it is made of."""
+        """Choose the settings of a step, common to all its stages and substeps."""
 
     def stage(
         self, before: InterfaceState, step: float, time: float, guess: InterfaceState
     ) -> InterfaceState:
-        """The end of an implicit Euler step.
+        """Implicit Euler step.
 
         Parameters
         ----------
         before : InterfaceState
-            What has accumulated before the step.
+            Accumulated wear and heat before the step.
         step, time : float
-            Its size and its end [s].
+            Size and end of the step [s].
         guess : InterfaceState
-            A state near to the result.
+            Initial guess of the result.
 
         Raises
         ------
@@ -101,14 +101,16 @@ class WearProblem(Protocol):
     def difference(
         self, before: InterfaceState, one: InterfaceState, other: InterfaceState
     ) -> float:
-        """Difference of two pressures, the largest one where they are continuous in time [Pa].
+        """Difference of two pressures, the maximum norm where they are continuous in time [Pa].
+
+        Returns the largest pressure if the settings of the step, see `begin`, are not valid for it.
 
         Parameters
         ----------
         before : InterfaceState
-            At the beginning of the step.
+            State at the beginning of the step.
         one, other : InterfaceState
-            At its end; all of the pressure where what was chosen for the step does not do for them.
+            States at the end of the step.
         """
 
     def edge_steps(
@@ -117,47 +119,47 @@ class WearProblem(Protocol):
         step: float,
         time: float,
     ) -> tuple[float, float]:
-        """Steps that end right behind a time at which the edge of the wear reaches a point.
+        """Step sizes that end right behind a time at which the edge of the wear reaches a point.
 
         Parameters
         ----------
         states : tuple of InterfaceState
-            At the beginning of a step, in its middle and at its end.
+            States at the beginning, in the middle and at the end of a step.
         step, time : float
-            Its size and its end [s].
+            Size and end of the step [s].
 
         Returns
         -------
         reached : float
-            In place of this step, to the first point that it has reached; 0 without any [s].
+            Size that replaces this step, up to the first point reached in it; 0 without any [s].
         following : float
-            The largest that may follow this step; may be infinite [s].
+            Upper bound of the next step; may be infinite [s].
         """
 
     def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
-        """Largest difference of temperatures inside the bodies, where that matters [K]."""
+        """Largest temperature difference inside the bodies; 0 without heat beside friction [K]."""
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Times up to an end that steps must not pass over [s]."""
+        """Times up to an end that steps must hit exactly [s]."""
 
     def first_step(self, state: InterfaceState) -> float:
-        """A step to begin with [s]; may be infinite."""
+        """Initial step [s]; may be infinite."""
 
     def steady(self, steady) -> np.ndarray:
         """Pressure of the discrete interface in a steady state [Pa]."""
 
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
-        """How far from the steady state; NaN where that is not known."""
+        """Relative distance from the steady state; NaN where that is not known."""
 
 
 def advance(
     problem: WearProblem, state: InterfaceState, time: float, step: float
 ) -> InterfaceState:
-    """One step of the two-stage, second-order, L-stable diagonally implicit Runge-Kutta method.
+    """Step of the two-stage, second-order, L-stable SDIRK method.
 
     It is stiffly accurate, so the contact conditions hold at the end of the step, and its weights
-    are positive, so wear never goes back (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006). Both
-    stages are implicit Euler steps of the size γ step.
+    are positive, so wear never decreases (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006). Both
+    stages are implicit Euler steps of size γ times the step.
     """
     first = problem.stage(state, _γ * step, time + _γ * step, state)
     before = state.towards(first, (1 - _γ) / _γ)
@@ -166,15 +168,16 @@ def advance(
 
 @dataclass(frozen=True)
 class TrialStep:
-    """A step that has been tried.
+    """Result of a trial step.
 
     Attributes
     ----------
     state : InterfaceState
-        At its end.
+        State at the end of the step.
     error : float
+        Relative error estimate.
     reached, following : float
-        See `WearProblem.edge_steps` [s].
+        Step sizes of `WearProblem.edge_steps` [s].
     """
 
     state: InterfaceState
@@ -186,19 +189,18 @@ class TrialStep:
 def advance_with_error(
     problem: WearProblem, state: InterfaceState, time: float, step: float
 ) -> TrialStep:
-    """Two half steps, and their error from the difference to a whole one (Richardson).
+    """Two half steps, with their error by Richardson extrapolation from one whole step.
 
     Returns
     -------
     TrialStep
         The state after the two half steps. Its error is the largest of those of pressure (see
-        `WearProblem.difference`), of wear, and of
-        temperatures that are followed in time: relative to the largest pressure, to the largest
-        depth worn and to the largest rise so far, 10 K at least. Temperatures are those of the
-        faces, and those inside the bodies where not friction alone heats them. What rounding makes
-        of a pressure that vanishes in the end is no error of the step.
+        `WearProblem.difference`), of wear, and of transient temperatures: relative to the largest
+        pressure, to the largest wear depth and to the largest rise so far, 10 K at least.
+        Temperatures are those of the faces, and those inside the bodies where friction is not the
+        only heat source. Differences at rounding level do not count where the pressure vanishes.
     """
-    # the same points for the whole step and for its halves: what moves on is no error of time
+    # the same points for the whole step and its halves: a change of points is no time error
     state = problem.begin(state)
     whole = advance(problem, state, time, step)
     middle = advance(problem, state, time, step / 2)
@@ -221,7 +223,7 @@ def advance_with_error(
 
 
 def _relative(errors: np.ndarray | float, scale: float, allowed: float = 0.0) -> float:
-    """By how much the largest exceeds what is allowed, against a scale; 0 where nothing does."""
+    """Excess of the largest error over an allowed one, relative to a scale; at least 0."""
     largest = float(np.abs(errors).max(initial=0.0)) - allowed
     return largest / scale if largest > 0.0 else 0.0
 
@@ -229,16 +231,16 @@ def _relative(errors: np.ndarray | float, scale: float, allowed: float = 0.0) ->
 def next_step(
     step: float, error: float, tolerance: float, former: tuple[float, float] | None = None
 ) -> float:
-    """Step size that should meet the tolerance; the error goes with its third power.
+    """Step size expected to meet the tolerance; the error is of third order in the step.
 
-    Where it has grown less than that from the former step to this one, it is expected to do so
-    again (predictive control, Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496).
+    Slower growth of the error from the former step to this one is extrapolated to the next
+    (predictive control, Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496).
 
     Parameters
     ----------
     step, error, tolerance : float
     former : tuple of float, optional
-        Size and error of the step that led to this one; without them no more is expected.
+        Size and error of the preceding step; without them there is no prediction.
     """
     if error == 0.0:
         return 5.0 * step

@@ -1,4 +1,4 @@
-"""The steady state, directly from the principle of minimum wear dissipation power."""
+"""Steady state by the principle of minimum wear dissipation power."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NONE = (
 
 @dataclass(frozen=True)
 class SteadyState:
-    """The steady state of a system.
+    """Steady state of a system.
 
     Attributes
     ----------
@@ -36,19 +36,19 @@ class SteadyState:
 
     @property
     def conditions(self) -> InterfaceConditions:
-        """What holds at the interface in it."""
+        """Interface conditions in the steady state."""
         return self.contact.conditions
 
 
 def steady_state(system: System) -> SteadyState:
-    """Pressure, wear rates and rigid-body wear velocity of a system. Every rank calls.
+    """Steady pressure, wear rates and rigid-body wear velocity of a system. Every rank calls.
 
-    Where friction, wear or conductance depend on the state that they lead to, it is a fixed point.
+    State-dependent friction, wear or conductance are resolved by fixed-point iteration.
 
     Raises
     ------
     ComputationError
-        If there is no steady state, or no fixed point is found.
+        If there is no steady state, or the fixed-point iteration does not converge.
     """
     heat = friction_heat(system)
     area = float(system.weights.sum())
@@ -68,7 +68,7 @@ def steady_state(system: System) -> SteadyState:
 
 @dataclass(frozen=True)
 class _Worn:
-    """The principle's answer to some conditions."""
+    """Solution of the principle under given conditions, with temperatures of the faces."""
 
     wear: SteadyWear
     faces: ThermalState | None
@@ -80,7 +80,7 @@ class _Worn:
 
 
 def _principle(system: System, conditions: InterfaceConditions) -> SteadyWear:
-    """The steady state under given conditions."""
+    """Solve the principle for given conditions."""
     holder = system.rubbing(conditions.friction).holder
     return steady_pressure(
         weights=system.weights,
@@ -99,17 +99,17 @@ def _principle(system: System, conditions: InterfaceConditions) -> SteadyWear:
 def least_worn(
     modes: np.ndarray, opening: np.ndarray, weights: np.ndarray, pressing: np.ndarray
 ) -> np.ndarray:
-    """Motion of the holder at which the faces fit with the least material worn off.
+    """Motion of the holder at which the faces conform with the least wear volume.
 
-    The depth worn off is ``R d - B u``, nowhere negative where the faces press. With one
-    translation of a flat face that is where the highest point is just not worn.
+    The wear depth is ``R d - B u``, non-negative at all points in contact. For a single translation
+    of a flat face the highest point is then just unworn.
 
     Parameters
     ----------
     modes : ndarray, shape (n, k)
         R of the free motions.
     opening : ndarray, shape (n,)
-        ``B u``, gap that load and heat open [m].
+        ``B u``, change of the gap by load and heat [m].
     weights : ndarray, shape (n,) [m²]
     pressing : ndarray of bool, shape (n,)
 

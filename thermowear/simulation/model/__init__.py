@@ -1,1 +1,1 @@
-"""System of bodies and interface that an analysis works on."""
+"""System of bodies and interface, the input of all analyses."""

@@ -1,4 +1,4 @@
-"""From a case to a system: meshed, paired and assembled, or taken from what is at hand."""
+"""Build a system from a case: mesh, pair and assemble, or reuse cached set-up results."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ def build(
     comm : mpi4py.MPI.Comm
     phases : Phases
     zone : tuple of float, optional
-        Range of x to mesh for, by default where the case expects contact [m].
+        Range of x to mesh for, by default the contact zone that the case expects [m].
     parts : SetupCache, optional
-        Of systems built before on the same ranks; what this one can share is not made again.
+        Set-up results of earlier systems on the same ranks, reused where the keys agree.
     worn : WornGeometry, optional
-        Where the nodes of the mesh are now; none of the parts may be of other places.
+        Present node positions of the mesh; all cached parts must belong to them.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def build(
 
 
 def check_contact_points(case: Case, comm) -> None:
-    """Mesh and pair a case as a run does, for the faults that only this shows. Every rank calls.
+    """Mesh and pair a case as a run does, to detect errors in either step. Every rank calls.
 
     Raises
     ------
@@ -134,12 +134,12 @@ def _paired(
 
 
 def _exchanging(thermal: ThermalSystem, case: Case, facing: Facing) -> ThermalSystem:
-    """The same bodies with the partition of this case."""
+    """Thermal system with the heat partition of this case."""
     return replace(thermal, face=replace(thermal.face, partition=partition(case, facing)))
 
 
 def sliding_of(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
-    """How body 1 slides; None where nothing does."""
+    """Sliding kinematics of body 1; None without motion."""
     if case.motion is None:
         return None
     geometry = case.geometry

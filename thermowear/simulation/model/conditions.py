@@ -1,4 +1,4 @@
-"""What holds at the interface at one moment, and may be different at the next."""
+"""Operating conditions at the interface (load, speed, friction, conductance) at a given time."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class InterfaceConditions:
-    """Arrays of shape (n,) unless stated otherwise.
+    """Operating conditions; arrays of shape (n,) unless stated otherwise.
 
     Attributes
     ----------
     load : ndarray, shape (k,)
-        On the free motions of the holder [N or N m].
+        Generalised forces on the free motions of the holder [N or N m].
     speed : ndarray
-        Of sliding [m/s].
+        Sliding speed [m/s].
     friction : ndarray
-        Coefficient.
+        Coefficient of friction.
     wear : ndarray, shape (n_wearing, n)
         Factor of the wear rate of each wearing body.
     conductance : ndarray
-        Between the faces; infinite in perfect contact [W/(m² K)].
+        Contact conductance; infinite in perfect contact [W/(m² K)].
     temperature, depth : ndarray, shape (n_wearing, n)
-        Of the wearing faces, where wear depends on them [K, m]; else 0.
+        Temperature and wear depth of the wearing faces where the wear law uses them [K, m]; else 0.
     """
 
     load: np.ndarray
@@ -59,7 +59,7 @@ class InterfaceConditions:
         return self.wear[row] * law.rate(pressure, *self._state(row))
 
     def wear_slope(self, row: int, law: WearRate, pressure: np.ndarray) -> np.ndarray:
-        """Its derivative with respect to the pressure [m/(s Pa)]."""
+        """Derivative of the wear rate with respect to the pressure [m/(s Pa)]."""
         return self.wear[row] * law.slope(pressure, *self._state(row))
 
     def _state(self, row: int) -> tuple[np.ndarray, ...]:
@@ -67,16 +67,16 @@ class InterfaceConditions:
 
     @property
     def released(self) -> bool:
-        """Whether nothing presses the bodies together any more."""
+        """True if the load has dropped to zero."""
         return self.load.size > 0 and not self.load.any()
 
     def differ(self, other: InterfaceConditions) -> float:
-        """Largest relative difference."""
+        """Largest relative difference of all conditions."""
         pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
         return max(_difference(a, b) for a, b in pairs)
 
     def settled(self, other: InterfaceConditions) -> bool:
-        """Whether they are the same, but for rounding."""
+        """True if the conditions are equal up to rounding."""
         return self is other or self.differ(other) <= _SETTLED
 
 
@@ -90,25 +90,25 @@ def _difference(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _part(course: History | FactorHistory | None, time: float) -> float:
-    """How much of a load, speed or friction there is; none where rounding alone leaves some."""
+    """History factor of a load, speed or friction; values at rounding level count as 0."""
     part = 1.0 if course is None else course.factor_at(time)
     return part if part > _ROUNDING else 0.0
 
 
 @dataclass(frozen=True)
 class _WearingBody:
-    """Settings of a wear law that are not in the law itself.
+    """Settings of a wearing body outside its wear law.
 
     Attributes
     ----------
     index : int
-        Of the body, 0 is body 1.
+        Index of the body, 0 is body 1.
     variables : frozenset of str
-        Of the law.
+        State variables of the law.
     factors : Multipliers
-        Of the rate.
+        Tabulated factors of the rate.
     friction_exponent : float
-        Of the coefficient of friction in a power of the friction stress; 0 in other laws.
+        Exponent of the coefficient of friction in a law per friction stress; 0 in other laws.
     """
 
     index: int
@@ -118,14 +118,14 @@ class _WearingBody:
 
     @classmethod
     def of(cls, index: int, wear: BodyWearTable) -> _WearingBody:
-        """From the table of the case."""
+        """Read the settings from the table of the case."""
         stress = wear.law is None and wear.per == "friction-stress"
         exponent = wear.pressure_exponent if stress else 0.0
         return cls(index, wear.variables, wear.factor.multipliers, exponent)
 
 
 class ConditionModel:
-    """The conditions of a case at any time, pressure and temperature.
+    """Interface conditions of a case as functions of time, pressure and temperature.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ class ConditionModel:
         closed: np.ndarray,
         depth: np.ndarray | None = None,
     ) -> InterfaceConditions:
-        """Conditions in a state.
+        """Evaluate the conditions at an interface state.
 
         Parameters
         ----------
@@ -158,15 +158,15 @@ class ConditionModel:
             [s]
         pressure : ndarray, shape (n,) [Pa]
         faces : ThermalState or None
-            Temperatures of the faces, where they are known.
+            Surface temperatures; None: the ambient temperature.
         closed : ndarray of bool, shape (n,)
-            Which points exchange heat by contact.
+            Points that exchange heat by contact.
         depth : ndarray, shape (n_wearing, n), optional
-            Worn off the wearing bodies, by default none [m].
+            Wear depths of the wearing bodies, by default 0 [m].
         """
         if self._varies or self._courses:
             return self._present(time, pressure, faces, closed, depth)
-        key = closed.tobytes()  # nothing else changes: most cases ask for the same again and again
+        key = closed.tobytes()  # nothing else matters here: most cases repeat the same call
         if self._lasting is None or self._lasting[0] != key:
             self._lasting = (key, self._present(time, pressure, faces, closed, None))
         return self._lasting[1]
@@ -191,7 +191,7 @@ class ConditionModel:
         )
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Times up to an end at which something changes its course [s]."""
+        """Times up to an end at which a history has a corner [s]."""
         return tuple(t for course in self._courses for t in course.corners(end))
 
     def _temperatures(self, faces: ThermalState | None):
@@ -204,11 +204,11 @@ class ConditionModel:
 
     @staticmethod
     def _mean(temperatures) -> np.ndarray | float:
-        """Of both faces; unused where there is no heat [K]."""
+        """Mean temperature of both faces; 0 and unused without heat [K]."""
         return 0.0 if temperatures is None else (temperatures[0] + temperatures[1]) / 2
 
     def _of_wear(self, name: str, values: Sequence[np.ndarray] | None, pressure) -> np.ndarray:
-        """Values of a variable for the wear laws that depend on it; 0 for the others."""
+        """Values of a state variable for the wear laws that depend on it; 0 for the others."""
         result = np.zeros((len(self._wearing), len(pressure)))
         for row, body in enumerate(self._wearing):
             if values is not None and name in body.variables:
@@ -216,14 +216,14 @@ class ConditionModel:
         return result
 
     def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
-        """Not below 0: where the law ends there is said once the state is found."""
+        """Coefficient of friction, at least 0; `require_friction` checks the converged state."""
         value = self._friction_law.value(pressure, speed, self._mean(temperatures))
         return _part(self._case.contact.friction_history, time) * np.maximum(value, 0.0)
 
     def require_friction(
         self, time: float, pressure: np.ndarray, faces: ThermalState | None
     ) -> None:
-        """Refuse a state in which the law of friction is negative where the faces press.
+        """Reject a state in which the friction law is negative at a point in contact.
 
         Raises
         ------
@@ -244,7 +244,7 @@ class ConditionModel:
             )
 
     def _wear(self, temperatures, pressure, speed, friction) -> np.ndarray:
-        """Factors by table, and of a friction that is not the nominal one."""
+        """Factors of the wear rates from tables and from friction other than the nominal."""
         result = np.ones((len(self._wearing), len(pressure)))
         for row, body in enumerate(self._wearing):
             own = 0.0 if temperatures is None else temperatures[row]

@@ -1,4 +1,4 @@
-"""Where the faces of a case are integrated: contact points, pressure space, parts that touch."""
+"""Contact points (quadrature of the contact faces), pressure space and parts in contact."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from .wear_shares import LEAST
 from .worn_geometry import WornGeometry
 
 _SLIVER = 1e-3
-"""Of a facet: so near to its ends, facets that matched when they were new meet worn ones."""
+"""Snapping distance to facet ends, relative to the facet: matching facets drift apart by wear."""
 _ALONG = 0.05
-"""Of a face: so far a holder may take it along the other one, past its end."""
+"""Largest overhang past the end of the other face by the holder's motion, relative to the face."""
 
 
 def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pairing, np.ndarray]:
-    """Contact points, with the shape that body 1 starts from, and pressure space Ψ."""
+    """Contact points, with the gap of the initial shape, and pressure space Ψ."""
     pairing, basis = _points(case, model, face_1, face_2)
     if case.geometry.initial_shape is not None:
         gap = initial_gap(comm, case.geometry.initial_shape, pairing)
@@ -40,12 +40,12 @@ def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pair
 def worn_contact_points(
     case: Case, model: Model, worn: WornGeometry, face_1: Face | Surface, face_2: Face | Surface
 ) -> tuple[Pairing, np.ndarray]:
-    """The same of worn faces, paired where body 1 has got to; the gap is that of unworn faces.
+    """Contact points of worn faces at the present position of body 1, with the unworn gap.
 
-    It is measured between points that lie opposite along the ways on which the nodes have gone:
-    meshes that move open it by just the depths that they lose, even where the faces are slanted
-    against each other. They are where a mesh cannot follow the edge of its wear: they overlap by
-    what is kept of it. Closest points or those along the normals would change the gap there.
+    The gap is measured between points opposite along the directions of the mesh motion: a moved
+    mesh opens it by exactly the depth that it loses, even where the faces are inclined to each
+    other. They are where a mesh cannot follow the edge of the wear and the faces overlap by the
+    depth not removed. Closest-point or normal projection would change the gap there.
     """
     face_1, face_2 = _by_walls(worn, (face_1, face_2))
     moved, turned = worn.holder
@@ -70,9 +70,9 @@ def worn_contact_points(
 
 
 def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
-    """The same faces; where only one has walls of a groove, the common face is that of the other.
+    """Assign the common face to the other body if the mesh of only one has groove walls.
 
-    Walls are what is left of a mesh beside its wear, and no face that touches.
+    Walls are the unworn remainder of a mesh beside its wear and not in contact.
     """
     walled = np.array([held.any() for held in worn.held]) & np.any(worn.depth != 0.0, axis=1)
     if walled[0] == walled[1]:
@@ -82,10 +82,10 @@ def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
 
 
 def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:
-    """How far a face may get beside the other one, of its size.
+    """Largest overhang of a face past the end of the other one, relative to its size.
 
-    Not at all where it has reached beyond it from the beginning. Where it has not, it is its holder
-    that has taken it along, over a body that goes on.
+    Rounding only if the unworn face overhangs already. Otherwise the holder's motion has moved it
+    over a body that continues there.
     """
     opposite = worn.at[0] == 0.0 and worn.at[-1] == len(face_1.nodes)
     return _ALONG if opposite else BESIDE
@@ -96,7 +96,7 @@ def _points(
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points of two faces, and pressure space Ψ."""
     degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree
-    if pressure_degree == "lobatto":  # point by point, at the nodes of body 1's facets
+    if pressure_degree == "lobatto":  # collocation at the nodes of body 1's facets
         pairing = pair(face_1, face_2, model, degree + 1, refine=False)
         return pairing, np.eye(len(pairing.weights))
     pairing = pair(face_1, face_2, model, degree + 2, sliver=sliver, beside=beside)
@@ -111,19 +111,19 @@ def _basis(case: Case, pairing: Pairing) -> np.ndarray:
 def pressure_degree(case: Case) -> int:
     """Degree of the pressure space, by default one below that of the displacement."""
     degree = case.contact.pressure_degree
-    if degree == "lobatto":  # as many functions as the displacement has on a facet
+    if degree == "lobatto":  # as many functions per facet as the displacement
         return case.mesh.degree
     return degree or max(case.mesh.degree - 1, 1)
 
 
 def facing_parts(bodies: Bodies, pairing: Pairing) -> Facing:
-    """The parts of both bodies that touch at the contact points. Every rank calls."""
+    """Parts of both bodies in contact at the contact points. Every rank calls."""
     first, second = (_parts_of_facets(bodies, side.face)[side.facet] for side in pairing.sides)
     return Facing(bodies.names, (first, second))
 
 
 def _parts_of_facets(bodies: Bodies, face: Face | Surface) -> np.ndarray:
-    """Position in ``bodies.names`` of the part that bears each facet of a face, (n_facets,)."""
+    """Index in ``bodies.names`` of the part that each facet belongs to, shape (n_facets,)."""
     mine = face.rank == bodies.mesh.comm.rank
     parts = np.zeros(len(face.rank), dtype=np.int64)
     parts[mine] = bodies.parts_of_cells(face.cell[mine])

@@ -1,4 +1,4 @@
-"""The elastic bodies of a case, and what loads them beside the contact."""
+"""Elastic bodies of a case and their loads beside the contact."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def elastic_system(
     -------
     elastic : Elasticity
     trace : csr_matrix, shape (n_owned, n)
-        Bᵀ of the gap in their space.
+        Bᵀ of the gap in the displacement space.
     """
     geometry = case.geometry
     materials = {name: _elastic_material(case, name) for name in geometry.parts}
@@ -35,14 +35,14 @@ def elastic_system(
 
 
 def supports(case: Case) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]:
-    """Surfaces that are clamped, on a plane of symmetry, and on rollers."""
+    """Clamped surfaces, symmetry planes, and surfaces on rollers."""
     geometry = case.geometry
     clamped = [s for s in (geometry.held, geometry.fixed) if s not in geometry.rollers]
     return clamped, geometry.symmetry, geometry.rollers
 
 
 def dead_load(case: Case, elastic: Elasticity) -> np.ndarray | None:
-    """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without any."""
+    """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without surface loads."""
     press = np.array(case.geometry.press_direction)
     loads = [
         surface_load(elastic, surface, force * press)
@@ -55,7 +55,7 @@ def dead_load(case: Case, elastic: Elasticity) -> np.ndarray | None:
 def dead_resultant(
     case: Case, elastic: Elasticity, forces: np.ndarray | None, motion: RigidMotion
 ) -> np.ndarray:
-    """Generalised force of nodal forces on a rigid motion of body 1 and of body 2, shape (2,).
+    """Generalised forces of nodal forces on a rigid motion of body 1 and of body 2, shape (2,).
 
     Every rank calls.
     """

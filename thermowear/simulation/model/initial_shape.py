@@ -1,4 +1,4 @@
-"""A worn shape to start from: a design of either face, or that of an earlier run."""
+"""Initial worn shape: a design of either face, or the shape of an earlier run."""
 
 from __future__ import annotations
 
@@ -15,24 +15,23 @@ from ...user_files import read_text
 
 _KEY = "geometry.initial_shape"
 _BEYOND = 1e-6  # of the length of the face
-_UNIT = 300.0  # times it: a table may be of a longer face, but not in millimetres
+_UNIT = 300.0  # times that length: a table of a longer face passes, one in millimetres does not
 _LARGEST_FILE = 100_000_000  # bytes
 _LARGEST_NUMBER = 1e100  # differences of larger ones overflow in interpolation
 
 
 def initial_gap(comm, path: str, pairing: Pairing) -> np.ndarray:
-    """Gap of faces one of which has a worn shape, unloaded. Every rank calls.
+    """Gap of the unloaded faces with an initial worn shape. Every rank calls.
 
     Parameters
     ----------
     comm : mpi4py.MPI.Comm
     path : str
-        A design of either face, in any format (see `geometry.design`): its depth is added to the
-        gap of the faces as they are drawn. Or a ``profile.csv`` (``interface.csv``)
-        of an earlier run, or any table with its columns ``s_m`` and ``shape_m``: that shape is all
-        of the gap.
+        A design of either face, in any format (see `geometry.cad.design`): its depth is added to
+        the nominal gap. Or a ``profile.csv`` (``interface.csv``) of an earlier run, or any table
+        with its columns ``s_m`` and ``shape_m``: that shape replaces the nominal gap.
     pairing : Pairing
-        Of the faces as they are drawn.
+        Contact points of the nominal faces.
 
     Returns
     -------
@@ -41,7 +40,7 @@ def initial_gap(comm, path: str, pairing: Pairing) -> np.ndarray:
     Raises
     ------
     CaseError
-        If the file holds no shape, or that of another face.
+        If the file holds no shape, or the shape of another face.
     """
     table = on_root(comm, lambda: _checked(path, lambda: read_table(Path(path))))
     gdim = pairing.points.shape[1]
@@ -56,7 +55,7 @@ def initial_gap(comm, path: str, pairing: Pairing) -> np.ndarray:
 
 
 def _gap_along(path: str, table: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Gap that a shape given along the face leaves [m]."""
+    """Gap by a shape given over the length along the face [m]."""
     s, shape = _curve(path, table)
     length = position[-1]
     if max(s[-1], -s[0]) > _UNIT * length:
@@ -110,7 +109,7 @@ def _read(path: str) -> np.ndarray:
 
 
 def _checked(path: str, action):
-    """What an action returns; an error of the file is one of the case."""
+    """Call an action; raise its file errors as `CaseError`."""
     try:
         return action()
     except (OSError, ValueError) as error:

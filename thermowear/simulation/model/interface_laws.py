@@ -14,7 +14,7 @@ from ...laws.interfaces import InterfaceLaw
 
 
 def friction_law(case: Case) -> InterfaceLaw:
-    """Coefficient of friction without its history in time."""
+    """Friction law with its tabulated factors, without its history in time."""
     contact = case.contact
     factors = contact.friction_factor.multipliers
     return Multiplied(contact.friction_law, factors) if factors.variables else contact.friction_law
@@ -26,9 +26,9 @@ def conductance_law(case: Case, facing: Facing) -> InterfaceLaw | None:
     Parameters
     ----------
     case : Case
-        With heat.
+        A case with heat.
     facing : Facing
-        Parts that touch at the points.
+        Parts in contact at the points.
     """
     assert case.heat is not None
     given = case.heat.conductance
@@ -44,7 +44,7 @@ def conductance_law(case: Case, facing: Facing) -> InterfaceLaw | None:
 
 
 def partition(case: Case, facing: Facing) -> float | np.ndarray:
-    """Part of the friction heat that is set free on body 1, at points (n,) or everywhere."""
+    """Fraction of the friction heat released into body 1, shape (n,) or uniform."""
     assert case.heat is not None
     share = case.heat.partition
     if isinstance(share, float):

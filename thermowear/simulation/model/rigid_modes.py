@@ -1,4 +1,4 @@
-"""What drives the holder of body 1, from the words of the case to rigid motions and their loads."""
+"""Rigid modes of the holder of body 1 and their loads, from the settings of the case."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _TURNS = {"rotation-x": (1.0, 0.0, 0.0), "rotation-y": (0.0, 1.0, 0.0)}
 def drives(
     case: Case, pairing: Pairing, dead: Callable[[RigidMotion], float]
 ) -> tuple[RigidMode, ...]:
-    """The motions that the holder makes, along the press first, and what is given along each.
+    """Rigid modes of the holder, the load direction first, with the load or motion of each.
 
-    A force acts along the press at the point of the load, so that its generalised force on any
-    motion m is ``F press·m(point)``; moments add to that what they do on a rotation.
+    A force acts along the load direction at the point of the load, so that its generalised force
+    on any motion m is ``F press·m(point)``; moments add their work on its rotation.
 
     Parameters
     ----------
@@ -40,9 +40,9 @@ def drives(
 
 
 def guides(case: Case) -> dict[str, RigidMotion]:
-    """Motions by the names of what a guide may have to hold: forces and moments on body 1.
+    """Rigid motions by name, conjugate to the guide forces and moments on body 1.
 
-    Along x (and y), upwards, and about the pivot; nothing where an axis of symmetry holds.
+    Along x (and y), upwards, and about the pivot; none in an axisymmetric model.
     """
     if case.model == "axisymmetric":
         return {}
@@ -56,14 +56,14 @@ def guides(case: Case) -> dict[str, RigidMotion]:
 
 
 def reference_point(case: Case) -> np.ndarray:
-    """The pivot of the holder, or what stands for it, shape (gdim,) [m]."""
+    """Pivot of the holder, else of the geometry, else the origin, shape (gdim,) [m]."""
     pivot = case.holder.pivot or case.geometry.pivot_point
     dim = len(case.geometry.press_direction)
     return np.zeros(dim) if pivot is None else np.array(pivot)
 
 
 def applied(case: Case, motion: RigidMotion) -> float:
-    """Generalised force of the loads of the case on a motion, by the right-hand rule."""
+    """Generalised force of the loads of the case on a motion; moments by the right-hand rule."""
     press = np.array(case.geometry.press_direction)
     load, dim = case.load, len(press)
     point = reference_point(case)
@@ -104,5 +104,5 @@ def _closing_sense(turn: RigidMotion, pairing: Pairing) -> float:
 
 def _load(case: Case, motion: RigidMotion, names: tuple[str, ...]) -> float:
     if names == ("rotation",) and case.load.moment is not None:
-        return case.load.moment  # positive where it presses, whichever way that turns
+        return case.load.moment  # positive where it presses, in either sense of rotation
     return applied(case, motion)

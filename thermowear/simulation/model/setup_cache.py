@@ -1,4 +1,4 @@
-"""Parts of a system that cost much, kept for the cases that come after."""
+"""Cache of set-up results (mesh, factors, condensed operators) shared by the cases of a sweep."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from .wear_shares import closes_by_wear, softness_of_parts
 Part = TypeVar("Part")
 
 _EXCHANGE = ("conductance", "gap_conductance", "partition")
-"""Keys of heat that say how it crosses the interface; the bodies conduct without knowing them."""
+"""Keys of the heat table for the interface alone, no inputs of the conduction in the bodies."""
 
 
 class SetupCache:
-    """The last part of each kind, with what it was made from.
+    """Cache of the last part of each kind, with its inputs as key.
 
-    A case that would make it from the same gets the very same part.
+    Cases with equal inputs share the same object.
     """
 
     def __init__(self) -> None:
         self._kept: dict[str, tuple[Any, Any]] = {}
 
     def get(self, kind: str, inputs: Any, make: Callable[[], Part]) -> Part:
-        """The part of a kind that is made from some inputs, made now unless it is at hand."""
+        """Return the cached part of a kind if its inputs are equal; make it otherwise."""
         made_from, part = self._kept.get(kind, (None, None))
         if made_from is None or made_from != inputs:
-            self._kept.pop(kind, None)  # its memory may be needed
+            self._kept.pop(kind, None)  # frees its memory before the new part is made
             part = make()
             self._kept[kind] = (inputs, part)
         return part
@@ -36,18 +36,18 @@ class SetupCache:
 
 @dataclass(frozen=True)
 class CacheKeys:
-    """What the parts of a system are made from; loads, friction and wear are in none of it.
+    """Inputs of the cached parts of a system; independent of loads, friction and wear laws.
 
     Attributes
     ----------
     mesh : tuple
-        Of the meshed bodies.
+        Inputs of the meshed bodies.
     points : tuple
-        Of their contact points.
+        Inputs of the contact points.
     elasticity : tuple
-        Of the elastic factor and of the condensed bodies.
+        Inputs of the factorised and the condensed elastic bodies.
     conduction : tuple
-        Of the conducting factor, its condensation and the distortion.
+        Inputs of the factorised conduction, its condensation and the distortion.
     """
 
     mesh: tuple
@@ -57,12 +57,12 @@ class CacheKeys:
 
     @property
     def zone(self) -> tuple[float, float] | None:
-        """Range of x that the bodies are meshed for."""
+        """Range of x that the bodies are meshed for [m]."""
         return self.mesh[-1]
 
 
 def inputs(case: Case, zone: tuple[float, float] | None = None) -> CacheKeys:
-    """What the parts of a case are made from, meshed for a zone (by default the expected one)."""
+    """Cache keys of a case meshed for a zone (by default the expected contact zone)."""
     if zone is None:
         zone = case.geometry.expected_zone(case.pressing())
     mesh = (case.model, case.geometry, case.mesh, case.contact.pressure_degree, zone)
@@ -84,7 +84,7 @@ def inputs(case: Case, zone: tuple[float, float] | None = None) -> CacheKeys:
 
 
 def _chosen(tables: dict[str, dict], chooses: Callable[[str], bool]) -> dict[str, dict]:
-    """Tables with some of their keys."""
+    """Tables reduced to the chosen keys."""
     return {
         name: {key: value for key, value in table.items() if chooses(key)}
         for name, table in tables.items()

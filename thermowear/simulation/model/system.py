@@ -1,4 +1,4 @@
-"""A case made computable: meshed, paired, assembled; condensed when first asked for."""
+"""System of a case: meshed, paired and assembled bodies; condensed on first use."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from .worn_geometry import WornGeometry
 
 @dataclass(frozen=True)
 class System:
-    """Everything an analysis needs.
+    """Bodies, interface and loads of an analysis.
 
     Attributes
     ----------
@@ -41,27 +41,27 @@ class System:
     pairing : Pairing
     elastic : Elasticity
     trace : csr_matrix, shape (n_owned, n)
-        Bᵀ, see `contact.pairing`.
+        Bᵀ, see `contact.search.pairing`.
     basis : ndarray, shape (n, m)
-        Ψ.
+        Pressure basis Ψ.
     holder : Holder
     slides : Sliding or None
-        How body 1 slides; None where nothing does.
+        Sliding kinematics of body 1; None without motion.
     pull : ndarray, shape (n, gdim)
-        ``n + mu e``: the traction on body 1 is minus the pressure times it.
+        Traction direction ``n + mu e``: the traction on body 1 is ``-p (n + mu e)``.
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
     dead_load : ndarray or None, shape (n_owned,)
-        Nodal forces of forces and pressures on surfaces [N].
+        Nodal forces of the surface loads [N].
     thermal : ThermalSystem or None
     phases : Phases
     parts : SetupCache
-        Those that it shares with the systems of other cases.
+        Set-up results shared with the systems of other cases.
     inputs : CacheKeys
-        What they are made from.
+        Cache keys of this system.
     worn : WornGeometry or None
-        Where the meshes have been moved to the worn faces. The gap of the pairing is even then that
-        of the unworn bodies: that of the moved ones without the depths that they have lost.
+        Present if the meshes have been moved to the worn faces. The gap of the pairing remains that
+        of the unworn bodies: the gap of the moved meshes minus the depths that they have lost.
     """
 
     case: Case
@@ -91,24 +91,24 @@ class System:
 
     @cached_property
     def gap(self) -> np.ndarray:
-        """Of the unworn bodies under their dead load alone, at the points, shape (n,) [m]."""
+        """Gap of the unworn bodies under the dead load alone at the points, shape (n,) [m]."""
         if self.dead_load is None:
             return self.pairing.gap
         opened = self.trace.T @ self.elastic.solve(self.dead_load)
         return self.pairing.gap + sum_over_ranks(self.comm, opened)
 
     def dead_resultant(self, motion: RigidMotion) -> np.ndarray:
-        """Generalised force of the dead load on a motion of either body, shape (2,) [N or N m]."""
+        """Generalised forces of the dead load on a motion of each body, shape (2,) [N or N m]."""
         return dead_resultant(self.case, self.elastic, self.dead_load, motion)
 
     @cached_property
     def facing(self) -> Facing:
-        """The parts that touch at the contact points."""
+        """Parts in contact at the contact points."""
         return facing_parts(self.bodies, self.pairing)
 
     @property
     def press(self) -> np.ndarray:
-        """Unit vector along which body 1 is pressed on, shape (gdim,)."""
+        """Load direction of body 1, a unit vector of shape (gdim,)."""
         return np.array(self.case.geometry.press_direction)
 
     @property
@@ -127,7 +127,7 @@ class System:
 
     @cached_property
     def spreads(self) -> dict[int, Distribution]:
-        """Where the wear of each wearing body goes, by its index."""
+        """Distribution of the wear of each wearing body, by its index."""
         return {index: self._spread(index) for index in self.laws}
 
     def _spread(self, index: int) -> Distribution:
@@ -139,11 +139,11 @@ class System:
             return rings(np.linalg.norm(arms, axis=1), self.weights, geometry.duty)
         if geometry.track is None:
             return DutyFactor(geometry.sector)
-        assert geometry.thickness_factor is not None  # tracks are those of plane models
+        assert geometry.thickness_factor is not None  # only plane models have tracks
         return UniformTrack(self.weights / geometry.thickness_factor / geometry.track)
 
     def worn_volumes(self, worn: np.ndarray) -> np.ndarray:
-        """Volumes lost by the bodies, all of their tracks, from depths (2, n), shape (2,) [m³]."""
+        """Wear volumes of both bodies, whole tracks, from depths (2, n), shape (2,) [m³]."""
         volumes = (worn - self.moved) @ self.weights
         if self.worn is not None:
             volumes = volumes + self.worn.lost
@@ -153,14 +153,14 @@ class System:
 
     @cached_property
     def moved(self) -> np.ndarray:
-        """Depths off both bodies that the meshes have lost at the points, shape (2, n) [m]."""
+        """Wear depths already removed from the meshes at the points, shape (2, n) [m]."""
         if self.worn is None:
             return np.zeros((2, len(self.weights)))
         return self.worn.moved(self.pairing)
 
     @property
     def influence(self) -> Influence:
-        """How the bodies answer the functions of the pressure space. Every rank calls."""
+        """Responses of the bodies to the pressure basis functions. Every rank calls."""
         bodies = self.elastic, self.pairing, self.trace, self.basis
         hot = self.thermal is not None
         return self.parts.get(
@@ -174,7 +174,7 @@ class System:
             return self.influence.condensed(self.traction, self.holder)
 
     def rubbing(self, friction: np.ndarray) -> System:
-        """The same bodies with coefficients of friction (n,) that are not the nominal one."""
+        """System with given coefficients of friction (n,) in place of the nominal one."""
         if self.slides is None or np.all(friction == self.friction):
             return self
         transverse = self.case.contact.transverse_friction
@@ -183,7 +183,7 @@ class System:
 
     @cached_property
     def traction(self) -> sp.csr_matrix:
-        """B_tᵀ, shape (n_owned, n), see `contact.pairing`: that of the gap where nothing drags."""
+        """B_tᵀ, shape (n_owned, n), see `contact.search.pairing`; Bᵀ without in-plane friction."""
         if np.array_equal(self.pull, self.pairing.normals):
             return self.trace
         along = self.parts.get("traces", self.inputs.elasticity, self._along_coordinates)

@@ -1,4 +1,4 @@
-"""Thermal loads beside friction: heat through surfaces, given temperatures, the surroundings."""
+"""Thermal loads beside friction: surface heat, prescribed temperatures, surroundings."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ class ThermalLoad:
     Attributes
     ----------
     heat : ndarray, shape (n_owned,)
-        Nodal heat: prescribed, and that of surroundings whose temperature is not the ambient one
-        of the case [W].
+        Nodal heat: prescribed, and from surroundings at other than the ambient temperature of the
+        case [W].
     prescribed : float
-        Heat through surfaces with a given flux or power, into the bodies [W].
+        Heat into the bodies through surfaces with a given flux or power [W].
     magnitude : float
-        Likewise, the sum of its magnitudes [W].
+        Sum of the magnitudes of that heat [W].
     ambient : float
         Rise of the surroundings over the ambient temperature of the case [K].
     given : ndarray or None, shape (n_owned,)
-        Rises of the fixed values, zero in the others; None: those of the conduction [K].
+        Prescribed rises at the fixed nodes, zero elsewhere; None: those of the conduction [K].
     """
 
     heat: np.ndarray
@@ -43,23 +43,24 @@ class ThermalLoad:
     given: np.ndarray | None = None
 
     def on(self, conduction: Conduction) -> Conduction:
-        """The bodies with the temperatures that are given at this time."""
+        """Conduction with the temperatures prescribed at this time."""
         return conduction if self.given is None else conduction.holding(self.given)
 
 
 class ThermalLoads:
-    """Thermal loads of a case at any time.
+    """Thermal loads of a case as functions of time.
 
     Parameters
     ----------
     constant : ThermalLoad
-        What does not change.
+        Loads constant in time.
     ambient : float
-        Of the case [K].
+        Ambient temperature of the case [K].
     given : dict of str to (TemperatureHistory or float, ndarray)
-        Temperatures by surface, with the rises (n_owned,) per rise of it; only where some change.
+        Prescribed temperatures by surface, with the nodal rises (n_owned,) per unit rise of it;
+        empty if all are constant.
     surroundings : tuple or None
-        Temperature of the surroundings in time, and nodal heat (n_owned,) per rise of it [W/K].
+        Temperature history of the surroundings, and nodal heat (n_owned,) per rise of it [W/K].
     """
 
     def __init__(
@@ -75,7 +76,7 @@ class ThermalLoads:
         self._surroundings = surroundings
 
     def at(self, time: float) -> ThermalLoad:
-        """The loads at a time [s]."""
+        """Thermal loads at a time [s]."""
         if not self._given and self._surroundings is None:
             return self._constant
         constant, heat, above, given = self._constant, self._constant.heat, 0.0, None
@@ -90,7 +91,7 @@ class ThermalLoads:
 
 
 def temperature_at(given: TemperatureHistory | float, time: float) -> float:
-    """A given temperature [K] at a time [s]."""
+    """Prescribed temperature [K] at a time [s]."""
     return given.at(time) if isinstance(given, TemperatureHistory) else given
 
 
@@ -101,7 +102,7 @@ def thermal_loads(
     conduction: Conduction,
     round_the_ring: Mapping[str, float],
 ) -> ThermalLoads:
-    """The loads of a case on its conducting bodies. Every rank calls.
+    """Assemble the thermal loads of a case. Every rank calls.
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ def thermal_loads(
     model : Model
     conduction : Conduction
     round_the_ring : mapping of str to float
-        How many times the surface that the model counts a surface of the case is.
+        Ratio of the area of each surface of the case to its area in the model.
     """
     space = conduction.space
     total = np.zeros(len(conduction.fixed))

@@ -1,4 +1,4 @@
-"""The conducting bodies of a case, and how heat crosses their contact."""
+"""Heat conduction in the bodies of a case and heat exchange at their contact."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from .thermal_loads import ThermalLoads, temperature_at, thermal_loads
 
 @dataclass(frozen=True)
 class ThermalSystem:
-    """The conducting bodies and their share in the interface.
+    """Conducting bodies, their thermal loads and the heat exchange at the interface.
 
     Attributes
     ----------
@@ -43,16 +43,16 @@ class ThermalSystem:
     load : petsc4py.PETSc.Mat
         G: nodal forces per nodal rise [N/K].
     loads : ThermalLoads
-        What heats or cools the bodies beside friction.
+        Thermal loads beside friction.
     face : InterfaceHeat
     ambient : float
-        [K]
+        Ambient temperature [K].
     initial : float
-        Rise over it at the start of a run that follows temperatures in time [K].
+        Initial rise over the ambient temperature in transient conduction [K].
     diffusivity : float
-        The largest of the materials; zero where none is known [m²/s].
+        Largest diffusivity of the materials; zero where none is known [m²/s].
     expansions : tuple of VaryingExpansion
-        Of parts whose expansion changes with the temperature.
+        Temperature-dependent expansions, one per part with a table.
     """
 
     conduction: Conduction
@@ -66,7 +66,7 @@ class ThermalSystem:
 
     @property
     def varies(self) -> bool:
-        """Whether conductivity or expansion change with the temperature."""
+        """True if conductivity or expansion depend on temperature."""
         return isinstance(self.conduction, VaryingConduction)
 
     def forces(self, rise: np.ndarray) -> np.ndarray:
@@ -123,7 +123,7 @@ def _varying(
     elastic: Elasticity,
     materials: dict[str, ThermalMaterial],
 ) -> tuple[Conduction, tuple[VaryingExpansion, ...]]:
-    """Let conductivity and expansion change with the temperature where the case has tables."""
+    """Make conductivity and expansion temperature-dependent where the case has tables."""
     assert case.heat is not None
     found = {part: case.material(part) for part in case.geometry.parts}
     conducts = {p: m.conductivity_factor.table for p, m in found.items() if m.conductivity_factor}
@@ -138,7 +138,7 @@ def _varying(
 
 
 def _conductivities(case: Case, materials: dict[str, ThermalMaterial]) -> list[float]:
-    """Of all parts at the ambient temperature, tables included [W/(m K)]."""
+    """Conductivities of all parts at the ambient temperature, tables included [W/(m K)]."""
     assert case.heat is not None
     factors = [case.material(part).conductivity_factor for part in materials]
     ambient = np.array(case.heat.ambient)
@@ -149,19 +149,19 @@ def _conductivities(case: Case, materials: dict[str, ThermalMaterial]) -> list[f
 
 
 def _passage(case: Case) -> Passage | None:
-    """How body 2 passes under body 1; None where that is left out of the conduction."""
+    """Motion of body 2 past body 1 for advection; None where conduction neglects it."""
     heat, geometry, motion = case.heat, case.geometry, case.motion
     assert heat is not None
     if heat.advection == "none" or motion is None:
         return None
     parts, center = geometry.parts_of(geometry.bodies[1]), geometry.rotation_center
-    one_way = motion.one_way  # of body 1 over body 2 along x, of body 2 about a centre
+    one_way = motion.one_way  # body 1 over body 2 along x, or body 2 about a centre
     speed = -(one_way.velocity or 0.0) if center is None else one_way.angular_velocity or 0.0
     return Passage(parts, center, speed, spread=heat.advection == "spread")
 
 
 def thermal_material(case: Case, part: str) -> ThermalMaterial:
-    """What a part conducts and stores."""
+    """Conductivity and heat capacity of a part."""
     material = case.material(part)
     assert material.conductivity is not None  # the case has been checked
     if material.density is None or material.specific_heat is None:
@@ -170,10 +170,10 @@ def thermal_material(case: Case, part: str) -> ThermalMaterial:
 
 
 def conducting_bodies(case: Case) -> tuple[dict[str, ThermalMaterial], dict[str, float]]:
-    """Materials by part, and how many times each surface counts, for the modelled sector.
+    """Materials by part and area factors by surface, for the modelled sector.
 
-    Under a body 1 that takes up a sector, all of a turning body 2 comes by and is heated: what
-    conducts, stores and cools is the whole ring.
+    All of a rotating body 2 passes under a body 1 that covers a sector and is heated: its whole
+    ring conducts, stores and cools.
     """
     geometry = case.geometry
     moving, sector = geometry.bodies[1], geometry.sector

@@ -1,4 +1,4 @@
-"""The wear laws of a case."""
+"""Wear laws of a case."""
 
 from __future__ import annotations
 

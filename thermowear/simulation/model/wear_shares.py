@@ -1,4 +1,4 @@
-"""How much each body gives way where the faces close: what the common face is found from."""
+"""Softness of each body, which defines the position of the common face between the bodies."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from ...laws.plausible import typical_rate
 from .wear_laws import wear_laws
 
 LEAST = 1e-9
-"""Softness of a body whose face does not change, where that of the other one is 1."""
+"""Softness of a body with an unchanging face, where that of the other body is 1."""
 
 
 def softness_of_parts(case: Case) -> dict[str, float]:
-    """Softness of each part of the bodies for `contact.common_face`; only ratios count.
+    """Softness of each part of the bodies for `contact.search.common_face`; only ratios count.
 
-    The gap between opposite points closes by the elastic deflection of both bodies. Where bodies
-    slide and wear on and on, the deflection is soon small beside the wear, and closes by what each
-    of them loses: the shares are those of the wear rates.
+    The gap between opposite points closes by the elastic deflection of both bodies. In continued
+    sliding wear the deflection is soon small compared with the wear depths: the shares are then in
+    the ratio of the wear rates.
     """
     wearing = _wear_rates(case)
     if not wearing:
         return {part: _elastic(case, part) for part in case.geometry.parts}
-    largest = max(wearing.values()) or 1.0  # below a threshold none of them wears
+    largest = max(wearing.values()) or 1.0  # all rates are 0 below a threshold
     softness: dict[str, float] = {}
     for index, body in enumerate(case.geometry.bodies):
         share = max(wearing.get(index, 0.0) / largest, LEAST)
@@ -30,12 +30,12 @@ def softness_of_parts(case: Case) -> dict[str, float]:
 
 
 def closes_by_wear(case: Case) -> bool:
-    """Whether softness is that of wear."""
+    """True if the softness follows the wear rates, not the elastic compliance."""
     return bool(_wear_rates(case))
 
 
 def _elastic(case: Case, part: str) -> float:
-    """``(1 - ν²) / E`` [1/Pa]."""
+    """Plane-strain compliance ``(1 - ν²) / E`` [1/Pa]."""
     material = case.material(part)
     assert material.young_modulus is not None  # the case has been checked
     assert material.poisson_ratio is not None
@@ -43,7 +43,7 @@ def _elastic(case: Case, part: str) -> float:
 
 
 def _wear_rates(case: Case) -> dict[int, float]:
-    """Wear rates of the bodies whose faces change, by index, at one pressure [m/s]."""
+    """Wear rates at a typical pressure of the bodies that wear in place, by index [m/s]."""
     if isinstance(case.analysis, Fretting):
         return {}
     bodies = case.geometry.bodies

@@ -1,4 +1,4 @@
-"""What is known of meshes that have been moved to their worn faces."""
+"""State of meshes that have been moved to the worn faces."""
 
 from __future__ import annotations
 
@@ -18,51 +18,51 @@ _SAME = 1e-9
 
 @dataclass(frozen=True)
 class WornGeometry:
-    """Meshes moved to the worn faces, and the depths that are in them and no more in the gap.
+    """Meshes moved to the worn faces, and the wear depths transferred to them from the gap.
 
     Attributes
     ----------
     mesh : TaggedMesh
-        The mesh as it is now.
+        Present mesh.
     directions : tuple of ndarray, shape (n_nodes, 2)
-        Ways of the nodes of both faces, see `contact.worn_face.Paths`.
+        Motion directions of the nodes of both faces, see `contact.wear.worn_face.Paths`.
     held : tuple of ndarray of bool, shape (n_nodes,)
-        Likewise.
+        Nodes of both faces that are held fixed, see there.
     sizes : tuple of ndarray, shape (n_facets,)
-        Lengths of the facets of both faces when they were meshed [m].
+        Lengths of the facets of both faces in the initial mesh [m].
     best : ndarray, shape (2,)
-        Smallest scaled Jacobian of the cells of both bodies when they were meshed.
+        Smallest scaled Jacobian of the cells of both bodies in the initial mesh.
     at : ndarray, shape (n_before,) or (n_before, 3)
-        Places on the face of body 1 of the contact points before the last update, see `along`.
+        Positions on the face of body 1 of the contact points before the last update, see `along`.
     depth : ndarray, shape (2, n_before)
-        Depth off each body that the mesh has lost, at these points [m].
+        Wear depth removed from the mesh of each body at these points [m].
     lacking : ndarray, shape (n_before,)
-        Depth that the initial shape lacks of the unworn face [m].
+        Depth of the initial shape that the initial mesh does not contain [m].
     holder : tuple of ndarray, shape (3,)
-        Translation and rotation of body 1 when the faces were paired anew [m, rad].
+        Translation and rotation of body 1 at the last pairing of the faces [m, rad].
     lost : ndarray, shape (2,)
-        Volume that each mesh has lost [m³].
+        Volume removed from each mesh [m³].
     updates : int
-        How often the mesh was moved.
+        Number of mesh motions.
     quality : float
-        Smallest scaled Jacobian of its cells so far.
+        Smallest scaled Jacobian of the cells so far.
     pieces : Rule or None
-        Of surfaces, and of sections with contact point by point at the edge of the wear: contact
-        points stay where they are on their facets. None where a section is paired anew.
+        Quadrature of surfaces, and of sections with pointwise contact at the edge of the wear:
+        contact points keep their positions on the facets. None where a section is paired again.
     volume_error : float
-        Largest difference so far of what a mesh has lost in an update and the volume worn off,
-        relative to what is lost so far.
+        Largest difference so far of the volume removed in an update and the wear volume, relative
+        to the volume removed so far.
     renewed : dict of int to NewFace
-        Faces that the last update has divided anew, by index of the body. Their depth is that of
-        the smooth curve through the nodes of the former face.
+        Faces redivided by the last update, by index of the body. Their depth is that of the smooth
+        curve through the nodes of the former face.
     change : float
         Largest change so far of pressure and temperatures by an update, relative to their means.
     heat_error : float
-        Largest error so far of temperatures carried over, relative to the largest rise.
+        Largest transfer error so far of temperatures, relative to the largest rise.
     meshed_anew : int
-        How often a body was meshed anew, as its cells had become slanted.
+        Number of times that a body was remeshed because of distorted cells.
     carrying_error : float
-        Largest error so far of depths carried over to faces meshed anew, relative to the largest.
+        Largest transfer error so far of depths to remeshed faces, relative to the largest depth.
     """
 
     mesh: TaggedMesh
@@ -86,11 +86,11 @@ class WornGeometry:
     carrying_error: float = 0.0
 
     def carried(self, values: np.ndarray, pairing: Pairing) -> np.ndarray:
-        """Values (..., n_before) at the points of a new pairing of the same faces."""
+        """Interpolate values (..., n_before) to the points of a new pairing of the same faces."""
         return carried(values, self.at, pairing)
 
     def moved(self, pairing: Pairing) -> np.ndarray:
-        """Depths off both bodies that the mesh has lost at the points of a pairing, (2, n) [m]."""
+        """Wear depths removed from both meshes at the points of a pairing, shape (2, n) [m]."""
         depth = self.carried(self.depth, pairing)
         for index, new in self.renewed.items():
             depth[index] += behind(pairing.sides[index], new)
@@ -98,14 +98,14 @@ class WornGeometry:
 
 
 def behind(side: PairedFace, new: NewFace) -> np.ndarray:
-    """How far a face divided anew lies behind the curve that it is on, at points of it [m]."""
+    """Distance of a redivided face behind its smooth curve at the contact points [m]."""
     on_curve = new.on_curve(side.facet + side.t)
     out = side.face.normals(side.facet, side.t)
     return np.einsum("ni,ni->n", on_curve - side.face.points(side.facet, side.t), out)
 
 
 def along(pairing: Pairing) -> np.ndarray:
-    """Where on the face of body 1 the contact points lie.
+    """Positions of the contact points on the face of body 1.
 
     Facet plus parameter, shape (n,); on a surface the facet and both parameters, shape (n, 3).
     """
@@ -116,7 +116,7 @@ def along(pairing: Pairing) -> np.ndarray:
 
 
 def carried(values: np.ndarray, before: np.ndarray, pairing: Pairing) -> np.ndarray:
-    """Values (..., n) at places of a face, see `along`, at the points of another pairing."""
+    """Interpolate values (..., n) at positions on a face, see `along`, to another pairing."""
     after = along(pairing)
     if before.shape == after.shape and np.abs(before - after).max() < _SAME:
         return values

@@ -1,4 +1,4 @@
-"""Sampling the bodies on a fine grid in every cell, gathered on rank 0."""
+"""Sampling of the fields of the bodies on a fine grid in every cell, gathered on rank 0."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
 
 
 def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields | None:
-    """Displacement (holder's motion included), temperature and von Mises stress.
+    """Sample displacement (holder's motion included), temperature and von Mises stress.
 
-    Body 1 is where it was when its mesh was last moved to the worn face: a body that has become
-    lower stands on the other one.
+    Body 1 is drawn at its position of the last mesh motion to the worn face: a body shortened by
+    wear stays in contact with the other one.
 
-    Every rank calls; ranks other than 0 get None. Cells come in the order of the mesh file.
+    Every rank calls; ranks other than 0 return None. Cells are in the order of the mesh file.
     """
     mesh, elastic = system.bodies.mesh, system.elastic
     n = max(system.case.mesh.degree, 2)
@@ -64,7 +64,7 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
 
 
 def _body_of_tag(system: System) -> np.ndarray:
-    """Number of the body, from 1, by the tag of its cells and of those of its zones."""
+    """Number of the body (from 1) by cell tag, including the tags of its zones; 0 for tag 0."""
     geometry = system.case.geometry
     owners = [geometry.zones.get(part, part) for part in system.bodies.names]
     return np.array([0, *(geometry.bodies.index(owner) + 1 for owner in owners)])

@@ -1,4 +1,4 @@
-"""What every analysis ends with, before it is summed up and written out."""
+"""Outcome of an analysis, the common input of summary and results."""
 
 from __future__ import annotations
 
@@ -13,30 +13,32 @@ from .rows import HeatRow, HistoryRow
 
 @dataclass(frozen=True)
 class Outcome:
-    """What every analysis ends with, before it is written out.
+    """Final state of an analysis, before summary and output.
 
     Attributes
     ----------
     contact : ContactState
     motion : RigidMotion
-        How far the holder has moved.
+        Rigid motion of the holder.
     state : BodyState
     interface : Interface
     extra : dict
-        What the analysis adds to the summary.
+        Entries that the analysis adds to the summary.
     history : list of HistoryRow
     outputs : dict of float to Interface
+        Interface at the output times, by time [s].
     friction : FrictionHistory or None
-        Of a fretting analysis.
+        Results of a fretting analysis.
     track : TrackHistory or None
-        Of a reciprocating analysis.
+        Results of a reciprocating analysis.
     heat : list of HeatRow
-        Of an analysis that follows temperatures in time.
+        Heat history in transient conduction.
     stopped : BaseException or None
+        Exception that stopped the analysis early.
     modes : Modes or None
-        Of a stability analysis.
+        Results of a stability analysis.
     system : System or None
-        That it ends with, if its meshes have been moved on the way.
+        Final system, if its meshes have been moved.
     """
 
     contact: ContactState

@@ -1,4 +1,4 @@
-"""Bodies and interface at a contact state, as results keep them."""
+"""Records of bodies and interface at a contact state for the results."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..model.system import System
 from .result import Interface, Profile
 
 _STEEPEST = 0.05
-"""Least cosine between face and press where a shape along the press is given."""
+"""Least cosine between face normal and load direction for a shape along the load direction."""
 
 
 def interface_at(
@@ -27,11 +27,11 @@ def interface_at(
     system : System
     contact : ContactState
     motion : RigidMotion
-        Of the holder.
+        Motion of the holder.
     worn : ndarray, shape (2, n)
-        Depth worn off each body [m].
+        Wear depth of each body [m].
     rates : ndarray, shape (2, n), optional
-        See `record` [m/s].
+        Wear rates, see `record` [m/s].
     """
     state = body_state(system, contact)
     lost = system.pairing.gap + worn.sum(axis=0)
@@ -48,7 +48,7 @@ def interface_at(
 def record(
     system: System, contact: ContactState, state: BodyState, gap, shape, worn, rates=None
 ) -> Interface:
-    """The interface as it is written out; arrays of shape (n,), `worn` of (2, n).
+    """Interface record for output from arrays of shape (n,) and `worn` of shape (2, n).
 
     Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
     """
@@ -91,7 +91,7 @@ def _local_rates(system: System, contact: ContactState) -> np.ndarray:
 
 
 def profile(system: System, interface: Interface) -> Profile:
-    """The worn shape of an interface, along its normals and along the press."""
+    """Worn shape of an interface, along its normals and along the load direction."""
     normals = np.zeros((len(interface.s), 3))
     normals[:, : len(system.press)] = system.pairing.normals
     along = along_press(system)
@@ -114,6 +114,6 @@ def profile(system: System, interface: Interface) -> Profile:
 
 
 def along_press(system: System) -> np.ndarray:
-    """Cosines between normals and press, shape (n,); NaN where the face is too steep for one."""
+    """Cosines between normals and load direction, shape (n,); NaN where the face is too steep."""
     along = system.pairing.normals @ system.press
     return np.where(along > _STEEPEST, along, np.nan)

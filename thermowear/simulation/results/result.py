@@ -1,4 +1,4 @@
-"""What a run returns."""
+"""Result of a run: interface, profile, summary, histories and fields."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
 
 @dataclass(frozen=True)
 class Interface:
-    """The contact points, one entry a point; names and units are those of ``interface.csv``.
+    """State of the interface, one entry per contact point; names, units as in ``interface.csv``.
 
     Without ``[heat]`` temperatures and fluxes are NaN. Temperatures are absolute.
     """
@@ -39,10 +39,10 @@ class Interface:
 
 @dataclass(frozen=True)
 class Profile:
-    """The worn shape, one entry a contact point; names and units are those of ``profile.csv``.
+    """Worn shape, one entry per contact point; names and units as in ``profile.csv``.
 
-    The shape is the height of the unloaded face over its deepest worn point, along the normal and
-    along the press; likewise the wear rates of both bodies together.
+    The shape is the height of the unloaded face above its deepest worn point, along the normal and
+    along the load direction; the wear rates are sums over both bodies along the same directions.
     """
 
     x: np.ndarray
@@ -60,9 +60,9 @@ class Profile:
 
 @dataclass(frozen=True)
 class FrictionInterface:
-    """Sticking and slipping at the contact points; names and units are those of ``friction.csv``.
+    """Stick-slip state at the contact points; names and units as in ``friction.csv``.
 
-    The signs are those of `thermowear.contact.operators.tangential`.
+    Signs as in `thermowear.contact.operators.tangential`.
     """
 
     x: np.ndarray
@@ -78,16 +78,17 @@ class FrictionInterface:
 
 @dataclass(frozen=True)
 class FrictionHistory:
-    """What a fretting analysis finds beside the interface.
+    """Results of a fretting analysis beside the interface.
 
     Attributes
     ----------
     rows : list of LoadRow
     cycles : list of CycleRow
-        Those that were computed.
+        Computed cycles, without those skipped by cycle jumps.
     last : FrictionInterface
+        Stick-slip state at the end.
     outputs : dict of float to FrictionInterface
-        At the output times.
+        Stick-slip states at the output times.
     """
 
     rows: list[LoadRow]
@@ -98,7 +99,7 @@ class FrictionHistory:
 
 @dataclass(frozen=True)
 class WornTrack:
-    """What body 2 loses where body 1 slides to and fro; names and units as in ``track.csv``."""
+    """Wear of body 2 along its track in reciprocating sliding; names, units as in ``track.csv``."""
 
     x: np.ndarray
     wear_2: np.ndarray
@@ -107,13 +108,14 @@ class WornTrack:
 
 @dataclass(frozen=True)
 class TrackHistory:
-    """What a reciprocating analysis finds beside the interface.
+    """Results of a reciprocating analysis beside the interface.
 
     Attributes
     ----------
     last : WornTrack
+        Worn track at the end.
     outputs : dict of float to WornTrack
-        At the output times.
+        Worn tracks at the output times.
     """
 
     last: WornTrack
@@ -122,11 +124,11 @@ class TrackHistory:
 
 @dataclass(frozen=True)
 class Modes:
-    """Disturbances of the pressure, one entry a contact point and mode; as in ``mode.csv``.
+    """Pressure perturbation modes, one entry per contact point and mode; as in ``mode.csv``.
 
-    The largest value of each is 1. First comes what grows fastest at the given speed, if anything
-    grows; then what begins to grow at the critical speed, if it swings; then what neither grows nor
-    dies out, each at its own speed.
+    The largest value of each is 1. The first is the fastest growing mode at the given speed, if any
+    grows; then follows the critical mode, if oscillatory; then the stationary modes of zero growth
+    rate, each at its own speed.
     """
 
     mode: np.ndarray
@@ -151,7 +153,7 @@ class BodyFields:
     pieces : ndarray of int, shape (n_pieces, 3 or 4)
         Small triangles or quadrilaterals between the points of one cell.
     body : ndarray of int, shape (n_cells,)
-        1 or 2.
+        Number of the body, 1 or 2.
     displacement : ndarray, shape (n_cells, n_points, gdim) [m]
     temperature : ndarray or None, shape (n_cells, n_points) [K]
     von_mises : ndarray, shape (n_cells, n_points) [Pa]
@@ -167,21 +169,21 @@ class BodyFields:
 
 @dataclass(frozen=True)
 class Frame:
-    """A state on the way, for an animation.
+    """Intermediate state, for an animation.
 
     Attributes
     ----------
     number : int
-        Of the step that ends in it.
+        Number of the step that ends in this state.
     every : int
-        Earlier frames whose number is no multiple of this are given up.
+        Earlier frames whose number is no multiple of this are discarded.
     time : float
         [s]
     interface : Interface
     fields : BodyFields or None
-        On rank 0.
+        Fields of the bodies, on rank 0 only.
     track : WornTrack or None
-        Of a reciprocating analysis.
+        Worn track of a reciprocating analysis.
     """
 
     number: int
@@ -194,31 +196,31 @@ class Frame:
 
 @dataclass(frozen=True)
 class Result:
-    """A finished (or interrupted) run.
+    """Result of a finished (or interrupted) run.
 
     Attributes
     ----------
     interface : Interface
-        At the end.
+        Interface at the end.
     profile : Profile
     summary : dict
-        SI, the unit in the key.
+        Numbers in SI, the unit in each key.
     history : list of HistoryRow
-        Of a transient analysis.
+        Steps of a transient analysis.
     outputs : dict of float to Interface
-        At the output times.
+        Interface at the output times, by time [s].
     fields : BodyFields or None
-        On rank 0.
+        Fields of the bodies, on rank 0 only.
     friction : FrictionHistory or None
-        Of a fretting analysis.
+        Results of a fretting analysis.
     track : TrackHistory or None
-        Of a reciprocating analysis.
-    stopped : Exception or None
-        What ended the run before its time.
+        Results of a reciprocating analysis.
+    stopped : BaseException or None
+        Exception that stopped the run early.
     heat : list of HeatRow
-        Of an analysis that follows temperatures in time.
+        Heat history in transient conduction.
     modes : Modes or None
-        Of a stability analysis.
+        Results of a stability analysis.
     """
 
     interface: Interface

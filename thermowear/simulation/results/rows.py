@@ -1,4 +1,4 @@
-"""Rows of the tables that grow on the way."""
+"""Rows of the history tables that grow during a run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ...serialise import serialisable_row
 @serialisable_row
 @dataclass(frozen=True)
 class HistoryRow:
-    """A step of a running-in; names and units are those of ``history.csv``."""
+    """Step of a running-in; names and units as in ``history.csv``."""
 
     time: float
     sliding_distance: float
@@ -27,10 +27,10 @@ class HistoryRow:
 @serialisable_row
 @dataclass(frozen=True)
 class HeatRow:
-    """A step of an analysis in which temperatures are followed in time.
+    """Step of an analysis with transient conduction.
 
-    Names and units are those of ``heat.csv``. Heat is counted from the start on; temperatures are
-    those of the faces, means are taken over their area.
+    Names and units as in ``heat.csv``. Heat is cumulated from the start; temperatures are those of
+    the faces, means are taken over their area.
     """
 
     time: float
@@ -50,7 +50,7 @@ class HeatRow:
 @serialisable_row
 @dataclass(frozen=True)
 class LoadRow:
-    """An increment of a history of loads; names and units are those of ``loads.csv``."""
+    """Increment of a load history; names and units as in ``loads.csv``."""
 
     time: float
     normal_force: float
@@ -70,10 +70,10 @@ class LoadRow:
 @serialisable_row
 @dataclass(frozen=True)
 class CycleRow:
-    """A cycle of a history of loads at its end; names and units are those of ``cycles.csv``.
+    """Cycle of a load history at its end; names and units as in ``cycles.csv``.
 
-    Area and largest pressure are those of the whole cycle. It ends a jump over so many cycles,
-    whose error is relative to the largest depth worn; NaN where it was not estimated.
+    Area and largest pressure are those of the whole cycle. ``jump`` is the length in cycles of the
+    cycle jump that it ends, ``error`` relative to the largest wear depth; NaN if not estimated.
     """
 
     cycle: int

@@ -1,4 +1,4 @@
-"""The summary of a run: SI numbers, the unit in each key."""
+"""Summary of a run: SI numbers, the unit in each key."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ _GUIDES = {
     "rotation-x": "guide_moment_x_Nm",
     "rotation-y": "guide_moment_y_Nm",
 }
-"""What a guide holds, by the motion that the holder does not make."""
+"""Keys of the guide reactions, by the constrained motion of the holder."""
 
 _ROTATIONS = {
     "rotation-x": "holder_rotation_x_rad",
     "rotation-y": "holder_rotation_y_rad",
     "rotation": "holder_rotation_rad",
 }
-"""By the axis of a rotation vector."""
+"""Keys of the holder rotations, in the order of the components of a rotation vector."""
 
 
 def summarise(system: System, outcome: Outcome) -> dict:
-    """All numbers of ``summary.json`` but the seconds. Quantities that do not exist are None."""
+    """All numbers of ``summary.json`` except timings. Quantities that do not exist are None."""
     case, w = system.case, system.weights
     contact, interface = outcome.contact, outcome.interface
     p, sliding = contact.pressure, system.slides is not None
@@ -78,7 +78,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
 
 
 def _friction(system: System, outcome: Outcome) -> dict[str, float]:
-    """The coefficients where it presses, and their mean by force, where they are not constant."""
+    """Range of the coefficient of friction in contact and its force-weighted mean, if varying."""
     pressure = outcome.contact.pressure
     if not system.case.friction_varies or not pressure.any():
         return {}
@@ -102,12 +102,12 @@ def _conducted(system: System, outcome: Outcome) -> dict[str, float]:
 
 
 def _thermal_load(thermal: ThermalSystem, outcome: Outcome) -> ThermalLoad:
-    """The thermal loads at the end."""
+    """Thermal loads at the end of the analysis."""
     return thermal.loads.at(outcome.history[-1].time if outcome.history else 0.0)
 
 
 def _passing(system: System, outcome: Outcome) -> dict:
-    """What a body 2 that passes under body 1 does with heat, and where heat leaves the bodies."""
+    """Advection of heat by a body 2 passing under body 1, and heat losses of the bodies."""
     thermal, rise, heat = system.thermal, outcome.state.rise, system.case.heat
     if thermal is None or rise is None or heat is None or not system.case.geometry.passes:
         return {}
@@ -126,12 +126,12 @@ def _passing(system: System, outcome: Outcome) -> dict:
 
 
 def normal_force(system: System, pressure: np.ndarray) -> float:
-    """Force along the press that the pressure and its friction carry [N]."""
+    """Resultant of pressure and friction along the load direction [N]."""
     return float(system.weights @ (pressure * (system.pull @ system.press)))
 
 
 def _torque(system: System, friction: np.ndarray) -> float | None:
-    """Friction moment about the axis that body 1 or 2 turns about [N m]; None without one."""
+    """Friction moment about the axis of rotation of body 1 or 2 [N m]; None without one."""
     case, motion = system.case, system.case.motion
     if case.model == "axisymmetric" and (motion is None or motion.velocity is None):
         return float(system.weights @ (friction * system.pairing.points[:, 0]))
@@ -143,9 +143,9 @@ def _torque(system: System, friction: np.ndarray) -> float | None:
 
 
 def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
-    """What guides hold along motions that the holder does not make, on body 1 [N, N m].
+    """Guide reactions on body 1 along the constrained motions of the holder [N, N m].
 
-    Of the whole: what the halves of a symmetric section push apart is in balance.
+    For the whole body: the forces between the halves of a symmetric section cancel.
     """
     case, points = system.case, system.pairing.on_body_1
     reactions = {}
@@ -159,7 +159,7 @@ def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
 
 
 def _rotations(system: System, outcome: Outcome) -> dict[str, float]:
-    """How far the holder has turned about each axis that it can turn about."""
+    """Rotation of the holder about each of its free axes [rad]."""
     turned = zip(_ROTATIONS.items(), outcome.motion.rotation, strict=True)
     return {key: float(angle) for (name, key), angle in turned if name in system.case.holder.free}
 

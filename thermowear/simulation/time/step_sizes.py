@@ -1,4 +1,4 @@
-"""How large a step of time may be, besides what its error allows."""
+"""Constraints on the time step size beside error control."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from functools import reduce
 from typing import Protocol
 
 _HIT = 1e-9
-"""Of what is left: a step that ends so near to a time ends there."""
+"""Distance to a target time, relative to the time left, at which a step is taken to end there."""
 _FEW = 5
-"""Powers of two that a way may be made up of: at most so many steps are smaller than need be."""
+"""Largest number of powers of two that make up an interval; bounds the number of small steps."""
 
 
 class StepSizes(Protocol):
-    """Chooses sizes of steps on the way from one time that is hit exactly to the next.
+    """Choice of step sizes between two consecutive times that must be hit exactly.
 
     Attributes
     ----------
     rounding : float
-        Ratio of a wanted size to the one chosen, at most.
+        Largest ratio of a wanted step size to the one chosen.
     """
 
     @property
     def rounding(self) -> float: ...
 
     def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
-        """A step from a time, between a begin and an end, that is not larger than this one [s]."""
+        """Step from a time between begin and end, not larger than the wanted one [s]."""
 
 
 class AnySize:
-    """Steps as large as they may be, but none that leaves a tiny one over.
+    """Largest admissible steps that do not leave a tiny last one.
 
     Parameters
     ----------
     longest : float, optional
-        Step that there may be [s].
+        Largest step size [s].
     """
 
     rounding = 1.0
@@ -49,15 +49,15 @@ class AnySize:
 
 
 class FewSizes:
-    """Halves, quarters, ... and doubles of one size, so that few operators serve all steps.
+    """Power-of-two multiples of one step size, so that few operators serve all steps.
 
-    Times are multiples of the step that leaves them, as the marks of a ruler are: what is left to
-    the next one to be hit is always made up by few steps of such sizes.
+    Each step begins at a multiple of its size (dyadic grid): the time left to the next target is
+    always a sum of few such steps.
 
     Parameters
     ----------
     times : iterable of float
-        All that will be hit exactly [s].
+        All times that must be hit exactly [s].
     """
 
     rounding = 2.0
@@ -73,7 +73,7 @@ class FewSizes:
         return size
 
     def _unit(self, way: float) -> float:
-        """What divides the way between two times, and as many others as can be [s]."""
+        """Unit of the step sizes: common measure of all times, or the interval if too fine [s]."""
         measure = self._measure or 1.0
         if way == math.inf or round(way / measure).bit_count() <= _FEW:
             return measure
@@ -81,7 +81,7 @@ class FewSizes:
 
 
 class Limited:
-    """Sizes that others choose, up to a limit that may change from step to step.
+    """Step sizes of another choice, with a variable upper bound.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Limited:
     Attributes
     ----------
     largest : float
-        [s]
+        Upper bound, which may change from step to step [s].
     """
 
     def __init__(self, sizes: StepSizes):
@@ -106,12 +106,12 @@ class Limited:
 
 
 def ends(step: float, left: float) -> bool:
-    """Whether a step goes as far as a time that is so far away [s]."""
+    """Test whether a step covers the time left, up to rounding [s]."""
     return step >= left * (1 - _HIT)
 
 
 def _common_measure(a: float, b: float) -> float:
-    """The largest number that both are multiples of, by Euclid's algorithm."""
+    """Greatest common divisor of two real numbers by Euclid's algorithm, up to rounding."""
     rounding = _HIT * max(a, b)
     while b > rounding:
         a, b = b, abs(math.remainder(a, b))

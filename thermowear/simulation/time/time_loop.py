@@ -1,4 +1,4 @@
-"""Running-in: contact, heat and wear in time, to an end time or to the steady state."""
+"""Time loop of contact, heat and wear, to an end time or to the steady state."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from ..interface.sdirk import InterfaceState, TrialStep, WearProblem, advance_wi
 from .step_sizes import AnySize, StepSizes, ends
 
 _FAR_SMALLER = 1e-3
-"""Of a step: errors of time fall at least by its square root."""
-_SMALLEST = 1e-12  # of the time that has passed, at first of 1e-12 s
+"""Size ratio of trial steps for detecting jumps: time errors fall at least by its square root."""
+_SMALLEST = 1e-12  # relative to the elapsed time; at the start to 1e-12 s
 
 
 @serialisable
 @dataclass(frozen=True)
 class Moment:
-    """A state of the running-in, and all that its time loop needs to go on from it.
+    """Accepted state of the running-in with the data to continue the time loop from it.
 
     Attributes
     ----------
     time, step : float
-        End and size of the step that led here [s].
+        End and size of the last step [s].
     state : InterfaceState
     error : float
         Error estimate of the step.
     is_output : bool
-        Whether this is one of the output times.
+        True at an output time.
     distance : float
-        From the steady state, see `WearProblem`; NaN without one.
+        Distance from the steady state, see `WearProblem`; NaN without one.
     number : int
-        Of the step.
+        Number of the step.
     begin : float
         Last time that was hit exactly [s].
     wanted : float
-        Size of the next step, as far as its error allows [s].
+        Size of the next step proposed by error control [s].
     """
 
     time: float
@@ -61,23 +61,23 @@ def moments(
     sizes: StepSizes | None = None,
     last: Moment | None = None,
 ) -> Iterator[Moment]:
-    """The moments of a running-in, from the unworn contact on.
+    """Accepted states of a running-in, beginning with the unworn contact.
 
     Parameters
     ----------
     problem : WearProblem
-    settings : Transient
+    settings : Timed
     steady : object
-        The steady state that the problem tends to, as it takes it; None without one.
+        Steady state in the form that ``problem.steady`` takes; None without one.
     sizes : StepSizes, optional
-        Any by default.
+        `AnySize` by default.
     last : Moment, optional
-        Go on from this one; it is not passed again.
+        State to continue from; it is not yielded again.
 
     Raises
     ------
     ComputationError
-        If the step has become too small or the steps too many. What was yielded stays valid.
+        If the step becomes too small or the number of steps too large. Yielded states stay valid.
     """
     sizes = sizes or AnySize()
     steady = None if steady is None else problem.steady(steady)
@@ -98,13 +98,13 @@ def moments(
 
 
 def is_over(settings: Timed, problem: WearProblem, last: Moment) -> bool:
-    """Whether a running-in ends with this moment."""
+    """Test whether the running-in ends with this state."""
     end = times_to_hit(settings, problem)[-1]
     return last.time >= end or _is_steady(settings, last.distance)
 
 
 def _first(problem: WearProblem, steady: np.ndarray | None) -> Moment:
-    """The unworn contact."""
+    """Initial state: the unworn contact at time 0."""
     state = problem.start()
     distance, wanted = problem.distance(state, steady), problem.first_step(state)
     return Moment(0.0, 0.0, state, 0.0, False, distance, 0, 0.0, wanted)
@@ -113,7 +113,7 @@ def _first(problem: WearProblem, steady: np.ndarray | None) -> Moment:
 def _next(
     problem: WearProblem, settings: Timed, steady, sizes: StepSizes, target: float, last: Moment
 ) -> Moment:
-    """The end of a step towards a time that must be hit [s]."""
+    """Step towards a target time that must be hit exactly [s]."""
     way = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
     smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
     trial, step, following = _accept(problem, last, way, sizes.rounding, smallest, settings)
@@ -137,19 +137,19 @@ def _accept(
 ) -> tuple[TrialStep, float, float]:
     """Repeat a step with smaller sizes until its error is within the tolerance.
 
-    Steps that are to end behind the time of an event must do so once they are rounded, too.
+    Step sizes that must end behind an event are increased by ``rounding`` to do so once rounded.
 
-    Where contact holds point by point, what is no smaller in a step that is far smaller is a jump:
-    a point begins to press at once. That step, which ends right behind it, is taken.
+    With pointwise contact, an error that does not decrease in a far smaller step is a jump: a point
+    begins to press suddenly. That step, which ends right behind the event, is accepted.
 
     Returns
     -------
     trial : TrialStep
     step, following : float
-        Its size, and that of the next one, as far as errors allow [s].
+        Size of the step, and of the next one as proposed by error control [s].
     """
     trouble, step = "", way(last.wanted)
-    # what fades after a point has begun to press makes ever smaller errors
+    # errors decrease steadily while the transient after a point begins to press decays
     former = None if last.state.pointwise is None else (last.step, last.error)
     tried: list[tuple[float, float]] = []
     while step > smallest:
@@ -172,7 +172,7 @@ def _accept(
 
 
 def times_to_hit(settings: Timed, problem: WearProblem) -> list[float]:
-    """Times that must be hit exactly, in order; the last one ends the run."""
+    """Times that must be hit exactly, in increasing order; the last one ends the run [s]."""
     end = np.inf if settings.end_time is None else settings.end_time
     corners = () if settings.end_time is None else problem.corners(end)
     return sorted({*settings.output_times, *corners, end})

@@ -83,7 +83,7 @@ class Influence:
     comm: object
 
     def condensed(self, traction: sp.csr_matrix, holder: Holder) -> CondensedContact:
-        """Condensed contact for a friction and a holder, without elastic solution. Every rank calls.
+        """Condensed contact for a friction and a holder, without elastic solution; collective.
 
         Parameters
         ----------

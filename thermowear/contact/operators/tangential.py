@@ -2,9 +2,9 @@
 
 Sign convention: that of `pairing`, and for the tangential direction
 ---------------------------------------------------------------------
-``e`` is n turned by +90 degrees: ``e = (-n_y, n_x)``, which is +x for a body 1 lying above. A shear
-traction t acts on body 1: traction ``-p n + t e`` on body 1, the opposite on body 2. The slip is the
-tangential displacement of body 1 relative to body 2::
+``e`` is n turned by +90 degrees: ``e = (-n_y, n_x)``, which is +x for a body 1 lying above. The
+shear traction t acts on body 1: traction ``-p n + t e`` on body 1, the opposite on body 2. The slip
+is the tangential displacement of body 1 relative to body 2::
 
     s = (u1 - u2)·e
 

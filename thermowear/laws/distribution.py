@@ -2,9 +2,8 @@
 
 A face that stays in contact wears in place. Points of a strip, disk or drum are in contact for a
 fraction of the time (duty factor); in a spatially fixed frame their wear rate is the local one,
-``Z p^b``, averaged along the track. In all cases
-``rate = share * local + reach (rows·local)``: a fraction of the local rate, and means shared by
-several points.
+``Z p^b``, averaged along the track. In all cases ``rate = share * local + reach (rows·local)``: a
+fraction of the local rate, and means shared by several points.
 """
 
 from __future__ import annotations

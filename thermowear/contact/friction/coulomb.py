@@ -12,8 +12,8 @@ projections
 
     λ = max(0, λ - c y_n),     τ = P(τ - c y_t),     P onto the disc of radius mu max(0, λ - c y_n)
 
-for any c > 0 (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353). This
-nonsmooth system of equations is solved in `coulomb_solver`.
+for any c > 0 (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353). This nonsmooth
+system of equations is solved in `coulomb_solver`.
 """
 
 from __future__ import annotations

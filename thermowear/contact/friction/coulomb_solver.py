@@ -152,8 +152,8 @@ def _complementary(problem: CoulombProblem) -> np.ndarray | None:
     """Unknowns by Lemke's method for one tangential direction; None if it ends on a ray.
 
     With ``τ = b_1 - b_2`` the conditions are the copositive complementarity problem of Stewart and
-    Trinkle (Int. J. Numer. Methods Eng. 39 (1996) 2673), in (λ, b_1, b_2, slip magnitude) and
-    the free motions as differences of two positives; solvable if the motions are given.
+    Trinkle (Int. J. Numer. Methods Eng. 39 (1996) 2673), in (λ, b_1, b_2, slip magnitude) and the
+    free motions as differences of two positives; solvable if the motions are given.
     """
     m, k = len(problem.friction), len(problem.force)
     if len(problem.offset) != 2 * m:

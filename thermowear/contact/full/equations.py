@@ -11,8 +11,8 @@ as d does, with ``Tᵀ w p`` equal to the spring force.
 
 Without S and s this is the penalty method. With them it is Nitsche's method, which is consistent
 for any γ (Chouly, Hild and Renard, Math. Comput. 84 (2015) 1089); θ = 1 is symmetric and needs γ
-above a limit (see `stabilisation`), θ = -1 works with any γ. Symmetric
-equations are the stationarity conditions of a convex energy.
+above a limit (see `stabilisation`), θ = -1 works with any γ. Symmetric equations are the
+stationarity conditions of a convex energy.
 """
 
 from __future__ import annotations

@@ -50,8 +50,8 @@ def default_penalty(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
 def stability_limit(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
     """Lower bound of γ for the symmetric variant of Nitsche's method, shape (n,) [Pa/m].
 
-    Largest eigenvalue of ``Sᵀ w S`` against the stiffness, in the cell of each facet: above it
-    the Nitsche energy is convex. Every rank calls.
+    Largest eigenvalue of ``Sᵀ w S`` against the stiffness, in the cell of each facet: above it the
+    Nitsche energy is convex. Every rank calls.
     """
     side, point, share = on_every_facet(pairing)
     limit = np.zeros(len(side.face.nodes))

@@ -35,8 +35,8 @@ class CondensedContact:
     force_modes : ndarray, shape (m, k)
         Ψᵀ w T: generalised force of each coefficient on each of these motions.
     influence : ndarray or None, shape (n_owned, m)
-        K⁻¹ Bᵗ w Ψ: the weak gap due to any nodal load f is ``influenceᵀ f``. Large: stored
-        on request.
+        K⁻¹ Bᵗ w Ψ: the weak gap due to any nodal load f is ``influenceᵀ f``. Large: stored on
+        request.
     """
 
     basis: np.ndarray

@@ -17,8 +17,8 @@ from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 
 _REGULARITY = 1e-12
-"""Regularisation of an infinite conductance, relative to the resistance of the bodies: keeps heat
-flux functions independent that differ only where no heat crosses."""
+"""Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux
+functions independent that differ only where no heat crosses."""
 _DIRECT = 10.0
 """Largest conductance treated point by point, relative to that of a layer of the bodies as thick as
 the support of a basis function."""
@@ -97,8 +97,8 @@ class InterfaceHeat:
         and small temperature differences times large numbers would lose digits: the excess
         ``h - k`` has a resistance ``r = 1/(h - k)``, zero in perfect contact, and an unknown of
         moderate size, ``z = Ψ μ``. With ``η = 1/(1 + k r)`` it gives both the exchanged heat
-        ``η z`` and the temperature jump ``r η z = (1 - η) z / k``, which is imposed weakly with
-        the test functions ``η Ψ``. The equations are symmetric and regular from zero to infinite
+        ``η z`` and the temperature jump ``r η z = (1 - η) z / k``, which is imposed weakly with the
+        test functions ``η Ψ``. The equations are symmetric and regular from zero to infinite
         conductance.
 
         Parameters

@@ -7,12 +7,12 @@ Positive gaps are open::
 
     g = g0 + (u2 - u1)·n
 
-Pressure ``p >= 0`` and sliding friction act as the traction ``-p (n + mu e)`` on body 1
-and the opposite on body 2, with the unit direction ``e`` of sliding of body 1 over body 2. The
-nodal loads of a pressure are ``B_tᵀ w p``, ``B_t u = (u2 - u1)·(n + mu e)``; without
-friction in the section that is ``B u = (u2 - u1)·n``. The holder moves body 1 by ``m d``, where
-``m`` is a unit rigid motion along its load; that changes the gap by ``-R d`` with ``R = m·n``, and
-the load ``F`` is in equilibrium when ``Tᵀ w p = F`` with ``T = m·(n + mu e)``.
+Pressure ``p >= 0`` and sliding friction act as the traction ``-p (n + mu e)`` on body 1 and the
+opposite on body 2, with the unit direction ``e`` of sliding of body 1 over body 2. The nodal loads
+of a pressure are ``B_tᵀ w p``, ``B_t u = (u2 - u1)·(n + mu e)``; without friction in the section
+that is ``B u = (u2 - u1)·n``. The holder moves body 1 by ``m d``, where ``m`` is a unit rigid
+motion along its load; that changes the gap by ``-R d`` with ``R = m·n``, and the load ``F`` is in
+equilibrium when ``Tᵀ w p = F`` with ``T = m·(n + mu e)``.
 """
 
 from __future__ import annotations

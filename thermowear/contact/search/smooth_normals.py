@@ -2,8 +2,8 @@
 
 Mesh facets only approximate a smooth face: their normals jump where they meet, for straight edges
 by the angle that an element subtends. Averaging at the corners and blending within the facets makes
-the normals continuous (Yang, Laursen and Meng, Int. J. Numer. Meth. Engng 62 (2005) 1183), so
-that opposite points are unique. Sharp edges of the face are preserved.
+the normals continuous (Yang, Laursen and Meng, Int. J. Numer. Meth. Engng 62 (2005) 1183), so that
+opposite points are unique. Sharp edges of the face are preserved.
 
 The blending functions of a facet of order p are Radau polynomials of odd degree q, p or p + 1
 (linear for p = 1), orthogonal to polynomials of degree q - 2. On curved facets with nearly

@@ -9,8 +9,8 @@ def lemke(matrix: np.ndarray, right: np.ndarray) -> np.ndarray | None:
     """Solve ``w = M z + q >= 0, z >= 0, z·w = 0``.
 
     Complementary pivoting with the lexicographic rule, which excludes cycling. It finds a solution
-    if M is copositive-plus and one exists (Cottle, Pang and Stone, The Linear
-    Complementarity Problem, 1992, section 4.4).
+    if M is copositive-plus and one exists (Cottle, Pang and Stone, The Linear Complementarity
+    Problem, 1992, section 4.4).
 
     Parameters
     ----------

@@ -37,8 +37,8 @@ _AHEAD = 2
 def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np.ndarray:
     """Contact points of the facets at the edge of the worn zone, or within its reach in a step.
 
-    These are partly unworn facets at most `_AHEAD` facets away from worn points; if the edge passed
-    them, contact would be weak there.
+    These facets have unworn points, and are at most `_AHEAD` facets away from facets with worn
+    points; beyond them, contact would be weak at the edge.
 
     Parameters
     ----------

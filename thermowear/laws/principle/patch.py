@@ -1,9 +1,9 @@
 """Contact patch: three-dimensional data of a face for the principle.
 
 Sign convention of `thermowear.contact.search.pairing`: ``n`` is the outward normal of body 1, and
-its traction is ``-p ñ`` with ``ñ = n + mu e_1 + mu_d e_2``. ``e_1`` is the sliding direction of body
-1 over body 2; ``e_2``, across it, is the direction of the tangential rigid-body wear velocity of
-body 1, which ``mu_d`` resists.
+its traction is ``-p ñ`` with ``ñ = n + mu e_1 + mu_d e_2``. ``e_1`` is the sliding direction of
+body 1 over body 2; ``e_2``, across it, is the direction of the tangential rigid-body wear velocity
+of body 1, which ``mu_d`` resists.
 """
 
 from __future__ import annotations

@@ -15,8 +15,8 @@ def admissible_changes(
 ) -> np.ndarray:
     """Random changes of a pressure without resultants and without tension.
 
-    Positive pressures increase or decrease, zero pressures only increase; multiples ``p T c`` of the
-    pressure then cancel the resultants.
+    Positive pressures increase or decrease, zero pressures only increase; multiples ``p T c`` of
+    the pressure then cancel the resultants.
 
     Parameters
     ----------

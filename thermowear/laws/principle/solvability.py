@@ -37,8 +37,8 @@ def why_no_steady_state(
 
     Self-locking requires pressures in equilibrium with their friction without load, at some
     coefficient of friction up to the given one. It is excluded if a motion of the holder exists
-    against which every pressure does work, with and without friction: ``R y > 0`` and ``T y > 0`` at
-    all points bound the pressures by ``F·y``.
+    against which every pressure does work, with and without friction: ``R y > 0`` and ``T y > 0``
+    at all points bound the pressures by ``F·y``.
 
     Parameters
     ----------

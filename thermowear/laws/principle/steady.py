@@ -102,7 +102,7 @@ def steady_pressure(
     NotCarried
         If the load opens the contact.
     ComputationError
-        If points do not slide, no wear depends on the local pressure, a motion does not press the
+        If points do not slide, all wear is spread over tracks, free motions are dependent at the
         faces, or a rate decreases with pressure.
     """
     spread = spread if spread is not None else [InPlace()] * len(laws)

@@ -2,8 +2,8 @@
 
 In the steady state the wear-rate vector of either body is collinear with the rigid-body wear
 velocity of body 1, ``w'_i = w'_Ri e_R`` with ``w'_Ri = w'_ni / cos χ`` (Páczelt and Mróz, Int. J.
-Solids Struct. 44 (2007) 895). Its tangential part ``w'_ni tan χ`` is the motion of the worn
-shape along the face.
+Solids Struct. 44 (2007) 895). Its tangential part ``w'_ni tan χ`` is the motion of the worn shape
+along the face.
 """
 
 from __future__ import annotations

@@ -35,13 +35,13 @@ class CoulombProblem:
     compliance : ndarray, shape (M, M)
         A, symmetric and positive definite [m⁵/N].
     offset : ndarray, shape (M,)
-        q [m³].
+        Weak gap and slip q without tractions [m³].
     modes : ndarray, shape (M, k)
         R, weak modes of the free motions [m²].
     force : ndarray, shape (k,)
-        F [N].
+        Forces F [N].
     friction : ndarray, shape (m,)
-        mu.
+        Coefficients of friction mu.
     """
 
     compliance: np.ndarray

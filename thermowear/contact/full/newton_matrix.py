@@ -18,7 +18,7 @@ _DIFFERENT = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
 
 
 class NewtonMatrix:
-    """``K - Sᵀ diag(b) S + W diag(a) C``, with factors a that change from step to step.
+    """Matrix ``K - Sᵀ diag(b) S + W diag(a) C``, with factors a that vary from step to step.
 
     K is the supported stiffness. W and C are kept for all points, open or closed, so that sparsity
     pattern and elimination order are computed only once. All methods are collective.

@@ -200,7 +200,7 @@ class HeatExchange:
 
 
 def _parts(own: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
+    """Fractions ``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
     inverse = np.full(len(conductance), np.inf)
     np.divide(own, conductance, out=inverse, where=conductance > 0)
     return 1 / (1 + inverse), own / (own + conductance)

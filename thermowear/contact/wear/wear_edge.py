@@ -137,7 +137,7 @@ class WearEdge:
         ----------
         worn : ndarray, shape (n_wearing, n) [m]
         pressure : ndarray, shape (n,), optional
-            [Pa]
+            Pressure [Pa].
         before : ndarray of bool, shape (n,), optional
             Points used for that pressure: kept until it is smooth there.
         """

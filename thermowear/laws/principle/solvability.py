@@ -11,7 +11,7 @@ _NOTHING = 1e-9  # relative size below which a force or an approach is zero
 
 
 class SelfLocking(ComputationError):
-    """Self-locking: friction carries any load, and there is no steady wear."""
+    """Error: self-locking, friction carries any load without steady wear."""
 
 
 class NotCarried(ComputationError):

@@ -41,7 +41,7 @@ _PRINCIPLE = {
     "steady": ("SteadyWear", "steady_pressure"),
     "wear_vectors": ("WearVectors", "wear_vectors"),
 }
-"""Names imported at first use: reading a case needs no optimisation library."""
+"""Names imported lazily: reading a case needs no optimisation library."""
 
 __all__ = [
     "ContactPatch",

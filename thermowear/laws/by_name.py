@@ -1,4 +1,4 @@
-"""Laws that are registered, by their names."""
+"""Look-up of registered laws by name."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .registry import REGISTERED, Role
 
 
 def registered_laws(role: Role) -> Mapping[str, type]:
-    """Laws of a role by their names: those of the folder `named`, and those of the user."""
+    """Laws of a role by name: modules of the folder `named`, and laws of the user."""
     for module in pkgutil.iter_modules(named.__path__):
         importlib.import_module(f"{named.__name__}.{module.name}")
     return REGISTERED[role]

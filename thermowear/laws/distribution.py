@@ -1,10 +1,9 @@
 """Distribution of the wear of a body: in place, or over the track that passes the contact.
 
-A face that stays in the contact wears where it is pressed. Points of a strip, disk or drum visit
-the contact for a part of the time only; in a frame that does not move with them their wear rate is
-the local one, ``Z p^b``, averaged over the way they go. In all cases
-``rate = share * local + reach (rows·local)``: a part of the local rate, and means that several
-points have in common.
+A face that stays in contact wears in place. Points of a strip, disk or drum are in contact for a
+fraction of the time (duty factor); in a spatially fixed frame their wear rate is the local one,
+``Z p^b``, averaged along the track. In all cases ``rate = share * local + reach (rows·local)``: a
+fraction of the local rate, and means shared by several points.
 """
 
 from __future__ import annotations
@@ -27,13 +26,13 @@ class Distribution(Protocol):
     Attributes
     ----------
     share : float
-        Part of the local rate that a point keeps.
+        Fraction of the local rate that stays in place.
     rows : ndarray, shape (k, n), or None
-        Weights of the k means that points have in common.
+        Weights of the k means shared by several points.
     varying_rows : ndarray, shape (k, n), or None
-        The same, without means that hardly change with the pressures.
+        `rows` without means that hardly change with the pressures.
     coverage : float
-        Part of the worn area that is in the contact at a time.
+        Fraction of the worn area that is in contact at a time.
     """
 
     @property
@@ -57,18 +56,18 @@ class Distribution(Protocol):
         ...
 
     def operator(self, n: int) -> np.ndarray:
-        """The matrix of `rate`, shape (n, n)."""
+        """Matrix of `rate`, shape (n, n)."""
         ...
 
 
 @dataclass(frozen=True)
 class DutyFactor:
-    """Each point is in the contact for a part of the time: a disk under a pad.
+    """Duty factor: each point is in contact for a fraction of the time (disk under a pad).
 
     Attributes
     ----------
     share : float
-        Of a pad on a disk its angle over 2 π.
+        Duty factor; for a pad on a disk, its angle over 2 π.
     """
 
     share: float
@@ -91,21 +90,21 @@ class DutyFactor:
 
 @dataclass(frozen=True)
 class InPlace(DutyFactor):
-    """The body wears where it is pressed."""
+    """Wear in place, with a duty factor of 1."""
 
     share: float = 1.0
 
 
 @dataclass(frozen=True)
 class UniformTrack:
-    """All points of a track pass through the whole contact: a strip, or a drum under a shoe.
+    """Uniform track: all points pass through the whole contact (strip, or drum under a shoe).
 
-    The mean hardly changes with the pressures: their sum is the load.
+    The mean hardly changes with the pressures, whose resultant is the load.
 
     Attributes
     ----------
     row : ndarray, shape (n,)
-        Length along the track that each contact point stands for, over the length of the track.
+        Length along the track of each contact point, over the length of the track.
     """
 
     row: np.ndarray
@@ -132,20 +131,19 @@ class UniformTrack:
 
 @dataclass(frozen=True)
 class Rings:
-    """Points of a disk pass under a pad on circles, each through the contact at its own radius.
+    """Rings of a disk under a pad: each point passes through the contact at its own radius.
 
-    The mean along each circle is taken with hats over the radius, whose weights add up to one at
-    every point: what wears off locally is spread without loss, nowhere negative, and a uniform
-    rate stays uniform.
+    The mean along each circle is taken with hat functions of the radius, a partition of unity: the
+    distribution conserves volume, is nonnegative, and keeps a uniform rate uniform.
 
     Attributes
     ----------
     hats : ndarray, shape (n, k)
-        Values of the hats at the points.
+        Values of the hat functions at the points.
     weights : ndarray, shape (n,)
         Areas of the points [m²].
     duty : float
-        Part of a turn for which a point of the disk is under the pad, at every radius.
+        Fraction of a turn for which a point of the disk is under the pad, at every radius.
     """
 
     hats: np.ndarray
@@ -177,10 +175,10 @@ class Rings:
 
 
 def rings(radii: np.ndarray, weights: np.ndarray, duty: float) -> Rings:
-    """Rings of points under a pad that takes up the same angle at every radius.
+    """Build the rings of a pad that subtends the same angle at every radius.
 
-    The hats have their peaks at radii of points. On a mesh in polar coordinates, whose points lie
-    on few circles, these are the rings; among scattered points, as many as each has points.
+    The hat functions have their peaks at radii of points: on a polar mesh, with points on few
+    circles, these circles; for scattered points, as many rings as points per ring.
 
     Parameters
     ----------
@@ -198,7 +196,7 @@ def rings(radii: np.ndarray, weights: np.ndarray, duty: float) -> Rings:
 
 
 def _circles(radii: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean radii of groups of points that lie apart, increasing, and the number of points each."""
+    """Mean radii of separate groups of points, increasing, and the number of points in each."""
     ordered = np.sort(radii)
     first = np.flatnonzero(np.diff(ordered, prepend=-np.inf) > _SAME * np.ptp(ordered))
     counts = np.diff(first, append=len(ordered))

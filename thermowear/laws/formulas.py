@@ -1,4 +1,4 @@
-"""Laws made of a formula: an expression of the case file, or a plain function of arrays."""
+"""Laws defined by a formula: an expression of the case file, or a plain function of arrays."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class FormulaWear:
     Attributes
     ----------
     formula : Formula
-        In variables of `WEAR_VARIABLES` [m/s].
+        Rate in variables of `WEAR_VARIABLES` [m/s].
     name : str
-        Of the law, for messages.
+        Name of the law, for messages.
     """
 
     formula: Formula
@@ -66,11 +66,11 @@ class FormulaLaw:
     Attributes
     ----------
     formula : Formula
-        In variables of `INTERFACE_VARIABLES`.
+        Coefficient in variables of `INTERFACE_VARIABLES`.
     name : str
-        Of the law, for messages.
+        Name of the law, for messages.
     least : float
-        Smallest value that is accepted.
+        Smallest valid value.
     """
 
     formula: Formula
@@ -94,7 +94,7 @@ class FormulaLaw:
 
 
 def _arrays(names: tuple[str, ...], *values: Values) -> dict[str, np.ndarray]:
-    """Variables by name, all of one shape."""
+    """Variables by name, broadcast to a common shape."""
     arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
     return dict(zip(names, arrays, strict=True))
 
@@ -102,12 +102,12 @@ def _arrays(names: tuple[str, ...], *values: Values) -> dict[str, np.ndarray]:
 def required(
     name: str, found: np.ndarray, at: dict[str, np.ndarray], least: float = -np.inf
 ) -> np.ndarray:
-    """Values of a law, which must be finite and not less than a bound.
+    """Validated values of a law: finite and not less than a bound.
 
     Raises
     ------
     ComputationError
-        With the first point where they are not.
+        If a value is not; names the first such point.
     """
     wrong = ~(np.isfinite(found) & (found >= least))
     if not wrong.any():

@@ -1,4 +1,4 @@
-"""Laws from what a Python script gives: laws, numbers, or plain functions of arrays."""
+"""Conversion of Python arguments to laws: laws, numbers, or plain functions of arrays."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class WearRate(Protocol):
     Attributes
     ----------
     variables : frozenset of str
-        Variables that the rate depends on, of `WEAR_VARIABLES`.
+        Variables of the rate, a subset of `WEAR_VARIABLES`.
     """
 
     @property
@@ -42,13 +42,13 @@ class WearRate(Protocol):
         Parameters
         ----------
         pressure : ndarray, shape (n,)
-            [Pa]
+            Pressure [Pa].
         speed : ndarray, shape (n,)
-            [m/s]
+            Sliding speed [m/s].
         temperature : ndarray, shape (n,)
-            Of the face of the body [K].
+            Surface temperature of the body [K].
         depth : ndarray, shape (n,)
-            Worn off the body so far [m].
+            Worn depth of the body so far [m].
         friction : ndarray, shape (n,)
             Coefficient of friction.
         """
@@ -72,7 +72,7 @@ class InterfaceLaw(Protocol):
     Attributes
     ----------
     variables : frozenset of str
-        Variables that the coefficient depends on, of `INTERFACE_VARIABLES`.
+        Variables of the coefficient, a subset of `INTERFACE_VARIABLES`.
     """
 
     @property
@@ -84,11 +84,11 @@ class InterfaceLaw(Protocol):
         Parameters
         ----------
         pressure : ndarray, shape (n,)
-            [Pa]
+            Pressure [Pa].
         speed : ndarray, shape (n,)
-            [m/s]
+            Sliding speed [m/s].
         temperature : ndarray, shape (n,)
-            Mean of both faces [K].
+            Mean temperature of both faces [K].
         """
         ...
 

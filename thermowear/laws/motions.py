@@ -1,4 +1,4 @@
-"""Rigid motions of body 1: the directions in which its holder may move."""
+"""Rigid motions of body 1, admitted by its holder."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class RigidMotion:
-    """A unit rigid motion: a translation, or a rotation about an axis.
+    """Unit rigid motion: a translation, or a rotation about an axis.
 
     Attributes
     ----------
@@ -44,12 +44,12 @@ class RigidMotion:
 
 
 def translation(direction) -> RigidMotion:
-    """Along a direction of two or three components."""
+    """Unit translation along a direction of two or three components."""
     return RigidMotion(_spatial(direction), np.zeros(3), np.zeros(3))
 
 
 def rotation(axis, pivot) -> RigidMotion:
-    """About an axis of three components through a point of two or three [m]."""
+    """Unit rotation about an axis (three components) through a point of two or three [m]."""
     return RigidMotion(np.zeros(3), _spatial(axis), _spatial(pivot))
 
 
@@ -60,7 +60,7 @@ def _spatial(vector) -> np.ndarray:
 
 
 def combined(motions, amounts) -> RigidMotion:
-    """The sum of motions by given amounts, as small ones add up; its pivot is the origin."""
+    """Superposition of small motions with given amplitudes; its pivot is the origin."""
     turned = np.zeros(3)
     moved = np.zeros(3)
     for motion, amount in zip(motions, amounts, strict=True):

@@ -1,4 +1,4 @@
-"""A plain Python function of arrays as a formula, with its derivatives."""
+"""Formulas from plain Python functions of arrays, with numerical derivatives."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ import numpy as np
 from ..errors import CaseError
 
 _STEP = 1e-5
-"""Central differences, relative to the variable: errors of 1e-10 of the third derivative."""
+"""Relative step of central differences: error 1e-10 times the third derivative."""
 _SCALES = {"p": 1.0, "v": 1e-6, "T": 1.0, "depth": 1e-12, "mu": 1e-3}
-"""Smallest size of a variable that a difference is taken of, in SI."""
+"""Smallest reference magnitude of each variable for the step, in SI."""
 _TINY = 1e-30  # relative imaginary step
-_AGREED = 1e-4  # of both derivatives, where the complex step is taken
+_AGREED = 1e-4  # largest relative difference for which the complex step is used
 
 
 @dataclass(frozen=True)
 class PlainFunction:
-    """Function of arrays in variables that are the names of its parameters.
+    """Function of arrays whose parameter names are the variables.
 
-    The derivative is that by a complex step (Squire and Trapp, SIAM Rev. 40 (1998) 110) wherever it
-    agrees with central differences, and these elsewhere: at kinks, and in functions that drop the
+    The derivative is that of a complex step (Squire and Trapp, SIAM Rev. 40 (1998) 110) wherever it
+    agrees with central differences, otherwise theirs: at kinks, and in functions that discard the
     imaginary part.
 
     Attributes
@@ -42,7 +42,7 @@ class PlainFunction:
         Raises
         ------
         CaseError
-            If it has others.
+            If it has other parameters.
         """
         names = list(inspect.signature(function).parameters)
         wrong = [name for name in names if name not in known]
@@ -73,12 +73,12 @@ class PlainFunction:
         return np.where(agrees, turned, difference)
 
     def _complex_step(self, at: Mapping[str, np.ndarray], by: str, x: np.ndarray):
-        """Derivative by a complex step; None where the function takes no complex numbers."""
+        """Derivative by a complex step; None if the function fails for complex numbers."""
         step = _TINY * np.maximum(np.abs(x), _SCALES[by])
         try:
             with np.errstate(all="ignore"):
                 found = self.function(**self._own({**at, by: x + 1j * step}))
-        except Exception:  # whatever a function without complex numbers raises
+        except Exception:  # any exception of a function without support for complex numbers
             return None
         return np.imag(found) / step
 
@@ -88,7 +88,7 @@ class PlainFunction:
     def _called(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
         shape = np.broadcast_shapes(*(np.shape(values) for values in at.values()))
         try:
-            with np.errstate(all="ignore"):  # what is not finite is found by who asks
+            with np.errstate(all="ignore"):  # the caller checks for finite values
                 found = np.asarray(self.function(**self._own(at)))
             if not np.issubdtype(found.dtype, np.number):
                 raise TypeError(f"returned {found.dtype}, not numbers")

@@ -1,4 +1,4 @@
-"""Checks of laws on the range of values that a contact can have."""
+"""Plausibility checks of laws over the range of contact states."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ SAMPLES: Mapping[str, np.ndarray] = {
     "depth": np.concatenate([[0.0], np.geomspace(1e-9, 1e-2, 8)]),
     "mu": np.array([0.0, 0.1, 0.3, 1.0]),
 }
-"""Values at which a law is looked at, in SI: up to 10 GPa, 100 m/s, 1500 K and 10 mm."""
+"""Sample values for the checks, in SI: up to 10 GPa, 100 m/s, 1500 K and 10 mm."""
 TYPICAL = {"p": 1e7, "v": 0.1, "T": 293.15, "depth": 0.0, "mu": 0.3}
-"""One state of a contact, at which laws are compared, in SI."""
+"""Reference state of a contact, in SI."""
 _ROUNDING = 1e-9  # of the rate
 
 
 def require_wear_rate(law: WearRate) -> None:
-    """Refuse a wear rate that is negative or infinite somewhere, or falls as the pressure rises.
+    """Reject a wear rate that is negative or infinite somewhere, or decreases with pressure.
 
     Raises
     ------
     ValueError
-        In one line, with a state where it does.
+        One-line message with a state that violates the condition.
     """
     at = _grid(law.variables | {"p"})
     names = ("p", "v", "T", "depth", "mu")
@@ -45,12 +45,12 @@ def require_wear_rate(law: WearRate) -> None:
 
 
 def require_interface_law(law: InterfaceLaw) -> None:
-    """Refuse a coefficient that is not finite somewhere, or not positive in a typical state.
+    """Reject a coefficient that is not finite somewhere, or not positive in a typical state.
 
     Raises
     ------
     ValueError
-        In one line, with a state where that is so.
+        One-line message with a state that violates the condition.
     """
     at = _grid(law.variables)
     names = ("p", "v", "T")
@@ -84,7 +84,7 @@ def _evaluated(function, *at: np.ndarray | float) -> np.ndarray:
 
 
 def _grid(variables: frozenset[str]) -> dict[str, np.ndarray]:
-    """Samples of the variables, each along an axis of its own; the pressure along the first."""
+    """Tensor grid of samples, one axis per variable, the pressure along the first."""
     names = [name for name in SAMPLES if name in variables]
     shapes = np.eye(len(names), dtype=int)
     return {
@@ -94,7 +94,7 @@ def _grid(variables: frozenset[str]) -> dict[str, np.ndarray]:
 
 
 def _refuse(wrong: np.ndarray, at: Mapping[str, np.ndarray], what: str) -> None:
-    """Raise for the first point of a grid at which something is wrong."""
+    """Raise for the first point of a grid with a violated condition."""
     if not wrong.any():
         return
     first = np.unravel_index(int(np.argmax(wrong)), wrong.shape)

@@ -1,4 +1,4 @@
-"""The modified Archard law: ``rate = κ p^b v^a`` (Páczelt and Mróz 2007, with κ = β μ^b)."""
+"""Modified Archard law: ``rate = κ p^b v^a`` (Páczelt and Mróz 2007, with κ = β μ^b)."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 
 from .interfaces import Values
 
-_FLOOR = 1e-9  # of the largest pressure: where p^b has an infinite slope (b < 1) at p = 0
+_FLOOR = 1e-9  # relative to the largest pressure: avoids the infinite slope of p^b (b < 1) at p = 0
 
 
 def floored(pressure: np.ndarray) -> np.ndarray:
-    """Pressures at which a law has a finite slope: a small positive one in place of 0 [Pa]."""
+    """Pressures bounded from below, so that a law has a finite slope at zero pressure [Pa]."""
     return np.maximum(pressure, _FLOOR * max(float(np.max(pressure, initial=0.0)), 1.0))
 
 
 @dataclass(frozen=True)
 class PowerWear:
-    """Wear law of one body, friction included.
+    """Power law of wear of one body, friction included.
 
     Attributes
     ----------
@@ -36,11 +36,11 @@ class PowerWear:
 
     @classmethod
     def per_friction_stress(cls, β: float, friction: float, b: float, a: float) -> PowerWear:
-        """The law ``β (μ p)^b v^a``."""
+        """Build the law ``β (μ p)^b v^a`` in the friction stress."""
         return cls(β * friction**b, b, a)
 
     def factor(self, speed: Values) -> np.ndarray:
-        """Z = κ v^a at points, so that the rate is Z p^b."""
+        """Factor Z = κ v^a at points, so that the rate is Z p^b."""
         return self.coefficient * np.power(speed, self.velocity_exponent)
 
     def rate(
@@ -62,6 +62,6 @@ class PowerWear:
         depth: Values = 0.0,
         friction: Values = 0.0,
     ) -> np.ndarray:
-        """Derivative by the pressure [m/(s Pa)]; finite at p = 0 also for b < 1."""
+        """Derivative with respect to the pressure [m/(s Pa)]; finite at p = 0 for b < 1, too."""
         b = self.pressure_exponent
         return self.factor(speed) * b * np.power(floored(pressure), b - 1.0)

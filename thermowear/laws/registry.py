@@ -1,7 +1,7 @@
-"""Laws that a case file names: ``rate = { type = "energy", … }``.
+"""Registry of laws that case files select by name: ``rate = { type = "energy", … }``.
 
-A law is a frozen dataclass in a module of `named`, registered by its decorator. Its fields are the
-keys of its table; `parameter` gives the unit and the bounds of each.
+A law is a frozen dataclass in a module of `named`, registered by a decorator. Its fields are the
+keys of its table; `parameter` defines the unit and the bounds of each.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ def parameter(unit: str, example: str, *, default: Any = None, **bounds: float) 
     example : str
         A well-formed value, for messages.
     default : float, optional
-        In SI; without one the key is needed.
+        Default in SI; without one the key is required.
     **bounds
-        ``gt``, ``ge``, ``le``, ``ne`` in SI.
+        Bounds ``gt``, ``ge``, ``le``, ``ne`` in SI.
     """
     metadata = {"unit": unit, "example": example, "bounds": bounds}
     if default is None:
@@ -38,7 +38,7 @@ def parameter(unit: str, example: str, *, default: Any = None, **bounds: float) 
 
 
 def registered(role: Role, name: str) -> Callable[[Law], Law]:
-    """Decorator of a law that a case file may name."""
+    """Decorator that registers a law under a name for case files."""
 
     def register(law: Law) -> Law:
         REGISTERED[role][name] = law

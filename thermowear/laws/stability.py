@@ -1,16 +1,16 @@
-"""Small disturbances of a sliding contact with friction heat and wear: which of them grow.
+"""Linear stability of a sliding contact with friction heat and wear (perturbation method).
 
-A disturbance ``λ e^{st}`` of the pressure coefficients carries no load and keeps closed what
-touches; temperatures θ open the weak gap by ``B θ``, and ω is the weak depth that is worn off ::
+A perturbation ``λ e^{st}`` of the pressure coefficients carries no load and does not change the
+contact set; temperatures θ open the weak gap by ``B θ``, and ω is the weak worn depth ::
 
     A λ + B θ + ω - R d = 0,    Tᵀ λ = 0,
     M dθ/dt + (K + V C) θ = V Q λ,    dω/dt = S λ.
 
-V multiplies the speed of the case: friction heat Q λ goes with it, and heat C that is carried
-along. Motions d of the holder are taken out by spaces Z and Y with ``Tᵀ Z = 0`` and ``Rᵀ Y = 0``.
-Without anything that changes in time that is ``(A + V H) λ = R d``: the critical speed makes the
-effective compliance lose its definiteness (J. R. Barber, Proc. R. Soc. A 312 (1969) 381). Rates
-are eigenvalues; they may be complex (T. A. Dow and R. A. Burton, J. Lubr. Technol. 95 (1973) 71).
+The speed factor V multiplies the speed of the case, and with it friction heat Q λ and advected heat
+C. Motions d of the holder are eliminated by spaces Z and Y with ``Tᵀ Z = 0`` and ``Rᵀ Y = 0``. The
+static limit is ``(A + V H) λ = R d``: at the critical speed the effective compliance is no longer
+definite (J. R. Barber, Proc. R. Soc. A 312 (1969) 381). Growth rates are eigenvalues, possibly
+complex (T. A. Dow and R. A. Burton, J. Lubr. Technol. 95 (1973) 71).
 """
 
 from __future__ import annotations
@@ -27,35 +27,35 @@ _REAL = 1e-7
 _ROUNDING = 1e-13
 """Relative growth rate, by the largest one, below which a mode is stationary."""
 _RANGE, _STRIDE = 1e5, 1.5
-"""Search range of an onset around its start, and step of the search: factors of the speed."""
+"""Search range of an onset around its start, and step of the search, as speed factors."""
 
 
 @dataclass(frozen=True)
 class LoadFree:
-    """Disturbances that carry no load.
+    """Spaces of perturbations that carry no load.
 
     Attributes
     ----------
     pressures : ndarray, shape (m, m - k)
-        Z: columns span the coefficients with ``Tᵀ λ = 0``.
+        Z, a basis of the coefficients with ``Tᵀ λ = 0``.
     gaps : ndarray, shape (m, m - k)
-        Y: columns span the weak means to which motions of the holder do nothing.
+        Y, a basis of the weak means that are invariant to motions of the holder.
     """
 
     pressures: np.ndarray
     gaps: np.ndarray
 
     def __call__(self, operator: np.ndarray) -> np.ndarray:
-        """``Yᵀ O Z`` of an operator from pressure coefficients to weak gaps, shape (m, m)."""
+        """Reduce an operator from pressure coefficients to weak gaps, (m, m), to ``Yᵀ O Z``."""
         return self.gaps.T @ operator @ self.pressures
 
     def narrowed(self, columns: np.ndarray) -> LoadFree:
-        """To combinations of the columns."""
+        """Subspace of combinations of the columns."""
         return LoadFree(self.pressures @ columns, self.gaps @ columns)
 
 
 def load_free(modes: np.ndarray, force_modes: np.ndarray) -> LoadFree:
-    """The spaces Z and Y of R and T, shape (m, k) each."""
+    """Spaces Z and Y of R and T, shape (m, k) each."""
     if modes.shape[1] == 0:
         identity = np.eye(len(modes))
         return LoadFree(identity, identity)
@@ -69,12 +69,12 @@ def _orthogonal(modes: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class StaticModes:
-    """Disturbances that neither grow nor die out, each at its own speed.
+    """Neutrally stable static perturbations, each at its critical speed.
 
     Attributes
     ----------
     factors : ndarray, shape (c,)
-        Of the given speed, smallest first.
+        Critical speed factors, relative to the given speed, smallest first.
     shapes : ndarray, shape (m, c)
         Pressure coefficients.
     """
@@ -86,8 +86,8 @@ class StaticModes:
 def static_modes(elastic: np.ndarray, thermal: np.ndarray, space: LoadFree) -> StaticModes:
     """Real positive V and λ with ``(A + V H) λ = R d`` and ``Tᵀ λ = 0``.
 
-    Where speed or friction differ along the face the matrices are not symmetric, and some V are
-    complex: such disturbances never stay, they swing. Given are those up to the first of these.
+    If speed or friction vary along the face the matrices are not symmetric, and some V are complex:
+    such modes are oscillatory. The result ends before the first of these.
 
     Parameters
     ----------
@@ -107,10 +107,10 @@ def static_modes(elastic: np.ndarray, thermal: np.ndarray, space: LoadFree) -> S
 def leading(
     elastic: np.ndarray, thermal: np.ndarray, depths: np.ndarray, space: LoadFree, count: int
 ) -> LoadFree:
-    """The disturbances that heat acts on most, and pressures that answer depths of their shapes.
+    """Subspace of the dominant thermal modes, and of pressures due to depths of their shapes.
 
-    The first are spanned by Schur vectors, so they stay well conditioned; the second have the
-    peaks at the ends of the face that a disturbance in time has too.
+    The first are spanned by Schur vectors for good conditioning; the second have the peaks at the
+    ends of the face that transient perturbations have, too.
 
     Parameters
     ----------
@@ -119,9 +119,9 @@ def leading(
     depths : ndarray, shape (m, m)
         Weak depth per coefficient of a depth in the pressure space.
     space : LoadFree
-        All of them; it is the result if there are not more than asked for.
+        Full space; returned if it is not larger than requested.
     count : int
-        Of either kind.
+        Number of either kind.
     """
     matrix = _influence(elastic, thermal, space)
     if len(matrix) <= 2 * count:
@@ -134,7 +134,7 @@ def leading(
 
 
 def _influence(elastic: np.ndarray, thermal: np.ndarray, space: LoadFree) -> np.ndarray:
-    """Pressure that the heat of a pressure leads to."""
+    """Operator from a pressure to the pressure caused by its friction heat."""
     return -np.linalg.solve(space(elastic), space(thermal))
 
 
@@ -145,9 +145,9 @@ class Rate:
     Attributes
     ----------
     value : complex
-        s, with an imaginary part that is not negative [1/s].
+        Rate s with nonnegative imaginary part [1/s].
     shape : ndarray, shape (q,)
-        Of the pressure, in the space of the disturbances.
+        Pressure shape, in the space of the perturbations.
     """
 
     value: complex
@@ -156,14 +156,14 @@ class Rate:
 
 @dataclass(frozen=True)
 class Disturbances:
-    """Small dense operators of disturbances in time.
+    """Small dense operators of transient perturbations.
 
     Attributes
     ----------
     elastic : ndarray, shape (q, q)
-        A in the spaces of the disturbances.
+        A in the spaces of the perturbations.
     opening : ndarray, shape (q, r)
-        B of r thermal coordinates.
+        B for r thermal coordinates.
     heated : ndarray, shape (r, q)
         Q at the given speed.
     conducted, carried, stored : ndarray, shape (r, r)
@@ -178,14 +178,14 @@ class Disturbances:
     stored: np.ndarray
 
     def fastest(self, factor: float, wear: np.ndarray | None = None) -> Rate:
-        """The disturbance that grows fastest, or dies out most slowly.
+        """Perturbation with the largest growth rate.
 
         Parameters
         ----------
         factor : float
-            V.
+            Speed factor V.
         wear : ndarray, shape (q, q), optional
-            S at that speed.
+            Wear operator S at that speed.
         """
         matrix, pressure = self._evolution(factor, wear)
         rates, states = np.linalg.eig(matrix)
@@ -196,7 +196,7 @@ class Disturbances:
         return Rate(value, pressure @ state)
 
     def growth(self, factor: float, wear: np.ndarray | None = None) -> float:
-        """Largest real part of the rates of what changes [1/s]."""
+        """Largest real part of the rates of nonstationary modes [1/s]."""
         rates = np.linalg.eigvals(self._evolution(factor, wear)[0])
         changing = rates[_changing(rates)]
         return float(changing.real.max()) if len(changing) else 0.0
@@ -204,20 +204,20 @@ class Disturbances:
     def onset(
         self, start: float, wear: Callable[[float], np.ndarray] | None = None
     ) -> float | None:
-        """Factor of the speed from which on disturbances grow: the first above a start.
+        """Critical speed factor, at which perturbations begin to grow: the first above a start.
 
-        Where they grow there already, the first below it.
+        If they grow there already, the first below it.
 
         Parameters
         ----------
         start : float
         wear : callable, optional
-            S for a factor of the speed.
+            Wear operator S for a speed factor.
 
         Returns
         -------
         float or None
-            None where there is none near enough.
+            None if there is none in the search range.
         """
 
         def growth(factor: float) -> float:
@@ -233,7 +233,7 @@ class Disturbances:
         return None
 
     def _evolution(self, factor: float, wear: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-        """Rate of change of temperatures and worn depths, and the pressure that goes with them."""
+        """Evolution matrix of temperatures and worn depths, and their operator to the pressure."""
         q = len(self.elastic)
         opened = self.opening if wear is None else np.hstack([self.opening, np.eye(q)])
         pressure = -np.linalg.solve(self.elastic, opened)

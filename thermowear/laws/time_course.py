@@ -1,4 +1,4 @@
-"""Values given at instants: straight lines between them, constant before and after, or repeated."""
+"""Piecewise linear course of values in time, constant beyond its ends or periodic."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 
 @dataclass(frozen=True)
 class TimeCourse:
-    """Instants of a course, which may repeat itself.
+    """Instants of a course in time, possibly periodic.
 
     Attributes
     ----------
     time : tuple of float
-        Increasing [s].
+        Increasing instants [s].
     repeat : bool
-        From the last instant on the course goes on as from the first one.
+        True if the course is periodic from the last instant on.
     """
 
     time: tuple[float, ...]
@@ -30,18 +30,18 @@ class TimeCourse:
         return self.time[-1] - self.time[0]
 
     def instant(self, time: float) -> float:
-        """The instant between the first and the last one that a time stands for [s]."""
+        """Time mapped to the range between the first and the last instant [s]."""
         begin, end = self.time[0], self.time[-1]
         if self.repeat and time > end:
             return begin + (time - begin) % self.period
         return min(max(time, begin), end)
 
     def value(self, values: Sequence[float], time: float) -> float:
-        """Interpolated value at a time, of values at the instants."""
+        """Interpolate values given at the instants at a time."""
         return float(np.interp(self.instant(time), self.time, values))
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Ends of straight lines after 0 and up to a time, repetitions included [s]."""
+        """Corner times after 0 and up to a time, repetitions included [s]."""
         times = np.array(self.time)
         if self.repeat:
             again = np.arange(math.ceil(max(end - times[-1], 0.0) / self.period) + 1)

@@ -6,14 +6,14 @@ Find pressure coefficients λ, shear coefficients τ and the free motions d of t
     y_n >= 0,   λ >= 0,   λ y_n = 0,
     |τ| <= mu λ,   y_t = 0 where |τ| < mu λ,   y_t = -κ τ with κ >= 0 elsewhere,
 
-for each coefficient; y_n is the gap and y_t the slip of the increment, both in the mean. With
-Bernstein polynomials ``|t| <= mu p`` then holds at every point. The conditions say that λ and τ
-are the projections
+for each coefficient; y_n is the weak gap and y_t the weak slip of the increment. With Bernstein
+polynomials ``|t| <= mu p`` then holds at every point. The conditions state that λ and τ are the
+projections
 
     λ = max(0, λ - c y_n),     τ = P(τ - c y_t),     P onto the disc of radius mu max(0, λ - c y_n)
 
-for any c > 0 (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353). That is a system
-of equations with kinks; `coulomb_solver` solves it.
+for any c > 0 (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353). This nonsmooth
+system of equations is solved in `coulomb_solver`.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ _TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class CoulombProblem:
-    """The data of the module's docstring; t tangential directions, ``M = m (1 + t)``.
+    """Data of the problem in the module's docstring; t tangential directions, ``M = m (1 + t)``.
 
     Attributes
     ----------
     compliance : ndarray, shape (M, M)
         A, symmetric and positive definite [m⁵/N].
     offset : ndarray, shape (M,)
-        q [m³].
+        Weak gap and slip q without tractions [m³].
     modes : ndarray, shape (M, k)
-        R of the free motions [m²].
+        R, weak modes of the free motions [m²].
     force : ndarray, shape (k,)
-        F [N].
+        Forces F [N].
     friction : ndarray, shape (m,)
-        mu.
+        Coefficients of friction mu.
     """
 
     compliance: np.ndarray
@@ -52,30 +52,30 @@ class CoulombProblem:
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """c, one value for all tangential directions of a coefficient, shape (M,) [N/m⁵]."""
+        """Parameter c, equal for the tangential directions of a coefficient, (M,) [N/m⁵]."""
         blocks = np.diag(self.compliance).reshape(-1, len(self.friction)).copy()
         blocks[1:] = blocks[1:].mean(axis=0)
         return 1 / blocks.ravel()
 
     def relative(self, unknowns: np.ndarray) -> np.ndarray:
-        """y: gap and slip of the increment, in the mean, shape (M,) [m³]."""
+        """Weak gap and slip y of the increment, shape (M,) [m³]."""
         x, d = np.split(unknowns, [len(self.offset)])
         return self.compliance @ x + self.offset - self.modes @ d
 
     def sizes(self, unknowns: np.ndarray) -> np.ndarray:
-        """Sum of the magnitudes of which y is the balance, shape (M,) [m³]."""
+        """Sum of the magnitudes of the terms of y, shape (M,) [m³]."""
         x, d = np.split(np.abs(unknowns), [len(self.offset)])
         return np.abs(self.compliance) @ x + np.abs(self.offset) + np.abs(self.modes) @ d
 
     def projection(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What λ and τ should equal, and where it sticks.
+        """Projections of the trial tractions, and the sticking coefficients.
 
         Returns
         -------
         pressure : ndarray, shape (m,)
         shear : ndarray, shape (m, t)
         sticking : ndarray of bool, shape (m,)
-            False also where it is open.
+            False also for open coefficients.
         """
         normal, tangential = self.trial(unknowns)
         radius = self.friction * np.maximum(normal, 0.0)
@@ -85,14 +85,14 @@ class CoulombProblem:
         return np.maximum(normal, 0.0), shrink[:, None] * tangential, sticking
 
     def trial(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What is projected: ``λ - c y_n``, shape (m,), and ``τ - c y_t``, shape (m, t) [Pa]."""
+        """Trial tractions ``λ - c y_n``, shape (m,), and ``τ - c y_t``, shape (m, t) [Pa]."""
         x = unknowns[: len(self.offset)]
         blocks = (x - self.stiffness * self.relative(unknowns)).reshape(-1, len(self.friction))
         return blocks[0], blocks[1:].T
 
 
 def residual(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
-    """Distance of the coefficients from their projections, and imbalance of the forces.
+    """Difference of the coefficients from their projections, and imbalance of the forces.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def residual(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
     Returns
     -------
     ndarray, shape (M + k,) [Pa]
-        The forces are divided by the area they act on.
+        Forces are divided by the area on which they act.
     """
     pressure, shear, _ = problem.projection(unknowns)
     x = unknowns[: len(problem.offset)]
@@ -112,7 +112,7 @@ def residual(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
 
 
 def jacobian(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
-    """Derivative of `residual` (one of them, where it has a kink), shape (M + k, M + k)."""
+    """Generalised (semismooth) derivative of `residual`, shape (M + k, M + k)."""
     m, total, k = len(problem.friction), len(problem.offset), len(problem.force)
     trial = np.zeros((total, total + k))  # derivative of x - c y
     trial[:, :total] = np.eye(total) - problem.stiffness[:, None] * problem.compliance
@@ -131,7 +131,7 @@ def jacobian(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
 
 
 def _tangential_slopes(problem: CoulombProblem, unknowns: np.ndarray):
-    """Of the projected shear: its direction, whether it slips, its slope by the trial shear."""
+    """Direction of the projected shear, slip mask, and derivative by the trial shear."""
     tangential = problem.trial(unknowns)[1]
     pressure, _, sticking = problem.projection(unknowns)
     length = np.linalg.norm(tangential, axis=1)
@@ -144,7 +144,7 @@ def _tangential_slopes(problem: CoulombProblem, unknowns: np.ndarray):
 
 
 def scales(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
-    """Sizes that the residual is measured against, shape (M + k,) [Pa]."""
+    """Reference magnitudes of the residual, shape (M + k,) [Pa]."""
     x = np.abs(unknowns[: len(problem.offset)])
     forces = np.abs(problem.modes).T @ x + np.abs(problem.force)
     local = x.max() + problem.stiffness * problem.sizes(unknowns)
@@ -157,7 +157,7 @@ def _areas(problem: CoulombProblem) -> np.ndarray:
 
 @dataclass(frozen=True)
 class CoulombSolution:
-    """A checked solution: coefficients are exactly within their bounds.
+    """Verified solution, with coefficients exactly within their bounds.
 
     Attributes
     ----------
@@ -167,7 +167,7 @@ class CoulombSolution:
         Free motions.
     sticking : ndarray of bool, shape (m,)
     iterations : int
-        Of Newton's method.
+        Newton iterations.
     """
 
     pressure: np.ndarray
@@ -178,12 +178,12 @@ class CoulombSolution:
 
     @property
     def stacked(self) -> np.ndarray:
-        """x, shape (M,) [Pa]."""
+        """Stacked coefficients x, shape (M,) [Pa]."""
         return np.concatenate([self.pressure, self.shear.T.ravel()])
 
 
 def violated(problem: CoulombProblem, solution: CoulombSolution) -> list[str]:
-    """Conditions that do not hold to 1e-9 of what they balance; none for a solution."""
+    """Conditions violated by more than 1e-9 of their terms; empty for a solution."""
     x = solution.stacked
     unknowns = np.concatenate([x, solution.motion])
     if not np.all(np.isfinite(unknowns)):

@@ -1,4 +1,4 @@
-"""Newton's method for friction and contact, and what to do where it fails."""
+"""Semismooth Newton method for frictional contact, with fallback starts where it fails."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .coulomb import CoulombProblem, CoulombSolution, jacobian, residual, scales
 
 _ITERATIONS = 30
 _CONVERGED = 1e-12
-_SPRINGS = (1e-3, 1e-2, 1e-1, 1.0)  # parts of the contact's own stiffness, one after the other
+_SPRINGS = (1e-3, 1e-2, 1e-1, 1.0)  # relative to the contact stiffness, tried in turn
 _SPRUNG_SOLUTIONS = 20
 
 
 def solve_directly(
     problem: CoulombProblem, closed: np.ndarray, near: np.ndarray | None = None
 ) -> CoulombSolution | None:
-    """Solve by Newton's method, which takes a few iterations; None where it fails.
+    """Solve by Newton's method in a few iterations; None if it fails.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def solve_directly(
     closed : ndarray of bool, shape (m,)
         Coefficients that are expected to press; the first guess sticks there.
     near : ndarray, shape (M + k,), optional
-        The unknowns of a similar problem: a guess before that.
+        Unknowns of a similar problem, tried as the first guess.
     """
     if near is not None:
         solution = _newton(problem, near, damped=False)
@@ -38,10 +38,10 @@ def solve_directly(
 
 
 def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolution:
-    """Solve a problem on which `solve_directly` fails; arguments are the same.
+    """Solve a problem for which `solve_directly` fails; same arguments.
 
-    Newton's method starts from solutions with a spring between holder and load, which exist where
-    the whole contact slips, and finally from the solution by complementary pivoting.
+    Newton's method starts from solutions with a spring between holder and load, which exist in
+    gross slip too, and finally from the solution by complementary pivoting.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolut
 
 
 def _from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
-    """The checked solution from a start, with full steps or else with damped ones."""
+    """Verified solution from a start, with full steps, otherwise with damped ones."""
     for damped in (False, True):
         solution = _newton(problem, start, damped)
         if solution is not None and not violated(problem, solution):
@@ -71,7 +71,7 @@ def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> Coul
     for iteration in range(_ITERATIONS + 1):
         error = residual(problem, unknowns)
         small = np.all(np.abs(error) <= _CONVERGED * scales(problem, unknowns))
-        if small and iteration > 0:  # a step at least: it leaves no more than rounding
+        if small and iteration > 0:  # at least one step: only rounding errors remain
             pressure, shear, sticking = problem.projection(unknowns)
             motion = unknowns[len(problem.offset) :]
             return CoulombSolution(pressure, shear, motion, sticking, iteration)
@@ -86,7 +86,7 @@ def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> Coul
 
 
 def _shortened(problem: CoulombProblem, unknowns, step, merit: float) -> np.ndarray:
-    """The longest of the halved steps that reduces the residual, or the shortest."""
+    """Longest of the successively halved steps that reduces the residual, or the shortest."""
     for halvings in range(8):
         trial = step / 2**halvings
         if np.linalg.norm(residual(problem, unknowns + trial)) < (1 - 1e-4 / 2**halvings) * merit:
@@ -95,7 +95,7 @@ def _shortened(problem: CoulombProblem, unknowns, step, merit: float) -> np.ndar
 
 
 def _sticking(problem: CoulombProblem, closed: np.ndarray) -> np.ndarray | None:
-    """Unknowns with closed contact that sticks at the given coefficients; None where singular."""
+    """Unknowns with sticking contact at the given coefficients; None if singular."""
     total, k = len(problem.offset), len(problem.force)
     held = np.flatnonzero(np.tile(closed, total // len(closed)))
     size = np.sqrt(np.diag(problem.compliance)[held])
@@ -125,10 +125,10 @@ def _better_starts(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.n
 
 
 def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterator[np.ndarray]:
-    """Solutions with a spring between the holder and its load, whose other end follows.
+    """Solutions with a spring between the holder and its load, its anchor updated each time.
 
-    ``Rᵀ x = F - k (d - d0)`` puts ``R k⁻¹ Rᵀ`` into the compliance and leaves no free motion;
-    ``d0 <- d`` makes it the method of multipliers for the equilibrium.
+    ``Rᵀ x = F - k (d - d0)`` adds ``R k⁻¹ Rᵀ`` to the compliance and eliminates the free motions;
+    with ``d0 <- d`` it is the method of multipliers for the equilibrium.
     """
     if len(problem.force) == 0:
         return
@@ -149,11 +149,11 @@ def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterato
 
 
 def _complementary(problem: CoulombProblem) -> np.ndarray | None:
-    """Unknowns by Lemke's method for one tangential direction; None where it ends on a ray.
+    """Unknowns by Lemke's method for one tangential direction; None if it ends on a ray.
 
     With ``τ = b_1 - b_2`` the conditions are the copositive complementarity problem of Stewart and
-    Trinkle (Int. J. Numer. Methods Eng. 39 (1996) 2673), in (λ, b_1, b_2, amount of slip) and the
-    free motions as differences of two positives; the method solves it when the motions are given.
+    Trinkle (Int. J. Numer. Methods Eng. 39 (1996) 2673), in (λ, b_1, b_2, slip magnitude) and the
+    free motions as differences of two positives; solvable if the motions are given.
     """
     m, k = len(problem.friction), len(problem.force)
     if len(problem.offset) != 2 * m:

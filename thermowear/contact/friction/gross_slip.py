@@ -1,4 +1,4 @@
-"""When all of the contact slides: the largest tangential force that friction carries."""
+"""Gross slip: the largest tangential force that friction carries."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from .coulomb import CoulombProblem
 
 
 class FullSliding(ComputationError):
-    """The given tangential force is more than friction carries."""
+    """Error for a tangential force that exceeds the friction limit."""
 
 
 def refuse_sliding(problem: CoulombProblem, pressed: bool) -> None:
-    """Raise where all of the contact sliding carries less than the tangential force.
+    """Raise if the contact in gross slip carries less than the tangential force.
 
-    Sliding makes the shear a multiple of the pressure, which then solves a problem of contact.
+    In gross slip the shear is a multiple of the pressure, which then solves a Signorini problem.
     """
     m, k = len(problem.friction), int(pressed)
     asked = problem.force[k]
     across = problem.modes[m : 2 * m, k] * np.sign(asked)
-    drag = problem.friction * np.sign(across)  # τ = drag λ holds back
+    drag = problem.friction * np.sign(across)  # τ = drag λ opposes the force
     compliance = problem.compliance[:m, :m] + problem.compliance[:m, m : 2 * m] * drag
     modes = problem.modes[:m, :k]
     carrying = modes + drag[:, None] * problem.modes[m : 2 * m, :k]

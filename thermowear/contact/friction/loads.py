@@ -1,4 +1,4 @@
-"""What holds body 1 while loads change."""
+"""Loads on the holder of body 1 in a load history."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Loads:
-    """What holds body 1 at one instant: a force or a translation along each motion of its holder.
+    """Force or translation along each motion of the holder of body 1 at one instant.
 
     Attributes
     ----------
     normal_force, tangential_force : float or None
-        Of the holder on body 1, along its motions [N].
+        Forces of the holder on body 1 along its motions [N].
     approach, tangential_displacement : float or None
-        Of the holder [m]. Exactly one of force and translation is given along each motion; neither
-        across the press where the holder only moves along it.
+        Translations of the holder [m]. Exactly one of force and translation is given along each
+        motion; neither in the tangential direction if the holder only moves in the normal one.
     """
 
     normal_force: float | None = None
@@ -27,12 +27,12 @@ class Loads:
 
     @property
     def forces(self) -> np.ndarray:
-        """By motion, NaN where the translation is given, shape (k,) [N]."""
+        """Force along each motion, NaN if the translation is given, shape (k,) [N]."""
         return self._pairs[:, 0]
 
     @property
     def motions(self) -> np.ndarray:
-        """By motion, NaN where the force is given, shape (k,) [m]."""
+        """Translation along each motion, NaN if the force is given, shape (k,) [m]."""
         return self._pairs[:, 1]
 
     @property
@@ -45,7 +45,7 @@ class Loads:
         return np.array(pairs, dtype=float)
 
     def after(self, force: np.ndarray, motion: np.ndarray, part: float) -> Loads:
-        """Loads at a part of the straight line that leads from a state to these.
+        """Loads interpolated linearly from a state to these loads.
 
         Parameters
         ----------

@@ -1,18 +1,18 @@
-"""Wear by local slip: where the faces rub each wearing body loses depth, by its own wear law.
+"""Wear by local slip: each wearing body loses depth in slip zones, by its own wear law.
 
-The depth worn off has coefficients ω in the basis of pressure and shear. In an increment the bodies
-lose, coefficient by coefficient, by the pressure and by the slip in the mean of each function,
+The worn depth has coefficients ω in the basis of pressure and shear. The worn depth of an increment
+follows, coefficient by coefficient, from the pressure and the weighted mean slip,
 
     κ λ^b |Δs|^a Δt^(1-a),      Δs = Ψᵀ w Δs(x) / Ψᵀ w 1.
 
-Slip at single points scatters about zero where it sticks; in the mean it vanishes exactly, and so
-does wear. Where it slips, the shear is ``mu λ``, coefficient by coefficient: for ``a = b = 1`` the
-volume worn off is exactly ``κ/mu`` times the energy dissipated.
+Pointwise slip scatters about zero in stick zones; the weighted mean vanishes exactly, and so does
+wear. In slip zones the shear is ``mu λ``, coefficient by coefficient: for ``a = b = 1`` the wear
+volume is exactly ``κ/mu`` times the dissipated energy.
 
-Coefficients are counted along the common face, of which each body takes its share (see
-`common_face`). The worn profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and
-``W2(x + s_1 s)`` lie at x. Between the functions it is interpolated linearly, by a matrix
-L; what is lost there goes back to ω by its adjoint, so that no volume is lost on the way.
+Coefficients refer to the common face, with the share of each body (see `common_face`). The worn
+profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and ``W2(x + s_1 s)`` lie at x. Profiles are
+interpolated linearly between the functions by a matrix L; worn depth is transferred back to ω by
+its adjoint, which conserves volume.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ from ..search.pairing import Pairing
 from .stick_slip_state import StickSlipState
 
 _PASSES = 40
-_SETTLED = 1e-6  # of the depth worn off in the increment
+_SETTLED = 1e-6  # of the depth worn in the increment
 
 
 @dataclass(frozen=True)
 class WornProfile:
-    """Where a wearing body has its worn profile.
+    """Worn profile of a body: positions of its coefficients on the face.
 
     Attributes
     ----------
     places : ndarray, shape (m,)
-        Of the basis functions, as lengths along the face, which runs along +x [m].
+        Positions of the basis functions, arc length along the face, which runs along +x [m].
     areas : ndarray, shape (m,)
-        Of the basis functions [m²].
+        Areas of the basis functions [m²].
     moves : float
-        How far it goes along the common face per slip.
+        Displacement along the common face per unit slip.
     """
 
     places: np.ndarray
@@ -50,7 +50,7 @@ class WornProfile:
     moves: float
 
     def seen(self, slip: float) -> np.ndarray:
-        """L: coefficients at the contact, of the profile's own, at a slip along +x [m], (m, m)."""
+        """Matrix L: coefficients at the contact from those of the profile at a slip [m], (m, m)."""
         m = len(self.places)
         if self.moves * slip == 0.0:
             return np.eye(m)
@@ -63,17 +63,17 @@ class WornProfile:
         return result
 
     def lost(self, slip: float) -> np.ndarray:
-        """The profile's own coefficients, of what is lost at the contact, shape (m, m)."""
+        """Coefficients of the profile from the depths worn at the contact, shape (m, m)."""
         return self.seen(slip).T * self.areas / self.areas[:, None]
 
 
 def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> WornProfile:
-    """The worn profile of a body (0 is body 1) in the basis of the pressure.
+    """Worn profile of a body (0 is body 1) in the basis of the pressure.
 
     Parameters
     ----------
     pairing : Pairing
-        Of plane bodies.
+        Contact points of a plane model.
     weighted : ndarray, shape (n, m)
         ``diag(w) Ψ``.
     body : int
@@ -86,20 +86,20 @@ def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> WornProfile:
 
 @dataclass(frozen=True)
 class SlipWear:
-    """Wear of the bodies in one increment of a history of loads.
+    """Wear of the bodies in one increment of a load history.
 
     Attributes
     ----------
     laws : tuple of WearRate
-        Of the wearing bodies; they depend on neither temperature nor depth.
+        Wear laws of the wearing bodies, independent of temperature and depth.
     profiles : tuple of WornProfile
-        Of the same bodies.
+        Worn profiles of the same bodies.
     friction : float
-        Coefficient.
+        Coefficient of friction.
     duration : float
-        Of the increment; nothing wears in none [s].
+        Duration of the increment; no wear if it is 0 [s].
     repeats : int
-        How many such increments it stands for, one a cycle.
+        Number of such increments that it represents, one per cycle.
     """
 
     laws: tuple[WearRate, ...]
@@ -109,26 +109,26 @@ class SlipWear:
     repeats: int = 1
 
     def seen(self, worn: np.ndarray, slid: float) -> np.ndarray:
-        """Depth at the contact of profiles worn so far, shape (n_wearing, m) to (m,) [m]."""
+        """Total worn depth at the contact from the profiles, shape (n_wearing, m) to (m,) [m]."""
         depth = np.zeros(worn.shape[1])
         for own, profile in zip(worn, self.profiles, strict=True):
             depth += profile.seen(slid) @ own
         return depth
 
     def depths(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
-        """What the bodies lose at the contact, shape (n_wearing, m) [m].
+        """Depths worn off the bodies at the contact, shape (n_wearing, m) [m].
 
         Parameters
         ----------
         pressure : ndarray, shape (m,)
             λ at the end of the increment [Pa].
         slip : ndarray, shape (m,)
-            Amount of slip of the increment, in the mean of each function [m].
+            Magnitude of the weighted mean slip of the increment [m].
         """
         return self._each(pressure, slip, [law.rate for law in self.laws])
 
     def slopes(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
-        """Their derivatives by the pressure, shape (n_wearing, m) [m/Pa]."""
+        """Derivatives of `depths` with respect to the pressure, shape (n_wearing, m) [m/Pa]."""
         return self._each(pressure, slip, [law.slope for law in self.laws])
 
     def _each(self, pressure, slip, functions) -> np.ndarray:
@@ -139,7 +139,7 @@ class SlipWear:
         return np.reshape(values, (-1, len(pressure)))
 
     def halved(self) -> SlipWear:
-        """Of half the increment."""
+        """Wear of half the increment."""
         return replace(self, duration=self.duration / 2)
 
 
@@ -151,35 +151,34 @@ def implicitly(
     unworn: StickSlipState,
     areas: np.ndarray,
 ) -> tuple[StickSlipState, np.ndarray]:
-    """The end of an increment and the depths worn off in it, which the pressure there decides.
+    """Implicit increment: end state, and depths worn by the pressure at the end.
 
-    However much is worn off, that is stable. Each pass is a step of Newton's method for the
-    pressure, from half way back where the last one went too far, and takes the slip from the pass
-    before.
+    Stable for any amount of wear. Each pass is a Newton step for the pressure, damped by one half
+    if the last pass increased the error, with the slip of the pass before.
 
     Parameters
     ----------
     solve : callable
-        The end for a guess, and coefficients of the depth at the contact: what is worn off at no
-        pressure, shape (m,), and its slope by the pressure, shape (m, m).
+        End state for a guess and a linearised worn depth at the contact: value at zero pressure,
+        shape (m,), and derivative by the pressure, shape (m, m).
     wear : SlipWear
     slid : float
-        How far body 1 has been moved along +x [m].
+        Displacement of body 1 along +x [m].
     before, unworn : StickSlipState
-        Begin of the increment, and its end without wear.
+        State at the start of the increment, and at its end without wear.
     areas : ndarray, shape (m,)
-        Of the basis functions [m²].
+        Areas of the basis functions [m²].
 
     Returns
     -------
     StickSlipState
     depths : ndarray, shape (n_wearing, m)
-        Coefficients of the bodies' own profiles [m].
+        Coefficients in the profile of each body [m].
 
     Raises
     ------
     ComputationError
-        If slip and wear do not settle.
+        If slip and wear do not converge.
     """
     m = len(areas)
     kept = np.reshape([profile.lost(slid) for profile in wear.profiles], (-1, m, m))

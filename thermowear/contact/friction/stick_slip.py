@@ -1,8 +1,8 @@
-"""Stick and slip under loads that change: Coulomb friction by increments.
+"""Incremental solution of stick and slip under a load history (Coulomb friction).
 
-Friction remembers where the faces stuck, so that a state follows from the state before it. Friction
-does not depend on the rate: a load history is a polygon, given by its corners. Wear: see
-`slip_wear`; signs: see `tangential`.
+Coulomb friction is history dependent: each state follows from the previous one. It is rate
+independent: a load history is a polygon, given by its corners. Wear: see `slip_wear`; signs: see
+`tangential`.
 """
 
 from __future__ import annotations
@@ -32,24 +32,24 @@ def advance(
     loads: Loads,
     wear: SlipWear | None = None,
 ) -> StickSlipState:
-    """The state after one increment, at the end of which the conditions hold.
+    """State after one implicit increment: the conditions hold at its end.
 
     Parameters
     ----------
     contact : FrictionalContact
     friction : float or ndarray, shape (m,)
-        Coulomb's coefficient, one or by coefficient.
+        Coefficient of friction, one or one per pressure coefficient.
     state : StickSlipState
-        Before.
+        State before the increment.
     loads : Loads
-        At the end.
+        Loads at the end of the increment.
     wear : SlipWear, optional
-        What the bodies lose in the increment, by default nothing.
+        Wear in the increment, by default none.
 
     Raises
     ------
     FullSliding
-        If the tangential force is more than friction carries.
+        If the tangential force exceeds the friction limit.
     ComputationError
         If no solution is found.
     """
@@ -57,12 +57,12 @@ def advance(
     if len(given) != len(state.motion):
         raise ValueError(f"loads: the holder has {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
-    mean = contact.weighted.T @ contact.basis  # of functions, from their coefficients
+    mean = contact.weighted.T @ contact.basis  # mass matrix: weak values from coefficients
     slid = _slid(state, loads)
     worn = state.worn.sum(axis=0) if wear is None else wear.seen(state.worn, slid)
 
     def solve(guess: StickSlipState, lost: np.ndarray, slope: np.ndarray) -> StickSlipState:
-        """Contact of bodies that lose depths ``lost + slope λ``."""
+        """Solve contact with the worn depths ``lost + slope λ``."""
         gap = contact.weighted.T @ contact.gap + mean @ (worn + lost)
         compliance = contact.compliance.copy()
         compliance[: len(slope), : len(slope)] += mean @ slope
@@ -78,7 +78,7 @@ def advance(
 
 
 def _slid(state: StickSlipState, loads: Loads) -> float:
-    """How far the holder has moved across the press: at the end, or so far if that is open [m]."""
+    """Tangential displacement of the holder: given at the end, or the current one if free [m]."""
     if len(state.motion) < 2:
         return 0.0
     given = loads.motions[1]
@@ -86,9 +86,9 @@ def _slid(state: StickSlipState, loads: Loads) -> float:
 
 
 def _solved(contact, friction, state, guess, loads: Loads, compliance, gap) -> StickSlipState:
-    """The state after one increment of bodies with an elastic and local compliance.
+    """State after one increment with a given elastic and local compliance.
 
-    The guess is the state before or one with the same loads.
+    The guess is the previous state or one with the same loads.
     """
     given = loads.motions
     free = np.isnan(given)
@@ -109,7 +109,7 @@ def _solved(contact, friction, state, guess, loads: Loads, compliance, gap) -> S
 
 
 def _after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipState:
-    """The state that a solution leads to."""
+    """State at the end of the increment from a solution."""
     x = contact.stack(solution.pressure, solution.shear)
     motion = fixed.copy()
     motion[free] = solution.motion
@@ -133,7 +133,7 @@ def _after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipS
 
 
 def _expected(problem: CoulombProblem, closed: np.ndarray, pressed: bool) -> np.ndarray:
-    """Coefficients that will probably press: those that do, at first those without friction."""
+    """Predicted active coefficients: the current ones, initially those without friction."""
     if np.any(closed):
         return closed
     m, k = len(closed), int(pressed)
@@ -149,7 +149,7 @@ def follow(
     state: StickSlipState | None = None,
     wear: SlipWear | None = None,
 ) -> Iterator[StickSlipState]:
-    """Follow a polygon of loads from a state, by default the unloaded one.
+    """Follow a polygonal load history from a state, by default the unloaded one.
 
     Parameters
     ----------
@@ -157,18 +157,18 @@ def follow(
     friction : float or ndarray, shape (m,)
         See `advance`.
     corners : iterable of Loads
-        Reached one after the other, each on a straight line from what is the case before; along a
-        motion, force may give way to translation and back.
+        Loads at the corners, each reached linearly from the state before; along a motion, control
+        may change between force and translation.
     increments : int
-        Between two corners; halved where no solution is found.
+        Number between two corners; an increment is halved if no solution is found.
     state : StickSlipState, optional
     wear : SlipWear, optional
-        Of each increment, see `advance`.
+        Wear of each increment, see `advance`.
 
     Yields
     ------
     StickSlipState
-        After each increment.
+        State after each increment.
 
     Raises
     ------
@@ -185,7 +185,7 @@ def follow(
 
 
 def _halving(contact, friction, state, loads: Loads, wear, halvings: int) -> StickSlipState:
-    """Advance in one step, or in two halves where that fails."""
+    """Advance in one step, or in two halves if that fails."""
     try:
         return advance(contact, friction, state, loads, wear)
     except FullSliding:

@@ -1,4 +1,4 @@
-"""State of an interface with friction under loads that change: what friction remembers."""
+"""State of a frictional interface under a load history, with its history variables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..operators.tangential import FrictionalContact
 
 
 class Status(IntEnum):
-    """Of a coefficient."""
+    """Contact status of a coefficient."""
 
     OPEN = 0
     STICK = 1
@@ -22,16 +22,16 @@ class Status(IntEnum):
 @serialisable
 @dataclass(frozen=True)
 class StickSlipState:
-    """The interface under load, and what it remembers.
+    """State of the interface under load, history variables included.
 
     Attributes
     ----------
     pressure : ndarray, shape (m,)
         Coefficients λ [Pa].
     shear : ndarray, shape (m, t)
-        Coefficients τ of the traction on body 1 [Pa].
+        Coefficients τ of the shear traction on body 1 [Pa].
     slip : ndarray, shape (m, t)
-        Of body 1 over body 2 since the unloaded state, in the mean, open or not [m³].
+        Weak slip of body 1 over body 2 since the unloaded state, open contact included [m³].
     motion, force : ndarray, shape (k,)
         Translations of the holder and its forces on body 1 [m, N].
     status : ndarray of int, shape (m,)
@@ -39,13 +39,13 @@ class StickSlipState:
     point_slip : ndarray, shape (n, t)
         Slip at the points [m].
     dissipated : ndarray, shape (n,)
-        Energy ``-∫ t ds`` lost at the points so far [J/m²]. Its integral is exactly that of the
-        conditions in the mean, where each coefficient's share is never negative; values at single
-        points of sticking zones scatter about zero as the slip there does.
+        Energy ``-∫ t ds`` dissipated at the points so far [J/m²]. Its integral is exactly that of
+        the weak conditions, to which each coefficient contributes at least 0; values at points of
+        stick zones scatter about zero as the slip does.
     worn : ndarray, shape (n_wearing, m)
-        Coefficients of the depths worn off so far [m].
+        Coefficients of the worn depths so far [m].
     iterations : int
-        Of Newton's method in the last increment.
+        Newton iterations of the last increment.
     """
 
     pressure: np.ndarray
@@ -61,12 +61,12 @@ class StickSlipState:
 
     @property
     def moves(self) -> np.ndarray:
-        """Which coefficients slipped, or were open, in the last increment, shape (m,)."""
+        """True for coefficients that slipped or were open in the last increment, shape (m,)."""
         return self.status != Status.STICK
 
 
 def unloaded(contact: FrictionalContact, wearing: int = 0) -> StickSlipState:
-    """The state before any load, of bodies of which so many wear."""
+    """Unloaded initial state, for a number of wearing bodies."""
     (n, m), k = contact.basis.shape, contact.modes.shape[1]
     t = len(contact.response) - 1
     still, free = np.zeros(k), np.full(m, Status.OPEN)

@@ -1,4 +1,4 @@
-"""The equations of contact on the full system, for the penalty method and for Nitsche's.
+"""Contact equations on the full system, for the penalty method and Nitsche's method.
 
 With the gap ``g + B u - R d`` at the points, a stiffness γ and a local compliance c,
 
@@ -6,13 +6,13 @@ With the gap ``g + B u - R d`` at the points, a stiffness γ and a local complia
 
     K u - θ Sᵀ (w/γ) (S u + s) - (θ S + γ B_t)ᵀ (w/γ) p = f,      Tᵀ w p = F.
 
-Faces may have motions on springs as well, see `edge_deflection`: they close the gap as d does, with
-``Tᵀ w p`` equal to the force of the springs.
+Faces may also have spring-supported degrees of freedom, see `edge_deflection`: they close the gap
+as d does, with ``Tᵀ w p`` equal to the spring force.
 
 Without S and s this is the penalty method. With them it is Nitsche's method, which is consistent
 for any γ (Chouly, Hild and Renard, Math. Comput. 84 (2015) 1089); θ = 1 is symmetric and needs γ
-above a limit (see `stabilisation`), θ = -1 works with any γ. Where the equations are symmetric they
-are the minimum of a convex energy.
+above a limit (see `stabilisation`), θ = -1 works with any γ. Symmetric equations are the
+stationarity conditions of a convex energy.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ from .newton_matrix import NewtonMatrix
 
 @dataclass(frozen=True)
 class Loading:
-    """What acts on the bodies.
+    """Gap, loads and local compliance of one contact problem.
 
     Attributes
     ----------
     gap : ndarray, shape (n,)
-        g at the points, wear and given approach included [m].
+        Gap g at the points, wear and given approach included [m].
     load : ndarray, shape (k,)
-        F on the free motions of the holder.
+        Load F on the free motions of the holder.
     compliance : ndarray, shape (n,)
-        c >= 0: how much the pressure opens the gap on the spot [m/Pa].
+        Local compliance c >= 0: gap opening per pressure at the point [m/Pa].
     nodal_loads : ndarray, shape (n_owned,)
-        f [N].
+        Nodal loads f [N].
     thermal_traction : ndarray, shape (n,)
-        s: normal traction of body 1 without any displacement [Pa].
+        Normal traction s of body 1 at zero displacement [Pa].
     deflection : EdgeDeflection, optional
-        What the points of the faces yield by themselves.
+        Local deflection of the faces at the edge of the wear.
     """
 
     gap: np.ndarray
@@ -58,7 +58,7 @@ class Loading:
     deflection: EdgeDeflection | None = None
 
     def part(self, share: float) -> Loading:
-        """A part of it; where the approach is given, the faces only just touch at share 0."""
+        """Scaled loading; for a given approach the faces are in first contact at share 0."""
         lift = 0.0 if len(self.load) else max(0.0, -float(self.gap.min()))
         return Loading(
             self.gap + (1 - share) * lift,
@@ -72,18 +72,18 @@ class Loading:
 
 @dataclass(frozen=True)
 class Residual:
-    """How far a displacement and a motion are from a solution.
+    """Residual of the equations at a displacement and a motion.
 
     Attributes
     ----------
     pressure : ndarray, shape (n,)
-        P; the pressure where positive [Pa].
+        Trial pressure P; the pressure where positive [Pa].
     forces : ndarray, shape (n_owned,)
         Unbalanced nodal forces [N].
     balance : ndarray, shape (k,)
-        Force that the pressure carries on each motion, with its springs, less the load.
+        Generalised force of the pressure and the springs on each motion, less the load.
     relative : float
-        The larger of both, relative to what they are sums of.
+        Larger of both residuals, relative to the size of their terms.
     """
 
     pressure: np.ndarray
@@ -98,14 +98,14 @@ class Residual:
 
 @dataclass(frozen=True)
 class _Motions:
-    """All that closes the gap as a whole: the holder, then points of the faces on springs.
+    """Global degrees of freedom of the gap: holder, then spring-supported face points.
 
     Attributes
     ----------
     modes, carried : ndarray, shape (n, k)
-        R and w T.
+        Modes R, and w T.
     springs : ndarray, shape (k, k)
-        Force per motion; none on the holder.
+        Spring stiffness; zero for the holder.
     load : ndarray, shape (k,)
     """
 
@@ -117,7 +117,7 @@ class _Motions:
 
 @dataclass(frozen=True)
 class _AtPoints:
-    """A displacement as the points see it, shape (n,) each: (S + γB) u, S u, (θS + γB_t) u."""
+    """Displacement mapped to the points, shape (n,) each: (S + γB) u, S u, (θS + γB_t) u."""
 
     closing: np.ndarray
     stress: np.ndarray
@@ -125,23 +125,23 @@ class _AtPoints:
 
 
 class ContactEquations:
-    """The equations of the module's docstring, and Newton's steps. Every rank calls everything.
+    """Residual and Newton steps of the equations in the module's docstring; collective calls.
 
     Parameters
     ----------
     elastic : Elasticity
     pairing : Pairing
     trace, traction : csr_matrix, shape (n_owned, n)
-        Bᵀ and B_tᵀ: of the gap and of what the pressure does work on; the same matrix where there
-        is no friction in the section.
+        Bᵀ and B_tᵀ: traces of the gap and of the displacement conjugate to the pressure; the same
+        matrix if there is no friction in the section.
     modes, force_modes : ndarray, shape (n, k)
-        R and T of the free motions of the holder; k = 0 where there are none.
+        R and T of the free motions of the holder; k = 0 if there are none.
     stiffness : ndarray, shape (n,)
-        γ [Pa/m].
+        Stiffness γ [Pa/m].
     stress : csr_matrix, shape (n_owned, n), optional
-        Sᵀ of Nitsche's method; without it, γ is a penalty.
+        Sᵀ of Nitsche's method; None for the penalty method.
     theta : int
-        θ, 1, 0 or -1; the penalty method has none.
+        θ of Nitsche's method: 1, 0 or -1; unused by the penalty method.
     """
 
     def __init__(
@@ -173,11 +173,11 @@ class ContactEquations:
         self._matrix = NewtonMatrix(elastic, *operators, self.theta * self._scale, symmetry)
 
     def gap(self, loading: Loading, displacement: np.ndarray) -> np.ndarray:
-        """Gap with the holder unmoved, shape (n,) [m]."""
+        """Gap for zero motion of the holder, shape (n,) [m]."""
         return loading.gap + self._opening(displacement)
 
     def _opening(self, displacement: np.ndarray) -> np.ndarray:
-        """B u at the points, of one or several displacements."""
+        """Gap opening B u at the points, for one or several displacements."""
         comm = self.elastic.space.mesh.comm
         return sum_over_ranks(comm, self._trace.T @ displacement)
 
@@ -197,7 +197,7 @@ class ContactEquations:
         size = self._largest(elastic, contact, loads)
         carried = np.abs(moving.carried).T @ pressure + np.abs(moving.load)
         own = slice(len(loading.load), None)
-        carried[own] = carried[own].max(initial=0.0)  # some of them carry nothing
+        carried[own] = carried[own].max(initial=0.0)  # some of them carry no force
         relative = self._largest(forces) / size if size != 0.0 else 0.0
         off = np.divide(np.abs(balance), carried, out=np.zeros(len(balance)), where=carried > 0)
         return Residual(trial, forces, balance, float(np.max([relative, *off])))
@@ -209,7 +209,7 @@ class ContactEquations:
         displacement: np.ndarray,
         motion: np.ndarray,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Change of both residuals along a displacement and a motion, with given active points."""
+        """Directional derivative of both residuals, for given active points."""
         at, moving = self._at_points(displacement), self._motions(loading)
         change = self.stiffness * (moving.modes @ motion) - at.closing
         pressure = active * self._softening(loading) * change
@@ -221,9 +221,9 @@ class ContactEquations:
     def newton_step(
         self, loading: Loading, residual: Residual, active: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray] | None:
-        """Change of displacement and motion that solves the equations with given active points.
+        """Newton step of displacement and motion for given active points.
 
-        None where these leave a motion of the holder free.
+        None if the active points do not constrain a motion of the holder.
 
         Raises
         ------
@@ -233,7 +233,7 @@ class ContactEquations:
         pressing, moving = active * self._softening(loading), self._motions(loading)
         column = -self._work @ (pressing[:, None] * self.pairing.weights[:, None] * moving.modes)
         factor = self._matrix.factor(self._scale * pressing)
-        # the residual as it would be if exactly the active points pressed, also with tension
+        # residual with pressure at exactly the active points, tension included
         switched = np.where(active, residual.pressure, 0.0) - np.maximum(residual.pressure, 0.0)
         forces = residual.forces - self._work @ (self._scale * switched)
         balance = residual.balance + moving.carried.T @ switched
@@ -252,12 +252,12 @@ class ContactEquations:
         return step - column @ motion, motion
 
     def along(self, loading: Loading, residual: Residual, step: np.ndarray, motion: np.ndarray):
-        """What `step_length` asks for: the work of the residual on a step, along that step.
+        """Arguments of `step_length`: work of the residual along a Newton step.
 
         Returns
         -------
         constant, slope : float
-            Part that is linear in the length of the step.
+            Part linear in the step length.
         factors, pressure, change : ndarray, shape (n,)
             ``factors · max(0, pressure + length * change)`` is the rest.
         """
@@ -272,7 +272,7 @@ class ContactEquations:
         return constant, slope, factors, residual.pressure, change
 
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
-        """K u, zero where the bodies are held."""
+        """Elastic nodal forces K u, zero at supported degrees of freedom."""
         x, y = self.elastic.stiffness.createVecs()
         x.setArray(displacement)
         self.elastic.stiffness.mult(x, y)
@@ -290,7 +290,7 @@ class ContactEquations:
         )
 
     def _softening(self, loading: Loading) -> np.ndarray:
-        """φ."""
+        """Softening factor φ, shape (n,)."""
         return 1 / (1 + self.stiffness * loading.compliance)
 
     def _at_points(self, displacement: np.ndarray) -> _AtPoints:
@@ -305,7 +305,7 @@ class ContactEquations:
 
 
 def _held(elastic: Elasticity, matrix: sp.csr_matrix) -> sp.csr_matrix:
-    """A transposed trace without the rows that supports hold and without rounding noise."""
+    """Transposed trace without supported rows and without rounding noise."""
     held = sp.csr_matrix(sp.diags((~elastic.fixed).astype(float)) @ matrix)
     held.data[np.abs(held.data) < 1e-14 * np.abs(held.data).max(initial=0.0)] = 0.0
     held.eliminate_zeros()

@@ -1,7 +1,7 @@
 """Contact on the full system: Newton's method on all nodal displacements.
 
-It solves the equations of `equations` without condensing the bodies: an independent check of the
-condensed solution, and the way on where the bulk is not linear.
+Solves the equations of `equations` without condensation: an independent check of the condensed
+solution, and a basis for nonlinear bulk behaviour.
 """
 
 from __future__ import annotations
@@ -20,34 +20,34 @@ from .equations import ContactEquations, Loading
 
 _TOLERANCE = 1e-10
 _LOOSE = 1e-8
-"""Accepted where rounding allows no less."""
+"""Relative residual accepted when rounding prevents a further reduction."""
 _ITERATIONS = 25
 _SMALLEST_STEP = 1 / 16
 _COARSE = 24
-"""Pressure functions of the problem that Newton's method starts from."""
+"""Number of pressure functions of the coarse problem that gives the initial guess."""
 _ZOOMS, _ENOUGH = 3, 5
-"""How often they are put closer together, until so many have the width of the contact."""
+"""Largest number of coarse refinements, and functions across the contact that suffice."""
 _INNER = 0.15
-"""Part of the coarse peak pressure from which points are taken to press: all points that then
-penetrate are found at once, while too large a contact loses only its outermost points in each
-iteration."""
+"""Fraction of the coarse peak pressure above which points are active at first: too small a contact
+gains all penetrating points at once, while too large a contact loses only its outermost points in
+each iteration."""
 _SLACK = 0.9
-"""A whole step is taken if the work left on it is at most this part of the work at its start."""
+"""Largest ratio of the residual work at the end of a full step to that at its start."""
 
 
 @serialisable
 @dataclass(frozen=True)
 class FullSolution:
-    """Contact of the full system.
+    """Contact solution of the full system.
 
     Attributes
     ----------
     displacement : ndarray, shape (n_owned,) [m]
     motion : ndarray, shape (k,)
-        d of the holder.
+        Motion d of the holder.
     pressure : ndarray, shape (n,) [Pa]
     iterations : int
-        Of Newton's method, over all load steps.
+        Newton iterations over all load steps.
     """
 
     displacement: np.ndarray
@@ -57,14 +57,14 @@ class FullSolution:
 
     @property
     def active(self) -> np.ndarray:
-        """Points that press, shape (n,)."""
+        """Points with positive pressure, shape (n,)."""
         return self.pressure > 0.0
 
 
 class FullContact(ContactEquations):
-    """Two elastic bodies and the contact between them; parameters as in `ContactEquations`.
+    """Contact of two elastic bodies; parameters as in `ContactEquations`.
 
-    Every rank calls everything.
+    All methods are collective: every rank calls them.
     """
 
     def solve(
@@ -77,9 +77,9 @@ class FullContact(ContactEquations):
         start: FullSolution | None = None,
         deflection: EdgeDeflection | None = None,
     ) -> FullSolution:
-        """Find the contact; parameters as in `Loading`, and a neighbouring solution to start from.
+        """Solve contact; parameters as in `Loading`, and a neighbouring solution as initial guess.
 
-        Where Newton's method does not converge the load is brought up in steps.
+        If Newton's method does not converge, the load is applied in steps.
 
         Raises
         ------
@@ -96,7 +96,7 @@ class FullContact(ContactEquations):
             deflection,
         )
         self._check(loading)
-        # measured from where it starts: a far approach would leave no digits to the deformation
+        # relative to the start: a far approach would lose the digits of the deformation
         origin = start.motion if start else self._held(loading, np.zeros(len(loading.nodal_loads)))
         near = replace(loading, gap=gap - self.modes @ origin)
         start = replace(start, motion=0 * origin) if start else self._guess(near)
@@ -104,7 +104,7 @@ class FullContact(ContactEquations):
         return replace(found, motion=origin + found.motion)
 
     def _check(self, loading: Loading) -> None:
-        """Refuse what is no number, and what no pressure can carry."""
+        """Raise for values that are not finite, and for loads that no pressure can carry."""
         given = loading.gap, loading.load, loading.compliance, loading.thermal_traction
         wrong = sum(np.sum(~np.isfinite(values)) for values in (*given, loading.nodal_loads))
         if self._sum(wrong):
@@ -113,14 +113,14 @@ class FullContact(ContactEquations):
             scale = np.abs(self.carried).sum(axis=0)
             scale[scale == 0.0] = 1.0
             forces, target = self.carried / scale, loading.load / scale
-            # the solver takes small columns for zero: only their directions matter
+            # nnls treats small columns as zero: only their directions matter
             size = np.linalg.norm(forces, axis=1, keepdims=True)
             directions = forces[size[:, 0] > 0] / size[size[:, 0] > 0]
             if nnls(directions.T, target / np.linalg.norm(target))[1] > _LOOSE:
                 raise ComputationError("contact: the load cannot be carried by the contact zone")
 
     def _guess(self, loading: Loading) -> FullSolution:
-        """The contact with a coarse pressure, on the part of the face where it presses."""
+        """Initial guess: contact with a coarse pressure space on the contact zone."""
         own = self.elastic.solve(loading.nodal_loads)
         s = self.pairing.position
         start, end = s[0], s[-1]
@@ -134,9 +134,9 @@ class FullContact(ContactEquations):
         return found
 
     def _coarse(self, loading: Loading, own: np.ndarray, start: float, end: float) -> FullSolution:
-        """Contact with hats for pressures, from one position to another, and their weak gaps.
+        """Contact with hat functions as pressures between two positions.
 
-        It costs one solution of the bodies for each of them, and no factorisation.
+        Costs one elastic solution per function, and no factorisation.
         """
         hats = _hats(self.pairing.position, start, end)
         weighted = self.pairing.weights[:, None] * hats
@@ -152,7 +152,7 @@ class FullContact(ContactEquations):
                 loading.load,
                 force_modes=hats.T @ self.carried,
             )
-        except ComputationError:  # Newton's method says what is wrong, if anything
+        except ComputationError:  # Newton's method reports the cause, if any
             return FullSolution(own, np.zeros(len(loading.load)), everywhere, 0)
         pressure = hats @ coarse.coefficients
         if not pressure.any():
@@ -161,10 +161,10 @@ class FullContact(ContactEquations):
         return FullSolution(own + fields @ coarse.coefficients, coarse.motion, inner, 0)
 
     def _held(self, loading: Loading, displacement: np.ndarray) -> np.ndarray:
-        """Motion of the holder that carries the load on springs γ, the bodies staying as they are.
+        """Motion of the holder that carries the load on springs γ, for fixed bodies.
 
-        Newton's method from all springs closed: with one motion every step ends at or beyond the
-        solution, and the steps never turn round.
+        Newton's method from all springs closed: with one motion each step ends at or beyond the
+        solution, so convergence is monotonic.
         """
         gap, springs = self.gap(loading, displacement), self.carried * self.stiffness[:, None]
         closed: np.ndarray = np.ones(len(gap), dtype=bool)
@@ -179,7 +179,7 @@ class FullContact(ContactEquations):
         return motion
 
     def _newton(self, loading: Loading, start: FullSolution) -> tuple[FullSolution | None, int]:
-        """Newton's method; no solution where it does not converge, and the iterations spent."""
+        """Newton's method: solution, None if it does not converge, and number of iterations."""
         own = 0 if loading.deflection is None else loading.deflection.modes.shape[1]
         u, d = start.displacement, np.append(start.motion, np.zeros(own))
         before = np.inf
@@ -195,7 +195,7 @@ class FullContact(ContactEquations):
             before = residual.relative
             guessed = iteration == 0 and bool(start.active.any())
             step = self.newton_step(loading, residual, (start if guessed else residual).active)
-            if step is None:  # too few points press to hold the holder: bring it back
+            if step is None:  # too few active points to constrain the holder: restore equilibrium
                 d = np.append(self._held(loading, u), np.zeros(own))
                 continue
             length = step_length(*self.along(loading, residual, *step))
@@ -203,7 +203,7 @@ class FullContact(ContactEquations):
         return None, _ITERATIONS
 
     def _in_steps(self, loading: Loading) -> FullSolution:
-        """Bring up the load in steps, halved where Newton's method fails."""
+        """Apply the load in steps, halved where Newton's method fails."""
         share, step, spent = 0.0, 0.5, _ITERATIONS
         solution = None
         while share < 1.0:
@@ -235,18 +235,18 @@ def _hats(position: np.ndarray, start: float, end: float) -> np.ndarray:
     knots = np.linspace(start, end, max(2, min(_COARSE, count // 3)))
     distance = np.abs(position[:, None] - knots) / (knots[1] - knots[0])
     hats = np.maximum(1.0 - distance, 0.0)
-    return hats[:, hats.sum(axis=0) > 0.5]  # points may be too far apart for some
+    return hats[:, hats.sum(axis=0) > 0.5]  # some may contain too few points
 
 
 def step_length(
     constant: float, slope: float, factors: np.ndarray, pressure: np.ndarray, change: np.ndarray
 ) -> float:
-    """Part of Newton's step to take, from the work of the residual along it.
+    """Exact line search: fraction of the Newton step, from the work of the residual along it.
 
     The work ``constant + slope a + factors · max(0, pressure + a change)`` is the derivative of the
-    energy where there is one: continuous, piecewise linear, and increasing, so that its zero is the
-    minimum along the step. Whole steps are kept as long as they do not do harm, since they
-    end exactly at the solution once no point changes side any more.
+    energy, if one exists: continuous, piecewise linear, and increasing, so that its zero is the
+    minimum along the step. Full steps are kept unless harmful, since they end exactly at the
+    solution once the active set no longer changes.
     """
 
     def work(a):

@@ -1,4 +1,4 @@
-"""Newton's matrix of contact on the full system, refactorised as points open and close."""
+"""Newton matrix of contact on the full system, refactorised when the active set changes."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ _DIFFERENT = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
 
 
 class NewtonMatrix:
-    """``K - Sᵀ diag(b) S + W diag(a) C``, with factors a that change from step to step.
+    """Matrix ``K - Sᵀ diag(b) S + W diag(a) C``, with factors a that vary from step to step.
 
-    K is the supported stiffness. W and C are kept for all points, open or closed, so that pattern
-    and order of elimination are found only once. Every rank calls everything.
+    K is the supported stiffness. W and C are kept for all points, open or closed, so that sparsity
+    pattern and elimination order are computed only once. All methods are collective.
 
     Parameters
     ----------
     elastic : Elasticity
     work, closing, stress : csr_matrix, shape (n_owned, n)
-        W, Cᵀ and Sᵀ, without the rows that supports hold.
+        W, Cᵀ and Sᵀ, without supported rows.
     subtracted : ndarray, shape (n,)
-        b.
+        Factors b.
     symmetry : str
-        As for `DirectSolver`.
+        Symmetry as in `DirectSolver`.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class NewtonMatrix:
         self._factors = np.zeros(0)
 
     def factor(self, factors: np.ndarray) -> DirectSolver:
-        """Triangular factors for values of a, shape (n,).
+        """Factorise the matrix for values of a, shape (n,).
 
         Raises
         ------
@@ -98,7 +98,7 @@ def _transposed(matrix: PETSc.Mat) -> PETSc.Mat:
 
 
 def _scale_rows(matrix: PETSc.Mat, factors: np.ndarray) -> None:
-    """Multiply the rows, one a contact point, by factors that every rank knows."""
+    """Multiply the rows, one per contact point, by factors replicated on all ranks."""
     scale = matrix.createVecLeft()
     first, last = scale.getOwnershipRange()
     scale.setArray(factors[first:last])

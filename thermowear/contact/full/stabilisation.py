@@ -1,4 +1,4 @@
-"""How stiff a penalty or Nitsche's stabilisation has to be, from the cells at the contact."""
+"""Penalty and Nitsche stabilisation parameters from the cells at the contact."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from ..search.pairing import PairedFace, Pairing
 from ..search.quadrature import lobatto
 
 GAMMA = 10.0
-"""Default of γ0. The limit lies between 0.6 and 1.8 for ν <= 0.3 and below 4.2 at ν = 0.49, over
-degree 1 to 8, both kinds of cells and all models."""
+"""Default γ0. The stability limit is between 0.6 and 1.8 for ν <= 0.3 and below 4.2 at ν = 0.49,
+over degrees 1 to 8, both cell types and all models."""
 PENALTY = 10.0
-"""Default of the penalty, on the scale of γ0: approach and mean pressures of a cylinder are then
-within 2e-3 (degree 1) to 1e-4 (degree 8) of the limit, and degree 1 does not yet oscillate."""
+"""Default penalty, on the scale of γ0: approach and mean pressures of a cylinder are then within
+2e-3 (degree 1) to 1e-4 (degree 8) of the limit, and degree 1 does not yet oscillate."""
 _TOO_STIFF = 1e4
 _RIGID = 1e-9
 
@@ -32,26 +32,26 @@ def nitsche_stiffness(elastic: Elasticity, pairing: Pairing, gamma: float = GAMM
     """Nitsche's γ = γ0 (λ + 2μ) k² / h of body 1, shape (n,) [Pa/m]. Every rank calls.
 
     k is the degree of the displacement and h the depth of the cell under its facet, volume over
-    area: that is the length in the inverse trace inequality which γ has to exceed (Warburton and
-    Hesthaven, Comput. Methods Appl. Mech. Eng. 192 (2003) 2765), whatever the shape of the cell;
-    λ + 2μ is the exact factor between the square of a normal stress and the energy.
+    area: the length in the inverse trace inequality that bounds γ from below (Warburton and
+    Hesthaven, Comput. Methods Appl. Mech. Eng. 192 (2003) 2765), for any cell shape; λ + 2μ is the
+    exact factor between the square of a normal stress and the energy.
     """
     return gamma * elastic.space.ufl_element().degree ** 2 * _modulus_over_depth(elastic, pairing)
 
 
 def default_penalty(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
-    """A penalty that grows as cells shrink, ``10 (λ + 2μ) k² / h``, shape (n,) [Pa/m].
+    """Mesh-dependent default penalty ``10 (λ + 2μ) k² / h``, shape (n,) [Pa/m].
 
-    Every rank calls; see `nitsche_stiffness`, whose scale it has.
+    Every rank calls; same scale as `nitsche_stiffness`.
     """
     return nitsche_stiffness(elastic, pairing, PENALTY)
 
 
 def stability_limit(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
-    """γ that the symmetric variant of Nitsche's method has to exceed, shape (n,) [Pa/m].
+    """Lower bound of γ for the symmetric variant of Nitsche's method, shape (n,) [Pa/m].
 
-    The largest eigenvalue of ``Sᵀ w S`` against the stiffness, in the cell of each facet: above it
-    the energy of Nitsche's method is convex. Every rank calls.
+    Largest eigenvalue of ``Sᵀ w S`` against the stiffness, in the cell of each facet: above it the
+    Nitsche energy is convex. Every rank calls.
     """
     side, point, share = on_every_facet(pairing)
     limit = np.zeros(len(side.face.nodes))
@@ -67,12 +67,12 @@ def stability_limit(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
 
 
 def nitsche_warning(stiffness: np.ndarray, limit: np.ndarray, theta: int) -> str | None:
-    """What to say about γ that is out of range, None where nothing is.
+    """Warning about γ out of range; None if it is within.
 
     Parameters
     ----------
     stiffness, limit : ndarray, shape (n,)
-        From `nitsche_stiffness` and `stability_limit`.
+        Results of `nitsche_stiffness` and `stability_limit`.
     theta : int
     """
     margin = stiffness / limit
@@ -90,7 +90,7 @@ def nitsche_warning(stiffness: np.ndarray, limit: np.ndarray, theta: int) -> str
 
 
 def _modulus_over_depth(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
-    """(λ + 2μ) / h at the points; the larger value where two facets meet."""
+    """Ratio (λ + 2μ) / h at the points; the larger value where two facets meet."""
     side, point, _ = on_every_facet(pairing)
     comm, face = elastic.bodies.mesh.comm, side.face
     volume = np.zeros(len(face.nodes))
@@ -102,7 +102,7 @@ def _modulus_over_depth(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
 
 
 def _largest_at(point: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """The larger value at points that two facets share."""
+    """Larger value at points shared by two facets."""
     largest = np.zeros(point.max() + 1)
     np.maximum.at(largest, point, values)
     return largest
@@ -120,7 +120,7 @@ def _areas(elastic: Elasticity, side: PairedFace) -> np.ndarray:
 
 
 def _cell_rule(elastic: Elasticity, cell: int):
-    """Volume weights, slopes and divergence at the points of a rule in one cell."""
+    """Volume weights, gradients and divergence at the quadrature points of one cell."""
     kind = reference_element(elastic.bodies.mesh, 1).cell_type
     degree = 2 * elastic.space.ufl_element().degree + 2
     reference, weights = (np.asarray(part) for part in basix.make_quadrature(kind, degree))
@@ -130,7 +130,7 @@ def _cell_rule(elastic: Elasticity, cell: int):
 
 
 def _cell_stiffness(elastic: Elasticity, cell: int) -> np.ndarray:
-    """Stiffness matrix of one cell, made regular by a tiny resistance to rigid motions."""
+    """Stiffness matrix of one cell, regularised against rigid motions."""
     λ, μ = (cell_values(function, np.array([cell]))[0] for function in elastic.lame[:2])
     weights, slopes, divergence = _cell_rule(elastic, cell)
     strain = np.zeros((len(weights), 4, *slopes.shape[1:]))

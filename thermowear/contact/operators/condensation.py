@@ -1,4 +1,4 @@
-"""The elastic bodies condensed to the contact: everything that repeats is small and dense."""
+"""Static condensation of elasticity to the contact interface: small dense operators."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from ..search.pairing import Pairing
 from .holder import Holder
 
 _COLUMNS = {2: 32, 3: 128}
-"""Solved together, by dimension: more at once would not fit the caches, or the memory."""
+"""Right-hand sides per solution, by dimension; limited by the caches, or the memory."""
 
 
 @dataclass(frozen=True)
 class CondensedContact:
-    """Weak gap of the elastic bodies as a function of the pressure.
+    """Condensed elastic bodies: weak gap as a function of the pressure.
 
     With ``p = Ψ λ``, the weak gap is ``Ψᵀ w (g0 + W) + A λ - Rw d`` (+ thermal distortion).
 
     Attributes
     ----------
     basis : ndarray, shape (n, m)
-        Ψ.
+        Basis Ψ of the pressure.
     weighted : ndarray, shape (n, m)
         ``diag(w) Ψ``.
     compliance : ndarray, shape (m, m)
@@ -35,8 +35,8 @@ class CondensedContact:
     force_modes : ndarray, shape (m, k)
         Ψᵀ w T: generalised force of each coefficient on each of these motions.
     influence : ndarray or None, shape (n_owned, m)
-        K⁻¹ Bᵗ w Ψ: the weak gap due to any nodal load f is ``influenceᵀ f``. Large, and kept where
-        it is asked for.
+        K⁻¹ Bᵗ w Ψ: the weak gap due to any nodal load f is ``influenceᵀ f``. Large: stored on
+        request.
     """
 
     basis: np.ndarray
@@ -53,24 +53,24 @@ class CondensedContact:
 
 @dataclass(frozen=True)
 class Influence:
-    """How the bodies answer each pressure function: all that condensation solves them for.
+    """Elastic response to each pressure function: the solutions that condensation needs.
 
-    Loads, friction and wear do not enter it.
+    Independent of loads, friction and wear.
 
     Attributes
     ----------
     trace : csr_matrix, shape (n_owned, n)
-        Bᵀ.
+        Transposed gap trace Bᵀ.
     basis : ndarray, shape (n, m)
-        Ψ.
+        Basis Ψ of the pressure.
     weighted : ndarray, shape (n, m)
         ``diag(w) Ψ``.
     touching : ndarray of int, shape (n_touching,)
-        Owned values in cells at the contact, the only ones that its tractions load.
+        Owned degrees of freedom in cells at the contact, the only ones loaded by its tractions.
     near : ndarray, shape (n_touching, m)
-        Rows of K⁻¹ Bᵗ w Ψ [m per coefficient] for them.
+        Rows of K⁻¹ Bᵗ w Ψ for these [m per coefficient].
     whole : ndarray or None, shape (n_owned, m)
-        All rows: large, and kept where it is asked for.
+        All rows: large, stored on request.
     comm : mpi4py.MPI.Comm
     """
 
@@ -83,12 +83,12 @@ class Influence:
     comm: object
 
     def condensed(self, traction: sp.csr_matrix, holder: Holder) -> CondensedContact:
-        """The contact with a friction and a holder; no body is solved. Every rank calls.
+        """Condensed contact for a friction and a holder, without elastic solution; collective.
 
         Parameters
         ----------
         traction : csr_matrix, shape (n_owned, n)
-            B_tᵀ; the trace itself where there is no friction in the section.
+            B_tᵀ; the gap trace itself if there is no friction in the section.
         holder : Holder
         """
         pulls = traction[self.touching] @ sp.csr_matrix(self.weighted)
@@ -108,22 +108,22 @@ def influence(
     basis: np.ndarray,
     keep_whole: bool = False,
 ) -> Influence:
-    """Solve the bodies for every pressure function. Every rank calls.
+    """Compute the elastic response to every pressure function. Every rank calls.
 
     Parameters
     ----------
     elastic : Elasticity
     pairing : Pairing
     trace : csr_matrix, shape (n_owned, n)
-        Bᵀ of the gap.
+        Transposed gap trace Bᵀ.
     basis : ndarray, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
     keep_whole : bool
-        For thermal distortion.
+        Whether to store all rows, for thermal distortion.
     """
     dim = elastic.bodies.mesh.geometry.dim
     weighted = pairing.weights[:, None] * basis
-    # only nodes of cells at the contact carry loads: 2 % of the rows
+    # only nodes of cells at the contact are loaded: 2 % of the rows
     loads = (trace @ sp.csr_matrix(weighted)).tocsc()
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
     touching = (nodes[:, None] * dim + np.arange(dim)).ravel()

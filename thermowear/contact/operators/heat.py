@@ -1,8 +1,7 @@
 """Heat at the interface: friction heat, its partition, exchange between the faces.
 
-The bodies are linear and are condensed to their contact points once (`heat_condensation`); what
-couples them (conductance, perfect contact, separated points) is solved here on small dense
-matrices.
+The bodies are linear and are condensed to their contact points once (`heat_condensation`); their
+coupling (conductance, perfect contact, separated points) is solved here with small dense matrices.
 """
 
 from __future__ import annotations
@@ -18,11 +17,11 @@ from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 
 _REGULARITY = 1e-12
-"""Part of the bodies' own resistance that stands for an infinite one: functions of the heat flux
-that differ only where nothing crosses stay independent."""
+"""Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux
+functions independent that differ only where no heat crosses."""
 _DIRECT = 10.0
-"""Largest conductance across which heat goes point by point, over that of a layer of the bodies as
-thick as the functions are wide."""
+"""Largest conductance treated point by point, relative to that of a layer of the bodies as thick as
+the support of a basis function."""
 _NO_WAY_OUT = (
     "heat: a body is heated that nothing cools and that touches nothing, so that it has no steady "
     "temperature; give it heat.cooling, heat.temperature, or heat.gap_conductance"
@@ -32,12 +31,12 @@ _NO_WAY_OUT = (
 @serialisable
 @dataclass(frozen=True)
 class ThermalState:
-    """Heat at the contact points, shape (n,) each; index 0 is body 1.
+    """Thermal state at the contact points, shape (n,) each; index 0 is body 1.
 
     Attributes
     ----------
     rise : tuple of ndarray
-        Temperature of each face over the ambient [K].
+        Temperature rise of each face above ambient [K].
     flux : tuple of ndarray
         Heat into each body [W/m²].
     """
@@ -48,14 +47,14 @@ class ThermalState:
 
 @dataclass(frozen=True)
 class BaselineResponse:
-    """What the bodies do without any heat at the contact: given temperatures, or heat stored.
+    """Response of the bodies without heat at the contact: given temperatures, or stored heat.
 
     Attributes
     ----------
     rise : tuple of ndarray, shape (n,)
-        Of the faces [K].
+        Temperature rise of the faces [K].
     opening : ndarray or None, shape (m,)
-        Weak gap that it opens [m³]; None where that is not asked for.
+        Weak gap opened by it [m³]; None if not requested.
     """
 
     rise: tuple[np.ndarray, np.ndarray]
@@ -64,23 +63,23 @@ class BaselineResponse:
 
 @dataclass(frozen=True)
 class InterfaceHeat:
-    """Both conducting bodies, condensed to the contact points.
+    """Heat conduction in both bodies, condensed to the contact points.
 
     Attributes
     ----------
     weights : ndarray, shape (n,)
-        Areas [m²].
+        Areas of the points [m²].
     basis : ndarray, shape (n, m)
-        Ψ, the space of the exchanged heat in perfect contact.
+        Basis Ψ of the exchanged heat in perfect contact.
     traces : tuple of csr_matrix, shape (n_owned, n)
-        Eᵀ of each face.
+        Transposed trace Eᵀ of each face.
     shift : float
-        Heat transfer to a bath at ambient that the factorised conduction holds on both faces, and
-        that is taken out again here [W/(m² K)].
+        Heat transfer to a bath at ambient included in the factorised conduction on both faces, and
+        subtracted again here [W/(m² K)].
     response : tuple of ndarray, shape (n, n)
         Face rise per heat flux at the points, the bath included [m² K/W].
     partition : float or ndarray, shape (n,)
-        Part of the friction heat set free on body 1.
+        Fraction of the friction heat released on body 1.
     """
 
     weights: np.ndarray
@@ -91,27 +90,27 @@ class InterfaceHeat:
     partition: float | np.ndarray
 
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """Couple the faces.
+        """Couple the faces by a conductance.
 
-        Up to a conductance ``k``, some times that of the bodies, heat crosses point by point:
-        ``c = h (T2 - T1)``. Finite elements that do not match cannot follow a larger one point by
-        point, and no small difference of temperatures may be multiplied by a large number: what
-        is above, ``h - k``, has a resistance ``r = 1/(h - k)``, zero in perfect contact, and an
-        unknown of moderate size, ``z = Ψ μ``. With ``η = 1/(1 + k r)`` it gives both the heat that
-        crosses, ``η z``, and the jump of the temperature, ``r η z = (1 - η) z / k``, which is
-        imposed weakly by the test functions ``η Ψ``. The equations are symmetric and regular from
-        no conductance to an infinite one.
+        Up to a conductance ``k``, a multiple of that of the bodies, heat crosses point by point:
+        ``c = h (T2 - T1)``. Nonmatching finite elements cannot represent a larger one pointwise,
+        and small temperature differences times large numbers would lose digits: the excess
+        ``h - k`` has a resistance ``r = 1/(h - k)``, zero in perfect contact, and an unknown of
+        moderate size, ``z = Ψ μ``. With ``η = 1/(1 + k r)`` it gives both the exchanged heat
+        ``η z`` and the temperature jump ``r η z = (1 - η) z / k``, which is imposed weakly with the
+        test functions ``η Ψ``. The equations are symmetric and regular from zero to infinite
+        conductance.
 
         Parameters
         ----------
         conductance : ndarray, shape (n,)
-            Of the contact, or of the gap, at each point [W/(m² K)]; infinite where both faces have
-            the same temperature.
+            Conductance of the contact or the gap at each point [W/(m² K)]; infinite in perfect
+            contact.
 
         Raises
         ------
         ComputationError
-            If no heat can leave a body that is heated.
+            If a heated body has no heat sink.
         """
         n, s, (Θ1, Θ2) = len(self.weights), self.shift, self.response
         own = _DIRECT * s * self.basis.shape[1]
@@ -139,7 +138,7 @@ class InterfaceHeat:
         return HeatExchange(self, rise[: 2 * n], across)
 
     def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
-        """Nodal heat of the contact [W], owned rows; with what the bath gives where asked."""
+        """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
         shift = self.shift if bath else 0.0
         first, second = (
             trace @ (self.weights * (flux + shift * rise))
@@ -150,13 +149,13 @@ class InterfaceHeat:
 
 @dataclass(frozen=True)
 class HeatExchange:
-    """Faces that exchange heat, as a linear function of what their rises would be without it.
+    """Coupled faces: linear map from the temperature rises without exchange.
 
     Attributes
     ----------
     interface : InterfaceHeat
     rise : ndarray, shape (2 n, 2 n)
-        Of both faces, one after the other.
+        Temperature rises of both faces, stacked.
     crossing : ndarray, shape (n, 2 n)
         Heat from body 2 to body 1 [W/(m² K)].
     """
@@ -176,7 +175,7 @@ class HeatExchange:
         )
 
     def into_bath(self, alone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Heat that crosses, and that the bath gives, into both bodies for rises without it."""
+        """Exchanged heat and heat of the bath, into both bodies, from rises without exchange."""
         T1, T2 = np.split(self.rise @ alone, 2)
         crossing, s = self.crossing @ alone, self.interface.shift
         return crossing + s * T1, s * T2 - crossing
@@ -188,7 +187,7 @@ class HeatExchange:
 
     @cached_property
     def per_friction_heat(self) -> tuple[np.ndarray, np.ndarray]:
-        """Heat into both bodies, that of the bath included, per friction heat, shape (n, n)."""
+        """Heat into both bodies per friction heat, bath included, shape (n, n)."""
         first, second = self.into_bath(self._alone)
         f, identity = self.interface.partition, np.eye(len(self.interface.weights))
         return f * identity + first, (1 - f) * identity + second
@@ -201,7 +200,7 @@ class HeatExchange:
 
 
 def _parts(own: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
+    """Fractions ``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
     inverse = np.full(len(conductance), np.inf)
     np.divide(own, conductance, out=inverse, where=conductance > 0)
     return 1 / (1 + inverse), own / (own + conductance)
@@ -213,7 +212,7 @@ def at_rest(
     comm,
     per_rise: np.ndarray | None = None,
 ) -> BaselineResponse:
-    """What a nodal rise (n_owned,) does to faces and, with `per_rise`, to the weak gap."""
+    """Response of faces and, with `per_rise`, of the weak gap to a nodal rise (n_owned,)."""
     T1, T2 = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
     opening = None if per_rise is None else sum_over_ranks(comm, per_rise.T @ rise)
     return BaselineResponse((T1, T2), opening)

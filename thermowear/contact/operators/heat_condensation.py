@@ -18,18 +18,18 @@ from .traces import distributed
 
 @dataclass(frozen=True)
 class ThermalDistortion:
-    """Weak gap that heat opens (negative: closes).
+    """Thermal distortion: weak gap opened by heat (negative: closed).
 
     Attributes
     ----------
     per_flux : tuple of ndarray, shape (m, n)
-        Per heat flux into each body at the points, the bath included [m³ per W/m²].
+        Weak gap per heat flux into each body at the points, bath included [m³ per W/m²].
     """
 
     per_flux: tuple[np.ndarray, np.ndarray]
 
     def per_friction_heat(self, exchange: HeatExchange) -> np.ndarray:
-        """H of coupled faces: weak gap per friction heat, shape (m, n)."""
+        """Weak gap of coupled faces per friction heat, H, shape (m, n)."""
         first, second = exchange.per_friction_heat
         return self.per_flux[0] @ first + self.per_flux[1] @ second
 
@@ -53,7 +53,7 @@ def condense_heat(
     Every rank calls.
     """
     comm = conduction.space.mesh.comm
-    # the bodies do not touch in the bulk: one solution serves a column of both faces
+    # the bodies are uncoupled in the bulk: one solution serves a column of both faces
     field = conduction.respond(((traces[0] + traces[1]) @ sp.diags(weights)).tocsr())
     Θ1, Θ2 = (sum_over_ranks(comm, trace.T @ field) for trace in traces)
     return InterfaceHeat(weights, basis, traces, shift, (Θ1, Θ2), partition)
@@ -62,10 +62,10 @@ def condense_heat(
 def condense_distortion(
     conduction: Conduction, per_rise: np.ndarray, face: InterfaceHeat
 ) -> ThermalDistortion:
-    """Condense ``Ψᵀ w B K⁻¹ G K_T⁻¹ Eᵀ w``: heat at the contact to the weak gap.
+    """Condense ``Ψᵀ w B K⁻¹ G K_T⁻¹ Eᵀ w``: weak gap from heat at the contact.
 
-    The elastic influence is at hand, so this costs one thermal solution per pressure function and
-    no elastic one. Every rank calls.
+    With the known elastic influence this costs one (adjoint) thermal solution per pressure function
+    and no elastic one. Every rank calls.
 
     Parameters
     ----------
@@ -88,16 +88,16 @@ def gap_per_rise(thermal_load: PETSc.Mat, contact: CondensedContact) -> np.ndarr
     Parameters
     ----------
     thermal_load : petsc4py.PETSc.Mat
-        G, from `Elasticity.thermal_load`.
+        Thermal load matrix G, from `Elasticity.thermal_load`.
     contact : CondensedContact
-        With its influence.
+        Contact with stored influence.
     """
     assert contact.influence is not None
     return transpose_product(thermal_load, contact.influence)
 
 
 def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
-    """``Σ E_iᵀ w s E_i``: the bath at both faces, for `bulk.conduction`. Every rank calls."""
+    """Matrix ``Σ E_iᵀ w s E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
     first, second = (
         distributed(space, (trace @ sp.diags(np.sqrt(weights * shift))).tocsr()) for trace in traces
     )
@@ -108,7 +108,7 @@ def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
 
 
 def transpose_product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
-    """``matrixᵀ columns`` by owned rows, shape (n_owned of the matrix's columns, m)."""
+    """Product ``matrixᵀ columns`` by owned rows, shape (n_owned of the matrix's columns, m)."""
     rows, _ = matrix.getSizes()
     right = PETSc.Mat().createDense(
         (rows, columns.shape[1]), array=np.asfortranarray(columns), comm=matrix.comm

@@ -1,4 +1,4 @@
-"""How body 1 is held: which rigid motions it may make, and what drives each of them."""
+"""Holder of body 1: its rigid modes, and the load or motion along each of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..search.pairing import Pairing
 
 @dataclass(frozen=True)
 class RigidMode:
-    """A motion of the holder and what is given along it: either of them.
+    """Rigid motion of the holder with a given load or a given amplitude.
 
     Attributes
     ----------
@@ -37,16 +37,16 @@ class RigidMode:
 
 @dataclass(frozen=True)
 class Holder:
-    """The rigid holder of body 1.
+    """Rigid holder of body 1.
 
     Attributes
     ----------
     drives : tuple of RigidMode
-        The motions that it makes, k free ones and those that are given.
+        Its rigid modes: k free ones, and those with given motion.
     closing : ndarray, shape (n, n_drives)
-        R of each: how much a unit of it closes the gap at the points.
+        Matrix R: gap closure at the points per unit of each mode.
     carrying : ndarray, shape (n, n_drives)
-        T of each: generalised force on it per pressure and area.
+        Matrix T: generalised force on each mode per pressure and area.
     """
 
     drives: tuple[RigidMode, ...]
@@ -59,37 +59,37 @@ class Holder:
 
     @property
     def free(self) -> np.ndarray:
-        """Which motions are free, under a load, shape (n_drives,)."""
+        """True for modes under a given load, whose motion is free, shape (n_drives,)."""
         return np.array([drive.amount is None for drive in self.drives], dtype=bool)
 
     @property
     def modes(self) -> np.ndarray:
-        """R of the free motions, shape (n, k)."""
+        """Columns of R of the free motions, shape (n, k)."""
         return self.closing[:, self.free]
 
     @property
     def force_modes(self) -> np.ndarray:
-        """T of the free motions, shape (n, k)."""
+        """Columns of T of the free motions, shape (n, k)."""
         return self.carrying[:, self.free]
 
     @property
     def load(self) -> np.ndarray:
-        """Of the holder on the free motions, shape (k,) [N or N m]."""
+        """Generalised force of the holder on the free motions, shape (k,) [N or N m]."""
         given = [drive.load for drive in self.drives if drive.load is not None]
         return np.array(given, dtype=float)
 
     @property
     def dead(self) -> np.ndarray:
-        """Constant forces on the free motions beside the holder's, shape (k,) [N or N m]."""
+        """Constant forces on the free motions that the holder does not exert, (k,) [N or N m]."""
         return np.array([drive.dead for drive in self.drives if drive.load is not None], float)
 
     @property
     def imposed(self) -> np.ndarray:
-        """How far the given motions close the gap, shape (n,) [m]."""
+        """Gap closure by the given motions, shape (n,) [m]."""
         return self.closing @ self.amounts(np.zeros(int(self.free.sum())))
 
     def amounts(self, free: np.ndarray) -> np.ndarray:
-        """Amounts of all motions from those of the free ones, shape (n_drives,) [m or rad]."""
+        """Amplitudes of all modes from those of the free ones, shape (n_drives,) [m or rad]."""
         result = np.array([drive.amount or 0.0 for drive in self.drives], dtype=float)
         result[self.free] = free
         return result
@@ -102,7 +102,7 @@ class Holder:
 def hold(
     pairing: Pairing, pull: np.ndarray, drives: list[RigidMode] | tuple[RigidMode, ...]
 ) -> Holder:
-    """Make the holder.
+    """Build the holder from its rigid modes.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""The pressure space: continuous piecewise Bernstein polynomials on the face of body 1.
+"""Pressure space: continuous piecewise Bernstein polynomials on the face of body 1.
 
-On a surface they are products of polynomials of both parameters. Bernstein polynomials are nowhere
-negative and sum to one, so coefficients ``λ >= 0`` mean a pressure that is nowhere tensile, and
-each weak gap is a mean of the gap with positive weights.
+On a surface they are tensor products in both parameters. Bernstein polynomials are nonnegative and
+sum to one, so that coefficients ``λ >= 0`` give a pressure without tension, and each weak gap is a
+mean of the gap with nonnegative weights.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from ..search.pairing import Pairing
 
 
 def pressure_basis(pairing: Pairing, degree: int) -> np.ndarray:
-    """Ψ: values of the basis functions at the contact points.
+    """Values Ψ of the basis functions at the contact points.
 
     Parameters
     ----------
     pairing : Pairing
     degree : int
-        At least 1; one or two below the displacement keeps the space stable.
+        At least 1; one or two below that of the displacement for a stable space.
 
     Returns
     -------
     ndarray, shape (n_points, n_functions)
-        Functions without any contact point in their support are left out.
+        Functions without contact points in their support are omitted.
     """
     side = pairing.sides[0]
     values = np.ones((len(side.facet), 1))

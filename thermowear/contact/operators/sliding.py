@@ -1,4 +1,4 @@
-"""How fast and which way body 1 slides over body 2 at the contact points."""
+"""Speed and direction of sliding of body 1 over body 2 at the contact points."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 
 _LEVEL = 1e-9
-"""Parts of a vector below this part of the largest one are rounding, and have no direction."""
+"""Relative length, by the largest vector, below which a vector is rounding noise."""
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """Sliding at the contact points; the signs are those of `pairing`.
+    """Sliding at the contact points; sign convention of `pairing`.
 
     Attributes
     ----------
     speed : ndarray, shape (n,) [m/s]
     along : ndarray, shape (n, gdim)
-        e: unit direction in which body 1 slides, as far as it lies in the section.
+        Unit sliding direction e of body 1, components in the section.
     across : ndarray, shape (n, gdim)
-        Unit direction of the face across the sliding in which a body 1 that is pressed on moves
-        down the face; zero where the face is level there.
+        Unit tangent e_2 across the sliding, along which the press pushes body 1 down the face; zero
+        where the face is level in that direction.
     """
 
     speed: np.ndarray
@@ -31,7 +31,7 @@ class Sliding:
     def pull(
         self, normals: np.ndarray, friction: float | np.ndarray, transverse: float
     ) -> np.ndarray:
-        """``n + mu e + mu_d e_2``: the traction on body 1 is minus the pressure times it.
+        """Direction ``n + mu e + mu_d e_2``; the traction on body 1 is minus the pressure times it.
 
         The transverse part comes from the small velocity of wear across the sliding (Páczelt and
         Mróz, Int. J. Solids Struct. 44 (2007) 895).
@@ -40,9 +40,9 @@ class Sliding:
         ----------
         normals : ndarray, shape (n, gdim)
         friction : float or ndarray, shape (n, 1)
-            mu.
+            Coefficient of friction mu.
         transverse : float
-            mu_d.
+            Transverse coefficient mu_d.
 
         Returns
         -------
@@ -52,16 +52,16 @@ class Sliding:
 
 
 def sliding(velocity: np.ndarray, normals: np.ndarray, press: tuple[float, ...]) -> Sliding:
-    """Take sliding apart.
+    """Split the sliding velocity into speed and directions.
 
     Parameters
     ----------
     velocity : ndarray, shape (n, 3)
-        Of body 1 relative to body 2 [m/s], see `bulk.kinematics`.
+        Velocity of body 1 relative to body 2 [m/s], see `bulk.kinematics`.
     normals : ndarray, shape (n, gdim)
         Outward unit normals of body 1.
     press : tuple of float
-        Unit vector along which body 1 is pressed on.
+        Unit vector of the load direction of body 1.
     """
     gdim = normals.shape[1]
     n = _spatial(normals)
@@ -81,7 +81,7 @@ def _tangential(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
 
 
 def _unit(vectors: np.ndarray, largest: float) -> np.ndarray:
-    """Unit vectors; what is zero beside the largest one stays zero."""
+    """Unit vectors; zero for those negligible against the largest one."""
     sizes = np.linalg.norm(vectors, axis=1, keepdims=True)
     counts = sizes > _LEVEL * largest
     return np.divide(vectors, sizes, out=np.zeros_like(vectors), where=counts)

@@ -1,19 +1,19 @@
-"""The elastic bodies condensed to pressure and friction on the contact.
+"""Condensation of the elastic bodies to pressure and shear at the contact.
 
 Sign convention: that of `pairing`, and for the tangential direction
 ---------------------------------------------------------------------
-``e`` is n turned by +90 degrees: ``e = (-n_y, n_x)``, which is +x for a body 1 lying above. A shear
-traction t is what body 1 feels: traction ``-p n + t e`` on body 1, the opposite on body 2. The slip
-is how far body 1 has moved over body 2::
+``e`` is n turned by +90 degrees: ``e = (-n_y, n_x)``, which is +x for a body 1 lying above. The
+shear traction t acts on body 1: traction ``-p n + t e`` on body 1, the opposite on body 2. The slip
+is the tangential displacement of body 1 relative to body 2::
 
     s = (u1 - u2)·e
 
-so that friction opposes it, ``t ds <= 0``, and its heat is ``-t ds``. The holder moves body 1 by
+so that friction opposes it, ``t ds <= 0``, with the heat ``-t ds``. The holder moves body 1 by
 ``m d``: that changes gap and slip by ``-R d`` with ``R = (m·n, -m·e)``, and the force of the holder
 along m is ``F = Rᵀ w (p, t)``.
 
 Pressure and shear share the basis Ψ. Their coefficients are stacked: ``x = (λ, τ_1, τ_2 …)`` with
-one block per tangential direction, one in the plane. Then, in the mean,
+one block per tangential direction, one in the plane. In weak form,
 
     (gap, slip) = Ψᵀ w (g0, 0) + A x - R d,     F = Rᵀ x.
 """
@@ -40,22 +40,22 @@ class FrictionalContact:
     Attributes
     ----------
     basis : ndarray, shape (n, m)
-        Ψ.
+        Basis Ψ.
     weighted : ndarray, shape (n, m)
         ``diag(w) Ψ``.
     gap : ndarray, shape (n,)
-        Of the unloaded, unworn bodies [m].
+        Gap of the unloaded, unworn bodies [m].
     response : ndarray, shape (1 + t, n, M)
         Gap and slips at the points per coefficient [m/Pa].
     rigid : ndarray, shape (1 + t, n, k)
-        R at the points: what a unit of each of the holder's motions takes from gap and slips.
+        R at the points: decrease of gap and slips per unit of each motion of the holder.
     compliance : ndarray, shape (M, M)
         A, symmetric [m⁵/N].
     modes : ndarray, shape (M, k)
-        R in the mean [m²].
+        Weak R [m²].
     influence : ndarray, shape (n_owned, M)
-        Displacement per coefficient [m/Pa]; the bodies' mean gap and slips due to any nodal load f
-        are ``influenceᵀ f``.
+        Displacement per coefficient [m/Pa]; weak gap and slips due to any nodal load f are
+        ``influenceᵀ f``.
     """
 
     basis: np.ndarray
@@ -72,7 +72,7 @@ class FrictionalContact:
         return np.concatenate([pressure, shear.T.ravel()])
 
     def split(self, stacked: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The inverse of `stack`."""
+        """Split x into λ and τ, the inverse of `stack`."""
         blocks = stacked.reshape(-1, self.basis.shape[1])
         return blocks[0], blocks[1:].T
 
@@ -89,12 +89,12 @@ def frictional_contact(
     rigid: np.ndarray,
     influence: np.ndarray,
 ) -> FrictionalContact:
-    """Take the means of what the bodies do at the points; arguments as in `FrictionalContact`.
+    """Assemble weak operators from responses at the points; arguments as in `FrictionalContact`.
 
     Parameters
     ----------
     weights : ndarray, shape (n,)
-        Area each point stands for [m²].
+        Area of each point [m²].
     """
     weighted = weights[:, None] * basis
     compliance = np.concatenate([weighted.T @ component for component in response])
@@ -104,7 +104,7 @@ def frictional_contact(
 
 
 def tangents(normals: np.ndarray) -> np.ndarray:
-    """The tangential directions e: normals turned by +90 degrees.
+    """Tangential directions e: normals turned by +90 degrees.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def tangents(normals: np.ndarray) -> np.ndarray:
 def condense_tangential(
     elastic: Elasticity, pairing: Pairing, basis: np.ndarray, translations: np.ndarray
 ) -> FrictionalContact:
-    """Condense elasticity to pressure and shear, in one solution. Every rank calls.
+    """Condense elasticity to pressure and shear in one solution. Every rank calls.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def condense_tangential(
     basis : ndarray, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
     translations : ndarray, shape (k, 2)
-        Unit motions of the holder: along the press, and across it where the model allows any.
+        Unit translations of the holder: along the load direction, and across it if permitted.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Trace operators: from nodal values of a body to values at the contact points.
 
-They are kept transposed and by rows that a rank owns, as nodal loads need them: column j holds the
-shape functions of one side's cell at contact point j.
+Stored transposed and distributed by owned rows, as nodal loads are: column j holds the shape
+functions of the cell of one side at contact point j.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..search.pairing import PairedFace, Pairing
 
 
 def value_trace(space: fem.FunctionSpace, side: PairedFace) -> sp.csr_matrix:
-    """Eᵀ of a scalar space: shape (n_owned, n_points). Every rank calls.
+    """Transposed trace Eᵀ of a scalar space: shape (n_owned, n_points). Every rank calls.
 
     ``E v`` are the values of a field at the points of one side.
     """
@@ -26,7 +26,7 @@ def value_trace(space: fem.FunctionSpace, side: PairedFace) -> sp.csr_matrix:
 
 
 def gap_trace(space: fem.FunctionSpace, pairing: Pairing) -> sp.csr_matrix:
-    """Bᵀ of a vector space: shape (n_owned, n_points). Every rank calls.
+    """Transposed gap trace Bᵀ of a vector space: shape (n_owned, n_points). Every rank calls.
 
     ``B u = (u2 - u1)·n``, see `pairing` for the sign.
     """
@@ -41,10 +41,10 @@ def vector_trace(
     Parameters
     ----------
     space : dolfinx.fem.FunctionSpace
-        Of vectors.
+        Vector space.
     pairing : Pairing
     directions : ndarray, shape (n_points, gdim)
-        e at each point; not necessarily a unit vector (the traction of a sliding contact).
+        Direction e at each point; not necessarily a unit vector (traction of sliding contact).
     """
     result = sp.csr_matrix((owned(space), len(pairing.weights)))
     for sign, side in zip((-1.0, 1.0), pairing.sides, strict=True):
@@ -57,7 +57,7 @@ def vector_trace(
 
 
 def distributed(space: fem.FunctionSpace, trace: sp.csr_matrix) -> PETSc.Mat:
-    """A transposed trace as a PETSc matrix, its columns (points) spread over the ranks too."""
+    """Transposed trace as a PETSc matrix, columns (points) distributed over the ranks too."""
     index_map, bs = space.dofmap.index_map, space.dofmap.index_map_bs
     rows = (index_map.size_local * bs, index_map.size_global * bs)
     csr = (trace.indptr.astype(PETSc.IntType), trace.indices.astype(PETSc.IntType), trace.data)
@@ -76,7 +76,7 @@ def _local_values(space: fem.FunctionSpace, side: PairedFace):
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64), np.empty(0)
     values = element.tabulate(0, reference)[0].reshape(len(mine), -1)
     cells = side.face.cell[side.facet[mine]]
-    if not element.dof_transformations_are_permutations:  # those are part of the dofmap
+    if not element.dof_transformations_are_permutations:  # permutations are part of the dofmap
         values = _oriented(mesh, element, cells, values)
     nodes = space.dofmap.list[cells].astype(np.int64)
     point = np.repeat(mine, nodes.shape[1])
@@ -84,7 +84,7 @@ def _local_values(space: fem.FunctionSpace, side: PairedFace):
 
 
 def _oriented(mesh, element, cells: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Reference basis values, a row a point, turned as the edges and facets of the cells are."""
+    """Reference basis values, one row per point, transformed to the orientation of the cells."""
     mesh.topology.create_entity_permutations()
     orientation = mesh.topology.get_cell_permutation_info()[cells]
     result = np.empty_like(values)
@@ -110,7 +110,7 @@ def reference_points(side: PairedFace, chosen: np.ndarray, cell_type) -> np.ndar
 
 
 def gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:
-    """Sum entries of all ranks into the rows that each rank owns; rows are local dof numbers.
+    """Sum entries of all ranks into the owned rows of each rank; rows are local dof numbers.
 
     Every rank calls; shape (n_owned, n_points).
     """

@@ -1,6 +1,6 @@
 """Traction operators: from nodal displacements to the normal stress of body 1 at the points.
 
-They are transposed and distributed like the operators of `traces`.
+Transposed and distributed like the operators of `traces`.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .traces import gather_rows, reference_points
 
 
 def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
-    """Sᵀ: shape (n_owned, n_points). Every rank calls.
+    """Transposed normal traction Sᵀ of body 1: shape (n_owned, n_points). Every rank calls.
 
     ``S u = n·σ(u) n_1 / (n·n_1)`` of body 1 [Pa], compression negative, without the thermal part
     (see `thermal_traction`): the traction on its own face, of normal n_1, along the normal of the
-    common face, whose area is smaller by ``n·n_1``. Where two facets share a point it is the mean
-    of both cells, weighted with the parts of its area, so that it converges like the stress inside.
+    common face, whose area is smaller by ``n·n_1``. At points shared by two facets it is the mean
+    of both cells, weighted by their parts of the area, and converges like the interior stress.
     """
     space = elastic.space
     side, point, share = on_every_facet(pairing)
@@ -43,7 +43,7 @@ def cell_traction(
 ) -> np.ndarray:
     """Traction along normals per nodal displacement of the cell, shape (n, nodes, 2) [Pa/m].
 
-    Per area of a common face that has these normals.
+    Per area of the common face with these normals.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def cell_traction(
     chosen : ndarray of int, shape (n,)
         Entries of the side, all in cells of this rank.
     normals : ndarray, shape (n, 2)
-        Of the common face.
+        Normals of the common face.
     """
     facet = side.facet[chosen]
     cells = side.face.cell[facet]
@@ -67,7 +67,7 @@ def cell_traction(
 
 
 def thermal_traction(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
-    """m: a temperature rise adds ``-m rise`` to the normal traction, shape (n,) [Pa/K]."""
+    """Thermal modulus m: a rise adds ``-m rise`` to the normal traction, shape (n,) [Pa/K]."""
     return at_points(elastic.lame[2], pairing.sides[0])
 
 
@@ -86,13 +86,13 @@ def cell_values(function: fem.Function, cells: np.ndarray) -> np.ndarray:
 
 
 def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.ndarray):
-    """Shape functions of the displacement at one reference point in each of some cells.
+    """Derivatives of the displacement shape functions at one reference point per cell.
 
     Parameters
     ----------
     elastic : Elasticity
     cells : ndarray of int, shape (n,)
-        Of this rank.
+        Cells of this rank.
     reference : ndarray, shape (n, 2)
 
     Returns
@@ -129,14 +129,14 @@ def _tabulated(element, reference: np.ndarray) -> np.ndarray:
 
 
 def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray]:
-    """Points on body 1, those that two facets share on each, with their part of the area.
+    """Points on body 1, those shared by two facets once per facet, with their area fraction.
 
     Returns
     -------
     side : PairedFace
-        More entries than there are points.
+        One entry per point and facet.
     point : ndarray of int
-        Which point each entry is.
+        Point index of each entry.
     share : ndarray
         Sums to one at each point.
     """

@@ -1,9 +1,9 @@
-"""Which parts of the facets of one surface lie opposite to which facets of another.
+"""Polygon clipping of opposite surface facets, for the common refinement of two surfaces.
 
-Everything happens in the parameters of a facet of body 1, a unit square: the facets of body 2 are
-drawn into it by their outlines, at the points opposite to them (see `common_face`), and clipped by
-its sides (Sutherland and Hodgman, Commun. ACM 17 (1974) 32). Facets of body 2 that share an edge
-have it at the same place, so the parts lie side by side without gaps, on curved facets too.
+All operations are done in the parameters of a facet of body 1, a unit square: the outlines of the
+facets of body 2 are mapped to it at the points opposite to them (see `common_face`), and clipped by
+its sides (Sutherland and Hodgman, Commun. ACM 17 (1974) 32). Shared edges of facets of body 2 have
+the same image, so that the parts adjoin without gaps, on curved facets too.
 """
 
 from __future__ import annotations
@@ -18,29 +18,30 @@ from .projection import within
 from .surface import Surface
 
 _SAME = 1e-9
-"""Of a facet: corners nearer to each other, or to a side, coincide."""
+"""Relative size of a facet below which corners coincide with each other or with a side."""
 _STRAIGHT = 3e-3
-"""Of a facet: an edge that is off a line by less is taken for straight."""
+"""Largest deviation, relative to a facet, of an edge that is treated as straight."""
 _AROUND = 0.1
-"""Of a facet: how far round it outlines are drawn as carefully as within."""
+"""Margin round a facet, relative to it, in which outlines are resolved as finely as inside."""
 _STEPS = 4
-"""Points in which an edge is drawn that is not straight."""
+"""Number of segments of a curved edge."""
 _RING = ((0, 0), (1, 0), (1, 1), (0, 1))
-"""Corners of a facet in order round it."""
+"""Corners of a facet in anticlockwise order."""
 
 
 @lru_cache(maxsize=1)
 def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
-    """Parts of the facets of body 1 that have a facet of body 2 opposite to them.
+    """Parts of the facets of body 1 that lie opposite to a facet of body 2.
 
-    Those of the last two faces are kept: an estimate of the error asks for a finer rule on them.
+    The result for the last two faces is cached: the error estimate uses a finer rule on them.
 
     Returns
     -------
     facet : ndarray of int, shape (n,)
-        Of body 1.
+        Facet of body 1.
     corners : ndarray, shape (n, 4, 2)
-        Of each part, in parameters of the facet, anticlockwise; a triangle's last two coincide.
+        Corners of each part, in parameters of the facet, anticlockwise; the last two of a triangle
+        coincide.
     """
     facets, parts, outlines = [], [], _outlines(face_2)
     for facet in range(len(face_1.nodes)):
@@ -54,13 +55,13 @@ def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.nda
 
 @dataclass(frozen=True)
 class _Outlines:
-    """Points along the edges of facets, corner to corner.
+    """Outlines of facets: points along the edges, from corner to corner.
 
     Attributes
     ----------
     points, normals : ndarray, shape (n, 4, steps + 1, 3)
     soft : ndarray, shape (n, 4, steps + 1)
-        Softness of the body behind them [1/Pa].
+        Softness of the body at the points [1/Pa].
     """
 
     points: np.ndarray
@@ -84,7 +85,7 @@ def _outlines(face: Surface) -> _Outlines:
 
 
 def _drawn(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]:
-    """Outlines near a facet of body 1 in its parameters, without needless points, each (n, 2)."""
+    """Outlines near a facet of body 1 in its parameters, without redundant points, each (n, 2)."""
     flat = face_1.flattened.only(facet)
     t = flat.parameters(outlines.points.reshape(-1, 3)).reshape(outlines.soft.shape + (2,))
     parallel = face_1.flat[facet] and _level(outlines.normals, face_1.middle_normals[facet])
@@ -93,25 +94,25 @@ def _drawn(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]
     chosen = near.all(axis=1)
     t, outlines = t[chosen], outlines.only(chosen)
     if not parallel and len(t):
-        close = np.all((t > -1) & (t < 2), axis=-1)  # farther away it does not matter where
+        close = np.all((t > -1) & (t < 2), axis=-1)  # points farther away need no accuracy
         t[close] = _opposite_within(face_1, facet, outlines, close)
     for side in (0.0, 1.0):
         t[np.abs(t - side) < _SAME] = side
     kept = _needed(t)
     rings = [edges[:, :-1][chosen] for edges, chosen in zip(t, kept, strict=True)]
-    # seen from body 1 the facets of body 2 may run either way round
+    # seen from body 1 the facets of body 2 have either orientation
     return [ring if _area(ring) > 0 else ring[::-1] for ring in rings]
 
 
 def _level(normals: np.ndarray, against: np.ndarray) -> bool:
-    """Whether all normals are opposite to one."""
+    """Test whether all normals are opposite to a given one."""
     return bool(np.abs(normals + against).max(initial=0.0) < _SAME)
 
 
 def _opposite_within(
     face_1: Surface, facet: int, outlines: _Outlines, chosen: np.ndarray
 ) -> np.ndarray:
-    """Parameters on a facet, continued beyond its edges, opposite to points of outlines (n, 2)."""
+    """Parameters, on a facet extended beyond its edges, opposite to points of outlines (n, 2)."""
     on = np.full(int(chosen.sum()), facet)
 
     def locate(points: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -123,10 +124,10 @@ def _opposite_within(
 
 
 def _needed(edges: np.ndarray) -> np.ndarray:
-    """Which points draw outlines (n, 4, steps + 1, 2) in the unit square, shape (n, 4, steps).
+    """Mask of the outline points (n, 4, steps + 1, 2) to keep, shape (n, 4, steps).
 
-    Of each edge its first corner, the points next to where it enters or leaves the square, and
-    those inside where it is not straight there. Two facets with a common edge keep the same ones.
+    For each edge: its first corner, the points next to its intersections with the unit square, and
+    the points inside if it is curved. Two facets with a common edge keep the same points.
     """
     low, high = (bound(edges[:, :, :-1], edges[:, :, 1:]) for bound in (np.minimum, np.maximum))
     enters = np.all((low < 1 + _AROUND) & (high > -_AROUND), axis=-1)
@@ -152,7 +153,7 @@ def _area(rings: np.ndarray) -> np.ndarray:
 
 
 def _clipped(ring: np.ndarray) -> np.ndarray:
-    """The part of a polygon within the unit square, without needless corners, shape (n, 2)."""
+    """Part of a polygon within the unit square, without redundant corners, shape (n, 2)."""
     for axis in (0, 1):
         for side, sense in ((0.0, 1.0), (1.0, -1.0)):
             ring = _cut(ring, sense * (ring[:, axis] - side))
@@ -165,7 +166,7 @@ def _clipped(ring: np.ndarray) -> np.ndarray:
 
 
 def _turns(ring: np.ndarray) -> np.ndarray:
-    """How far each corner is off the line of its neighbours, positive to the left of it."""
+    """Distance of each corner from the line of its neighbours, positive for a left turn."""
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
     across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     longer = np.maximum(np.hypot(*before.T), np.hypot(*after.T))
@@ -173,7 +174,7 @@ def _turns(ring: np.ndarray) -> np.ndarray:
 
 
 def _cut(ring: np.ndarray, height: np.ndarray) -> np.ndarray:
-    """The part of a polygon where the height of its corners is not negative."""
+    """Part of a polygon where the interpolated height of its corners is nonnegative."""
     kept = []
     for k, h in enumerate(height):
         before = height[k - 1]
@@ -186,7 +187,7 @@ def _cut(ring: np.ndarray, height: np.ndarray) -> np.ndarray:
 
 
 def _quadrilaterals(ring: np.ndarray) -> list[np.ndarray]:
-    """A polygon in quadrilaterals and triangles: round a corner, or its middle if not convex."""
+    """Split a polygon into quadrilaterals, or into triangles about its mean if not convex."""
     if len(ring) < 3:
         return []
     if _turns(ring).min() < 0:

@@ -1,7 +1,7 @@
-"""Both contact faces of a case; closed curves are opened far from the contact.
+"""Both contact faces of a case; closed curves are cut far from the contact.
 
-A whole pin in a whole bush has no ends, and contact points are ordered along a face from its first
-end to its last. Such a curve begins and ends at the vertex that is farthest from the other face.
+Contact points are ordered along a face from its first end to its last; closed curves (full pin in a
+full bush) have no ends. Such a curve is cut at the vertex farthest from the other face.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from .surface import Surface
 def gather_faces(
     bodies: Bodies, surfaces: tuple[str, str], softness: fem.Function | None = None
 ) -> tuple[Face | Surface, Face | Surface]:
-    """Collect both contact faces, see `face.gather_face`; every rank calls."""
+    """Gather both contact faces, see `face.gather_face`; every rank calls."""
     first, second = (gather_face(bodies, surface, softness) for surface in surfaces)
     return _opened(first, second), _opened(second, first)
 
 
 def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
-    """The same face; a closed curve begins far from the other face and runs onward past it."""
+    """Face; a closed curve is cut far from the other face and runs along `ONWARD` past it."""
     if isinstance(face, Surface) or not face.closed:
         return face
     offsets = project(other, face.nodes[:, 0])[2]
@@ -39,7 +39,7 @@ def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
 
 
 def _taken(face: Face, order: np.ndarray) -> Face:
-    """The facets of a face in another order."""
+    """Face with its facets in another order."""
     return replace(
         face,
         nodes=face.nodes[order],
@@ -53,6 +53,6 @@ def _taken(face: Face, order: np.ndarray) -> Face:
 
 
 def _turned_round(face: Face) -> Face:
-    """The same face run through from its last end to its first."""
+    """Face with reversed direction."""
     back = _taken(face, np.arange(len(face.nodes))[::-1])
     return replace(back, nodes=back.nodes[:, ::-1], outward=-back.outward, reversed=~back.reversed)

@@ -1,23 +1,23 @@
-"""The common face of two bodies in contact, and which points of their faces meet on it.
+"""Common face of two bodies in contact, and the pairs of opposite points on both faces.
 
-Where bodies are pressed together their faces deform until they coincide. Body i takes the share
+Faces pressed together deform until they coincide. Body i takes the share
 ``s_i = c_i / (c_1 + c_2)``, ``c_i = (1 - ν_i²) / E_i``, of the approach of two points x_1 and x_2
-(Johnson, Contact Mechanics, 1985, section 4.2), so the common face and its normal are about
+(Johnson, Contact Mechanics, 1985, section 4.2), so the common face and its normal are approximately
 
     x = s_2 x_1 + s_1 x_2,      n ∝ s_2 n_1 - s_1 n_2
 
-with the outward normals n_1 and n_2 of the unloaded faces: the mean of both faces for bodies of
-like stiffness, the face of the stiffer body where the other one is soft. The gap of two points is
+with the outward normals n_1 and n_2 of the unloaded faces: the mean of both faces for equal
+stiffness, the face of the stiffer body if the other one is soft. The gap of two points is
 ``g = (x_2 - x_1)·n``.
 
-Points are opposite each other where ``x_2 - x_1`` is along the bisector ``m ∝ n_1 - n_2`` of both
-normals, whatever the stiffness. Where bodies touch, points meet that have about the same length of
-face from where they touched first, as pressure alone hardly stretches faces. For curvatures
-``κ_1 + κ_2 = κ`` and a length s, points along m are apart by ``s³ κ (κ_1 - κ_2) / 12``, those along
-n of unlike bodies by up to ``s³ κ (2 κ_1 + κ_2) / 6``. On faces of equal curvature points along m
-are at the same place of both. Where the faces slide and wear, no points stay together, and material
-goes off along n: there points are opposite each other along n. Exchanging the bodies turns n and m
-round and changes nothing else.
+Points are opposite each other if ``x_2 - x_1`` is along the bisector ``m ∝ n_1 - n_2`` of both
+normals, for any stiffness. Points that meet in contact have about the same arc length from the
+point of first contact, as pressure alone hardly stretches faces. For curvatures ``κ_1 + κ_2 = κ``
+and an arc length s, the mismatch of points along m is ``s³ κ (κ_1 - κ_2) / 12``, that along n for
+dissimilar bodies up to ``s³ κ (2 κ_1 + κ_2) / 6``. On faces of equal curvature points along m have
+the same arc length on both. On faces that slide and wear, no points stay together, and material is
+removed along n: there points are opposite each other along n. Exchanging the bodies reverses n and
+m and changes nothing else.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ from .projection import beside, project
 from .surface import Surface
 
 FACING = -0.5
-"""Cosine between the outward normals of points that can meet: at most this."""
+"""Largest cosine between the outward normals of points that can meet."""
 _FLATTEST = 0.3
-"""Cosine between a line and a normal of the face that it meets; steeper is taken for so much."""
+"""Smallest magnitude of the cosine between a line and the normal of the face that it meets."""
 _BEHIND = 0.25
-"""Of a face's size: points that overlap by more are on the far sides of their bodies."""
+"""Largest overlap of points, relative to the face; beyond it they are on far sides of bodies."""
 _PASSES = 40
 _SETTLED = 1e-13
-"""Of a face's size."""
+"""Convergence tolerance of points, relative to the size of the face."""
 _NONE = 0.1
-"""Length of a sum of unit normals below which it is no direction."""
+"""Smallest length of a sum of unit normals that defines a direction."""
 
 
 @dataclass(frozen=True)
 class Opposite:
-    """Points of one face and those opposite to them on another one.
+    """Points on the other face opposite to given points of a face.
 
     Attributes
     ----------
@@ -54,16 +54,16 @@ class Opposite:
     t : ndarray, shape (n,) or (n, 2)
         Parameters on the other face.
     normals : ndarray, shape (n, gdim)
-        Of the common face, outward from the first body.
+        Normals of the common face, outward from the first body.
     offset : ndarray, shape (n, gdim)
-        From the points to those opposite [m].
+        Vectors from the points to those opposite [m].
     share : ndarray, shape (n,)
-        s of the first body.
+        Share s of the first body.
     cosine : ndarray, shape (n,)
-        Between the outward normals of both faces.
+        Cosine between the outward normals of both faces.
     beside : ndarray, shape (n,)
-        How far the points lie beside their closest ones: more than 0 beyond the edge of the other
-        face. Where their lines lean past an edge, the face is taken to go on straight [m].
+        Tangential distance of the points from their closest ones, positive beyond the edge of the
+        other face, which is extrapolated linearly beyond its edges [m].
     """
 
     facet: np.ndarray
@@ -76,18 +76,18 @@ class Opposite:
 
     @property
     def gap(self) -> np.ndarray:
-        """Part of the offsets along the normals, shape (n,) [m]."""
+        """Normal component of the offsets, shape (n,) [m]."""
         return np.einsum("ni,ni->n", self.offset, self.normals)
 
     def meets(self, size: float, allowed: float) -> np.ndarray:
-        """Which points can meet those opposite.
+        """True for points that can meet those opposite.
 
         Parameters
         ----------
         size : float
-            Of the face [m].
+            Size of the face [m].
         allowed : float
-            So far beside the other face at most, of the size.
+            Largest tangential distance from the other face, relative to the size.
         """
         inside = (self.beside <= allowed * size) & (self.gap >= -_BEHIND * size)
         return (self.cosine <= FACING) & inside
@@ -95,14 +95,14 @@ class Opposite:
 
 @dataclass(frozen=True)
 class NormalLines:
-    """Lines from points to the planes that touch the other face where they meet.
+    """Lines from points to the tangent planes of the other face at the opposite points.
 
     Attributes
     ----------
     normals, share, cosine : ndarray
         See `Opposite`.
     offset : ndarray, shape (n, gdim)
-        From the points to the planes [m].
+        Vectors from the points to the planes [m].
     """
 
     normals: np.ndarray
@@ -147,21 +147,21 @@ def met(
 ) -> tuple[np.ndarray, np.ndarray, NormalLines]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
 
-    From the closest point on, the line along m, or n where faces wear, is followed to the plane
-    that touches the face there.
+    Fixed-point iteration from the closest point: the line along m, or n where faces wear, is
+    intersected with the tangent plane of the face.
 
     Parameters
     ----------
     points, out : ndarray, shape (n, gdim)
         Points [m] and outward normals of the body.
     soft : ndarray, shape (n,)
-        c of the body at the points [1/Pa].
+        Softness c of the body at the points [1/Pa].
     other : Face or Surface
     facet, t : ndarray
-        Of the points on it that are closest.
+        Closest points on it.
     locate : callable
-        Facets and parameters on the other face that are closest to places (m, gdim), and which of
-        the points these are for.
+        Closest facets and parameters on the other face, from positions (m, gdim) and the indices of
+        the points.
     """
     facet, t = facet.copy(), t.copy()
     found = other.points(facet, t)
@@ -179,10 +179,10 @@ def met(
 
 
 def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs: Opposite):
-    """Area of the common face per area of the parameters of a face, shape (n,) [m or m²].
+    """Jacobian of the common face by the parameters of a face, shape (n,) [m or m²].
 
-    The points opposite move with the parameters so that ``x_2 - x_1 = h m`` stays true, with m
-    along ``a_1 n_1 - a_2 n_2``: ``P (x_2' + h a_2 n_2' / l) t_2' = P (x_1' + h a_1 n_1' / l)``,
+    Linearisation of ``x_2 - x_1 = h m`` by the parameters, with m along ``a_1 n_1 - a_2 n_2``:
+    ``P (x_2' + h a_2 n_2' / l) t_2' = P (x_1' + h a_1 n_1' / l)``,
     where P projects across m and l is the length of that vector.
     """
     (n_1, turn_1), (n_2, turn_2) = (
@@ -219,19 +219,19 @@ def _line(points, out, soft, other, facet, t) -> NormalLines:
 
 
 def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndarray]:
-    """Parts a_1 and a_2 of both normals in the direction along which points meet, (n, 1) each."""
+    """Weights a_1 and a_2 of both normals in the direction between opposite points, (n, 1) each."""
     s = share[:, None]
     return (1.0 - s, s) if face.wears else (np.ones_like(s), np.ones_like(s))
 
 
 def _direction(vectors: np.ndarray, otherwise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Unit vectors (n, gdim), others where the vectors are about none, and lengths (n,)."""
+    """Unit vectors (n, gdim), substitutes for near-zero vectors, and lengths (n,)."""
     length = np.linalg.norm(vectors, axis=1)
     unit = vectors / np.maximum(length, _NONE)[:, None]
     return np.where(length[:, None] > _NONE, unit, otherwise), np.maximum(length, _NONE)
 
 
 def _across(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """Vectors (n, k, gdim) without their part along unit vectors (n, gdim)."""
+    """Vectors (n, k, gdim) without their component along unit vectors (n, gdim)."""
     along = np.einsum("nki,ni->nk", vectors, directions)
     return vectors - along[:, :, None] * directions[:, None]

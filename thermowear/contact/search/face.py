@@ -1,7 +1,7 @@
-"""A contact face of a plane body, gathered from all ranks as a chain of curved facets.
+"""Contact face of a plane body, gathered from all ranks as a chain of curved facets.
 
-Every rank holds the same chain, so that pairing needs no further communication. A face in space is
-a `surface`.
+The chain is replicated on all ranks, so that pairing needs no communication. Faces in space: see
+`surface`.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from .smooth_normals import corner_corrections, smooth_normals
 from .surface import Surface, gather_surface
 
 ONWARD = (1.0, 0.3)
-"""Along x; faces that stand upright begin at their lower end, even when it has worn a little."""
+"""Direction of a chain: along x; upright faces begin at the lower end, also if slightly worn."""
 
 
 @dataclass(frozen=True)
 class Face:
-    """Facets in order along the face; a facet's parameter t runs 0…1 along the chain.
+    """Chain of facets in order along the face; the parameter t of a facet runs 0…1 along it.
 
     Attributes
     ----------
@@ -35,16 +35,16 @@ class Face:
     outward : ndarray, shape (n_facets,)
         +1 where the outward normal is the tangent turned clockwise, -1 otherwise.
     rank, cell, local_facet : ndarray of int, shape (n_facets,)
-        Who owns the facet's cell, its local index there, and which of its facets it is.
+        Rank that owns the cell of the facet, local cell index, and local facet index.
     reversed : ndarray of bool, shape (n_facets,)
-        Whether t runs against the cell's own direction of the facet.
+        True if t is opposite to the direction of the facet in its cell.
     softness : float or ndarray, shape (n_facets,)
-        ``(1 - ν²) / E`` of the material behind each facet [1/Pa]; only its ratio to that of the
-        other face counts.
+        ``(1 - ν²) / E`` of the material at each facet [1/Pa]; only its ratio to that of the other
+        face matters.
     name : str
-        Of the surface.
+        Name of the surface.
     wears : bool
-        Whether the softness is that of wear, see `common_face`.
+        True if the softness is that of wear, see `common_face`.
     """
 
     nodes: np.ndarray
@@ -80,20 +80,20 @@ class Face:
         return smooth_normals(self.nodes, self.outward, self._corrections, facet, t[:, None])
 
     def soft(self, facet: np.ndarray) -> np.ndarray:
-        """Softness behind facets, shape (n,) [1/Pa]."""
+        """Softness at facets, shape (n,) [1/Pa]."""
         return np.broadcast_to(self.softness, len(self.nodes))[facet]
 
     def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Length per parameter, shape (n,) [m]."""
+        """Arc length per parameter, shape (n,) [m]."""
         return np.linalg.norm(self.tangents(facet, t), axis=1)
 
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Length along the face from its first end, shape (n,) [m]."""
+        """Arc length along the face from its first end, shape (n,) [m]."""
         start = np.concatenate([[0.0], np.cumsum(self.sizes)])
         return start[facet] + self._length_within(facet, t)
 
     def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Parameters in the cell's own direction of the facet, shape (n, 1)."""
+        """Parameters in the direction of the facet in its cell, shape (n, 1)."""
         return np.where(self.reversed[facet], 1 - t, t)[:, None]
 
     @cached_property
@@ -104,7 +104,7 @@ class Face:
 
     @property
     def closed(self) -> bool:
-        """Whether the chain ends where it begins."""
+        """True if the chain is a closed curve."""
         return bool(np.all(self.nodes[0, 0] == self.nodes[-1, -1]))
 
     @property
@@ -113,7 +113,7 @@ class Face:
         return float(np.ptp(self.nodes.reshape(-1, 2), axis=0).max())
 
     def numbers(self, degree: int) -> np.ndarray:
-        """Numbers of continuous polynomials' coefficients, shape (n_facets, degree + 1)."""
+        """Coefficient numbers of continuous polynomials, shape (n_facets, degree + 1)."""
         return np.arange(len(self.nodes))[:, None] * degree + np.arange(degree + 1)
 
     @cached_property
@@ -124,7 +124,7 @@ class Face:
         return corner_corrections(self.nodes, self.outward, corners)
 
     def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Length of each facet from its start to t [m]."""
+        """Arc length of each facet from its start to t [m]."""
         x, w = lobatto(self.nodes.shape[1] + 4)
         at = (t[:, None] * x).ravel()
         return t * (self.stretch(np.repeat(facet, len(x)), at).reshape(-1, len(x)) @ w)
@@ -133,14 +133,14 @@ class Face:
 def gather_face(
     bodies: Bodies, surface: str, softness: fem.Function | None = None
 ) -> Face | Surface:
-    """Collect a surface's facets from all ranks and put them in order; every rank calls.
+    """Gather the facets of a surface from all ranks in order; every rank calls.
 
     Parameters
     ----------
     bodies : Bodies
     surface : str
     softness : dolfinx.fem.Function, optional
-        ``(1 - ν²) / E``, constant on each cell; without it all materials count alike [1/Pa].
+        ``(1 - ν²) / E``, constant on each cell; by default equal for all materials [1/Pa].
     """
     gather = gather_surface if bodies.mesh.topology.dim == 3 else _gather_chain
     return gather(bodies, surface, softness)
@@ -173,7 +173,7 @@ def _local_facets(bodies: Bodies, surface: str):
     layout = np.array(entities_to_geometry_layout(mesh, fdim))
     of_cells = geometry_dofmap(mesh)[cells]
     x = mesh.geometry.x[:, :2]
-    # closure dofs list the two ends first, then the nodes between them
+    # closure dofs list both ends first, then the interior nodes
     along = np.concatenate([layout[:, :1], layout[:, 2:], layout[:, 1:2]], axis=1)
     of_facets = np.take_along_axis(of_cells, along[local], axis=1)
     to_global = mesh.geometry.index_map().local_to_global
@@ -183,9 +183,9 @@ def _local_facets(bodies: Bodies, surface: str):
 
 
 def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:
-    """Order of the facets from the first end to the last, and which must be turned round.
+    """Order of the facets from the first end to the last, and mask of those to reverse.
 
-    A closed curve begins anywhere, see `closed_face`.
+    A closed curve begins at an arbitrary vertex, see `closed_face`.
     """
     vertices, compact = np.unique(ends, return_inverse=True)
     ends = compact.reshape(ends.shape)

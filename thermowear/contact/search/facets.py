@@ -1,4 +1,4 @@
-"""Facets of a contact face: which ones a rank owns, and the polynomials that curve them."""
+"""Facets of a contact face: owned facets of a rank, and their Lagrange polynomials."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...bulk.bodies import Bodies
 
 
 def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
-    """Cells of this rank with a facet on a surface, and which of the cell's facets it is.
+    """Cells of this rank with a facet on a surface, and its local facet index.
 
     Returns
     -------
@@ -34,7 +34,7 @@ def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def softness_behind(cells: np.ndarray, softness: fem.Function | None) -> np.ndarray:
-    """Softness of some cells of this rank, 1 where none is given, shape (n,) [1/Pa]."""
+    """Softness of cells of this rank, by default 1, shape (n,) [1/Pa]."""
     if softness is None:
         return np.ones(len(cells))
     return softness.x.array[softness.function_space.dofmap.list[cells, 0]].astype(float)
@@ -46,23 +46,23 @@ def lagrange(order: int, t: np.ndarray) -> np.ndarray:
 
 
 def lagrange_slopes(order: int, t: np.ndarray) -> np.ndarray:
-    """Their derivatives, shape (n, order + 1)."""
+    """First derivatives of the polynomials of `lagrange`, shape (n, order + 1)."""
     return np.vander(t, order, increasing=True) @ _slope_coefficients(order)
 
 
 def lagrange_bends(order: int, t: np.ndarray) -> np.ndarray:
-    """Their second derivatives, shape (n, order + 1)."""
+    """Second derivatives of the polynomials of `lagrange`, shape (n, order + 1)."""
     knots = np.linspace(0.0, 1.0, order + 1)
     return lagrange_slopes(order, t) @ lagrange_slopes(order, knots)
 
 
 @cache
 def _coefficients(order: int) -> np.ndarray:
-    """Of the Lagrange polynomials: rows by power, columns by node; orders of geometry are low."""
+    """Monomial coefficients of the polynomials: rows by power, columns by node; for low orders."""
     return np.linalg.inv(np.vander(np.linspace(0.0, 1.0, order + 1), increasing=True))
 
 
 @cache
 def _slope_coefficients(order: int) -> np.ndarray:
-    """Of their derivatives, likewise."""
+    """Monomial coefficients of the derivatives, with the same layout."""
     return polyder(_coefficients(order))

@@ -1,18 +1,18 @@
-"""Contact points: where both faces are compared, with what weight, and which way is up.
+"""Contact points: pairs of opposite points with weights and normals, and the sign convention.
 
 Sign convention (the only place where it is stated)
 ---------------------------------------------------
-``n`` is the normal of the common face, see `common_face`, outward from body 1, the held body. The
-gap is open where positive::
+``n`` is the normal of the common face, see `common_face`, outward from body 1, the held body.
+Positive gaps are open::
 
     g = g0 + (u2 - u1)·n
 
-A pressure ``p >= 0`` presses and sliding friction drags: traction ``-p (n + mu e)`` on body 1 and
-the opposite on body 2, where ``e`` is the unit direction in which body 1 slides over body 2. The
-nodal loads of a pressure are ``B_tᵀ w p``, ``B_t u = (u2 - u1)·(n + mu e)``; where there is no
-friction in the section that is ``B u = (u2 - u1)·n``. The holder moves body 1 by ``m d``, where
-``m`` is a unit rigid motion along its load; that changes the gap by ``-R d`` with ``R = m·n``, and
-the load ``F`` is in equilibrium when ``Tᵀ w p = F`` with ``T = m·(n + mu e)``.
+Pressure ``p >= 0`` and sliding friction act as the traction ``-p (n + mu e)`` on body 1 and the
+opposite on body 2, with the unit direction ``e`` of sliding of body 1 over body 2. The nodal loads
+of a pressure are ``B_tᵀ w p``, ``B_t u = (u2 - u1)·(n + mu e)``; without friction in the section
+that is ``B u = (u2 - u1)·n``. The holder moves body 1 by ``m d``, where ``m`` is a unit rigid
+motion along its load; that changes the gap by ``-R d`` with ``R = m·n``, and the load ``F`` is in
+equilibrium when ``Tᵀ w p = F`` with ``T = m·(n + mu e)``.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ from .refinement import BESIDE, SLIVER, Rule, folded, rule
 from .surface import Surface
 
 _SAME = 1e-10
-"""Of the face's size: points nearer to each other are one."""
+"""Largest distance of coincident points, relative to the size of the face."""
 _TWICE = 1e-3
-"""Of a facet: so much of it may have two facets opposite, by rounding and curved edges."""
+"""Fraction of a facet that may be covered twice, by rounding and curved edges."""
 
 
 @dataclass(frozen=True)
 class PairedFace:
-    """Where the contact points lie on one face.
+    """Positions of the contact points on one face.
 
     Attributes
     ----------
@@ -61,28 +61,28 @@ class PairedFace:
 
 @dataclass(frozen=True)
 class Pairing:
-    """The contact points, in a plane model in order along the face of body 1.
+    """Contact points; in a plane model, in order along the face of body 1.
 
     Attributes
     ----------
     points : ndarray, shape (n, gdim) [m]
-        On the common face.
+        Points on the common face.
     position : ndarray, shape (n,)
-        Length along the face of body 1 from its first end [m]; NaN on a surface.
+        Arc length along the face of body 1 from its first end [m]; NaN on a surface.
     weights : ndarray, shape (n,)
-        Area of the common face that each point stands for [m²].
+        Area of the common face at each point [m²].
     normals : ndarray, shape (n, gdim)
         Unit normals of the common face, outward from body 1.
     gap : ndarray, shape (n,)
-        Of the unloaded, unworn bodies along the normal [m].
+        Gap of the unloaded, unworn bodies along the normal [m].
     share : ndarray, shape (n,)
-        s_1: what body 1 takes of the approach of opposite points.
+        s_1: share of body 1 in the approach of opposite points.
     sides : tuple of PairedFace
-        On body 1 and body 2.
+        Points on body 1 and on body 2.
     unpaired : float
-        Part of the face of body 1 that has nothing opposite and cannot touch.
+        Fraction of the face of body 1 without an opposite face, which cannot touch.
     pieces : Rule
-        Where the points come from: those of all pieces of the facets of body 1, one by one.
+        Quadrature rule on all pieces of the facets of body 1, before merging of points.
     """
 
     points: np.ndarray
@@ -102,7 +102,7 @@ class Pairing:
 
     @property
     def on_body_1(self) -> np.ndarray:
-        """The points on the face of body 1, shape (n, gdim) [m]."""
+        """Contact points on the face of body 1, shape (n, gdim) [m]."""
         return self.sides[0].points
 
     def locate(self, position) -> np.ndarray:
@@ -122,22 +122,22 @@ def pair(
 ) -> Pairing:
     """Pair two faces on their common refinement.
 
-    The facets of body 1 are cut where facets of body 2 end, see `refinement`. Each piece gets a
-    Gauss-Lobatto rule; points that pieces share are merged.
+    The facets of body 1 are cut at the ends of facets of body 2, see `refinement`. Each piece has a
+    Gauss-Lobatto rule; points shared by pieces are merged.
 
     Parameters
     ----------
     face_1, face_2 : Face or Surface
     model : thermowear.bulk.kinematics.Model
     order : int
-        Points on each piece, on a surface along each side of it; the rule is exact to degree
+        Points per piece, on a surface per direction; the rule is exact to degree
         ``2 order - 3``.
     refine : bool
-        False: the facets of body 1 are not cut, each has the points of one rule.
+        False: no cuts, one rule per facet of body 1.
     sliver : float
-        Part of a facet in a section: it is not cut so near to its ends.
+        Smallest distance of a cut from the ends of a facet, relative to it; plane models only.
     beside : float
-        Part of the face's size in a section: so far beside body 2 it is taken to go on straight.
+        Linear extrapolation of body 2 beyond its ends, relative to the face; plane models only.
 
     Raises
     ------
@@ -154,19 +154,19 @@ def pair(
 
 
 def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces: Rule) -> Pairing:
-    """Pair two faces at given points of the face of body 1; those that coincide are one."""
+    """Pair two faces at given points of the face of body 1, merging coincident points."""
     facet, t = pieces.facet, pieces.t
     on_face = face_1.points(facet, t)
     pairs = opposite(face_1, facet, t, face_2)
     weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
     on_common = on_face + pairs.share[:, None] * pairs.offset
-    weights *= np.maximum(model.area_factor(on_common), 0.0)  # on the axis but for rounding
+    weights *= np.maximum(model.area_factor(on_common), 0.0)  # rounding on the axis
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
     if covered.max() > 1.0 + _TWICE:
         raise CaseError(folded(face_1, face_2))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
     position = face_1.position(facet, t)
-    # along a curve by the length: both ends of a closed one are at the same place
+    # on a curve by arc length: both ends of a closed one coincide in space
     places = on_face if isinstance(face_1, Surface) else position[:, None]
     group, first = _groups(places, _SAME * face_1.extent)
     summed = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
@@ -189,7 +189,7 @@ def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces:
 
 
 def _groups(points: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
-    """Number points anew, one number for those that coincide, in the order of first appearance.
+    """Group coincident points, numbered in the order of first appearance.
 
     Returns
     -------

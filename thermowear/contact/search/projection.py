@@ -1,4 +1,4 @@
-"""Closest points of a contact face."""
+"""Closest-point projection on a contact face."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from .surface import Surface
 _STEPS = 30
 _SETTLED = 1e-13
 _ROUNDING = 1e-15
-"""Of a parameter."""
+"""Convergence tolerance of a parameter."""
 _TRIALS = 4
-"""Facets in space that are tried for each point: the nearest ones, as if they were flat."""
+"""Number of candidate facets per point in space: the nearest ones in flat approximation."""
 _AT_ONCE = 1_000_000
-"""Pairs of points and facets that are looked at together."""
+"""Number of point-facet pairs processed at once."""
 _PASSES = 10
 _FLATTEST = 0.3
-"""Cosine between a way and a normal of the face that it meets; steeper is taken for so much."""
+"""Smallest magnitude of the cosine between a ray and the normal of the face that it meets."""
 
 
 def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Closest points of a face.
+    """Closest-point projection on a face.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
     facet : ndarray, shape (n,)
     t : ndarray, shape (n,) or (n, 2)
     offset : ndarray, shape (n, gdim)
-        From each point to its projection [m].
+        Vector from each point to its projection [m].
     """
     facet, t = _on_surface(face, points) if isinstance(face, Surface) else _on_chain(face, points)
     return facet, t, face.points(facet, t) - points
@@ -42,9 +42,9 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
 def ahead(
     face: Face | Surface, points: np.ndarray, directions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points of a face that lie ahead of others, or behind them.
+    """Intersections of a face with lines through given points, forward or backward.
 
-    Beyond the ends of the face its outermost points, as if it went on straight from there.
+    Beyond its ends the face is extrapolated linearly and its outermost points are returned.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def ahead(
     facet : ndarray, shape (n,)
     t : ndarray, shape (n,) or (n, 2)
     way : ndarray, shape (n,)
-        Along the directions, less than 0 behind the points [m].
+        Signed distance along the directions, negative backward [m].
     """
     way = np.zeros(len(points))
     for _ in range(_PASSES):
@@ -73,17 +73,17 @@ def ahead(
 
 
 def beside(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
-    """How far points lie beside their closest points: more than 0 beyond the face's edge [m]."""
+    """Tangential distance of points from their projections, positive beyond the edge [m]."""
     tangents = face.tangents(facet, t).reshape(len(facet), -1, offset.shape[1])
     across = np.linalg.qr(np.moveaxis(tangents, 1, 2))[0]
     result = np.linalg.norm(np.einsum("nik,ni->nk", across, offset), axis=1)
-    if isinstance(face, Face):  # offsets from a corner between two facets lean to both of them
+    if isinstance(face, Face):  # at a corner between two facets offsets have tangential parts
         result[(facet + t > 0.0) & (facet + t < len(face.nodes))] = 0.0
     return result
 
 
 def _on_chain(face: Face, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Facet and parameter of the closest points."""
+    """Facet and parameter of the closest points on a chain."""
     a, b = face.nodes[:, 0], face.nodes[:, -1]
     chord = b - a
     along = np.einsum("nfi,fi->nf", points[:, None] - a, chord) / (chord**2).sum(axis=1)
@@ -97,7 +97,7 @@ def _on_chain(face: Face, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _best(face, points: np.ndarray, trials: list[tuple[np.ndarray, np.ndarray]]):
-    """The trial with the smallest distance, point by point."""
+    """Candidate with the smallest distance, point by point."""
     far = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
     best, every = np.argmin(far, axis=0), np.arange(len(points))
     facet, t = (np.array([trial[k] for trial in trials])[best, every] for k in (0, 1))
@@ -105,7 +105,7 @@ def _best(face, points: np.ndarray, trials: list[tuple[np.ndarray, np.ndarray]])
 
 
 def _along(face: Face, points: np.ndarray, facet: np.ndarray) -> np.ndarray:
-    """Closest points of given facets by Newton's method from the chord."""
+    """Closest points of given facets by the Gauss-Newton method, starting from the chord."""
     start, end = face.nodes[facet, 0], face.nodes[facet, -1]
     chord = end - start
     t = ((points - start) * chord).sum(axis=1) / (chord**2).sum(axis=1)
@@ -148,7 +148,7 @@ def within(
     start: np.ndarray,
     bounds: tuple[float, float],
 ) -> np.ndarray:
-    """Parameters of the closest points of given facets, by Gauss and Newton's method.
+    """Parameters of the closest points of given facets, by the Gauss-Newton method.
 
     Parameters
     ----------
@@ -156,9 +156,9 @@ def within(
     points : ndarray, shape (n, 3) [m]
     facet : ndarray of int, shape (n,)
     start : ndarray, shape (n, 2)
-        Parameters to start from.
+        Initial parameters.
     bounds : tuple of float
-        Of both parameters; at a bound that a step would cross, only the other one moves.
+        Bounds of both parameters; a parameter is fixed at a bound that a step would cross.
     """
     t, moving = start.copy(), np.arange(len(start))
     for _ in range(_STEPS):

@@ -12,7 +12,7 @@ from numpy.polynomial import legendre
 def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Points and weights of the n-point Gauss-Lobatto rule, exact to degree ``2 n - 3``.
 
-    Both ends are points of the rule. The inner points are the roots of the derivative of the
+    Both ends are quadrature points. The inner points are the roots of the derivative of the
     Legendre polynomial of degree n - 1 (Abramowitz and Stegun, 25.4.32).
     """
     if n < 2:
@@ -32,6 +32,6 @@ def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def square(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A rule in both directions: points of shape (n², 2), weights (n²,)."""
+    """Tensor-product rule on the unit square: points of shape (n², 2), weights (n²,)."""
     s, t = np.meshgrid(x, x, indexing="ij")
     return np.column_stack([s.ravel(), t.ravel()]), np.outer(w, w).ravel()

@@ -1,7 +1,7 @@
 """Quadrature on the common refinement of two contact faces.
 
-The facets of body 1 are cut where facets of body 2 end, so that everything that is smooth between
-the ends of elements is integrated accurately, whether the faces match or not.
+The facets of body 1 are cut at the ends of facets of body 2, so that elementwise smooth functions
+are integrated accurately on matching and nonmatching faces.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from .quadrature import gauss, lobatto, square
 from .surface import Surface
 
 BESIDE = 1e-9
-"""Of the face's size: points that lie further beside body 2 have nothing opposite."""
+"""Largest tangential distance from body 2, relative to the face, of paired points."""
 
 SLIVER = 1e-9
-"""Of a facet: it is not cut so near to its ends."""
+"""Smallest distance of a cut from the ends of a facet, relative to the facet."""
 _BACK = 2.0
-"""Of their gap: so far may points opposite to consecutive ones go back."""
+"""Largest backward step of consecutive opposite points, relative to their gap."""
 _SAME = 1e-6
-"""Of the length of a face: the same by rounding."""
+"""Largest backward step by rounding, relative to the length of the face."""
 
 
 @dataclass(frozen=True)
 class Rule:
-    """Points on the facets of body 1 that have body 2 opposite.
+    """Quadrature points on the facets of body 1 opposite to body 2.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Rule:
     t : ndarray, shape (n,) or (n, 2)
         Parameters.
     weight : ndarray, shape (n,)
-        Length or area in parameters: those of a facet that is all opposite sum to one.
+        Length or area in parameters; the sum is one on a fully opposite facet.
     """
 
     facet: np.ndarray
@@ -54,7 +54,7 @@ def rule(
     sliver: float,
     beside: float = BESIDE,
 ) -> Rule:
-    """Points and weights; parameters as in `pairing.pair`."""
+    """Quadrature rule on the common refinement; parameters as in `pairing.pair`."""
     if isinstance(face_1, Surface):
         assert isinstance(face_2, Surface)
         return _on_parts(face_1, face_2, order) if refine else _on_facets(face_1, face_2, order)
@@ -65,7 +65,7 @@ def rule(
 def _on_pieces(
     face_1: Face, face_2: Face, order: int, refine: bool, sliver: float, beside: float
 ) -> Rule:
-    """A Gauss-Lobatto rule on each piece of the facets of a chain."""
+    """Gauss-Lobatto rule on each piece of the facets of a chain."""
     whole = [np.array([0.0, 1.0])] * len(face_1.nodes)
     cuts = _cuts(face_1, face_2, sliver) if refine else whole
     x, w = lobatto(order)
@@ -74,13 +74,13 @@ def _on_pieces(
     facet = np.repeat(np.arange(len(cuts)), [len(c) - 1 for c in cuts])
     t = (start[:, None] + size[:, None] * x).ravel()
     pieces = Rule(np.repeat(facet, order), t, (size[:, None] * w).ravel())
-    # whole pieces: the end of one outside the contact is a point of the next one inside
+    # ends do not count: the end of an outer piece is a point of the next inner one
     inner = np.arange(1, order - 1) if order > 2 else np.arange(order)
     return _facing(face_1, face_2, pieces, order, inner, beside)
 
 
 def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
-    """Parameters at which each facet of body 1 is cut, its own ends included."""
+    """Parameters of the cuts of each facet of body 1, facet ends included."""
     count = len(face_2.nodes)
     pairs = opposite(
         face_2, np.append(np.arange(count), count - 1), np.append(np.zeros(count), 1.0), face_1
@@ -98,7 +98,7 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
 
 
 def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
-    """Rules on the parts of facets that are opposite: Gauss-Lobatto's, in triangles Gauss's."""
+    """Rules on the opposite parts of facets: Gauss-Lobatto, in triangles Gauss."""
     facet, corners = parts_opposite(face_1, face_2)
     triangular = np.all(corners[:, 2] == corners[:, 3], axis=1)
     parts = []
@@ -112,7 +112,7 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
             np.einsum("cq,pci->pqi", values, corners[chosen]) for values in (shape, along, across)
         )
         area = weights * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
-        at = np.clip(at, 0.0, 1.0)  # corners on an edge of the facet are beyond it by rounding
+        at = np.clip(at, 0.0, 1.0)  # corners on an edge may lie beyond it by rounding
         parts.append((np.repeat(facet[chosen], len(weights)), at.reshape(-1, 2), area.ravel()))
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     counting = columns[2] > 0.0
@@ -121,7 +121,7 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
 
 
 def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
-    """A Gauss-Lobatto rule on each whole facet."""
+    """Gauss-Lobatto rule on each whole facet."""
     places, weights = square(*lobatto(order))
     count = len(face_1.nodes)
     facet = np.repeat(np.arange(count), len(weights))
@@ -132,7 +132,7 @@ def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
 
 
 def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed: float) -> Rule:
-    """Those pieces, of so many points each, whose inner points have body 2 opposite."""
+    """Pieces, of `count` points each, with all inner points opposite to body 2."""
     pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
     meeting = pairs.meets(face_1.extent, allowed).reshape(-1, count)[:, inner]
     whole = meeting.all(axis=1)
@@ -144,9 +144,9 @@ def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed
 
 
 def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, lost: np.ndarray):
-    """Refuse pieces of a chain whose opposite points are lost on the way, or go back.
+    """Raise if opposite points along a chain are interrupted or not in order.
 
-    Points may go back a little where faces have edges or bend: by less than they are apart.
+    Small backward steps, of the order of the gap, may occur at edges and bends of faces.
     """
     between = np.flatnonzero(kept)
     if len(between) == 0:
@@ -165,7 +165,7 @@ def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, 
 
 
 def folded(face_1: Face | Surface, face_2: Face | Surface) -> str:
-    """The message about faces of which it is not clear which points meet."""
+    """Message for faces with ambiguous pairs of opposite points."""
     return (
         f"geometry.contact: it is not clear which points of {face_1.name} and {face_2.name} meet, "
         "as one of them folds back opposite the other; name only the part that is to touch"

@@ -1,16 +1,15 @@
-"""Normals that are continuous across the facets of a contact face.
+"""Continuous field of normals on the facets of a contact face.
 
-Facets of a mesh only approximate a smooth face: where they meet, their normals differ a little, by
-as much as an element turns where its edges are straight. Averaging at the corners and blending
-within the facets makes the field of normals continuous (Yang, Laursen and Meng, Int. J. Numer.
-Meth. Engng 62 (2005) 1183), so that points opposite each other are unique. Edges of the face itself
-are kept.
+Mesh facets only approximate a smooth face: their normals jump where they meet, for straight edges
+by the angle that an element subtends. Averaging at the corners and blending within the facets makes
+the normals continuous (Yang, Laursen and Meng, Int. J. Numer. Meth. Engng 62 (2005) 1183), so that
+opposite points are unique. Sharp edges of the face are preserved.
 
-The blending functions of a facet of order p are Radau polynomials of an odd degree q, p or p + 1,
-the linear ones where p = 1: they see nothing of polynomials of degree q - 2. On curved facets,
-whose own normals are nearly continuous, the resultant of a uniform pressure so stays that of the
-area which the facets cover. The degree is odd, as an arc's own normals are off at both ends of a
-facet by as much, the other way.
+The blending functions of a facet of order p are Radau polynomials of odd degree q, p or p + 1
+(linear for p = 1), orthogonal to polynomials of degree q - 2. On curved facets with nearly
+continuous normals they preserve the resultant of a uniform pressure on the area of the facets. The
+degree is odd because the normals of an arc have opposite errors of equal size at both ends of a
+facet.
 """
 
 from __future__ import annotations
@@ -23,18 +22,18 @@ from numpy.polynomial import Legendre
 from .facets import lagrange, lagrange_bends, lagrange_slopes
 
 _SHARP = np.cos(np.radians(20.0))
-"""Cosine between the normal of a facet and the mean at its corner: below, the corner is an edge."""
+"""Cosine between facet normal and mean normal at a corner, below which it is a sharp edge."""
 _SLIGHT = 0.02
-"""Of a unit normal: what curved or short facets are off at their ends."""
+"""Largest error of a unit normal at the ends of curved or short facets."""
 
 
 def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Differences between the mean normals at the corners of facets and the facets' own.
+    """Differences between the mean normals at the corners and the facet normals.
 
     Parameters
     ----------
     nodes : ndarray, shape (n_facets, order + 1, …, gdim) [m]
-        By one or two parameters.
+        Geometry nodes by one or two parameters.
     outward : ndarray, shape (n_facets,)
     corners : ndarray of int, shape (n_facets, 2) or (n_facets, 2, 2)
         Numbers of the corners by the parameters.
@@ -42,14 +41,14 @@ def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarr
     Returns
     -------
     ndarray, shape (n_facets, n_corners, gdim)
-        Zero at edges of the face, where normals differ too much.
+        Zero at sharp edges of the face.
     """
     dim = corners.ndim - 1
     ends = np.array(list(itertools.product((0.0, 1.0), repeat=dim)))
     facet = np.repeat(np.arange(len(nodes)), len(ends))
     own, _ = _raw(nodes, outward, facet, np.tile(ends, (len(nodes), 1)))
     _, number = np.unique(corners.reshape(-1), return_inverse=True)
-    # a facet of an arc is off at its ends by its size to the power of its order
+    # on an arc the error at facet ends scales as the facet size to the power of its order
     across = nodes.reshape(len(nodes), -1, nodes.shape[-1])[:, [0, -1]]
     size = np.linalg.norm(across[:, 1] - across[:, 0], axis=1)
     weight = np.repeat((size.min() / size) ** (nodes.shape[1] - 1), len(ends))
@@ -59,7 +58,7 @@ def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarr
     sharp[number[np.einsum("ni,ni->n", own, mean[number]) < _SHARP]] = True
     correction = np.where(sharp[number, None], 0.0, mean[number] - own)
     correction = correction.reshape(len(nodes), len(ends), -1)
-    if dim == 1:  # a facet of an arc is off by as much the other way at an end of the face
+    if dim == 1:  # on an arc the error at an end of the face is minus that of the other facet end
         free = (np.bincount(number) == 1)[number].reshape(-1, 2)
         slight = np.linalg.norm(correction, axis=2).max(axis=1) < _SLIGHT
         mirrored = free & slight[:, None]
@@ -93,7 +92,7 @@ def smooth_normals(
 
 
 def _raw(nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
-    """Outward unit normals of the facets themselves, and their derivatives."""
+    """Outward unit normals of the facets, without blending, and their derivatives."""
     order, dim = nodes.shape[1] - 1, t.shape[1]
     on = nodes[facet].reshape(len(facet), -1, nodes.shape[-1])
     _, slopes, bends = _products(order, t)
@@ -117,7 +116,7 @@ def _turned(vectors: np.ndarray) -> np.ndarray:
 
 
 def _unit(vectors: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Unit vectors (n, gdim) and the derivatives of them from those of the vectors."""
+    """Unit vectors (n, gdim) and their derivatives from those of the vectors."""
     size = np.linalg.norm(vectors, axis=1)
     unit = vectors / size[:, None]
     along = np.einsum("nki,ni->nk", slopes, unit)
@@ -125,11 +124,11 @@ def _unit(vectors: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def _blending(order: int, t: np.ndarray):
-    """Functions of the corners of a facet, 1 at one and 0 at the others: values and derivatives.
+    """Values and derivatives of the corner functions of a facet, 1 at one corner, 0 at others.
 
     Products of ``(P_q(x) + P_{q-1}(x)) / 2``, the right Radau polynomial, and its mirror image for
-    the other end, with ``x = 2 t - 1`` and Legendre's polynomials P; q is the first odd number from
-    the order of the facet on. Shapes as of `_products`.
+    the other end, with ``x = 2 t - 1`` and Legendre polynomials P; q is the smallest odd number not
+    below the order of the facet. Shapes as in `_products`.
     """
     degree = order + 1 - order % 2
     right = Legendre([0.0] * (degree - 1) + [0.5, 0.5], domain=[0.0, 1.0])
@@ -153,9 +152,9 @@ def _times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _products(order: int, t: np.ndarray):
-    """Products of Lagrange polynomials of each parameter: values, first and second derivatives.
+    """Tensor products of Lagrange polynomials: values, first and second derivatives.
 
-    Shapes (n, a), (n, dim, a) and (n, dim, dim, a), with a running over the nodes of a facet.
+    Shapes (n, a), (n, dim, a) and (n, dim, dim, a), with index a over the nodes of a facet.
     """
     kinds = lagrange, lagrange_slopes, lagrange_bends
     one = [[kind(order, along) for kind in kinds] for along in t.T]

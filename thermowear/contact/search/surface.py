@@ -1,6 +1,6 @@
-"""A contact face in space, gathered from all ranks as a set of curved quadrilaterals.
+"""Contact face in space, gathered from all ranks as a set of curved quadrilaterals.
 
-Every rank holds the same facets in the same order, whatever the number of ranks.
+The facets are replicated on all ranks in an order that does not depend on the number of ranks.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from .quadrature import gauss, square
 from .smooth_normals import corner_corrections, smooth_normals
 
 _FLAT = 1e-9
-"""Of a facet's shorter side: nearer to a parallelogram it is one."""
+"""Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
 
 
 @dataclass(frozen=True)
 class Parallelograms:
-    """Facets as if they were flat.
+    """Parallelograms that approximate the facets.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Parallelograms:
     inverse: np.ndarray
 
     def only(self, facet: int) -> Parallelograms:
-        """One of them."""
+        """Parallelogram of one facet."""
         chosen = slice(facet, facet + 1)
         return Parallelograms(self.middle[chosen], self.sides[chosen], self.inverse[chosen])
 
@@ -57,25 +57,25 @@ class Parallelograms:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Facets with two parameters t that run 0…1 along their edges, as in their cells.
+    """Surface of facets with two parameters t that run 0…1 along their edges, as in the cells.
 
     Attributes
     ----------
     nodes : ndarray, shape (n_facets, order + 1, order + 1, 3) [m]
         Geometry nodes of each facet, at equal steps of the first and of the second parameter.
     corners : ndarray of int, shape (n_facets, 2, 2)
-        Numbers of the corners by both parameters; facets that meet share them.
+        Corner numbers by both parameters, shared by adjacent facets.
     outward : ndarray, shape (n_facets,)
-        +1 where the outward normal is the first tangent times the second, -1 otherwise.
+        +1 if the outward normal is the cross product of both tangents, -1 if it is the opposite.
     rank, cell, local_facet : ndarray of int, shape (n_facets,)
-        Who owns the facet's cell, its local index there, and which of its facets it is.
+        Rank that owns the cell of the facet, local cell index, and local facet index.
     softness : float or ndarray, shape (n_facets,)
-        ``(1 - ν²) / E`` of the material behind each facet [1/Pa]; only its ratio to that of the
-        other face counts.
+        ``(1 - ν²) / E`` of the material at each facet [1/Pa]; only its ratio to that of the other
+        face matters.
     name : str
-        Of the surface.
+        Name of the surface.
     wears : bool
-        Whether the softness is that of wear, see `common_face`.
+        True if the softness is that of wear, see `common_face`.
     """
 
     nodes: np.ndarray
@@ -115,19 +115,19 @@ class Surface:
         return smooth_normals(self.nodes, self.outward, self._corrections, facet, t)
 
     def soft(self, facet: np.ndarray) -> np.ndarray:
-        """Softness behind facets, shape (n,) [1/Pa]."""
+        """Softness at facets, shape (n,) [1/Pa]."""
         return np.broadcast_to(self.softness, len(self.nodes))[facet]
 
     def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Area per area of parameters, shape (n,) [m²]."""
+        """Area per parameter area, shape (n,) [m²]."""
         return np.linalg.norm(self._across(facet, t), axis=1)
 
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Nothing: points of a surface have no order."""
+        """NaN: points of a surface have no order."""
         return np.full(len(facet), np.nan)
 
     def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Parameters in the cell's own directions of the facet, shape (n, 2)."""
+        """Parameters in the directions of the facet in its cell, shape (n, 2)."""
         return t
 
     @cached_property
@@ -139,7 +139,7 @@ class Surface:
 
     @cached_property
     def flattened(self) -> Parallelograms:
-        """The parallelograms nearest to the corners of the facets."""
+        """Best-fit parallelograms to the corners of the facets."""
         corners = self.nodes[:, :: self._order, :: self._order]
         along = (corners[:, 1] - corners[:, 0]).mean(axis=1)
         across = (corners[:, :, 1] - corners[:, :, 0]).mean(axis=1)
@@ -148,7 +148,7 @@ class Surface:
 
     @cached_property
     def flat(self) -> np.ndarray:
-        """Which facets are parallelograms, shape (n_facets,)."""
+        """True for facets that are parallelograms, shape (n_facets,)."""
         steps = np.linspace(0.0, 1.0, self._order + 1)
         grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1)
         as_flat = self.flattened.points(np.repeat(grid[:, :, None], len(self.nodes), axis=2))
@@ -167,10 +167,10 @@ class Surface:
         return float(np.ptp(self.nodes.reshape(-1, 3), axis=0).max())
 
     def numbers(self, degree: int) -> np.ndarray:
-        """Numbers of continuous polynomials' coefficients.
+        """Coefficient numbers of continuous polynomials.
 
-        Shape (n_facets, degree + 1, degree + 1). Facets share those at common corners and along
-        common edges, whichever way they run.
+        Shape (n_facets, degree + 1, degree + 1). Numbers at common corners and along common edges
+        are shared, for any orientation of the facets.
         """
         count, inner = len(self.nodes), degree - 1
         _, corners = np.unique(self.corners, return_inverse=True)
@@ -203,7 +203,7 @@ class Surface:
 
 
 def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None = None) -> Surface:
-    """Collect a surface's facets from all ranks, in the order of their cells in the mesh file."""
+    """Gather the facets of a surface from all ranks, in the order of cells in the mesh file."""
     mesh = bodies.mesh
     cells, local = owned_facets(bodies, surface)
     of_cells = geometry_dofmap(mesh)[cells]
@@ -238,7 +238,7 @@ def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None =
 
 
 def _grids(mesh) -> np.ndarray:
-    """Nodes of each facet of a cell on a grid of both parameters, shape (6, (order + 1)²)."""
+    """Node indices of each facet of a cell on a parameter grid, shape (6, (order + 1)²)."""
     kind, order = reference_element(mesh, 1).cell_type, coordinate_element(mesh).degree
     element = basix.create_element(
         basix.ElementFamily.P, kind, order, basix.LagrangeVariant.equispaced

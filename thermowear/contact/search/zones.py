@@ -1,4 +1,4 @@
-"""Where the bodies touch: the ends of the contact zones, more finely than element by element."""
+"""Contact zones: ends of the zones with subelement accuracy."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from .pairing import Pairing
 from .surface import Surface
 
 _NOTHING = 1e-9  # of the largest pressure
-_OUTER = 0.8  # part of half a zone that its edge is found from
+_OUTER = 0.8  # fraction of half a zone used to fit its edge
 _DEGREE = 2
-_LEFT_OUT = 2  # elements next to the edge
+_LEFT_OUT = 2  # number of elements next to the edge
 
 
 def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, float]]:
-    """Ranges of the position s along the face where it presses, in order [m]; none on a surface.
+    """Ranges of the position s of the contact zones, in order [m]; empty on a surface.
 
-    Where smooth faces part, the pressure vanishes as the root of the distance to the edge times an
-    analytic function (Johnson, Contact Mechanics, 1985, ch. 4). So its square is fitted by a
-    polynomial, without the elements next to the edge, and followed to its zero. Zones of few
-    elements end with the last of them.
+    At the edge of contact of smooth faces the pressure vanishes as the square root of the distance
+    times an analytic function (Johnson, Contact Mechanics, 1985, ch. 4). The squared pressure is
+    fitted by a polynomial, without the elements next to the edge, and extrapolated to its zero.
+    Zones of few elements end with their last point.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, f
     for first, after in change.reshape(-1, 2):
         zone = np.arange(first, after)
         bounded = (first == 0) + (after == len(pressure))
-        part = 0.5 if bounded == 0 else 1.0  # of the zone that belongs to an edge
+        part = 0.5 if bounded == 0 else 1.0  # fraction of the zone that belongs to an edge
         start, end = pairing.position[zone[[0, -1]]]
         if first > 0:
             start = _edge(pairing, pressure, zone[::-1], part)
@@ -45,7 +45,7 @@ def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, f
 
 
 def _edge(pairing: Pairing, pressure: np.ndarray, zone: np.ndarray, part: float) -> float:
-    """Position of the edge beyond the last of the points of a zone."""
+    """Position of the edge beyond the last point of a zone."""
     s, facet = pairing.position[zone], pairing.sides[0].facet[zone]
     distance = np.abs(s - s[-1])
     last = np.unique(np.abs(facet - facet[-1]))[:_LEFT_OUT]

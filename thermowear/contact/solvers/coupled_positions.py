@@ -1,13 +1,13 @@
-"""Several contacts that share the depths worn off their faces: one body in many positions.
+"""Coupled contact problems that share worn depths: one body in many positions.
 
 For each position j find λ_j, the rigid motion d_j of the holder, and for all of them the depths y:
 
     r_j = A_j λ_j + g_j + S_j y - R_j d_j >= 0,   λ_j >= 0,   λ_j·r_j = 0,   T_jᵀ λ_j = F,
     y = y_0 + Σ_j G_j λ_j.
 
-An implicit step of wear has this form. For given active sets it falls apart into small problems and
-a system for y, which is fast. Stacked it is one large contact problem like that of
-`complementarity`, with full coupling, which is always solved.
+An implicit wear step has this form. For given active sets it decouples into small problems and a
+system for y. Stacked it is one large Signorini problem with full coupling (see `signorini`), used
+as the fallback.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ class CoupledContacts:
     Attributes
     ----------
     compliance : ndarray, shape (J, m, m)
-        A; symmetric or not.
+        Compliances A, symmetric or not.
     gap : ndarray, shape (J, m)
-        g.
+        Weak gaps g.
     seen : ndarray, shape (J, m, N)
-        S.
+        Weak gap S per worn depth.
     modes, force_modes : ndarray, shape (J, m, k)
         R and T.
     load : ndarray, shape (k,)
-        F.
+        Load F.
     """
 
     compliance: np.ndarray
@@ -52,7 +52,7 @@ class CoupledContacts:
 @serialisable
 @dataclass(frozen=True)
 class CoupledSolution:
-    """Coefficients, motions, which coefficients press, and the depths.
+    """Coefficients, motions, active sets, and the worn depths.
 
     Attributes
     ----------
@@ -71,17 +71,17 @@ class CoupledSolution:
 def solve_coupled(
     contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
 ) -> CoupledSolution:
-    """Solve by a primal-dual active set on all contacts at once, stacked where that fails.
+    """Solve by a primal-dual active set on all contacts at once, stacked if that fails.
 
     Parameters
     ----------
     contacts : CoupledContacts
     start : ndarray, shape (N,)
-        y_0.
+        Initial depths y_0.
     gains : ndarray, shape (J, N, m)
-        G.
+        Worn depth G per coefficient.
     active : ndarray of bool, shape (J, m)
-        Coefficients that are expected to press.
+        Predicted active coefficients.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def solve_coupled(
 def _stacked(
     contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
 ) -> CoupledSolution:
-    """The solution of all contacts as one."""
+    """Solution of all contacts as one stacked Signorini problem."""
     count, m, k = contacts.modes.shape
     seen = contacts.seen.reshape(count * m, -1)
     compliance = block_diag(*contacts.compliance)
@@ -125,7 +125,7 @@ def _stacked(
 def _with_active(
     contacts: CoupledContacts, start: np.ndarray, gains: np.ndarray, active: np.ndarray
 ) -> CoupledSolution | None:
-    """The linear problem with closed contact at the active coefficients, none where singular."""
+    """Solution with closed contact at the active coefficients; None if underconstrained."""
     if np.any(active.sum(axis=1) < len(contacts.load)):
         return None
     free, by_depth = _eliminated(contacts, active)
@@ -137,7 +137,7 @@ def _with_active(
 
 
 def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """λ and d without depths, shape (J, m + k), and their derivatives, shape (J, m + k, N)."""
+    """λ and d at zero depths, shape (J, m + k), and their derivatives, shape (J, m + k, N)."""
     count, m, k = contacts.modes.shape
     size = np.sqrt(np.abs(np.einsum("jmm->jm", contacts.compliance)))
     pressed = np.where(active, 1 / size, 0.0)
@@ -159,7 +159,7 @@ def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> tuple[np.ndarr
 
 
 def _pressing(contacts: CoupledContacts, solution: CoupledSolution) -> np.ndarray:
-    """Which coefficients should press next: those that do, and those that penetrate."""
+    """Next active sets: active coefficients under pressure, and penetrating ones."""
     λ, y = solution.coefficients, solution.depths
     opened, worn = np.einsum("jmn,jn->jm", contacts.compliance, λ), contacts.seen @ y
     closing = np.einsum("jmk,jk->jm", contacts.modes, solution.motion)

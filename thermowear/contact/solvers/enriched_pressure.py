@@ -1,9 +1,9 @@
-"""The pressure that a richer pressure space would find: an estimate of its error.
+"""Pressure in an enriched pressure space, for a hierarchical error estimate.
 
-The space of the next degree is Ψ⁺. How the bodies answer Ψ is known at every contact point, so that
-of its compliance only the part between the details is missing, those pressures that Ψ does not see.
-They are so short that the bodies answer them on the spot, by a compliance in proportion to the size
-of the facets; one solution gives its constant.
+The enriched space Ψ⁺ has the next degree. The response to Ψ is known at every contact point; of the
+compliance of Ψ⁺ only the block of the details is missing, of the pressures orthogonal to Ψ. These
+have short wavelengths, and the response to them is local, with a compliance proportional to the
+facet size; one solution gives the constant.
 """
 
 from __future__ import annotations
@@ -30,22 +30,22 @@ def enriched_pressure(
     local: np.ndarray,
     answer: Callable[[np.ndarray], np.ndarray],
 ) -> np.ndarray:
-    """Solve contact for a change of the pressure in the space of the next degree.
+    """Solve contact in the pressure space of the next degree, linearised at a known solution.
 
     Parameters
     ----------
     pairing : Pairing
     influence : Influence
     degree : int
-        Of the pressure space Ψ.
+        Degree of the pressure space Ψ.
     holder : Holder
     pressure : ndarray, shape (n,) [Pa]
     gap : ndarray, shape (n,)
-        Under that pressure, as well as it is known [m].
+        Gap under that pressure, as accurate as available [m].
     local : ndarray, shape (n,)
-        Gap that the pressure of each point opens on the spot, beside the bodies [m/Pa].
+        Local gap opening per pressure, without the elastic bodies [m/Pa].
     answer : callable
-        Gap at the points that a pressure at them opens, about [m].
+        Approximate elastic gap opening at the points due to a pressure at them [m].
 
     Returns
     -------
@@ -73,7 +73,7 @@ def enriched_pressure(
 
 
 def _compliance(pairing: Pairing, influence: Influence, basis: np.ndarray, answer) -> np.ndarray:
-    """Compliance of a richer basis: by the answers to Ψ, and on the spot where Ψ sees nothing."""
+    """Compliance of the enriched basis: elastic response to Ψ, local for the details."""
     weighted = influence.weighted
     opened = influence.trace[influence.touching].T @ influence.near
     opened = sum_over_ranks(influence.comm, opened)

@@ -8,21 +8,21 @@ import numpy as np
 def lemke(matrix: np.ndarray, right: np.ndarray) -> np.ndarray | None:
     """Solve ``w = M z + q >= 0, z >= 0, z·w = 0``.
 
-    Complementary pivoting with the lexicographic rule, which never runs in circles. It finds a
-    solution whenever M is copositive-plus and there is one (Cottle, Pang and Stone, The Linear
-    Complementarity Problem, 1992, section 4.4).
+    Complementary pivoting with the lexicographic rule, which excludes cycling. It finds a solution
+    if M is copositive-plus and one exists (Cottle, Pang and Stone, The Linear Complementarity
+    Problem, 1992, section 4.4).
 
     Parameters
     ----------
     matrix : ndarray, shape (n, n)
-        M.
+        Matrix M.
     right : ndarray, shape (n,)
-        q.
+        Vector q.
 
     Returns
     -------
     ndarray or None
-        z; None where the method ends on a ray.
+        Solution z; None if the method ends on a secondary ray.
     """
     n = len(right)
     if np.all(right >= 0):
@@ -51,7 +51,7 @@ def lemke(matrix: np.ndarray, right: np.ndarray) -> np.ndarray | None:
 
 
 def _leaving_row(tableau, basis, entering: int, n: int, cover: int) -> int | None:
-    """The row of the smallest ratio; ties by the rows of the inverse basis."""
+    """Row of the smallest ratio; ties broken lexicographically by rows of the inverse basis."""
     column = tableau[:, entering]
     rows = np.flatnonzero(column > 1e-11)
     if len(rows) == 0:

@@ -1,10 +1,10 @@
-"""Signorini's conditions with given loads, on the condensed interface.
+"""Signorini contact with given loads on the condensed interface.
 
 Find λ and the rigid motion d of the holder with
 
     r = A λ + g - R d >= 0,   λ >= 0,   λ·r = 0,   Tᵀ λ = F.
 
-T = R without friction in the section.
+Without friction in the section T = R.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ _TOLERANCE = 1e-9
 
 
 class NoEquilibrium(ComputationError):
-    """No pressure satisfies Signorini's conditions and carries the load."""
+    """Error: no pressure satisfies Signorini's conditions and carries the load."""
 
 
 @serialisable
 @dataclass(frozen=True)
 class SignoriniSolution:
-    """Coefficients of the pressure, rigid motion of the holder, and which coefficients press.
+    """Coefficients of the pressure, rigid motion of the holder, and active set.
 
     Attributes
     ----------
@@ -49,35 +49,35 @@ def solve_contact(
     start: np.ndarray | None = None,
     force_modes: np.ndarray | None = None,
 ) -> SignoriniSolution:
-    """Solve by a primal-dual active set, and by Lemke's method where that runs in circles.
+    """Solve by a primal-dual active set, and by Lemke's method if that cycles.
 
     Parameters
     ----------
     compliance : ndarray, shape (m, m)
-        A; symmetric or not (friction, friction heat).
+        Compliance A, symmetric or not (friction, friction heat).
     gap : ndarray, shape (m,)
-        g.
+        Weak gap g.
     modes : ndarray, shape (m, k)
-        R; k = 0 where the holder does not move freely.
+        R; k = 0 if the holder has no free motion.
     load : ndarray, shape (k,)
-        F.
+        Load F.
     start : ndarray of bool, shape (m,), optional
-        Coefficients that are expected to press.
+        Predicted active coefficients.
     force_modes : ndarray, shape (m, k), optional
         T, by default R.
 
     Returns
     -------
     SignoriniSolution
-        Checked: every inequality holds for every coefficient to 1e-9 of its scale.
+        Verified: every inequality holds for every coefficient to 1e-9 of its scale.
 
     Raises
     ------
     NoEquilibrium
-        If there is no solution. The reason is known to who made the compliance: friction that
-        locks the body, or friction heat beyond the critical speed.
+        If there is no solution. Possible causes in the compliance: self-locking by friction, or
+        friction heat beyond the critical speed.
     """
-    # measured from where the faces are near: a far start would leave no digits to the deflection
+    # relative to nearly closed faces: a far start would lose the digits of the deflection
     origin = np.linalg.lstsq(modes, gap, rcond=None)[0]
     forces = modes if force_modes is None else force_modes
     problem = _Problem(compliance, gap - modes @ origin, modes, load, forces)
@@ -86,7 +86,7 @@ def solve_contact(
 
 
 def _solve(problem: _Problem, start: np.ndarray | None) -> SignoriniSolution:
-    """Active sets from the expected one and from full contact, then Lemke's method."""
+    """Active-set method from the predicted set and from full contact, then Lemke's method."""
     everywhere = np.ones(len(problem.gap), dtype=bool)
     for active in (everywhere,) if start is None else (start, everywhere):
         solution = _active_set(problem, active)
@@ -100,7 +100,7 @@ def _solve(problem: _Problem, start: np.ndarray | None) -> SignoriniSolution:
 
 @dataclass(frozen=True)
 class _Problem:
-    """A, g, R, F and T of the module's docstring."""
+    """Data A, g, R, F and T of the problem in the module's docstring."""
 
     compliance: np.ndarray
     gap: np.ndarray
@@ -112,13 +112,13 @@ class _Problem:
         return self.compliance @ solution.coefficients + self.gap - self.modes @ solution.motion
 
     def scales(self, solution: SignoriniSolution) -> tuple[np.ndarray, np.ndarray]:
-        """Sizes that errors of each coefficient and weak gap are measured against."""
+        """Reference magnitudes of the errors of each coefficient and weak gap."""
         λ = np.abs(solution.coefficients)
         return np.full(len(λ), λ.max()), np.abs(self.compliance) @ λ + np.abs(self.gap)
 
 
 def _active_set(problem: _Problem, active: np.ndarray) -> SignoriniSolution | None:
-    """Primal-dual active set from a first guess; None where it runs in circles or dry."""
+    """Primal-dual active set from a first guess; None if it cycles or becomes singular."""
     seen = set()
     gap, held = problem.gap, len(problem.load) == 0
     while active.tobytes() not in seen:
@@ -134,7 +134,7 @@ def _active_set(problem: _Problem, active: np.ndarray) -> SignoriniSolution | No
 
 
 def _with_active(problem: _Problem, active: np.ndarray) -> SignoriniSolution | None:
-    """The linear problem with closed contact at the active coefficients, none where singular."""
+    """Solution with closed contact at the active coefficients; None if singular."""
     count, k = int(active.sum()), len(problem.load)
     if count < k:
         return None
@@ -157,7 +157,7 @@ def _with_active(problem: _Problem, active: np.ndarray) -> SignoriniSolution | N
 
 
 def _pressing(problem: _Problem, solution: SignoriniSolution) -> np.ndarray:
-    """Which coefficients should press next: those that do, and those that penetrate."""
+    """Next active set: active coefficients under pressure, and penetrating ones."""
     residual = problem.residual(solution)
     scales = problem.scales(solution)
     presses = solution.active & (solution.coefficients > -_TOLERANCE * scales[0])
@@ -182,10 +182,10 @@ def _checked(problem: _Problem, solution: SignoriniSolution) -> SignoriniSolutio
 
 
 def _pressing_by_lemke(problem: _Problem) -> np.ndarray:
-    """The active set by Lemke's method; the rigid motion is a difference of two positives."""
+    """Active set by Lemke's method; the rigid motion is a difference of nonnegative variables."""
     m, k = problem.modes.shape
     size = 1 / np.sqrt(np.abs(np.diag(problem.compliance)))
-    # orthonormal modes: given ones may be nearly parallel (a tilt about a far pivot)
+    # orthonormal modes: given ones may be nearly parallel (tilt about a far pivot)
     border, _ = np.linalg.qr(problem.modes * size[:, None])
     rows, mixing = np.linalg.qr(problem.force_modes * size[:, None])
     force = np.linalg.solve(mixing.T, problem.load)

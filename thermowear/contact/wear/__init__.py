@@ -1,1 +1,1 @@
-"""Wear at the interface: worn faces, tracks, edges of the wear."""
+"""Wear at the interface: worn faces, wear tracks, edges of the worn zone."""

@@ -1,19 +1,19 @@
-"""Deflection of the faces at the edge of the wear that full systems of elements do not resolve.
+"""Subgrid deflection of the faces at the edge of the worn zone, for full finite-element systems.
 
-Where the edge of the wear crosses a facet its points are reached one by one. Each begins to press
-at once, and takes over in the time in which its wear catches up with the deflection of the bodies.
-For elements that deflection is a polynomial on the facet: under a point that begins to press it
-lifts others, and presses these by a part of the pressure that no finer mesh makes smaller.
+When the edge of the worn zone crosses a facet, its points come into contact one by one. Each takes
+up pressure within the time in which its wear catches up with the deflection of the bodies. In
+finite elements that deflection is a polynomial on the facet: a newly loaded point displaces the
+others, and changes their pressures by a fraction that mesh refinement does not reduce.
 
-A pressure is as rough as that where it leaves the pressure space Ψ. What is left, ``p - Π p``, is
-shorter than any wave of that space; half-spaces yield to it about as they do to the shortest of
-these, whose compliance is ε. So the faces have a deflection v of their own at these points::
+Such a pressure is outside of the pressure space Ψ. The remainder ``p - Π p`` has shorter
+wavelengths than that space; the response of half-spaces to it is about that to the shortest wave of
+Ψ, whose compliance is ε. The faces therefore have a local deflection v at these points::
 
     gap = g + B u - R d + v,    v = ε (p - Π p):    min ½ ∫ v²/ε,    ∫ Ψ v = 0
 
-These are motions on springs. Where faces fit and the pressure is smooth, as it is behind the edge,
-v is zero, and as elements become smaller so does ε. The pressure is that of the condensed method
-at such points, see `wear_edge`.
+These are degrees of freedom on springs. Where faces conform and the pressure is smooth, as behind
+the edge, v is zero, and ε decreases with the element size. The pressure agrees with that of the
+condensed method at such points, see `wear_edge`.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from ..search.pairing import Pairing
 
 @dataclass(frozen=True)
 class EdgeDeflection:
-    """Motions of points of the faces on springs.
+    """Spring-supported degrees of freedom of face points.
 
     Attributes
     ----------
     modes : ndarray, shape (n, k)
-        How much a unit of each closes the gap at the points.
+        Gap closure at the points per unit of each.
     stiffness : ndarray, shape (k, k)
         Generalised force of the springs per unit.
     """
@@ -47,19 +47,19 @@ class EdgeDeflection:
 def edge_deflection(
     basis: np.ndarray, weights: np.ndarray, points: np.ndarray, compliance: np.ndarray
 ) -> EdgeDeflection:
-    """Deflection of some points that the pressure space does not see.
+    """Deflection of given points, orthogonal to the pressure space.
 
     Parameters
     ----------
     basis : ndarray, shape (n, m)
-        Ψ.
+        Basis Ψ.
     weights : ndarray, shape (n,) [m²]
     points : ndarray of bool, shape (n,)
-        From `wear_edge.edge_points`.
+        Points from `wear_edge.edge_points`.
     compliance : ndarray, shape (n,)
-        ε [m/Pa].
+        Compliance ε [m/Pa].
     """
-    moving = points & (weights > 0.0)  # not the point on an axis, which has no area
+    moving = points & (weights > 0.0)  # without points on an axis, which have no area
     root = np.sqrt(weights[moving])
     unseen = null_space((root[:, None] * basis[moving]).T)
     modes = np.zeros((len(points), unseen.shape[1]))
@@ -68,11 +68,11 @@ def edge_deflection(
 
 
 def wave_compliance(elastic: Elasticity, pairing: Pairing, degree: int) -> np.ndarray:
-    """ε of the shortest waves of a pressure on the facets of body 1, shape (n,) [m/Pa].
+    """Compliance ε of the shortest pressure waves on the facets of body 1, shape (n,) [m/Pa].
 
-    Half-spaces under a pressure ``cos κ x`` are deflected by ``2/(E* κ)`` times that (Johnson,
-    Contact Mechanics, 1985, section 13.2); the shortest wave has a sign for each of the `degree`
-    parts of a facet of the length h: ``κ = π degree / h``. Every rank calls.
+    The deflection of half-spaces under a pressure ``cos κ x`` is ``2/(E* κ)`` times it (Johnson,
+    Contact Mechanics, 1985, section 13.2); the shortest wave has `degree` half-waves on a facet of
+    length h: ``κ = π degree / h``. Every rank calls.
     """
     softness = np.zeros(len(pairing.weights))
     for side in pairing.sides:

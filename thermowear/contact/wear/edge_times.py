@@ -1,8 +1,8 @@
-"""Times at which the edge of the wear reaches contact points.
+"""Times at which the edge of the worn zone reaches contact points.
 
-A point at which contact holds by itself begins to press at once, within about the time in which
-wear takes up the deflection under it. Steps that end right behind such a time are the largest ones
-that resolve it; where it is, follows from the gaps of the points before.
+A point with pointwise contact takes up pressure within about the time in which wear equals the
+deflection under it. Steps that end just after this time are the largest ones that resolve it; the
+time is extrapolated from the gaps of the points.
 """
 
 from __future__ import annotations
@@ -11,22 +11,22 @@ import numpy as np
 
 
 def closing_times(start: np.ndarray, middle: np.ndarray, end: np.ndarray, step: float):
-    """Times from the beginning of a step at which gaps close.
+    """Closing times of gaps, from the beginning of a step.
 
-    Those that are open at its end close where the parabola through all three does; where that never
-    does, at its vertex. Those that are open until its middle close where the line does.
+    Gaps open at the end of the step close at the zero of the parabola through all three values, or
+    at its vertex if it has none; gaps open until the middle, at the zero of the line.
 
     Parameters
     ----------
     start, middle, end : ndarray, shape (n,)
-        Gaps, 0 where points press, NaN where they are not known [m].
+        Gaps, 0 at closed points, NaN if unknown [m].
     step : float
-        [s]
+        Step length [s].
 
     Returns
     -------
     ndarray, shape (n,)
-        Infinite where they open, are not known or have been closed until the middle [s].
+        Closing times, infinite for gaps that open, are unknown or were closed until the middle [s].
     """
     slope = (start - 4 * middle + 3 * end) / step
     bend = 4 * (start - 2 * middle + end) / step**2

@@ -1,9 +1,8 @@
-"""The worn profile of a body along which the other one slides to and fro.
+"""Worn profile of a body on which the other one reciprocates.
 
-Its depth is piecewise linear on a grid of its own along the face, as the contact points come to lie
-elsewhere in every position. A position stands for a part of the stroke: the points see the mean of
-the depths that they pass over. What they wear off is spread over the nodes with the same weights,
-so that no volume is lost on the way.
+The depth is piecewise linear on a separate grid along the face, as the contact points differ in
+every position. A position represents a segment of the stroke: the depth at a point is the mean over
+the segment. Worn depth is distributed to the nodes with the same weights, which conserves volume.
 """
 
 from __future__ import annotations
@@ -15,32 +14,32 @@ import numpy as np
 
 from ..search.pairing import Pairing
 
-_STEPS = 16  # along which a mean over a part of the stroke is taken
+_STEPS = 16  # samples of the mean over a segment of the stroke
 
 
 @dataclass(frozen=True)
 class StrokeGrid:
-    """A grid along the face of body 2.
+    """Grid of the worn profile along the face of body 2.
 
     Attributes
     ----------
     position : ndarray, shape (n_nodes,)
-        Lengths along the face [m].
+        Arc length along the face [m].
     areas : ndarray, shape (n_nodes,)
-        Area each node stands for [m²].
+        Area of each node [m²].
     """
 
     position: np.ndarray
     areas: np.ndarray
 
     def hats(self, pairing: Pairing, length: float = 0.0) -> np.ndarray:
-        """Values of the nodes' functions at the contact points of a pairing, (n, n_nodes).
+        """Values of the hat functions at the contact points of a pairing, (n, n_nodes).
 
         Parameters
         ----------
         pairing : Pairing
         length : float
-            Of the way along which the points move, half of it to each side: means over it [m].
+            Length of the segment, centred at the points, over which means are taken [m].
         """
         if length == 0.0:
             return self._hats(on_body_2(pairing))
@@ -61,18 +60,18 @@ class StrokeGrid:
 def track(
     pairings: Sequence[Pairing], lengths: Sequence[float], spacing: float, thickness: float
 ) -> StrokeGrid:
-    """A grid of equal cells along all of the face that is touched.
+    """Build a uniform grid on the swept part of the face.
 
     Parameters
     ----------
     pairings : sequence of Pairing
-        In all positions.
+        Contact points in all positions.
     lengths : sequence of float
-        Of the parts of the stroke that they stand for [m].
+        Lengths of the segments of the stroke that they represent [m].
     spacing : float
-        Size of the cells at most [m].
+        Largest cell size [m].
     thickness : float
-        Of the bodies [m].
+        Thickness of the bodies [m].
     """
     placed = [(on_body_2(p), length / 2) for p, length in zip(pairings, lengths, strict=True)]
     first = min(s.min() - half for s, half in placed)
@@ -84,6 +83,6 @@ def track(
 
 
 def on_body_2(pairing: Pairing) -> np.ndarray:
-    """Lengths along the face of body 2 at the contact points, shape (n,) [m]."""
+    """Arc length along the face of body 2 at the contact points, shape (n,) [m]."""
     side = pairing.sides[1]
     return side.face.position(side.facet, side.t)

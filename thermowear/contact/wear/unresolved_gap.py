@@ -1,7 +1,7 @@
-"""The part of a gap that no basis function of the pressure sees.
+"""Gap component orthogonal to the pressure space.
 
-Contact closes the gap in the mean of each basis function, not point by point. Where faces wear on
-and on, what is left between these means grows with the wear, though no pressure answers it.
+Weak contact closes the mean of the gap with each basis function, not the gap at each point. Under
+continued wear the component orthogonal to all basis functions grows without effect on the pressure.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from ..search.pairing import Pairing
 
 
 def unseen(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: np.ndarray):
-    """What can be taken from a gap without any change of its means over basis functions.
+    """Gap component orthogonal to the pressure space, on fully closed facets.
 
-    The gap less its projection on the pressure space of those facets that press all over, in the
-    mean of squares over the area; zero on all others.
+    The gap less its L² projection on the pressure space of the fully closed facets; zero on all
+    others.
 
     Parameters
     ----------
     gap : ndarray, shape (n,)
-        At the contact points [m].
+        Gap at the contact points [m].
     pressing : ndarray of bool, shape (n,)
     pairing : Pairing
     basis : ndarray, shape (n, m)
@@ -30,7 +30,7 @@ def unseen(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: np.nd
     Returns
     -------
     ndarray, shape (n,)
-        ``Ψᵀ w`` of it vanishes [m].
+        Component whose weak values ``Ψᵀ w v`` vanish [m].
     """
     facet = pairing.sides[0].facet
     open_somewhere = np.zeros(facet.max() + 1, dtype=bool)
@@ -42,7 +42,7 @@ def unseen(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: np.nd
     on_closed = basis[closed]
     on_closed = on_closed[:, np.abs(on_closed).max(axis=0) > 0.0]
     weighted = pairing.weights[closed, None] * on_closed
-    means = np.linalg.norm(on_closed, axis=0)  # some reach in but a little
+    means = np.linalg.norm(on_closed, axis=0)  # some have little support there
     factor = cho_factor((weighted / means).T @ (on_closed / means))
     amounts = cho_solve(factor, (weighted / means).T @ gap[closed]) / means
     result[closed] = gap[closed] - on_closed @ amounts

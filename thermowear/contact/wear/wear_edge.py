@@ -1,19 +1,19 @@
-"""Pressure space of a contact that grows by wear: point by point where the edge of the wear lies.
+"""Pressure space of a contact that grows by wear: pointwise at the edge of the worn zone.
 
-A worn contact ends with a jump of the pressure, which travels through the elements. In an element
-that it crosses, weak contact goes wrong twice: the gap beyond the edge, still open, counts in the
-means that close the gap before it, so too much is worn there; and the best approximation of a jump
-by continuous functions overshoots (by 27 % for linear ones). So the facets at the edge of the wear
-have a pressure for each contact point, and contact holds at each of them.
+The pressure of a worn contact has a jump at its edge, which travels through the elements. In an
+element that it crosses, weak contact has two errors: the open gap beyond the edge contributes to
+the means that close the gap before it, so that too much is worn there; and the best approximation
+of a jump by continuous functions overshoots (by 27 % for linear ones). The facets at the edge
+therefore have one pressure per contact point, with pointwise contact conditions.
 
-The bodies see the projection ``Π p`` of the pressure on the pressure space, and its points see the
-projection of their deflection; both have the same means over the basis functions as before::
+The bodies are loaded by the projection ``Π p`` of the pressure on the pressure space, and their
+deflection is projected likewise; weak values are the same as before::
 
     gap = g + Π C Π p + ε (p - Π p),    Π = Ψ (Ψᵀ w Ψ)⁻¹ Ψᵀ w
 
-What the projection leaves is shorter than any wave of the pressure space. The bodies yield to it
-about as they do to the shortest of these, whose compliance is ε. Where faces fit and the
-pressure is smooth, as it is behind the edge, nothing is left, and this is weak contact again.
+The remainder has shorter wavelengths than the pressure space. The response to it is about that to
+the shortest wave of the space, with the compliance ε. Where faces conform and the pressure is
+smooth, as behind the edge, the remainder vanishes, and weak contact is recovered.
 """
 
 from __future__ import annotations
@@ -27,26 +27,27 @@ from ..operators.condensation import CondensedContact
 from ..operators.holder import Holder
 
 _NONE = 1e-12
-"""Of the area of a basis function."""
+"""Relative area of a basis function that counts as zero."""
 _SMOOTH = 1e-3
-"""Of the largest pressure: what may be left by the projection on the pressure space."""
+"""Largest projection remainder of a smooth pressure, relative to the largest pressure."""
 _AHEAD = 2
-"""Facets that a step may take the edge to, see `has_passed`."""
+"""Number of facets that the edge may advance in a step, see `has_passed`."""
 
 
 def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np.ndarray:
-    """Contact points of the facets where the edge of the wear lies, or may come to in a step.
+    """Contact points of the facets at the edge of the worn zone, or within its reach in a step.
 
-    They have points that wear has not reached, and lie no more than `_AHEAD` facets before those
-    that have one that it has: where the edge came to others, it would be weak contact again.
+    These facets have unworn points, and are at most `_AHEAD` facets away from facets with worn
+    points; beyond them, contact would be weak at the edge.
 
     Parameters
     ----------
     facet : ndarray of int, shape (n,)
-        Of the points.
+        Facets of the points.
     basis : ndarray, shape (n, m)
-        Ψ.
+        Basis Ψ.
     reached : ndarray of bool, shape (n,)
+        Worn points.
 
     Returns
     -------
@@ -64,19 +65,19 @@ def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np
 def has_passed(
     basis: np.ndarray, points: np.ndarray, before: np.ndarray, after: np.ndarray
 ) -> bool:
-    """Whether the edge of the wear has gone beyond the points that are there for it.
+    """Test whether the edge of the worn zone has passed the edge points.
 
-    It has where some of them and points that share a basis function with these have been reached
-    in the same step. A contact that begins elsewhere has not.
+    True if edge points and other points that share a basis function with them were reached in the
+    same step; a new contact elsewhere does not count.
 
     Parameters
     ----------
     basis : ndarray, shape (n, m)
-        Ψ.
+        Basis Ψ.
     points : ndarray of bool, shape (n,)
-        From `edge_points`.
+        Result of `edge_points`.
     before, after : ndarray of bool, shape (n,)
-        Points that wear has reached.
+        Worn points before and after the step.
     """
     new = after & ~before
     shared = np.any(basis[new & points] > 0.0, axis=0)
@@ -86,13 +87,13 @@ def has_passed(
 def rough_points(
     facet: np.ndarray, basis: np.ndarray, weights: np.ndarray, pressure: np.ndarray
 ) -> np.ndarray:
-    """Contact points of the facets where a pressure is not one of the pressure space.
+    """Contact points of the facets where a pressure is outside of the pressure space.
 
     Parameters
     ----------
     facet : ndarray of int, shape (n,)
     basis : ndarray, shape (n, m)
-        Ψ.
+        Basis Ψ.
     weights : ndarray, shape (n,) [m²]
     pressure : ndarray, shape (n,) [Pa]
 
@@ -109,14 +110,14 @@ def rough_points(
 
 @dataclass(frozen=True)
 class WearEdge:
-    """The contact points of a face, and which of them lie at the edge of its wear.
+    """Selection of the contact points at the edge of the worn zone of a face.
 
     Attributes
     ----------
     facet : ndarray of int, shape (n,)
-        Of the points.
+        Facets of the points.
     basis : ndarray, shape (n, m)
-        Ψ.
+        Basis Ψ.
     weights : ndarray, shape (n,) [m²]
     """
 
@@ -130,15 +131,15 @@ class WearEdge:
         pressure: np.ndarray | None = None,
         before: np.ndarray | None = None,
     ) -> np.ndarray | None:
-        """Points where contact is to hold one by one, shape (n,), None without any.
+        """Points with pointwise contact conditions, shape (n,), None without any.
 
         Parameters
         ----------
         worn : ndarray, shape (n_wearing, n) [m]
         pressure : ndarray, shape (n,), optional
-            [Pa]
+            Pressure [Pa].
         before : ndarray of bool, shape (n,), optional
-            Those under that pressure: they stay until it is smooth there.
+            Points used for that pressure: kept until it is smooth there.
         """
         reached = np.any(worn > 0.0, axis=0)
         if before is None and (reached.all() or not reached.any()):
@@ -150,27 +151,27 @@ class WearEdge:
         return points if points.any() else None
 
     def has_passed(self, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
-        """Whether the edge has gone beyond its points in a step, from depths to others (2, n)."""
+        """Test whether the edge passed its points in a step, from depths before and after."""
         reached = (np.any(worn > 0.0, axis=0) for worn in (before, after))
         return has_passed(self.basis, points, *reached)
 
 
 @dataclass(frozen=True)
 class EdgeSpace:
-    """The pressure space with a pressure for each of some points.
+    """Pressure space with pointwise pressures at given points.
 
     Attributes
     ----------
     points : ndarray of bool, shape (n,)
-        These points.
+        Points with pointwise pressures.
     basis : ndarray, shape (n, k)
         Basis functions Ψ off these points, then those of single points.
     weighted : ndarray, shape (n, k)
-        ``diag(w)`` of them.
+        Basis times areas, ``diag(w)`` basis.
     seen : ndarray, shape (m, k)
-        Coefficients in Ψ of their projections: what the bodies see.
+        Coefficients in Ψ of their projections, which load the bodies.
     own : ndarray, shape (k, k)
-        Weak gap by the part that is left, per coefficient.
+        Weak gap per coefficient due to the projection remainder.
     modes, force_modes : ndarray, shape (k, n_modes)
         See `CondensedContact`.
     """
@@ -185,7 +186,7 @@ class EdgeSpace:
 
     @cached_property
     def area(self) -> np.ndarray:
-        """Of the coefficients, shape (k,) [m²]."""
+        """Areas of the coefficients, shape (k,) [m²]."""
         return self.weighted.sum(axis=0)
 
     def compliance(self, compliance: np.ndarray) -> np.ndarray:
@@ -193,11 +194,11 @@ class EdgeSpace:
         return self.seen.T @ compliance @ self.seen + self.own
 
     def pressing(self, pressure: np.ndarray) -> np.ndarray:
-        """Which coefficients press in a pressure at the points, shape (k,)."""
+        """True for active coefficients of a pressure at the points, shape (k,)."""
         return self.weighted.T @ pressure > _NONE * pressure.max() * self.area
 
     def at_points(self, weak: np.ndarray) -> np.ndarray:
-        """Weak values (k,) per area at single points; NaN at others or without area, shape (n,)."""
+        """Weak values (k,) per area at pointwise points; NaN at others and without area, (n,)."""
         result, count = np.full(len(self.points), np.nan), np.count_nonzero(self.points)
         area = self.area[-count:]
         means = np.full(count, np.nan)
@@ -207,7 +208,7 @@ class EdgeSpace:
 
 
 def edge_space(contact: CondensedContact, points: np.ndarray, holder: Holder) -> EdgeSpace:
-    """Give the pressure space of a contact a pressure for each of some points.
+    """Build the pressure space of a contact with pointwise pressures at given points.
 
     Parameters
     ----------
@@ -240,9 +241,9 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: Holder) ->
 
 
 def _shortest_compliance(contact: CondensedContact) -> np.ndarray:
-    """ε at the points: deflection per pressure that goes with the shortest waves, (n,) [m/Pa].
+    """Compliance ε of the shortest pressure waves at the points, shape (n,) [m/Pa].
 
-    The diagonal of the stiffness A⁻¹ is theirs: long waves are soft, and count little in it.
+    Estimated by the diagonal of the stiffness A⁻¹, in which the soft long waves count little.
     """
     area = np.einsum("nj,nj->j", contact.weighted, contact.basis)
     stiffness = area * np.diag(np.linalg.inv(contact.compliance))

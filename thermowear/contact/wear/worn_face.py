@@ -1,8 +1,8 @@
-"""How the nodes of a worn face move: by the depth worn off it, along its unworn normals.
+"""Nodal displacements of a worn face from the worn depth, along its unworn normals.
 
-Each node goes along the normal of the unworn face so far that the face moves by the depth along
-its present normal. Nodes of faces that matched when they were new so stay opposite each other, and
-those at the ends of a face go along the sides of its body.
+Each node moves along the normal of the unworn face, by the amount that displaces the face by the
+worn depth along its present normal. Nodes of initially matching faces stay opposite each other, and
+end nodes of a face move along the sides of its body.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from ..search.pairing import PairedFace, Pairing
 from ..search.surface import Surface
 
 _ROUGH = 1e-8
-"""How much less differences between neighbours count: they decide for nodes hardly seen alone."""
+"""Relative weight of the smoothing term, which determines nodes without contact points nearby."""
 
 
 @dataclass(frozen=True)
 class Paths:
-    """Ways of the nodes of a face, in the order of `nodes_of`.
+    """Directions of motion of the nodes of a face, in the order of `nodes_of`.
 
     Attributes
     ----------
     directions : ndarray, shape (n_nodes, gdim)
         Unit vectors out of the unworn body.
     held : ndarray of bool, shape (n_nodes,)
-        Nodes that stay where they are.
+        Fixed nodes.
     """
 
     directions: np.ndarray
@@ -40,7 +40,7 @@ class Paths:
 
 
 def nodes_of(face: Face | Surface) -> np.ndarray:
-    """Geometry nodes, in a section in order along the face, shape (n_nodes, gdim) [m]."""
+    """Geometry nodes, in a plane model in order along the face, shape (n_nodes, gdim) [m]."""
     number, gdim = _numbers(face), face.nodes.shape[-1]
     result = np.empty((number.max() + 1, gdim))
     result[number] = face.nodes.reshape(*number.shape, gdim)
@@ -48,7 +48,7 @@ def nodes_of(face: Face | Surface) -> np.ndarray:
 
 
 def node_normals(face: Face | Surface) -> np.ndarray:
-    """Outward unit normals at the nodes, means where facets meet, shape (n_nodes, gdim)."""
+    """Outward unit normals at the nodes, averaged over facets, shape (n_nodes, gdim)."""
     number = _numbers(face).ravel()
     normals = _at(face, face.normals, np.linspace(0.0, 1.0, _order(face) + 1))
     summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
@@ -58,17 +58,17 @@ def node_normals(face: Face | Surface) -> np.ndarray:
 def ways_between(
     sides: tuple[PairedFace, PairedFace], directions: tuple[np.ndarray, ...], gone: np.ndarray
 ) -> np.ndarray:
-    """Ways on which body 2 lies opposite, unit vectors at contact points, shape (n, gdim).
+    """Unit vectors from contact points to body 2 along the nodal directions, shape (n, gdim).
 
-    Those out of body 1 and into body 2 of the nodes, by how far each face has gone.
+    Mean of the directions out of body 1 and into body 2, weighted by the recession of each face.
 
     Parameters
     ----------
     sides : tuple of PairedFace
     directions : tuple of ndarray, shape (n_nodes, gdim)
-        Of the nodes of both faces, see `Paths`.
+        Directions of the nodes of both faces, see `Paths`.
     gone : ndarray, shape (2,)
-        How far each face has gone; only the ratio counts.
+        Recession of each face; only the ratio matters.
     """
     pairs = zip(sides, directions, strict=True)
     out_1, out_2 = (_ways_at(side, along) for side, along in pairs)
@@ -77,14 +77,14 @@ def ways_between(
 
 
 def _ways_at(side: PairedFace, directions: np.ndarray) -> np.ndarray:
-    """Ways of the points of a face between those of its nodes, unit vectors (n, gdim)."""
+    """Directions at points of a face, interpolated from its nodes, unit vectors (n, gdim)."""
     values = _polynomials(_order(side.face), side.t)
     ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])
     return ways / np.linalg.norm(ways, axis=1, keepdims=True)
 
 
 def curvatures(face: Face | Surface) -> np.ndarray:
-    """Largest of each facet, of circles through two of its corners, shape (n_facets,) [1/m]."""
+    """Largest curvature of each facet, from pairs of its corners, shape (n_facets,) [1/m]."""
     ends = np.array([0.0, 1.0])
     points, normals = _at(face, face.points, ends), _at(face, face.normals, ends)
     pairs = np.array(list(itertools.combinations(range(points.shape[1]), 2))).T
@@ -93,12 +93,12 @@ def curvatures(face: Face | Surface) -> np.ndarray:
 
 
 def lengths(face: Face | Surface) -> np.ndarray:
-    """Sizes of the facets, on a surface the sides of squares of their areas, (n_facets,) [m]."""
+    """Facet lengths, on a surface square roots of their areas, shape (n_facets,) [m]."""
     return face.sizes ** (1 / _dimension(face))
 
 
 class WornFace:
-    """One face of a pairing, as depths at the contact points move its nodes.
+    """Map from worn depths at the contact points to nodal displacements of one face.
 
     Parameters
     ----------
@@ -117,17 +117,17 @@ class WornFace:
         values = values * np.einsum("ni,nki->nk", out, paths.directions[node])
         point = np.broadcast_to(np.arange(len(node))[:, None], node.shape)
         shape = len(node), len(paths.directions)
-        # depths at the points, by amounts of the nodes
+        # depths at the points per displacement of the nodes
         self._depths = sp.csr_matrix((values.ravel(), (point.ravel(), node.ravel())), shape=shape)
         self._weights = pairing.weights
         share = pairing.weights.sum() / side.face.sizes[np.unique(side.facet)].sum()
         self._smoothing = _ROUGH * share * _roughness(side.face)
 
     def amounts(self, depth: np.ndarray) -> np.ndarray:
-        """How far the nodes go so that the face loses a depth (n,), shape (n_nodes,) [m].
+        """Nodal displacements for a worn depth (n,), shape (n_nodes,) [m].
 
-        Nearest to it in the mean of squares over the area, with the same volume. Nodes that the
-        points hardly see go with their neighbours, those that they do not see at all stay.
+        Area-weighted least-squares fit with the same volume. Nodes hardly supported by contact
+        points follow their neighbours, those without support are fixed.
         """
         weighted = sp.diags(self._weights) @ self._depths
         volume = weighted.sum(axis=0).A1
@@ -141,11 +141,11 @@ class WornFace:
         return result
 
     def depths(self, amounts: np.ndarray) -> np.ndarray:
-        """Depth that the face loses at the contact points, shape (n,) [m]."""
+        """Worn depth at the contact points, shape (n,) [m]."""
         return self._depths @ amounts
 
     def displacement(self, amounts: np.ndarray) -> np.ndarray:
-        """Of the nodes, into the body, shape (n_nodes, gdim) [m]."""
+        """Displacement vectors of the nodes, into the body, shape (n_nodes, gdim) [m]."""
         return -amounts[:, None] * self._paths.directions
 
 
@@ -158,12 +158,12 @@ def _order(face: Face | Surface) -> int:
 
 
 def _numbers(face: Face | Surface) -> np.ndarray:
-    """Of the nodes of each facet, shape (n_facets, nodes_per_facet)."""
+    """Node numbers of each facet, shape (n_facets, nodes_per_facet)."""
     return face.numbers(_order(face)).reshape(len(face.nodes), -1)
 
 
 def _roughness(face: Face | Surface) -> sp.csr_matrix:
-    """Squared differences between neighbouring nodes times the facets' sizes, as a matrix."""
+    """Matrix of squared differences between neighbouring nodes, weighted by facet sizes."""
     numbers = face.numbers(_order(face))
     a, b = (
         np.concatenate([np.delete(numbers, k, axis).ravel() for axis in range(1, numbers.ndim)])
@@ -185,7 +185,7 @@ def _at(face: Face | Surface, values, knots: np.ndarray) -> np.ndarray:
 
 
 def _polynomials(order: int, t: np.ndarray) -> np.ndarray:
-    """Those of the nodes of a facet at parameters (n,) or (n, 2), shape (n, nodes_per_facet)."""
+    """Nodal polynomials of a facet at parameters (n,) or (n, 2), (n, nodes_per_facet)."""
     values = np.ones((len(t), 1))
     for along in t.reshape(len(t), -1).T:
         values = values[:, :, None] * lagrange(order, along)[:, None]

@@ -1,1 +1,1 @@
-"""Coefficients of the interface: constant, tabulated, in proportion to the pressure."""
+"""Coefficients of the interface: constant, tabulated, proportional to the pressure."""

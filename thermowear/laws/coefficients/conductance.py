@@ -1,4 +1,4 @@
-"""Contact conductance that depends on the pressure."""
+"""Pressure-dependent contact conductance."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from .table1d import Table1D
 
 
 def harmonic_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """``2 a b / (a + b)``, the mean of two resistances in series."""
+    """Harmonic mean ``2 a b / (a + b)``, for two resistances in series."""
     return 2 * a * b / (a + b)
 
 
 @dataclass(frozen=True)
 class PressureConductance:
-    """Conductance in proportion to the pressure: ``h = coefficient k p / H``.
+    """Conductance proportional to the pressure: ``h = coefficient k p / H``.
 
     k and H are the harmonic means ``2 k1 k2 / (k1 + k2)`` of both bodies' conductivities and
     hardnesses. The model of MOOSE (``GapFluxModelPressureDependentConduction``) and of 4C.
@@ -26,11 +26,11 @@ class PressureConductance:
     Attributes
     ----------
     coefficient : float
-        [1/m]
+        Coefficient [1/m].
     conductivity : ndarray, shape (n,)
-        k at the points [W/(m K)].
+        Mean conductivity k at the points [W/(m K)].
     hardness : ndarray, shape (n,)
-        H at the points [Pa].
+        Mean hardness H at the points [Pa].
     """
 
     coefficient: float
@@ -50,12 +50,12 @@ class PressureConductance:
 
 @dataclass(frozen=True)
 class TabulatedConductance:
-    """Conductance by a table of pressures.
+    """Conductance tabulated over the pressure.
 
     Attributes
     ----------
     table : Table1D
-        [Pa] to [W/(m² K)].
+        Conductance [W/(m² K)] by pressure [Pa].
     """
 
     table: Table1D

@@ -1,4 +1,4 @@
-"""Coefficient that depends on nothing."""
+"""Constant coefficient of the interface."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Constant:
     Attributes
     ----------
     number : float
-        [-] or [W/(m² K)].
+        Value [-] or [W/(m² K)].
     """
 
     number: float

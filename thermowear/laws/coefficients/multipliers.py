@@ -17,7 +17,7 @@ class Multipliers:
     Attributes
     ----------
     temperature, pressure, speed : Table1D or None
-        None: 1.
+        Table of each factor; None for a factor of 1.
     """
 
     temperature: Table1D | None = None
@@ -26,7 +26,7 @@ class Multipliers:
 
     @property
     def variables(self) -> frozenset[str]:
-        """Variables that there is a table of, as `InterfaceLaw` names them."""
+        """Variables with a table, named as in `InterfaceLaw`."""
         tables = {"T": self.temperature, "p": self.pressure, "v": self.speed}
         return frozenset(name for name, table in tables.items() if table is not None)
 
@@ -62,7 +62,7 @@ class Multiplied:
 
     @property
     def variables(self) -> frozenset[str]:
-        """Variables of either factor."""
+        """Variables of the law and of the factors."""
         return self.law.variables | self.factors.variables
 
     def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:

@@ -14,9 +14,9 @@ class Table1D:
     Attributes
     ----------
     at : tuple of float
-        Increasing places, in SI.
+        Increasing abscissae, in SI.
     values : tuple of float
-        Values at the places.
+        Values at the abscissae.
     """
 
     at: tuple[float, ...]
@@ -27,7 +27,7 @@ class Table1D:
         return np.asarray(np.interp(x, self.at, self.values))
 
     def slope(self, x: np.ndarray | float) -> np.ndarray:
-        """Derivative; where lines meet, that of the next one."""
+        """Derivative; at corners, that of the next segment."""
         slopes = np.concatenate([[0.0], np.diff(self.values) / np.diff(self.at), [0.0]])
         return slopes[np.searchsorted(self.at, x, side="right")]
 
@@ -36,7 +36,7 @@ class Table1D:
         return self._integral(np.asarray(x, dtype=float)) - self._integral(np.asarray(start))
 
     def _integral(self, x: np.ndarray) -> np.ndarray:
-        """From the first place on: straight lines are integrated exactly by their means."""
+        """Exact integral from the first abscissa, by the trapezoidal rule."""
         at, values = np.array(self.at), np.array(self.values)
         whole = np.concatenate([[0.0], np.cumsum(np.diff(at) * (values[1:] + values[:-1]) / 2)])
         last = np.maximum(np.searchsorted(at, x, side="right") - 1, 0)

@@ -15,12 +15,12 @@ from .tree import Call, ConstantNode, Extreme, Node, Power, Product, Sum, Variab
 
 @dataclass(frozen=True)
 class Expression:
-    """An arithmetic expression.
+    """Arithmetic expression in physical variables.
 
     Attributes
     ----------
     text : str
-        As it was written.
+        Text as written.
     node : Node
     variables : frozenset of str
         Variables that occur in it.
@@ -46,7 +46,7 @@ class Expression:
     def _both(self, at: Mapping[str, np.ndarray], by: str) -> tuple[np.ndarray, np.ndarray]:
         shape = np.broadcast_shapes(*(np.shape(values) for values in at.values()))
         arrays = {name: np.asarray(values, dtype=float) for name, values in at.items()}
-        with np.errstate(all="ignore"):  # what is not finite is found by who asks
+        with np.errstate(all="ignore"):  # the caller checks for finite values
             value, slope = self.node.at(arrays, by)
         return np.zeros(shape) + value, np.zeros(shape) + slope
 
@@ -62,14 +62,14 @@ def parse_expression(
     variables : mapping of str to Dimension
         Variables that may occur.
     unit : str
-        Of the value; empty for a dimensionless number.
+        Unit of the value; empty for a dimensionless number.
     units : callable
-        Factor to SI and dimension of a unit, by its text.
+        Map from the text of a unit to its SI factor and dimension.
 
     Raises
     ------
     ValueError
-        In one line, with the position of the fault in the text.
+        One-line message with the position of the fault in the text.
     """
     found = Parser(text, variables, units).parse()
     dimension = units(unit)[1] if unit else Dimension()

@@ -17,9 +17,9 @@ class Function:
     Attributes
     ----------
     value, slope : callable
-        Function and derivative, point by point.
+        Function and derivative, elementwise.
     power : float or None
-        Exponent of the unit of the argument in that of the value; None: both are dimensionless.
+        Exponent of the unit of the argument in that of the value; None if both are dimensionless.
     """
 
     value: Pointwise
@@ -38,5 +38,5 @@ FUNCTIONS = {
     "cos": Function(np.cos, lambda x: -np.sin(x)),
 }
 EXTREMES = {"min": np.less_equal, "max": np.greater_equal}
-"""Functions of several arguments of one dimension, with the comparison that keeps the first."""
+"""Functions of several arguments of equal dimension, with the comparison that keeps the first."""
 KNOWN = (*FUNCTIONS, *EXTREMES)

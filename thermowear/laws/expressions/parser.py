@@ -1,4 +1,4 @@
-"""Recursive-descent parser: from text to a tree whose dimensions fit, with a whitelist of names.
+"""Recursive-descent parser: text to a tree of consistent dimensions, with a whitelist of names.
 
 ::
 
@@ -8,8 +8,8 @@
     power    = atom [ ("^" | "**") signed ]
     atom     = number [ unit ] | variable | function "(" sum { "," sum } ")" | "(" sum ")"
 
-A unit is written as in the case file, ``W/(m^2 K)``, and is as long as it can be: it ends before a
-variable, a function or a number. A quantity with a compound unit behind a ``/`` needs parentheses.
+A unit is written as in the case file, ``W/(m^2 K)``, and is matched greedily: it ends before a
+variable, a function or a number. A quantity with a compound unit after a ``/`` needs parentheses.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from .tree import Call, ConstantNode, Extreme, Node, Power, Product, Sum, Variab
 from .unit_text import unit_end
 
 Units = Callable[[str], tuple[float, Dimension]]
-"""Factor to SI and dimension of a unit, by its text; a `ValueError` says why it is none."""
+"""Map from the text of a unit to SI factor and dimension; `ValueError` if it is invalid."""
 
 _DEEPEST = 30
-"""Parentheses, signs and powers within each other."""
+"""Largest nesting depth of parentheses, signs and powers."""
 _LARGEST_EXPONENT = 100.0
 
 
 @dataclass(frozen=True)
 class Parsed:
-    """A part of an expression.
+    """Parsed part of an expression.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Parsed:
     start : int
         Position of its first character.
     literal : str
-        ``"plain"`` or ``"compound"`` for a quantity with a unit that stands without parentheses.
+        ``"plain"`` or ``"compound"`` for a quantity with a unit without parentheses.
     """
 
     node: Node
@@ -76,12 +76,12 @@ class Parser:
         self._depth = 0
 
     def parse(self) -> Parsed:
-        """The whole expression.
+        """Parse the whole expression.
 
         Raises
         ------
         ValueError
-            With the position of the first fault.
+            If the expression is invalid, with the position of the first fault.
         """
         if self._next.kind == "end":
             raise ValueError("is empty; needs an expression")
@@ -103,7 +103,7 @@ class Parser:
         return f"found {token.text!r}; needs an operator or the end"
 
     def _accept(self, *signs: str) -> Token | None:
-        """The next token, if it is one of some signs; it is taken."""
+        """Consume and return the next token if it is one of the given signs."""
         token = self._next
         if token.kind != "sign" or token.text not in signs:
             return None
@@ -111,7 +111,7 @@ class Parser:
         return token
 
     def _deeper(self, parse: Callable[[], Parsed]) -> Parsed:
-        """A part within another one."""
+        """Parse a nested part, with a limit of depth."""
         if self._depth == _DEEPEST:
             raise fault(self._next.start, f"nested too deeply; at most {_DEEPEST} levels")
         self._depth += 1
@@ -205,7 +205,7 @@ class Parser:
             raise fault(self._next.start, self._out_of_place())
 
     def _quantity(self) -> Parsed:
-        """A number and its unit."""
+        """Parse a number and its unit."""
         token = self._next
         number = float(token.text)
         if not np.isfinite(number):
@@ -280,12 +280,12 @@ class Parser:
         return self._folded(node, first.dimension, arguments, token.start)
 
     def _folded(self, node: Node, dimension: Dimension, parts: list[Parsed], start: int) -> Parsed:
-        """The part, as a number where it depends on nothing.
+        """Parsed part, folded to a constant if it has no variables.
 
         Raises
         ------
         ValueError
-            If that number is not finite: a division by zero, or an overflow.
+            If the constant is not finite: division by zero, or overflow.
         """
         if any(part.constant is None for part in parts):
             return Parsed(node, dimension, start)

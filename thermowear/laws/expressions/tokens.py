@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 LONGEST = 1000
-"""Characters of an expression."""
+"""Largest number of characters of an expression."""
 _TOKEN = re.compile(
     r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
     r"|(?P<name>[A-Za-z_]\w*)"
@@ -25,9 +25,9 @@ class Token:
     kind : str
         ``"number"``, ``"name"``, ``"sign"`` or ``"end"``.
     text : str
-        A power is ``"^"``, however it was written.
+        Text; both notations of a power become ``"^"``.
     start, end : int
-        Positions of its first character and behind its last one, from 0.
+        Positions of the first character and after the last one, from 0.
     """
 
     kind: str
@@ -37,17 +37,17 @@ class Token:
 
 
 def fault(position: int, text: str) -> ValueError:
-    """The error of a fault at a position, counted from 0."""
+    """Error for a fault at a position, counted from 0."""
     return ValueError(f"at character {position + 1}: {text}")
 
 
 def tokens(text: str) -> list[Token]:
-    """Split an expression; the last token is the end.
+    """Split an expression into tokens; the last one marks the end.
 
     Raises
     ------
     ValueError
-        If it is too long, or holds a character that cannot be in an expression.
+        If it is too long, or contains an invalid character.
     """
     if len(text) > LONGEST:
         raise ValueError(f"has {len(text)} characters; an expression has at most {LONGEST}")

@@ -1,7 +1,7 @@
-"""Expressions as trees, evaluated with their derivative (forward differentiation).
+"""Expression trees, evaluated with their derivative (forward-mode differentiation).
 
-Values are in SI. A derivative is taken with respect to one variable; at kinks (``abs``, ``min``,
-``max``) it is that of one side.
+Values are in SI. Derivatives are taken with respect to one variable; at kinks (``abs``, ``min``,
+``max``) they are one-sided.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ class Node(Protocol):
 
 
 def _chain(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
-    """``outer * inner``, also 0 where the inner derivative is 0 and the outer one infinite."""
+    """Product ``outer * inner``, 0 also if the inner derivative is 0 and the outer one infinite."""
     return np.where(inner == 0.0, 0.0, outer * np.where(inner == 0.0, 1.0, inner))
 
 
 @dataclass(frozen=True)
 class ConstantNode:
-    """A number."""
+    """Constant."""
 
     value: float
 
@@ -44,7 +44,7 @@ class ConstantNode:
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable, by its name."""
+    """Variable, by name."""
 
     name: str
 
@@ -79,7 +79,7 @@ class Product:
     Attributes
     ----------
     factors : tuple of (bool, Node)
-        Whether the factor is divided by, and the factor.
+        True for a divisor, and the factor.
     """
 
     factors: tuple[tuple[bool, Node], ...]
@@ -99,7 +99,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Power:
-    """Power, with a constant or a variable exponent."""
+    """Power with a constant or a variable exponent."""
 
     base: Node
     exponent: Node

@@ -1,4 +1,4 @@
-"""Extent of the unit behind a number, as the case file writes units: ``m/s``, ``W/(m^2 K)``."""
+"""Extent of the unit after a number, in the notation of the case file: ``W/(m^2 K)``."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from .tokens import Token, fault
 
 
 def unit_end(tokens: Sequence[Token], start: int, variables: Collection[str]) -> int:
-    """Index of the token behind the unit that begins at a token; the same one: there is no unit.
+    """Index of the token after the unit that begins at a token; the same index without unit.
 
     Parameters
     ----------
     tokens : sequence of Token
-        Those of the expression; the last one is its end.
+        Tokens of the expression; the last one is its end.
     start : int
-        Index of the token behind the number.
+        Index of the token after the number.
     variables : collection of str
-        Names that end a unit, as a name with ``(`` behind it does.
+        Names that end a unit, as a name followed by ``(`` does.
 
     Raises
     ------
@@ -32,7 +32,7 @@ class _Extent:
         self._tokens, self._variables = tokens, variables
 
     def after(self, start: int) -> int:
-        """Index behind a unit, which may begin with ``/`` or ``1/`` where it begins at all."""
+        """Index after a unit, which may begin with ``/`` or ``1/``; the start if there is none."""
         at = start
         if self._is(at, "1") and self._is(at + 1, "/"):
             at += 1
@@ -43,7 +43,7 @@ class _Extent:
         return start if first is None else self._rest(first)
 
     def _rest(self, at: int) -> int:
-        """Index behind further factors: side by side, or after ``*`` and ``/``."""
+        """Index after further factors: juxtaposed, or after ``*`` and ``/``."""
         while True:
             signed = self._is(at, "*") or self._is(at, "/")
             behind = self._factor(at + 1 if signed else at, parenthesised=signed)
@@ -52,7 +52,7 @@ class _Extent:
             at = behind
 
     def _factor(self, at: int, parenthesised: bool = True) -> int | None:
-        """Index behind one name or parenthesis with its exponent; None where none stands there."""
+        """Index after one name or parenthesis with its exponent; None if there is none."""
         token = self._tokens[at]
         if token.kind == "name" and not self._ends_unit(at):
             return self._exponent(at + 1)
@@ -68,7 +68,7 @@ class _Extent:
         return self._tokens[at].text in self._variables or self._is(at + 1, "(")
 
     def _exponent(self, at: int) -> int:
-        """Index behind the exponent of a unit, or the same one where it has none."""
+        """Index after the exponent of a unit, or the same index without exponent."""
         if not self._is(at, "^"):
             return at
         end = at + 1
@@ -85,7 +85,7 @@ class _Extent:
         raise fault(self._tokens[at].start, "the exponent of a unit must be a number")
 
     def _number(self, at: int) -> int | None:
-        """Index behind a number with its sign; None where none stands there."""
+        """Index after a signed number; None if there is none."""
         if self._is(at, "-") or self._is(at, "+"):
             at += 1
         return at + 1 if self._tokens[at].kind == "number" else None

@@ -1,1 +1,1 @@
-"""Laws that a case file names, one a module."""
+"""Laws selected by name in a case file, one per module."""

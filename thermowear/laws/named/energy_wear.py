@@ -1,4 +1,4 @@
-"""Wear in proportion to the friction power above a threshold."""
+"""Wear proportional to the friction power above a threshold."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class EnergyWear:
     Attributes
     ----------
     coefficient : float
-        Volume worn per energy [m³/J].
+        Wear volume per dissipated energy [m³/J].
     threshold : float
-        Friction power per area that wears nothing [W/m²].
+        Friction power per area below which there is no wear [W/m²].
     """
 
     coefficient: float = parameter("m^3/J", "2e-13 m^3/J", gt=0)
@@ -51,6 +51,6 @@ class EnergyWear:
         depth: Values = 0.0,
         friction: Values = 0.0,
     ) -> np.ndarray:
-        """Derivative with respect to the pressure [m/(s Pa)]; that above, at the threshold."""
+        """Derivative with respect to the pressure [m/(s Pa)]; right-hand at the threshold."""
         wears = friction * pressure * speed >= self.threshold
         return np.where(wears, self.coefficient * friction * speed, 0.0)

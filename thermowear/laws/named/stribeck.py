@@ -1,4 +1,4 @@
-"""Friction that falls from a static to a kinetic coefficient as the speed rises."""
+"""Stribeck friction, decreasing with speed from a static to a kinetic coefficient."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class StribeckFriction:
     static, kinetic : float
         Coefficients at rest and at high speed.
     speed : float
-        At which the difference has fallen to 1/e [m/s].
+        Speed at which the difference has fallen to 1/e [m/s].
     """
 
     static: float = parameter("", "0.35", gt=0)

@@ -1,24 +1,24 @@
-"""The three functionals that a steady pressure might minimise, for any q.
+"""Three candidate functionals for a minimum principle of steady wear, for any q.
 
-With ``w'_i = Z_i p^b_i`` the normal wear rates and ``c = 1 + mu e_1·e_R/(n·e_R)`` (written
-``1 ∓ mu tan χ`` by Páczelt and Mróz) the part of friction in ``p·w'_i = c p w'_i``::
+With the normal wear rates ``w'_i = Z_i p^b_i`` and the friction factor
+``c = 1 + mu e_1·e_R/(n·e_R)`` (``1 ∓ mu tan χ`` in Páczelt and Mróz) of ``p·w'_i = c p w'_i``::
 
     W^(q)   = Σ_i (∫ (Z_i p^b_i)^q dS)^(1/q)            generalised wear volume rate
     D_F^(q) = (∫ (mu p v)^q dS)^(1/q)                   generalised friction dissipation power
     D_w^(q) = Σ_i (∫ (c Z_i p^(b_i+1))^q dS)^(1/q)      generalised wear dissipation power
 
-Each is a sum of ``‖g_i p^m_i‖_q`` with degrees m = b, 1 and b + 1, that is of powers m of norms of
-p with exponent m q. Their minimum under equilibrium is
+Each is a sum of ``‖g_i p^m_i‖_q`` with degrees m = b, 1 and b + 1, i.e. of powers m of norms of p
+with exponent m q. Their minimum under equilibrium is
 
-* unique where ``m_i q > 1`` for each body, if there is one body, or both have the same m and
-  proportional g, or both have ``m_i >= 1``: always so for D_w with ``q > 1/(b + 1)``, for D_F with
+* unique if ``m_i q > 1`` for each body, and there is one body, or both have the same m and
+  proportional g, or both have ``m_i >= 1``: always for D_w with ``q > 1/(b + 1)``, for D_F with
   ``q > 1``, and for W of one body with ``q > 1/b``;
-* for W of two bodies with b < 1 and different a, or different b, attained, but perhaps by more
-  pressures than one (`minimum.minimise` returns the lowest that it finds);
-* not there where ``m_i q <= 1``: a pressure that gathers in single points has the least, and for
-  ``m q = 1`` many may be equal (``D_F^(1)`` of a translation is mu v F, whatever the pressure).
+* for W of two bodies with b < 1 and different a, or different b, attained, but possibly not
+  unique (`minimum.minimise` returns the lowest found);
+* not attained if ``m_i q <= 1``: the infimum is approached by pressures concentrated in points, and
+  for ``m q = 1`` many may be equal (``D_F^(1)`` of a translation is mu v F for any pressure).
 
-Only D_w with q = 1 has the steady state for its minimum whatever a and b are.
+Only D_w with q = 1 has the steady state as its minimum for any a and b.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ from ..power_wear import PowerWear
 
 @dataclass(frozen=True)
 class PowerFunctional:
-    """``Σ_i (∫ (g_i p^m_i)^q dS)^(1/q)``.
+    """Functional ``Σ_i (∫ (g_i p^m_i)^q dS)^(1/q)``.
 
     Attributes
     ----------
     weights : ndarray, shape (n,) [m²]
     factors : ndarray, shape (m, n)
-        g of each body, positive.
+        Factor g of each body, positive.
     degrees : ndarray, shape (m,)
-        m of each body.
+        Degree m of each body.
     q : float
-        The control parameter, positive.
+        Control parameter, positive.
     """
 
     weights: np.ndarray
@@ -57,15 +57,15 @@ class PowerFunctional:
         return bool(np.all(self.degrees * self.q > 1))
 
     def parts(self, pressure: np.ndarray) -> np.ndarray:
-        """The summand of each body, shape (..., m), for pressures of shape (..., n)."""
+        """Summand of each body, shape (..., m), for pressures of shape (..., n)."""
         density = self.factors * pressure[..., None, :] ** self.degrees[:, None]
         largest = density.max(axis=-1, keepdims=True)
-        largest = np.where(largest > 0, largest, 1.0)  # the powers of large q stay in range
+        largest = np.where(largest > 0, largest, 1.0)  # scaling keeps powers of large q in range
         total = (density / largest) ** self.q @ self.weights
         return largest[..., 0] * total ** (1 / self.q)
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
-        """Values at pressures of shape (..., n) [Pa]."""
+        """Value at pressures of shape (..., n) [Pa]."""
         return self.parts(pressure).sum(axis=-1)
 
     def gradient(self, pressure: np.ndarray) -> np.ndarray:
@@ -86,7 +86,7 @@ def wear_dissipation(
     q: float = 1.0,
     inclination_factor: np.ndarray | float = 1.0,
 ) -> PowerFunctional:
-    """``D_w^(q)``, with ``inclination_factor`` the c of given directions of the wear velocity."""
+    """Wear dissipation ``D_w^(q)``, with c for given wear-velocity directions."""
     factors = np.array([inclination_factor * law.factor(speed) for law in laws])
     degrees = np.array([law.pressure_exponent + 1 for law in laws])
     return PowerFunctional(weights, factors, degrees, q)
@@ -95,14 +95,14 @@ def wear_dissipation(
 def friction_dissipation(
     weights: np.ndarray, friction: float, speed: np.ndarray, q: float
 ) -> PowerFunctional:
-    """``D_F^(q)``."""
+    """Friction dissipation ``D_F^(q)``."""
     return PowerFunctional(weights, (friction * speed)[None, :], np.ones(1), q)
 
 
 def wear_volume_rate(
     weights: np.ndarray, laws: Sequence[PowerWear], speed: np.ndarray, q: float
 ) -> PowerFunctional:
-    """``W^(q)``; for q = 1 the volume worn per time [m³/s]."""
+    """Wear volume rate ``W^(q)``; for q = 1 in [m³/s]."""
     factors = np.array([law.factor(speed) for law in laws])
     degrees = np.array([law.pressure_exponent for law in laws])
     return PowerFunctional(weights, factors, degrees, q)

@@ -1,17 +1,17 @@
-"""The generic Newton method behind the principle: pressures that press where bodies approach.
+"""Primal-dual interior-point method for the complementarity problem of steady wear.
 
-Wanted are a pressure p and multipliers V (rigid-body wear velocities) with::
+Find a pressure p and multipliers V (rigid-body wear velocities) with::
 
     p >= 0,   s = h(p) + N S - R V >= 0,   p s = 0        h(p) = Σ_i h_i(p)
     Tᵀ w p = F,   S_k = Σ_points a_k h_k(p)
 
-where s is the rate at which the faces part, S the means of wear that is spread over a track, and N
-how much of each of them every point has. Where ``T = R`` and S = 0 these are the conditions of a
-convex minimum; friction (``T ≠ R``) makes them unsymmetric. p and s are unknowns of their own and
-stay positive on the way, so that exponents far from 1 and points at the edge of the contact cost no
-accuracy: Mehrotra's predictor-corrector method (SIAM J. Optim. 2 (1992) 575; Nocedal and Wright,
-Numerical Optimization, 2006, section 14.2), whose steps are Newton steps on all conditions, damped
-so that nothing becomes negative. It starts from uniform pressure.
+where s is the separation rate of the faces, S the means of wear distributed over a track, and N
+their weights at every point. For ``T = R`` and S = 0 these are the conditions of a convex minimum;
+friction (``T ≠ R``) makes them unsymmetric. p and s are independent unknowns and stay positive
+during the iteration, which keeps the accuracy for exponents far from 1 and points at the edge of
+contact: Mehrotra's predictor-corrector method (SIAM J. Optim. 2 (1992) 575; Nocedal and Wright,
+Numerical Optimization, 2006, section 14.2), with Newton steps on all conditions, damped to keep
+them positive, from uniform pressure.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from ...errors import ComputationError
 from .rate_sums import Common, RateSum
 
 STEPS = 200
-FLOOR = 1e-2  # of the largest pressure: where to start at points that part without friction
-TO_THE_BOUNDARY = 0.9995  # of the way to where a pressure or a rate of parting becomes zero
-CENTRED, SHORT = 0.3, 0.1  # products p s against their mean; a step that is hardly one
-GROWTH = 10.0  # of the largest rate in a step: large exponents would overshoot without end
-LOST = 1e-60  # products p s that vanish with the conditions unmet: there is no solution
-EXACT, ENOUGH = 1e-13, 1e-10  # relative errors: where to stop, and what is accepted
+FLOOR = 1e-2  # relative starting pressure of points that separate without friction
+TO_THE_BOUNDARY = 0.9995  # fraction of the step to the boundary of positive p and s
+CENTRED, SHORT = 0.3, 0.1  # target of p s relative to its mean; smallest useful step length
+GROWTH = 10.0  # largest growth of rates in a step: large exponents would overshoot
+LOST = 1e-60  # sum of p s below which an unconverged iteration has no solution
+EXACT, ENOUGH = 1e-13, 1e-10  # relative errors: target, and largest accepted one
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,11 @@ class Solution:
     ----------
     pressure : ndarray, shape (n,)
     velocity : ndarray, shape (k,)
-        V.
+        Velocity V.
     common : ndarray, shape (K,)
-        S.
+        Means S.
     regular : bool
-        Whether a larger load is met by larger wear: a positive determinant, as without friction.
+        True if wear increases with the load: positive determinant, as without friction.
     """
 
     pressure: np.ndarray
@@ -61,23 +61,23 @@ def solve(
     local: RateSum,
     common: Common | None = None,
 ) -> Solution | None:
-    """Pressure and multipliers; None where the method finds none.
+    """Solve for pressure and multipliers; None if the method finds no solution.
 
     Parameters
     ----------
     weights : ndarray, shape (n,)
-        Areas; a point without area is a probe, which is solved for and bears nothing.
+        Areas; a point without area is a probe, solved for without load contribution.
     normal_modes, force_modes : ndarray, shape (n, k)
         R and T; the columns of R are independent.
     load : ndarray, shape (k,)
-        F; nothing to solve where it is zero.
+        Load F; no solution if it is zero.
     local : RateSum
-        h.
+        Local rate h.
     common : Common, optional
-        S and N.
+        Means S and weights N.
     """
     share = weights / weights.sum()
-    # motions orthonormal over the face: neither pivots nor units of rotations matter
+    # motions orthonormal over the face: independent of pivots and units of rotations
     _, triangle = np.linalg.qr(np.sqrt(share)[:, None] * normal_modes)
     basis = np.linalg.inv(triangle)
     conditions = _Conditions(
@@ -94,7 +94,7 @@ def solve(
     if found is None or not found.regular:
         bare = replace(conditions, carried=share[:, None] * conditions.approach)
         without = _solve_from(bare, np.full(len(weights), force))
-        if without is not None:  # near self-locking: few starts lead there
+        if without is not None:  # near self-locking: convergence from few starts only
             start = np.maximum(without.pressure, FLOOR * without.pressure.max())
             start *= force / np.linalg.norm(conditions.carried.T @ start)
             found = _solve_from(conditions, start) or found
@@ -103,7 +103,7 @@ def solve(
 
 @dataclass(frozen=True)
 class _Conditions:
-    """The problem, with areas in parts of the whole.
+    """Data of the problem, with areas normalised to sum 1.
 
     Attributes
     ----------
@@ -131,13 +131,13 @@ class _Conditions:
         )
 
     def rate(self, multipliers: np.ndarray) -> np.ndarray:
-        """``R V - N S`` at the points, from the multipliers ``(V, S)``."""
+        """Rate ``R V - N S`` at the points, from the multipliers ``(V, S)``."""
         k = len(self.goal)
         return self.approach @ multipliers[:k] - self.common.reach @ multipliers[k:]
 
 
 class _Linearised:
-    """The conditions and their derivatives at positive pressures and rates of parting."""
+    """Linearised conditions at positive pressures and separation rates."""
 
     def __init__(self, conditions: _Conditions, pressure, parting, multipliers):
         worn, slope = conditions.local.at(pressure)
@@ -165,7 +165,7 @@ class _Linearised:
         return float(np.max([np.abs(self.balance[:k]).max(), rates.max(), apart.max()]))
 
     def step(self, product: np.ndarray):
-        """Newton step to where the product p s has changed by `product`: of V and S, p, s."""
+        """Newton step of (V, S), p and s for a change of the products p s by `product`."""
         drive = product / self.pressure - self.misfit
         right = -self.balance - self.borne.T @ (self.compliance * drive)
         multipliers = np.linalg.lstsq(self.tangent, right, rcond=None)[0]
@@ -175,7 +175,7 @@ class _Linearised:
 
 
 def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
-    """The solution from a positive pressure on, with motions as the conditions have them."""
+    """Solution from a positive initial pressure, for the motions of the conditions."""
     worn = conditions.local.at(start)[0]
     common = conditions.common.reach @ conditions.common.at(start)[0]
     unit = float((worn + common).mean())
@@ -192,9 +192,9 @@ def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
     return Solution(start * pressure, unit * multipliers[:k], unit * multipliers[k:], regular)
 
 
-@np.errstate(all="ignore")  # where there is no solution the numbers run out of range
+@np.errstate(all="ignore")  # without a solution the numbers overflow
 def _iterate(conditions: _Conditions) -> tuple[np.ndarray, np.ndarray, bool] | None:
-    """Pressure, multipliers ``(V, S)`` and regularity, from pressure 1 on."""
+    """Iterate from pressure 1; pressure, multipliers ``(V, S)`` and regularity."""
     pressure = np.ones(len(conditions.approach))
     multipliers = np.append(conditions.goal, np.zeros(conditions.common.reach.shape[1]))
     parting = conditions.local.at(pressure)[0] - conditions.rate(multipliers)
@@ -220,10 +220,10 @@ def _iterate(conditions: _Conditions) -> tuple[np.ndarray, np.ndarray, bool] | N
 
 
 def _predicted_and_corrected(newton: _Linearised):
-    """A Newton step with the curvature of ``p s`` taken into account.
+    """Predictor-corrector step, with the second-order term of ``p s``.
 
-    The products p s are aimed at a common value, so small as a first step that aims at zero
-    promises, but not so small that they vanish before the rates fit.
+    The common target of the products p s is chosen from a predictor step to zero, but not so small
+    that they vanish before the rates are in balance.
     """
     pressure, parting = newton.pressure, newton.parting
     product = pressure * parting
@@ -235,7 +235,7 @@ def _predicted_and_corrected(newton: _Linearised):
     centre = max((ahead / mean) ** 3 * mean, min(CENTRED * mean, unfit / 10))
     step = newton.step(centre - product - dp * ds)
     if _reach((pressure, step[1]), (parting, step[2])) < SHORT:
-        step = newton.step(CENTRED * mean - product)  # the correction leads astray
+        step = newton.step(CENTRED * mean - product)  # the corrector is not useful
     return step
 
 

@@ -1,4 +1,4 @@
-"""Rates of any wear laws at the contact points, for the interior-point method."""
+"""Rates of general wear laws at the contact points, for the interior-point method."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from ...errors import ComputationError
 from ..interfaces import Values, WearRate
 
 _MULTIPLES = np.array([0.03, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0])
-"""Multiples of the steady pressure between which a rate must not fall."""
+"""Multiples of the steady pressure between which a rate must not decrease."""
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
 class BoundLaw:
-    """Wear law at the contact points, as a function of the pressure alone.
+    """Wear law at the contact points, as a function of the pressure only.
 
     Attributes
     ----------
     law : WearRate
     speed, temperature, friction : ndarray, shape (n,)
-        [m/s], [K], [-].
+        Sliding speed [m/s], temperature [K], coefficient of friction [-].
     """
 
     law: WearRate
@@ -43,11 +43,12 @@ class BoundLaw:
         return function(pressure, self.speed, self.temperature, 0.0, self.friction)
 
     def require_growth(self, pressure: np.ndarray) -> None:
-        """Refuse a law whose rate falls as the pressure rises, around given pressures.
+        """Reject a law whose rate decreases with pressure, around given pressures.
 
         Raises
         ------
         ComputationError
+            If the rate decreases with pressure.
         """
         rates = np.array([self.rate(factor * pressure) for factor in _MULTIPLES])
         if np.any(np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]):
@@ -64,7 +65,7 @@ class LawSum:
     Attributes
     ----------
     laws : sequence of BoundLaw
-        One for each summand.
+        Law of each summand.
     weights : ndarray, shape (m, n)
     pressure : ndarray, shape (n,)
         Unit of the pressures [Pa].
@@ -82,12 +83,12 @@ class LawSum:
         return self.terms(pressure).sum(axis=0), self.slopes(pressure).sum(axis=0)
 
     def terms(self, pressure: np.ndarray) -> np.ndarray:
-        """Each of its summands, shape (m, n)."""
+        """Summands, shape (m, n)."""
         rates = [law.rate(self.pressure * pressure) for law in self.laws]
         return self.weights * np.reshape(rates, self.weights.shape) / self.value
 
     def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivative of each of its summands, shape (m, n)."""
+        """Derivatives of the summands, shape (m, n)."""
         slopes = [law.slope(self.pressure * pressure) for law in self.laws]
         scale = self.pressure / self.value
         return self.weights * np.reshape(slopes, self.weights.shape) * scale

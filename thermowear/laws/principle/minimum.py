@@ -1,13 +1,13 @@
-"""The pressures in equilibrium that minimise a functional.
+"""Minimisation of a functional over the pressures in equilibrium.
 
 Stationarity of ``Σ_i (∫ (g_i p^m_i)^q dS)^(1/q)`` under ``Tᵀ w p = F`` reads::
 
     Σ_i m_i κ_i g_i^q p^(m_i q - 1) = T Λ,        κ_i = (∫ (g_i p^m_i)^q dS)^(1/q - 1)
 
-which for ``D_w^(q)`` is the pressure of Páczelt and Mróz,
-``p = [TΛ c^-q / Σ Z_i^q C_i^((1-q)/q)]^(1/((b+1)q-1))``, multiples of κ and Λ left aside. For given
-κ it is a convex problem, of the same form as the steady state; with one body κ is a common factor,
-with two their ratio is one number to be found.
+for ``D_w^(q)`` the pressure of Páczelt and Mróz,
+``p = [TΛ c^-q / Σ Z_i^q C_i^((1-q)/q)]^(1/((b+1)q-1))``, up to multiples of κ and Λ. For given κ
+the problem is convex, of the same form as the steady state; for one body κ is a common factor, for
+two bodies their ratio is a scalar unknown.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from .rate_sums import PowerSum
 from .solvability import not_carried
 from .steady import steady_pressure
 
-_SEARCH = 16  # intervals in which the ratio of κ is looked for
+_SEARCH = 16  # number of search intervals for the ratio of κ
 _SETTLED = 1e-13
 _ENOUGH = 1e-9
-_TURNS = 120  # of the direction, each a minimisation
+_TURNS = 120  # largest number of evaluations of the direction, each a minimisation
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Minimum:
     ----------
     pressure : ndarray, shape (n,) [Pa]
     multipliers : ndarray, shape (k,)
-        Λ: the derivative of the least value by the load.
+        Λ, derivative of the minimum with respect to the load.
     value : float
     """
 
@@ -51,15 +51,15 @@ class Minimum:
 
 
 def minimise(functional: PowerFunctional, force_modes: np.ndarray, load: np.ndarray) -> Minimum:
-    """Minimise a functional among pressures ``p >= 0`` with ``Tᵀ w p = F``.
+    """Minimise a functional over pressures ``p >= 0`` with ``Tᵀ w p = F``.
 
     Parameters
     ----------
     functional : PowerFunctional
     force_modes : ndarray, shape (n, k)
-        T.
+        Force modes T.
     load : ndarray, shape (k,)
-        F.
+        Load F.
 
     Raises
     ------
@@ -95,23 +95,23 @@ def least_wear_dissipation(
     speed: np.ndarray,
     q: float = 1.0,
 ) -> Minimum:
-    """Minimise ``D_w^(q)``, χ being the inclination of the wear velocity of the minimum itself.
+    """Minimise ``D_w^(q)``, with the inclination χ of the wear velocity of the minimum itself.
 
-    The multipliers are the rigid-body wear velocity up to a factor, so that ``c = TΛ/RΛ``; points
-    where that is not positive bear nothing. With one motion c is given, ``T/R``, without friction
-    it is 1; else the direction of Λ is looked for, from that of the steady state on, that its own
-    minimum has. For q = 1 and the same b of both bodies it is the steady state itself.
+    The multipliers are proportional to the rigid-body wear velocity, so that ``c = TΛ/RΛ``; points
+    without positive c have zero pressure. With one motion ``c = T/R``, without friction c = 1;
+    otherwise the direction of Λ is a fixed point, iterated from that of the steady state. For q = 1
+    and equal b of both bodies the minimum is the steady state.
 
     Parameters
     ----------
     weights, normal_modes, force_modes, load, laws, speed
-        As of `steady.steady_pressure`.
+        As in `steady.steady_pressure`.
     q : float
 
     Raises
     ------
     ComputationError
-        As of `steady.steady_pressure` and `minimise`, or if no direction is found.
+        As in `steady.steady_pressure` and `minimise`, or if no direction is found.
     """
     scale = np.abs(normal_modes).max(axis=0)
 
@@ -143,13 +143,13 @@ def least_wear_dissipation(
 
 
 def _in_units(functional: PowerFunctional, pressure: float) -> PowerFunctional:
-    """The functional of pressures in a unit, with factors up to 1."""
+    """Functional of scaled pressures, with factors normalised to at most 1."""
     factors = functional.factors * pressure ** functional.degrees[:, None]
     return replace(functional, factors=factors / factors.max())
 
 
 def _at_ratio(functional: PowerFunctional, force_modes, load, ratio: float) -> np.ndarray:
-    """The stationary pressure for a given logarithm of the ratio of the parts of both bodies."""
+    """Stationary pressure for a given logarithm of the ratio of the summands of both bodies."""
     q, degrees = functional.q, functional.degrees
     κ = np.exp((1 - q) * ratio * np.arange(len(degrees)))
     stress = PowerSum((degrees * κ)[:, None] * functional.factors**q, degrees * q - 1)
@@ -161,7 +161,7 @@ def _at_ratio(functional: PowerFunctional, force_modes, load, ratio: float) -> n
 
 
 def _stationary_ratios(functional: PowerFunctional, force_modes, load) -> list[float]:
-    """Logarithms of the ratio of the parts that the pressure they lead to has indeed."""
+    """Logarithms of the ratio of the summands that are consistent with their pressure."""
     if len(functional.degrees) == 1 or functional.q == 1:
         return [0.0]
 
@@ -183,7 +183,7 @@ def _stationary_ratios(functional: PowerFunctional, force_modes, load) -> list[f
 
 
 def _multipliers(functional: PowerFunctional, force_modes, pressure: np.ndarray) -> np.ndarray:
-    """Λ from ``dJ/dp = T Λ`` where there is pressure."""
+    """Multipliers Λ from ``dJ/dp = T Λ`` at points with positive pressure."""
     pressed = pressure > 0
     there = replace(
         functional,

@@ -1,9 +1,9 @@
-"""A contact patch: all that the principle needs to know of a face, in three dimensions.
+"""Contact patch: three-dimensional data of a face for the principle.
 
-Signs are those of `thermowear.contact.search.pairing`: ``n`` is the outward normal of body 1, and
-its traction is ``-p ñ`` with ``ñ = n + mu e_1 + mu_d e_2``. ``e_1`` is the direction in which body
-1 slides over body 2; ``e_2``, across it, is that in which the rigid-body wear velocity draws body 1
-along the face, so that ``mu_d`` resists it.
+Sign convention of `thermowear.contact.search.pairing`: ``n`` is the outward normal of body 1, and
+its traction is ``-p ñ`` with ``ñ = n + mu e_1 + mu_d e_2``. ``e_1`` is the sliding direction of
+body 1 over body 2; ``e_2``, across it, is the direction of the tangential rigid-body wear velocity
+of body 1, which ``mu_d`` resists.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ class ContactPatch:
     normals : ndarray, shape (n, 3)
         Outward unit normals of body 1.
     traction : ndarray, shape (n, 3)
-        ``ñ``.
+        Traction direction ``ñ``.
     speed : ndarray, shape (n,)
-        Of sliding [m/s].
+        Sliding speed [m/s].
     motions : tuple of RigidMotion
     """
 
@@ -46,12 +46,12 @@ class ContactPatch:
 
     @property
     def normal_modes(self) -> np.ndarray:
-        """``R = m·n`` of each motion, shape (n, k)."""
+        """Normal modes ``R = m·n`` of the motions, shape (n, k)."""
         return self._along(self.normals)
 
     @property
     def force_modes(self) -> np.ndarray:
-        """``T = m·ñ`` of each motion, shape (n, k)."""
+        """Force modes ``T = m·ñ`` of the motions, shape (n, k)."""
         return self._along(self.traction)
 
     def _along(self, directions: np.ndarray) -> np.ndarray:
@@ -59,7 +59,7 @@ class ContactPatch:
         return np.column_stack(moved)
 
     def part(self, points: np.ndarray) -> ContactPatch:
-        """The patch of some of the points, by indices or a mask."""
+        """Patch of selected points, by indices or a mask."""
         return replace(
             self,
             points=self.points[points],
@@ -74,18 +74,18 @@ class ContactPatch:
         return np.einsum("k,kni->ni", amplitudes, [m.at(self.points) for m in self.motions])
 
     def force(self, pressure: np.ndarray) -> np.ndarray:
-        """``∫ p ñ dS``: what the holder presses and drags body 1 with, shape (3,) [N]."""
+        """Force ``∫ p ñ dS`` of the holder on body 1, shape (3,) [N]."""
         return (self.weights * pressure) @ self.traction
 
     def moment(self, pressure: np.ndarray, pivot) -> np.ndarray:
-        """The moment of that force about a point, shape (3,) [N m]."""
+        """Moment of the holder on body 1 about a point, shape (3,) [N m]."""
         arms = self.points - np.asarray(pivot)
         return (self.weights * pressure) @ np.cross(arms, self.traction)
 
     def steady(
         self, load, laws: Sequence[PowerWear], spread: Sequence[Distribution] | None = None
     ) -> SteadyWear:
-        """The steady state under a load along each motion; see `steady_pressure`."""
+        """Steady state under a load along each motion; see `steady_pressure`."""
         return steady_pressure(
             self.weights,
             self.normal_modes,
@@ -108,12 +108,12 @@ def contact_patch(
     transverse_friction: float = 0.0,
     transverse=(0.0, 0.0, 0.0),
 ) -> ContactPatch:
-    """Build a patch; what is the same at all points may be given once.
+    """Build a patch; values equal at all points may be given once.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3) [m]
-        Of a plane or a spatial model.
+        Points of a plane or a spatial model.
     weights : array_like, shape (n,) [m²]
     normals : array_like, shape (2,), (3,), (n, 2) or (n, 3)
         Outward normals of body 1, of any length.
@@ -123,8 +123,8 @@ def contact_patch(
     friction, transverse_friction : float
         mu and mu_d.
     sliding, transverse : array_like
-        Unit vectors ``e_1`` and ``e_2``, of the shapes of the normals; needed where the friction
-        that acts along them has a part in the section.
+        Unit vectors ``e_1`` and ``e_2``, shaped like the normals; needed if friction along them has
+        a component in the section.
     """
     n = len(weights)
     normal = _spatial(normals, n)

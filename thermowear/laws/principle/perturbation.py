@@ -1,4 +1,4 @@
-"""Pressures near a given one that carry the same load: the test of a minimum."""
+"""Admissible perturbations of a pressure, to test a minimum."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ def admissible_changes(
     pressure: np.ndarray,
     sizes: tuple[float, float] = (1e-3, 1.0),
 ) -> np.ndarray:
-    """Random changes of a pressure that have no resultants and leave no tension.
+    """Random changes of a pressure without resultants and without tension.
 
-    Where there is pressure it rises or falls, where there is none it can only rise; multiples
-    ``p T c`` of the pressure then take the resultants out.
+    Positive pressures increase or decrease, zero pressures only increase; multiples ``p T c`` of
+    the pressure then cancel the resultants.
 
     Parameters
     ----------
     rng : numpy.random.Generator
     count : int
-        m.
+        Number m of changes.
     weights, force_modes, pressure
-        w, T, p at n points; p has a part that T takes to any load.
+        w, T, p at n points; the pressed points can balance any load on T.
     sizes : tuple of float
-        Smallest and largest relative change where it is largest; drawn evenly in the logarithm.
+        Bounds of the maximum relative change, drawn log-uniformly.
 
     Returns
     -------
     ndarray, shape (m, n) [Pa]
-        δ with ``Tᵀ w δ = 0`` and ``p + δ >= 0``.
+        Changes δ with ``Tᵀ w δ = 0`` and ``p + δ >= 0``.
     """
     noise = rng.standard_normal((count, len(pressure)))
     raised = np.abs(noise) * (weights @ pressure / weights.sum()) * rng.random((count, 1)) ** 2

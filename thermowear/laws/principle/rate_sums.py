@@ -9,16 +9,16 @@ import numpy as np
 
 
 class RateSum(Protocol):
-    """Sum of rates that grow with the pressure, point by point."""
+    """Sum of rates that increase with the pressure at each point."""
 
     def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Value and derivative at positive pressures, shape (n,) each."""
 
     def terms(self, pressure: np.ndarray) -> np.ndarray:
-        """Each of the summands, shape (m, n)."""
+        """Summands, shape (m, n)."""
 
     def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivative of each of the summands, shape (m, n)."""
+        """Derivatives of the summands, shape (m, n)."""
 
     def scaled(self, pressure: np.ndarray, value: float) -> RateSum:
         """Sum scaled by a pressure at each point and by a value."""
@@ -26,7 +26,7 @@ class RateSum(Protocol):
 
 @dataclass(frozen=True)
 class PowerSum:
-    """``Σ_i g_i p^e_i`` point by point.
+    """Pointwise sum of powers ``Σ_i g_i p^e_i``.
 
     Attributes
     ----------
@@ -43,11 +43,11 @@ class PowerSum:
         return terms.sum(axis=0), self.exponents @ terms / pressure
 
     def terms(self, pressure: np.ndarray) -> np.ndarray:
-        """Each of its summands, shape (m, n)."""
+        """Summands, shape (m, n)."""
         return self.factors * pressure ** self.exponents[:, None]
 
     def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivative of each of its summands at positive pressures, shape (m, n)."""
+        """Derivatives of the summands at positive pressures, shape (m, n)."""
         return self.exponents[:, None] * self.terms(pressure) / pressure
 
     def scaled(self, pressure: np.ndarray, value: float) -> PowerSum:
@@ -57,14 +57,14 @@ class PowerSum:
 
 @dataclass(frozen=True)
 class Common:
-    """Means of rates that points have in common.
+    """Means of rates shared by several points.
 
     Attributes
     ----------
     means : RateSum
-        The summands at the points of each mean, shape (K, n).
+        Summands of each mean at the points, shape (K, n).
     reach : ndarray, shape (n, K)
-        N: how much of each mean each point has.
+        Weights N of each mean at each point.
     """
 
     means: RateSum
@@ -72,11 +72,11 @@ class Common:
 
     @classmethod
     def none(cls, n: int) -> Common:
-        """No mean at all, at n points."""
+        """Empty set of means at n points."""
         return cls(PowerSum(np.zeros((0, n)), np.zeros(0)), np.zeros((n, 0)))
 
     def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The means (K,), and their derivatives at positive pressures, shape (K, n)."""
+        """Means (K,), and their derivatives at positive pressures, shape (K, n)."""
         return self.means.terms(pressure).sum(axis=1), self.means.slopes(pressure)
 
     def scaled(self, pressure: np.ndarray, value: float) -> Common:

@@ -1,4 +1,4 @@
-"""Why no pressure carries a load: friction locks the bodies, or the load lies outside the face."""
+"""Solvability of steady wear: self-locking by friction, and loads that cannot be carried."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from scipy.optimize import linprog, nnls
 
 from ...errors import ComputationError
 
-_NOTHING = 1e-9  # relative: below it a force or an approach is none
+_NOTHING = 1e-9  # relative size below which a force or an approach is zero
 
 
 class SelfLocking(ComputationError):
-    """Friction carries the load however large it is, and no pressure wears the faces steadily."""
+    """Error: self-locking, friction carries any load without steady wear."""
 
 
 class NotCarried(ComputationError):
-    """The load lifts the body off, or tips it over the edge of its face."""
+    """Error: the load lifts the body off, or tips it over the edge of its face."""
 
 
 def not_carried(weights: np.ndarray, modes: np.ndarray, load: np.ndarray) -> NotCarried | None:
-    """The error if no pressure ``p >= 0`` carries the load, ``modesᵀ w p = F``."""
+    """Error if no pressure ``p >= 0`` carries the load, ``modesᵀ w p = F``; otherwise None."""
     scale = np.abs(modes).max(axis=0)
     _, left = nnls((modes[weights > 0] / scale).T, load / scale)
     if left < _NOTHING * np.linalg.norm(load / scale):
@@ -33,12 +33,12 @@ def not_carried(weights: np.ndarray, modes: np.ndarray, load: np.ndarray) -> Not
 def why_no_steady_state(
     weights: np.ndarray, normal_modes: np.ndarray, force_modes: np.ndarray, load: np.ndarray
 ) -> ComputationError:
-    """The error to raise where the principle has no solution.
+    """Error to raise if the principle has no solution.
 
-    Friction can lock only where pressures and their friction may be in equilibrium by themselves,
-    at some coefficient of friction up to the given one. It cannot where the holder has a motion
-    against which every pressure of the face works, with its friction and without: ``R y > 0`` and
-    ``T y > 0`` at all points bound the pressures by ``F·y``.
+    Self-locking requires pressures in equilibrium with their friction without load, at some
+    coefficient of friction up to the given one. It is excluded if a motion of the holder exists
+    against which every pressure does work, with and without friction: ``R y > 0`` and ``T y > 0``
+    at all points bound the pressures by ``F·y``.
 
     Parameters
     ----------

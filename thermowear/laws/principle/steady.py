@@ -1,12 +1,12 @@
-"""The steady state of wear from the principle of minimum wear dissipation power (q = 1).
+"""Steady state of wear from the principle of minimum wear dissipation power (q = 1).
 
-In the steady state the worn faces move as rigid bodies do: the normal wear rate equals the normal
+In the steady state the worn faces move as rigid bodies: the normal wear rate equals the normal
 component of the rigid-body wear velocity, ``Σ Z_i p^b_i = V·n``, and ``p = 0`` where that is
-negative. Where both bodies wear with the same b this is what makes ``D_w = ∫ p·Σ w'_i dS``
-stationary under equilibrium (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895; `minimum`
-finds it that way). With ``b_1 ≠ b_2`` the derivative of D_w has terms ``(b_i + 1) Z_i p^b_i``, of
-different weight, while the bodies still wear as they approach: the pressure is then that of the
-kinematics, which minimises ``Σ ∫ p·w'_i/(b_i + 1) dS``. Friction enters through equilibrium only.
+negative. If both bodies wear with the same b this makes ``D_w = ∫ p·Σ w'_i dS`` stationary under
+equilibrium (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895; see `minimum`). With
+``b_1 ≠ b_2`` the derivative of D_w has terms ``(b_i + 1) Z_i p^b_i``, of different weight, while
+the kinematic condition is unchanged: the pressure is then defined by the kinematics, and minimises
+``Σ ∫ p·w'_i/(b_i + 1) dS``. Friction enters through equilibrium only.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from .law_sum import BoundLaw, LawSum
 from .rate_sums import Common, PowerSum, RateSum
 from .solvability import why_no_steady_state
 
-_DEPENDENT = 1e-10  # relative: motions nearer than this to each other press the faces the same way
+_DEPENDENT = 1e-10  # relative singular value below which motions are linearly dependent
 
 
 @dataclass(frozen=True)
 class SteadyWear:
-    """The steady state of wear at the contact points.
+    """Steady state of wear at the contact points.
 
     Attributes
     ----------
@@ -43,8 +43,8 @@ class SteadyWear:
     dissipation : float
         Wear dissipation power D_w [W]; equals load times velocity.
     approach : ndarray, shape (n,)
-        Normal component of the rigid-body wear velocity ``V·n`` [m/s]; where there is pressure, the
-        sum of the rates.
+        Normal component of the rigid-body wear velocity ``V·n`` [m/s]; equals the sum of the rates
+        at points under pressure.
     """
 
     pressure: np.ndarray
@@ -71,26 +71,25 @@ def steady_pressure(
     Parameters
     ----------
     weights : ndarray, shape (n,)
-        Areas of the contact points [m²]; points without area are solved for and bear nothing.
+        Areas of the contact points [m²]; points without area carry no load.
     normal_modes : ndarray, shape (n, k)
-        Normal component of each unit rigid motion at the points, R.
+        R: normal component of each unit rigid motion at the points.
     force_modes : ndarray, shape (n, k)
-        T, the same for ``n + mu e_1 + mu_d e_2``, which carries the pressure and its friction in
-        equilibrium.
+        T: component along ``n + mu e_1 + mu_d e_2``, for the equilibrium of pressure and friction.
     load : ndarray, shape (k,)
         Force or moment along each free direction [N or N m].
     laws : sequence of WearRate
-        Of the wearing bodies, one or two; rates that grow with the pressure.
+        Laws of one or two wearing bodies; rates must increase with the pressure.
     speed : ndarray, shape (n,)
         Sliding speed [m/s].
     spread : sequence of Distribution, optional
-        Where the wear of each body goes; by default each wears in place.
+        Distribution of the wear of each body; by default in place.
     factors : ndarray, shape (n_wearing, n), optional
-        Of the wear rates at the points, by default 1.
+        Factors of the wear rates at the points, by default 1.
     temperature : ndarray, shape (n_wearing, n), optional
-        Of the wearing faces, for laws that depend on it [K].
+        Temperature of the wearing faces, for laws that depend on it [K].
     friction : ndarray, shape (n,), optional
-        Coefficient, for laws that depend on it.
+        Coefficient of friction, for laws that depend on it.
 
     Returns
     -------
@@ -99,12 +98,12 @@ def steady_pressure(
     Raises
     ------
     SelfLocking
-        If friction carries the load whatever the pressure.
+        If friction carries any load.
     NotCarried
         If the load opens the contact.
     ComputationError
-        If points do not slide, nothing wears where it is pressed, a motion presses nothing, or a
-        rate falls as the pressure rises.
+        If points do not slide, all wear is spread over tracks, free motions are dependent at the
+        faces, or a rate decreases with pressure.
     """
     spread = spread if spread is not None else [InPlace()] * len(laws)
     factors = factors if factors is not None else np.ones((len(laws), len(weights)))
@@ -146,7 +145,7 @@ def steady_pressure(
 
 
 def _rate_sum(laws: Sequence[BoundLaw], factors: np.ndarray, weights: np.ndarray) -> RateSum:
-    """Weighted rates of the laws, shape (m, n); those of powers in closed form."""
+    """Weighted rates of the laws, shape (m, n); power laws in closed form."""
     powers = [law.law for law in laws if _in_closed_form(law.law)]
     if len(powers) < len(laws):
         return LawSum(laws, weights * factors, np.ones(factors.shape[1]))
@@ -163,7 +162,7 @@ def _in_closed_form(law: WearRate) -> TypeGuard[PowerWear]:
 def _common(
     laws: Sequence[BoundLaw], factors: np.ndarray, spread: Sequence[Distribution]
 ) -> Common | None:
-    """The means of the bodies' rates that points have in common; None without any."""
+    """Means of the rates shared by several points; None without any."""
     n = factors.shape[1]
     each = zip(laws, factors, spread, strict=True)
     found = [
@@ -178,7 +177,7 @@ def _common(
 
 
 def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:
-    """Each free motion of the holder must press the faces in a way of its own."""
+    """Raise if free motions of the holder are linearly dependent at the faces."""
     modes = np.sqrt(weights)[:, None] * normal_modes
     lengths = np.linalg.norm(modes, axis=0)
     if (

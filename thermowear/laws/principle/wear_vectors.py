@@ -1,8 +1,8 @@
-"""Wear as vectors: how the worn surface moves, along its normal and along itself.
+"""Wear-rate vectors: normal and tangential motion of the worn surface.
 
 In the steady state the wear-rate vector of either body is collinear with the rigid-body wear
 velocity of body 1, ``w'_i = w'_Ri e_R`` with ``w'_Ri = w'_ni / cos χ`` (Páczelt and Mróz, Int. J.
-Solids Struct. 44 (2007) 895). Its tangential part ``w'_ni tan χ`` says how the worn shape moves
+Solids Struct. 44 (2007) 895). Its tangential part ``w'_ni tan χ`` is the motion of the worn shape
 along the face.
 """
 
@@ -18,20 +18,20 @@ from .steady import SteadyWear
 
 @dataclass(frozen=True)
 class WearVectors:
-    """Rates of wear as vectors at the contact points.
+    """Wear-rate vectors at the contact points.
 
     Attributes
     ----------
     rigid : ndarray, shape (n, 3)
         Rigid-body wear velocity [m/s].
     direction : ndarray, shape (n, 3)
-        Its unit vector ``e_R``.
+        Unit vector ``e_R`` of it.
     inclination : ndarray, shape (n,)
-        χ, the angle between the normal and ``e_R`` [rad]; above π/2 the faces part.
+        χ, the angle between the normal and ``e_R`` [rad]; above π/2 the faces separate.
     rates : tuple of ndarray, shape (n, 3)
-        Wear-rate vector of each wearing body [m/s]; along the normal where the faces part.
+        Wear-rate vector of each wearing body [m/s]; along the normal where the faces separate.
     tangential : tuple of ndarray, shape (n, 3)
-        The part of it in the face [m/s].
+        Tangential components of the wear-rate vectors [m/s].
     """
 
     rigid: np.ndarray
@@ -42,7 +42,7 @@ class WearVectors:
 
 
 def wear_vectors(patch: ContactPatch, steady: SteadyWear) -> WearVectors:
-    """The wear-rate vectors of a steady state."""
+    """Compute the wear-rate vectors of a steady state."""
     rigid = patch.velocity(steady.velocity)
     length = np.linalg.norm(rigid, axis=1)
     direction = rigid / np.where(length > 0, length, 1.0)[:, None]

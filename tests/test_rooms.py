@@ -129,6 +129,19 @@ def test_no_class_name_is_used_twice():
     assert sorted(names) == sorted(set(names))
 
 
+def test_docstrings_begin_with_a_noun_phrase_or_an_imperative():
+    """requirement: plain technical English that a search finds."""
+    riddles = ("What", "How", "Whether", "Where", "Which", "Of", "Those", "Its", "The same")
+    for path in SOURCES.values():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            text = node.value if isinstance(node, ast.Expr) else None
+            if isinstance(text, ast.Constant) and isinstance(text.value, str):
+                words = text.value.strip() + " "
+                assert not words.startswith(tuple(f"{word} " for word in riddles)), (
+                    f"{path}:{text.lineno}: {words[:60]}"
+                )
+
+
 def test_only_compat_knows_versions():
     """requirement: differences of dolfinx releases are handled in one module."""
     own = {"__init__.py", "app/arguments.py", "output/folder.py"}  # the program's own version

@@ -120,6 +120,7 @@ def test_the_rank_that_speaks_is_waited_for():
     assert done.stderr.count("--sett") == 1
 
 
+@pytest.mark.slow
 def test_a_failed_computation_ends_all_ranks(tmp_path):
     """requirement: exit code 2 and a readable run.json."""
     done = thermowear(

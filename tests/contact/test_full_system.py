@@ -435,6 +435,7 @@ def numbers():
 
 
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
+@pytest.mark.slow
 def test_two_ranks_give_the_serial_pressure():
     """requirement: the same numbers on any number of ranks."""
     script = (

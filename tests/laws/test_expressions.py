@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 
 from thermowear.case.values.expressions import expression
 
+from ..conftest import examples
+
 FRICTION = ("", ("p", "v", "T"))
 WEAR = ("m/s", ("p", "v", "T", "depth", "mu"))
 STRIBECK = "0.1 + 0.25*exp(-v/(0.5 m/s))"
@@ -185,7 +187,7 @@ NAMES = {"tanh": np.tanh, "sin": np.sin, "cos": np.cos, "exp": np.exp, "sqrt": n
 POSITIVE = st.floats(0.2, 2.0)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(TEXTS, POSITIVE, POSITIVE, POSITIVE)
 def test_values_and_derivatives_are_those_of_python(texts, p, v, T):
     """requirement: value as Python computes it, derivative as by a complex step."""
@@ -214,7 +216,7 @@ PIECES = ["p", "v", "T", "1", "0", "2.5", "1e3", "MPa", "m/s", "K", "1/K", "(", 
           "m^2", "nan", "1 MPa", "(0.5 m/s)"]  # fmt: skip
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(400), deadline=None)
 @given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join) | st.text(max_size=30))
 def test_any_text_is_read_or_refused_in_one_line(text):
     """requirement: B9; nothing but a number or a ValueError of one line comes of a text."""

@@ -18,6 +18,7 @@ from thermowear.laws import (
 )
 from thermowear.reference import annular_punch
 
+from ..conftest import examples
 from .random_problems import curved_face, flat_face
 
 INNER, OUTER = 0.02, 0.12
@@ -126,7 +127,7 @@ def dissipation(pressure, weights, law, speed):
     return weights @ (pressure * law.rate(pressure, speed))
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(80), deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1), b=st.sampled_from([0.5, 1.0, 2.0]), size=st.floats(1e-3, 0.5)
 )

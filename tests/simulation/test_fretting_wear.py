@@ -165,6 +165,7 @@ def test_the_tolerance_of_jumps(every):
     assert rows[-1].max_wear_2 == close(every[-1].max_wear_2, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_adaptive_jumps_hit_output_times():
     """requirement: exactly, and within a cycle the cycle is computed for itself."""
     changes = {"analysis.output_times": ["81.5 s", "160 s"]}

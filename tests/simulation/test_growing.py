@@ -79,7 +79,9 @@ def test_a_ball_that_wears_fast_runs_to_its_end(wearing):
     assert volumes == pytest.approx(len(wearing) * [k * 10.385 * 0.05 * 0.4], rel=1e-3)
 
 
-@pytest.mark.parametrize("method", ["condensed", "penalty", "nitsche"])
+@pytest.mark.parametrize(
+    "method", ["condensed", pytest.param("penalty", marks=pytest.mark.slow), "nitsche"]
+)
 def test_no_method_overshoots_at_a_travelling_edge(method):
     """requirement: largest pressure near the uniform one at every step, where 17 % were above.
 

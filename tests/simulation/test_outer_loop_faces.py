@@ -55,6 +55,7 @@ def test_updates_are_as_frequent_as_they_must_be():
     assert automatic["geometry_updates"] > 2 * fixed["geometry_updates"]
 
 
+@pytest.mark.slow
 def test_nodes_of_a_round_face_do_not_cross_its_sides():
     """A block on a disk: its sides are upright, its normals are not; a tenth of it worn off."""
     block = 'wear.block.coefficient="1e-5 1/MPa"'

@@ -14,10 +14,11 @@ from thermowear.verification.starter import starter
 
 LONG = SLOW | {
     "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "case-2", "case-3",
-    "case-7", "case-8", "case-9", "fretting-cylinder", "fretting-wear", "fuel-fretting",
-    "growing-cylinder", "growing-sphere", "half-plane-instability", "hertz-line",
-    "methods-agree", "mindlin", "moving-band", "optimal-shape", "patch", "pressure-conductance",
-    "reciprocating", "running-in", "step-flux", "temperature-dependent", "two-slabs",
+    "case-4", "case-5", "case-6", "case-7", "case-8", "case-9", "fretting-cylinder",
+    "fretting-wear", "fuel-fretting", "growing-cylinder", "growing-sphere",
+    "half-plane-instability", "hertz-line", "methods-agree", "mindlin", "minimality",
+    "moving-band", "optimal-shape", "patch", "pressure-conductance", "reciprocating",
+    "running-in", "sliding-rod", "step-flux", "temperature-dependent", "two-slabs",
 }  # fmt: skip
 """Cases of more than three seconds; run by `make verify`."""
 

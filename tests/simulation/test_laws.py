@@ -181,6 +181,31 @@ def test_wear_that_depends_on_the_temperature():
     assert np.ptp(i.temperature_1) > 1.0
 
 
+@pytest.mark.parametrize("wearing", [("punch", "plate"), ("plate",)], ids=["both", "body 2"])
+def test_each_body_wears_by_its_own_temperature_and_depth(wearing):
+    """requirement: laws of T and depth ask the state of the body's own face, by hand."""
+    rates = {
+        "punch": "2e-7 1/MPa*p*v*(T/(300 K))^9*exp(-depth/(1 um))",
+        "plate": "1e-7 1/MPa*p*v*(T/(300 K))^5*exp(-depth/(2 um))",
+    }
+    changes = {f"wear.{name}": {"rate": rates[name]} for name in wearing}
+    if "punch" not in wearing:
+        changes["wear.punch"] = GONE
+    changes |= {
+        "heat.conductance": "5e2 W/(m^2 K)",
+        "analysis": {"type": "transient", "end_time": "20 s", "output_times": []},
+    }
+    i = pressures(changes, "annular-punch")
+    pv = i.pressure * tw.load(tables("annular-punch")).motion.angular_velocity * i.x
+    assert np.abs(i.temperature_1 - i.temperature_2).max() > 1.0  # the faces differ
+    laws = ((1, 2e-13, 9, 1e-6), (2, 1e-13, 5, 2e-6))
+    for body, scale, power, depth in laws[-len(wearing) :]:
+        hotter = (getattr(i, f"temperature_{body}") / 300) ** power
+        due = scale * pv * hotter * np.exp(-getattr(i, f"wear_{body}") / depth)
+        found = getattr(i, f"wear_rate_{body}")
+        np.testing.assert_allclose(found, due, rtol=1e-6, atol=1e-9 * due.max())
+
+
 def test_negative_friction_is_refused_where_it_is_found():
     """requirement: a law that ends before the state does is answered in one line."""
     changes = {"analysis": {"type": "initial"}, "contact.friction": "0.3 - 0.3*(p/(12 MPa))^4"}

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...reference.growing_contact import growing_line
+from ...reference.growing_contact import GrowingContact, growing_line
 from ..check import Check
 from .growing import FULL, Growth, grown
 from .hertz import MODULUS
@@ -44,10 +44,15 @@ def checks() -> Iterator[Check]:
         yield from peaks.peaks(FORCE / THICKNESS / 2, 1)
 
 
+def law(exponent: float, coefficient: float) -> GrowingContact:
+    """Closed form of the starter case; parameters as in `growing_line`."""
+    return growing_line(FORCE / THICKNESS, RADIUS, MODULUS, coefficient, exponent)
+
+
 def run(
     note: str, exponent: float, coefficient: float, multiples: tuple[float, ...], *overrides: str
 ) -> Growth:
     """Run up to multiples of the first half-width, by the closed form of rigid bodies."""
-    law = growing_line(FORCE / THICKNESS, RADIUS, MODULUS, coefficient, exponent)
-    distances = law.distance(law.start * np.array(multiples))
-    return Growth(ID, note, law, 5, grown(STARTER, distances, *MESH, *overrides))
+    grows = law(exponent, coefficient)
+    distances = grows.distance(grows.start * np.array(multiples))
+    return Growth(ID, note, grows, 5, grown(STARTER, distances, *MESH, *overrides))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...reference.growing_contact import growing_point
+from ...reference.growing_contact import GrowingContact, growing_point
 from ..check import Check, compare
 from .growing import FULL, RIGID, Growth, grown, worn_half_width
 from .hertz import MODULUS
@@ -47,10 +47,15 @@ def checks() -> Iterator[Check]:
         yield compare(ID, quantity, found, ratio, 1e-2, RIGID)
 
 
+def law(exponent: float, coefficient: float) -> GrowingContact:
+    """Closed form of the starter case; parameters as in `growing_point`."""
+    return growing_point(FORCE, RADIUS, MODULUS, coefficient, exponent)
+
+
 def run(
     note: str, exponent: float, coefficient: float, multiples: tuple[float, ...], *overrides: str
 ) -> Growth:
     """Run up to multiples of the first radius, by the closed form of rigid bodies."""
-    law = growing_point(FORCE, RADIUS, MODULUS, coefficient, exponent)
-    distances = law.distance(law.start * np.array(multiples))
-    return Growth(ID, note, law, MOMENT, grown(STARTER, distances, *MESH, *overrides))
+    grows = law(exponent, coefficient)
+    distances = grows.distance(grows.start * np.array(multiples))
+    return Growth(ID, note, grows, MOMENT, grown(STARTER, distances, *MESH, *overrides))

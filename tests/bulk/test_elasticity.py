@@ -120,6 +120,11 @@ def test_free_expansion_has_no_stress():
     assert np.sqrt(energy / (0.04 * 0.05)) <= 1e-10 * 2e11 * 1.2e-5 * 100
 
 
+def test_compressibility_of_the_least_compressible_body():
+    """requirement: ``1 - 2 ν`` with the largest Poisson's ratio."""
+    assert build(1).compressibility() == pytest.approx(1 - 2 * SOFT.poisson_ratio)
+
+
 def test_clamped_heating():
     """requirement: fully constrained heating gives σ = -E α ΔT/(1 - 2ν) in all directions."""
     elastic = build(2, materials=(STEEL, STEEL))

@@ -103,6 +103,15 @@ def test_pads_that_let_go(stop):
     assert after[-1].mean_temperature_1 < after[-1].mean_temperature_2 - 10.0
 
 
+def test_hot_bodies_that_nothing_presses_are_in_equilibrium():
+    """requirement: reactions of a disk that expands freely are rounding, and so is their sum."""
+    insulated = ("heat.partition=0", "heat.cooling={}", "heat.conductance=1e-3 W/(m^2 K)")
+    result = solved(STOP, None, *COARSE, *insulated, "analysis.end_time=5000 s")
+    assert result.stopped is None
+    assert result.summary["max_temperature_K"] - COLD > 30.0
+    assert result.interface.pressure.max() == 0.0
+
+
 def test_steps_are_efficient(monkeypatch):
     """requirement: no tiny steps to begin with, few sizes, few steps."""
     sizes = []

@@ -93,6 +93,11 @@ class Elasticity:
         self.stiffness.mult(x, y)
         return np.where(self.fixed, y.getArray() - loads, 0.0)
 
+    def compressibility(self) -> float:
+        """Smallest ``1 - 2 ν = μ / (λ + μ)`` of the bodies; every rank calls."""
+        λ, μ, _ = (constant.x.array for constant in self.lame)
+        return min(self.bodies.mesh.comm.allgather(float((μ / (λ + μ)).min(initial=1.0))))
+
     def owned_by(self, *parts: str) -> np.ndarray:
         """Mask of the owned nodes that belong to parts of bodies, shape (n_owned / gdim,)."""
         tags = self.bodies.cell_tags

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...balances import relative, require
+from ...balances import ALLOWED, relative, require
 from ...compat import coordinate_element
 from ...contact.operators.heat import ThermalState
 from ...contact.operators.holder import RigidMode
@@ -19,6 +19,9 @@ from ..heat.heat_states import TemperatureField
 from ..heat.varying_heat import friction_heat
 from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
+
+_ROUNDING = 1e-11
+"""Reactions at this fraction of the forces of constrained thermal expansion are rounding errors."""
 
 
 @dataclass(frozen=True)
@@ -105,17 +108,20 @@ def body_state(system: System, contact: ContactState) -> BodyState:
         hottest = max(highest, float(np.max(thermal.rise))) + system.thermal.ambient
     displacement = system.elastic.solve(loads)
     opening = sum_over_ranks(system.comm, system.trace.T @ displacement)
-    force_error = _force_error(system, contact, displacement, loads)
+    strained = np.zeros_like(loads) if thermal is None else loads - traction
+    force_error = _force_error(system, contact, displacement, loads, strained)
     return BodyState(displacement, rise, opening, thermal, hottest, heat_error, force_error)
 
 
-def _force_error(system: System, contact: ContactState, displacement, loads) -> float:
+def _force_error(system: System, contact: ContactState, displacement, loads, strained) -> float:
     """Relative error between support reactions and the forces of holder and contact.
 
     Along each rigid mode the reaction on body 1 must equal the load of the holder, or the contact
     force where the motion is given, and the support of body 2 must balance the contact; across
     them the guides do. Moments of the contact act on each body at its own points. Relative to the
-    sum of the magnitudes, for translations of all forces.
+    sum of the magnitudes, for translations of all forces. Where no force acts, as on hot bodies
+    apart, reactions are the rounding of the thermal forces ``strained`` (n_owned,), without their
+    part that grows beyond bounds towards ν = 0.5.
     """
     drives = [*_with_rotations(system), *_across(system)]
     nodes = system.elastic.nodes()
@@ -124,12 +130,14 @@ def _force_error(system: System, contact: ContactState, displacement, loads) -> 
     upper = system.elastic.owned_by(*geometry.parts_of(geometry.bodies[0]))
     carried, borne_by_2 = (_work(system, contact, drives, side) for side in system.pairing.sides)
     errors, scales = np.zeros(len(drives)), np.zeros(len(drives))
+    strained = system.elastic.compressibility() * strained.reshape(nodes.shape)
     pressed = _part(contact.conditions.load - system.holder.dead, system.holder.load)
     for k, (drive, share, other) in enumerate(zip(drives, carried, borne_by_2, strict=True)):
         moved = drive.motion.at(nodes)
         work = (reactions * moved).sum(axis=1)
-        parts = work[upper].sum(), work[~upper].sum(), np.abs(work).sum()
-        held, supported, borne = sum_over_ranks(system.comm, np.array(parts))
+        magnitudes = np.abs(work).sum(), np.abs(strained * moved).sum()
+        parts = np.array([work[upper].sum(), work[~upper].sum(), *magnitudes])
+        held, supported, borne, thermal = sum_over_ranks(system.comm, parts)
         given = system.dead_resultant(drive.motion)
         found = share.sum()
         # the load may be below the maximum of its history
@@ -139,7 +147,8 @@ def _force_error(system: System, contact: ContactState, displacement, loads) -> 
             else pressed * drive.load
         )
         errors[k] = np.maximum(abs(held - due), abs(supported + given[1] + other.sum()))
-        scales[k] = max(np.abs(share).sum() + np.abs(given).sum(), borne)
+        loaded = np.abs(share).sum() + np.abs(given).sum()
+        scales[k] = max(loaded, borne, _ROUNDING / ALLOWED * thermal)
     shifts = np.array([not drive.motion.rotation.any() for drive in drives])
     scales[shifts] = scales[shifts].max()
     return max(relative(e, s) for e, s in zip(errors, scales, strict=True))

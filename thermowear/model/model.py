@@ -72,12 +72,12 @@ class Model:
                 "interfaces and {} holders".format(*counts)
             )
 
-    @property
+    @cached_property
     def interface(self) -> Interface:
         """The interface of the pair."""
         return self.interfaces[0]
 
-    @property
+    @cached_property
     def holder(self) -> Holder:
         """The holder of body 1."""
         return self.holders[0]

@@ -22,7 +22,6 @@ from ..model.worn_geometry import WornGeometry
 from ..results.recording import interface_at
 from ..results.result import InterfaceFields
 from ..results.rows import HeatRow, HistoryRow
-from ..results.summary import normal_force
 from ..runtime.frames import FrameRecorder
 from ..runtime.observer import Observer
 from ..time.time_loop import Moment
@@ -222,7 +221,6 @@ class RunningInRecord:
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
         system, pressure = self._system, moment.state.pressure
         volumes = system.worn_volumes(self._by_body(moment.state.worn))
-        moved = combined(system.holder.motions, moment.state.contact.motion)
         return HistoryRow(
             time=moment.time,
             sliding_distance=slid + (self.rows[-1].sliding_distance if self.rows else 0.0),
@@ -231,7 +229,7 @@ class RunningInRecord:
             wear_volume_1=float(volumes[0]),
             wear_volume_2=float(volumes[1]),
             max_temperature=self._problem.hottest(moment.state),
-            approach=system.approach(moved),
+            approach=float(system.approaches @ moment.state.contact.motion),
             step=moment.step,
             error=moment.error,
         )
@@ -242,7 +240,7 @@ class RunningInRecord:
         return HeatRow(
             time=moment.time,
             speed=self._speed,
-            normal_force=normal_force(self._system.rubbing(conditions.friction), pressure),
+            normal_force=self._system.rubbing(conditions.friction).normal_force(pressure),
             friction_power=float(self._system.weights @ (conditions.heating * pressure)),
             heat_in=balance.made,
             heat_stored=balance.stored,

@@ -174,7 +174,6 @@ class _Record:
         volumes = self._volumes(state.worn)
         mean_speed = float(np.average(system.speed, weights=system.weights))
         of_cycle = self._problem.of_cycle(state.contact)
-        moved = combined(system.holder.motions, of_cycle.motion)
         return HistoryRow(
             time=moment.time,
             sliding_distance=mean_speed * moment.time,
@@ -183,7 +182,7 @@ class _Record:
             wear_volume_1=volumes[0],
             wear_volume_2=volumes[1],
             max_temperature=float("nan"),
-            approach=system.approach(moved),
+            approach=float(system.approaches @ of_cycle.motion),
             step=moment.step,
             error=moment.error,
         )

@@ -41,11 +41,17 @@ class FrictionHeat:
     ----------
     system : System
     thermal : ThermalSystem
+
+    Attributes
+    ----------
+    ambient : float
+        Temperature of the surroundings [K].
     """
 
     def __init__(self, system: System, thermal: ThermalSystem):
         self._system = system
         self._thermal = thermal
+        self.ambient = thermal.ambient
         self._steps: OrderedDict[float, HeatOperators] = OrderedDict()
         self._distorts = system.model.interface.method.name == "condensed"
         self.condensed = CondensedDistortion(system, thermal)
@@ -190,11 +196,6 @@ class FrictionHeat:
         if not self._driven:
             return 0.0
         return max(self._system.comm.allgather(float(np.abs(rise).max(initial=0.0))))
-
-    @property
-    def ambient(self) -> float:
-        """Temperature of the surroundings [K]."""
-        return self._thermal.ambient
 
     def first_step(self, friction_heat: float) -> float:
         """Initial step size: small penetration depth of heat or small surface temperature rise [s].

@@ -114,9 +114,15 @@ class System:
         """Load direction of body 1, a unit vector of shape (gdim,)."""
         return np.array(self.model.holder.press)
 
-    def approach(self, motion: RigidMotion) -> float:
-        """Displacement of the pivot of the holder along the load direction [m]."""
-        return float(motion.at(np.array(self.model.holder.pivot)) @ self.press)
+    @cached_property
+    def approaches(self) -> np.ndarray:
+        """Displacement of the pivot along the load direction per mode of the holder, (n_modes,)."""
+        pivot = np.array(self.model.holder.pivot)
+        return np.array([motion.at(pivot) @ self.press for motion in self.holder.motions])
+
+    def normal_force(self, pressure: np.ndarray) -> float:
+        """Resultant of a pressure (n,) and its friction along the load direction [N]."""
+        return float(self.weights @ (pressure * (self.pull @ self.press)))
 
     @property
     def softness(self) -> float:

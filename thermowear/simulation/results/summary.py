@@ -51,7 +51,7 @@ def summarise(system: System, analysis: Analysis, outcome: Outcome) -> dict:
         "dofs_temperature": _thermal_dofs(system),
         "contact_points": len(w),
         "friction": system.friction if isinstance(model.interface.friction, Constant) else None,
-        "normal_force_N": normal_force(system, p),
+        "normal_force_N": system.normal_force(p),
         "friction_force_N": float(w @ friction),
         "friction_torque_Nm": _torque(system, friction),
         "guide_force_N": None,
@@ -61,7 +61,7 @@ def summarise(system: System, analysis: Analysis, outcome: Outcome) -> dict:
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": system.approach(outcome.motion),
+        "approach_m": float(outcome.motion.at(np.array(model.holder.pivot)) @ system.press),
         "max_temperature_K": _number(outcome.state.hottest),
         "friction_power_W": float(w @ (contact.conditions.heating * p)),
         **_conducted(system, outcome),
@@ -127,11 +127,6 @@ def _passing(system: System, outcome: Outcome) -> dict:
         "heat_cooled_W": float(cooled),
         "heat_carried_out_W": float(carried) if leaves else None,
     }
-
-
-def normal_force(system: System, pressure: np.ndarray) -> float:
-    """Resultant of pressure and friction along the load direction [N]."""
-    return float(system.weights @ (pressure * (system.pull @ system.press)))
 
 
 def _torque(system: System, friction: np.ndarray) -> float | None:

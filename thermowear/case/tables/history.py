@@ -141,18 +141,7 @@ class TemperatureHistory(TimeHistory):
 
 
 class History(TimeHistory):
-    """Loads of the holder of body 1 at instants; straight lines between them.
-
-    Attributes
-    ----------
-    force, approach : tuple of float or None
-        Along the press [N, m]; at most one of them. Neither: the constant load of the case.
-    tangential_force, tangential_displacement : tuple of float or None
-        Along x [N, m]; at most one of them. Neither: the holder only moves along the press.
-    cycle_start : float or None
-        From there to the end the loads of a fretting analysis may be repeated, cycle by cycle; by
-        default the first of the instants with the loads of the last one [s].
-    """
+    """Loads of the holder of body 1 at instants, see `laws.load_history.LoadHistory`."""
 
     COLUMNS = {
         "time": "s",

@@ -8,13 +8,12 @@ from .analyses import (
     TransientAnalysis,
 )
 from .body import Body
-from .discretisation import Discretisation
 from .heat import Heat
 from .holder import Holder
 from .interface import ContactMethod, HardnessConductance, Interface
 from .material import Material
 from .meshes import MeshSource
-from .model import Model
+from .model import Discretisation, Model
 from .motion import Motion
 from .wear import CircularTrack, EvenTrack, FaceWear
 

@@ -11,13 +11,28 @@ from ..errors import CaseError
 from ..laws.load_history import LoadHistory
 from ..laws.time_course import TimeFunction
 from .body import Body
-from .discretisation import Discretisation
 from .heat import Heat
 from .holder import Holder
 from .interface import Interface
 from .material import Material
 from .meshes import MeshSource, Zone
 from .motion import Motion
+
+
+@dataclass(frozen=True)
+class Discretisation:
+    """Finite-element spaces on the mesh.
+
+    Attributes
+    ----------
+    degree : int
+        Polynomial degree of displacement and temperature.
+    positioning : bool
+        Move the mesh until element ends coincide with the contact edges.
+    """
+
+    degree: int
+    positioning: bool = False
 
 
 @dataclass(frozen=True)

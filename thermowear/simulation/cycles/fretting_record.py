@@ -54,6 +54,8 @@ class FrettingRecord:
     Parameters
     ----------
     system : System
+    settings : FrettingAnalysis
+    history : LoadHistory
     translations : ndarray, shape (k, 2)
         Unit translations of the holder.
     profiles : tuple of WornProfile

@@ -20,6 +20,7 @@ ORDER = [
     "geometry",
     "bulk",
     "contact",
+    "model",
     "simulation",
     "verification",
     "output",
@@ -29,6 +30,7 @@ ORDER = [
 NOT_ALLOWED = {
     "case": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix"},
     "laws": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "pydantic", "pint"},
+    "model": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
     "reference": {"dolfinx", "gmsh", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
     "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl", "basix"},
     "output": {"dolfinx", "petsc4py", "ufl", "basix", "gmsh"},
@@ -39,6 +41,7 @@ BARE = {
     "reference": {"case"},
     "bulk": {"case", "geometry"},
     "contact": {"case", "geometry"},
+    "model": {"case", "reference", "bulk", "contact"},
 }
 """Packages that must not be imported although the order would allow it."""
 MOST_MODULES = 14
@@ -87,6 +90,14 @@ def test_rooms_import_only_from_above(room):
             if parts[0] == PACKAGE and len(parts) > 1:
                 assert parts[1] not in below, f"{path} imports {name}"
             assert parts[0] not in NOT_ALLOWED.get(room, set()), f"{path} imports {name}"
+
+
+def test_the_simulation_reads_no_case_file():
+    """requirement: the case file is one client of the model, translated in one folder."""
+    for path in (ROOT / "simulation").rglob("*.py"):
+        if path.parent.name != "from_case":
+            for name in imports(path):
+                assert not name.startswith(f"{PACKAGE}.case"), f"{path} imports {name}"
 
 
 def test_no_circle_of_imports():

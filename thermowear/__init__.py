@@ -20,6 +20,7 @@ _ROOMS = (
     "contact",
     "geometry",
     "laws",
+    "model",
     "output",
     "reference",
     "simulation",

@@ -10,6 +10,14 @@ MOST_FAULTS = 50
 _LONGEST = 1000  # characters of a line: the longest list of allowed words has about 600
 
 
+def other_mesh(path: str | None) -> str:
+    """Error message for a run resumed with a mesh file of other content."""
+    return (
+        f"--resume: geometry.path: the mesh in {path} differs from that of the run; name "
+        "the file with that mesh, or start anew with --overwrite"
+    )
+
+
 class CaseError(Exception):
     """Invalid input of the user (exit code 1).
 

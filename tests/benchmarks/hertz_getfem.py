@@ -48,6 +48,7 @@ from thermowear.case.starters import starter_text
 from thermowear.geometry.mesh.nodes import reference_nodes
 from thermowear.reference.hertz import contact_modulus
 from thermowear.simulation.analyses.positioning import prepare
+from thermowear.simulation.from_case import model_of
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.model.building import build
 from thermowear.timer import Phases
@@ -243,7 +244,7 @@ def by_thermowear(case, mesh) -> Outcome:
     """First solution and all further steps."""
     with mock.patch.object(type(case), "tagged_mesh", return_value=mesh):
         clock, phases = Clock(), Phases()
-        system = build(case, MPI.COMM_WORLD, phases)
+        system = build(model_of(case), MPI.COMM_WORLD, phases)
     clock.part("mesh, pairing, assembly, factors")
     problem = interface_problem(system)
     clock.part("condensation")
@@ -262,7 +263,7 @@ def by_high_degree(elements: int, degree: int, grading: float) -> tuple[float, S
     """Wall seconds, meshing and positioning included, and what was found."""
     case = case_of(elements, f"mesh.degree={degree}", f"mesh.grading={grading}")
     clock = Clock()
-    system = prepare(case, MPI.COMM_WORLD, Phases())
+    system = prepare(model_of(case), MPI.COMM_WORLD, Phases())
     contact = interface_problem(system).unworn()
     clock.part("all")
     return clock.total[0], solution_of(system, contact)

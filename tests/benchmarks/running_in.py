@@ -15,6 +15,7 @@ import numpy as np
 
 import thermowear as tw
 from thermowear.bulk.direct_solver import DirectSolver
+from thermowear.simulation.from_case import analysis_of, model_of
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.interface.steady import steady_state
 from thermowear.simulation.model.building import build
@@ -43,12 +44,12 @@ def largest_stable_increment(system) -> float:
 
 def main():
     case = tw.load("demos/annular_punch_running_in.toml")
-    system = build(case, MPI.COMM_WORLD, Phases())
+    system, settings = build(model_of(case), MPI.COMM_WORLD, Phases()), analysis_of(case)
     condensation = seconds(lambda: system.contact, repeat=1)
     steady = steady_state(system)
     problem = interface_problem(system)
-    steps = len(list(moments(problem, case.analysis, steady))) - 1
-    implicit = seconds(lambda: list(moments(problem, case.analysis, steady)))
+    steps = len(list(moments(problem, settings, steady))) - 1
+    implicit = seconds(lambda: list(moments(problem, settings, steady)))
 
     elastic = system.elastic
     rows = np.flatnonzero(elastic.fixed).astype(np.int32)

@@ -18,6 +18,7 @@ import thermowear as tw
 from thermowear.case import as_plain
 from thermowear.output.folder import ResultsFolder
 from thermowear.simulation.analyses.sweep import Series
+from thermowear.simulation.from_case import analysis_of, model_of
 from thermowear.timer import Phases
 
 CASE = "demos/block_on_disk_turning.toml"
@@ -50,7 +51,9 @@ def seconds_of_each(cases: list) -> np.ndarray:
         for number, case in enumerate(cases):
             began, phases = time.perf_counter(), Phases()
             folder = ResultsFolder(Path(place) / str(number), as_plain(case), 1, False)
-            folder.finish(series.run(case, phases=phases), phases.seconds)
+            folder.finish(
+                series.run(model_of(case), analysis_of(case), phases=phases), phases.seconds
+            )
             folder.close("done")
             seconds.append(time.perf_counter() - began)
     return np.array(seconds)

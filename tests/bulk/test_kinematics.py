@@ -10,7 +10,7 @@ from dolfinx.fem.petsc import assemble_vector
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import as_function, lagrange_space, owned
-from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, section_model
+from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.case.tables.driving import MotionTable
 from thermowear.contact.operators.sliding import sliding
@@ -135,7 +135,7 @@ def test_sliding_of_plane_models(velocity):
     """requirement: e is the unit direction, along the face, in which body 1 slides."""
     motion = MotionTable(velocity=velocity)
     normals = np.array([[0.0, -1.0], [0.6, -0.8], [-0.6, -0.8]])
-    model = section_model("plane-strain", 1.0)
+    model = kinematics_of("plane-strain", 1.0)
     slides = sliding(model.sliding(normals, motion), normals, (0.0, -1.0))
     e = slides.along
     assert np.sign(e[:, 0]) == pytest.approx(np.sign(motion.velocity))
@@ -146,7 +146,7 @@ def test_sliding_of_plane_models(velocity):
 
 def test_friction_of_the_slowest_sliding():
     """requirement: friction depends on the direction of sliding, not on its speed."""
-    model, normals = section_model("plane-strain", 1.0), np.array([[0.0, -1.0], [0.6, -0.8]])
+    model, normals = kinematics_of("plane-strain", 1.0), np.array([[0.0, -1.0], [0.6, -0.8]])
     slow, fast = (
         sliding(model.sliding(normals, MotionTable(velocity=v)), normals, (0.0, -1.0)).along
         for v in ("1e-15 m/s", "1 m/s")
@@ -158,7 +158,7 @@ def test_friction_of_the_slowest_sliding():
 def test_sliding_across_a_section(model):
     """requirement: the given speed, without a component in the section."""
     normals = np.array([[0.0, -1.0], [0.6, -0.8]])
-    moved = section_model(model, 1.0).sliding(
+    moved = kinematics_of(model, 1.0).sliding(
         normals, MotionTable(velocity="-50 mm/s"), across=True
     )
     assert moved == pytest.approx(np.array([[0.0, 0.0, -0.05]] * 2))
@@ -174,7 +174,7 @@ def test_sliding_over_a_turning_disk(turning):
     angle = np.array([-0.4, 0.0, 0.7])
     outward = np.column_stack([np.sin(angle), np.cos(angle)])
     center = np.array([0.1, -0.2])
-    velocity = section_model("plane-strain", 1.0).sliding(center + 0.3 * outward, motion, center)
+    velocity = kinematics_of("plane-strain", 1.0).sliding(center + 0.3 * outward, motion, center)
     slides = sliding(velocity, -outward, (0.0, -1.0))
     assert slides.speed == pytest.approx(0.6)
     assert (slides.along * outward).sum(axis=1) == pytest.approx(0.0)

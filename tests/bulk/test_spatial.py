@@ -8,7 +8,7 @@ import ufl
 from dolfinx import fem
 
 from thermowear.bulk.field import as_function, lagrange_space, owned
-from thermowear.bulk.kinematics import Spatial, section_model
+from thermowear.bulk.kinematics import Spatial, kinematics_of
 from thermowear.case.tables.driving import MotionTable
 from thermowear.contact.operators.sliding import sliding
 from thermowear.parallel import sum_over_ranks
@@ -97,7 +97,7 @@ def test_free_expansion_is_free_of_stress():
 
 
 def test_no_thickness():
-    model = section_model("3d", None)
+    model = kinematics_of("3d", None)
     assert isinstance(model, Spatial)
     points = np.random.default_rng(0).normal(size=(4, 3))
     np.testing.assert_array_equal(model.area_factor(points), 1.0)

@@ -72,7 +72,9 @@ def test_every_history_may_be_a_file(tmp_path):
     assert case.motion.history.repeat
     assert case.contact.friction_history.factor == (1.0, 0.5, 1.0)
     warm = case.heat.temperature["upper_top"]
-    assert [warm.at(t) for t in (0.0, 5.0, 99.0)] == pytest.approx([293.15, 343.15, 393.15])
+    assert [warm.function.at(t) for t in (0.0, 5.0, 99.0)] == pytest.approx(
+        [293.15, 343.15, 393.15]
+    )
     assert case.heat.ambient_history == warm
     assert set(case.histories) == {
         SPEED, FRICTION, "heat.temperature.upper_top", "heat.ambient_history",
@@ -87,7 +89,7 @@ def test_cycles_of_loads_may_be_a_file(tmp_path):
     path.write_text(tomli_w.dumps(tables(FRETTING, changes)), encoding="utf-8")
     history = tw.load(path).load.history
     assert history.tangential_force == (0.0, 36.0, -36.0, 36.0)
-    assert history.cycle == (1.0, 5.0)
+    assert history.loads.cycle == (1.0, 5.0)
 
 
 def test_a_list_stands_in_the_file_or_in_the_table(tmp_path):

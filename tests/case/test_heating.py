@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.case.tables.facing import Facing
-from thermowear.simulation.model.interface_laws import conductance_law, partition
+from thermowear.model.facing import Facing
+from thermowear.simulation.from_case import model_of
 
 from .bad import Bad, assert_refused, faults
 from .starter import GONE, PUNCH, RECIPROCATING, STEADY, tables
@@ -33,6 +33,16 @@ LAW, SHARE, PASSING = "heat.conductance", "heat.partition", "heat.advection"
 
 
 FACES = Facing(("upper", "lower"), (np.array([0]), np.array([1])))
+
+
+def conductance_law(case, faces):
+    model = model_of(case)
+    return model.interface.conductance_law(faces, model.materials)
+
+
+def partition(case, faces):
+    model = model_of(case)
+    return model.interface.heat_partition(faces, model.materials)
 
 
 def by_table(pressures: list[str], conductances: list[str]) -> dict:

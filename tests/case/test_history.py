@@ -96,10 +96,8 @@ def test_a_stop_is_a_straight_line_and_stands_still_after_it():
     """
     requirement: braking stops: the speed by straight lines, constant after the last instant.
     """
-    history = tw.load(tables(RUNNING_IN, {SPEED: STOP})).motion.history
-    assert [history.factor_at(t) for t in (0.0, 2.5, 10.0, 99.0)] == pytest.approx(
-        [1.0, 0.75, 0.0, 0.0]
-    )
+    history = tw.load(tables(RUNNING_IN, {SPEED: STOP})).motion.history.function
+    assert [history.at(t) for t in (0.0, 2.5, 10.0, 99.0)] == pytest.approx([1.0, 0.75, 0.0, 0.0])
     assert history.corners(99.0) == (10.0,)
     assert history.corners(9.0) == ()
 
@@ -110,11 +108,11 @@ def test_a_duty_cycle_goes_on():
 
     The period is 4 s; the speed drops from 3 s to 4 s and comes back until 5 s.
     """
-    history = tw.load(tables(RUNNING_IN, {SPEED: DUTY})).motion.history
+    history = tw.load(tables(RUNNING_IN, {SPEED: DUTY})).motion.history.function
     for cycle in range(4):
-        found = [history.factor_at(4 * cycle + t) for t in (1.0, 2.0, 3.25, 4.0, 4.5, 5.0)]
+        found = [history.at(4 * cycle + t) for t in (1.0, 2.0, 3.25, 4.0, 4.5, 5.0)]
         assert found == pytest.approx([1, 1, 0.75, 0, 0.5, 1])
-    assert history.factor_at(0.0) == 1.0
+    assert history.at(0.0) == 1.0
     assert history.corners(12.5) == pytest.approx((1, 3, 4, 5, 7, 8, 9, 11, 12))
     assert history.corners(0.5) == ()
 
@@ -124,17 +122,17 @@ def test_a_load_is_its_part_of_the_largest_one():
     requirement: loads by straight lines; the case's force is the largest.
     """
     case = tw.load(tables(RUNNING_IN, pressed()))
-    parts = [case.load.history.factor_at(t) for t in (0.0, 0.5, 1.0, 2.5, 4.0, 50.0)]
+    parts = [case.load.history.loads.factor_at(t) for t in (0.0, 0.5, 1.0, 2.5, 4.0, 50.0)]
     assert case.force() == 2000.0
     assert parts == pytest.approx([0, 0.5, 1, 0.75, 0.5, 0.5])
-    assert case.load.history.corners(50.0) == (1.0, 4.0)
+    assert case.load.history.loads.corners(50.0) == (1.0, 4.0)
 
 
 def test_a_history_whose_force_is_constant_presses_all_the_time():
     """
     requirement: a fretting history of pushes alone leaves the case's force.
     """
-    assert tw.load(tables(FRETTING)).load.history.factor_at(1.7) == 1.0
+    assert tw.load(tables(FRETTING)).load.history.loads.factor_at(1.7) == 1.0
 
 
 def test_many_cycles_have_no_corner_twice():
@@ -142,7 +140,8 @@ def test_many_cycles_have_no_corner_twice():
     requirement: a step ends at each corner once, however many cycles.
     """
     third = {"time": ["0 s", "100 ms", "300 ms"], "factor": [0, 1, 0], "repeat": True}
-    corners = tw.load(tables(RUNNING_IN, {SPEED: third})).motion.history.corners(3000.0)
+    history = tw.load(tables(RUNNING_IN, {SPEED: third})).motion.history
+    corners = history.function.corners(3000.0)
     assert len(corners) == 20_000
     assert min(b - a for a, b in pairwise(corners)) > 0.09
 

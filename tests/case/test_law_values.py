@@ -6,6 +6,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.laws.expressions import Expression
+from thermowear.simulation.from_case import model_of
 
 from .bad import Bad, assert_refused
 from .starter import FRETTING, GONE, RECIPROCATING, RUNNING_IN, STEADY, tables
@@ -100,7 +101,7 @@ def test_laws_are_read():
     assert case.wear["punch"].law.coefficient == pytest.approx(1e-10)
     assert case.wear["punch"].law.threshold == 0.0
     assert case.friction_variables == {"v"}
-    assert case.friction_varies
+    assert model_of(case).interface.friction_varies
     assert case.varies
 
 

@@ -16,7 +16,7 @@ import pytest
 from thermowear import ComputationError
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import lagrange_space, owned
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.full.equations import Loading
 from thermowear.contact.full.full_system import FullContact, step_length
@@ -42,7 +42,7 @@ def build(degree, columns, rows=(2, 2), name="plane-strain", poisson_ratio=0.3, 
     """Two blocks and everything that the methods need."""
     tagged = two_blocks(columns=columns, rows=rows) if COMM.rank == 0 else None
     bodies = distribute(tagged, COMM)
-    model = section_model(name, 0.01)
+    model = kinematics_of(name, 0.01)
     materials = {
         "upper": ElasticMaterial(2e11, poisson_ratio, 1.2e-5),
         "lower": ElasticMaterial(7e10, poisson_ratio, 2e-5),

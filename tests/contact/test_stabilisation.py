@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear import ComputationError
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial
 from thermowear.contact.full.full_system import FullContact
 from thermowear.contact.full.stabilisation import (
@@ -47,7 +47,7 @@ def test_default_is_stable_for_all_cells(name, kind, degree, poisson_ratio):
     """requirement: γ0 needs no tuning: twice the limit or more, on the axis and beside it."""
     for inner in (0.0, 0.05):
         tagged = deformed_blocks(kind, 1, inner)
-        model = section_model(name, 0.01)
+        model = kinematics_of(name, 0.01)
         elastic, pairing = build(tagged, model, degree, materials(poisson_ratio))
         stiffness, limit = nitsche_stiffness(elastic, pairing), stability_limit(elastic, pairing)
         assert 2 < (stiffness / limit).min() < 40
@@ -63,7 +63,7 @@ def test_default_is_stable_for_all_cells(name, kind, degree, poisson_ratio):
 def test_defaults_converge_on_curved_cells(kind, order, degree, inner, theta):
     """requirement: faces that do not match, curved, of any degree, on the axis and beside it."""
     tagged = deformed_blocks(kind, order, inner, columns=(16 // degree + 3, 16 // degree + 4))
-    elastic, pairing = build(tagged, section_model("axisymmetric", None), degree)
+    elastic, pairing = build(tagged, kinematics_of("axisymmetric", None), degree)
     choose = default_penalty if theta is None else nitsche_stiffness
     solution = solve(elastic, pairing, choose(elastic, pairing), theta)
     assert solution.iterations <= 12
@@ -74,7 +74,7 @@ def test_defaults_converge_on_curved_cells(kind, order, degree, inner, theta):
 @pytest.mark.parametrize("kind", ["quadrilateral", "triangle"])
 def test_limit_is_where_the_symmetric_variant_fails(kind):
     """requirement: just above the limit there is a solution, far below it an error and advice."""
-    elastic, pairing = build(deformed_blocks(kind, 1), section_model("plane-strain", 0.01), 2)
+    elastic, pairing = build(deformed_blocks(kind, 1), kinematics_of("plane-strain", 0.01), 2)
     limit = stability_limit(elastic, pairing)
     assert solve(elastic, pairing, 1.01 * limit, 1).active.any()
     with pytest.raises(ComputationError, match=r"contact\.gamma"):

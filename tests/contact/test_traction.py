@@ -10,7 +10,7 @@ from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import owned
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators.traction import (
     normal_traction,
@@ -96,7 +96,7 @@ def along_common_face(pairing, gradient):
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_linear_fields_are_exact(kind, order, degree, name):
     """requirement: n·σn by Hooke's law of each model, on distorted and on curved cells."""
-    model = section_model(name, 0.01)
+    model = kinematics_of(name, 0.01)
     elastic, pairing = build(deformed_blocks(kind, order), model, max(degree, order))
     H = 1e-3 * np.array([[1.0, -0.7], [0.4, 2.0]])
     found = traction_of(elastic, pairing, lambda x: H @ x[:2] + 1e-5)
@@ -117,7 +117,7 @@ def test_linear_fields_are_exact(kind, order, degree, name):
 def test_on_the_axis(kind):
     """requirement: u_r / r has the limit du_r/dr on the axis."""
     tagged = deformed_blocks(kind, 2, inner=0.0)
-    elastic, pairing = build(tagged, section_model("axisymmetric", None), 3)
+    elastic, pairing = build(tagged, kinematics_of("axisymmetric", None), 3)
     assert pairing.points[:, 0].min() == 0.0
     found = traction_of(elastic, pairing, lambda x: np.stack([2e-3 * x[0], -1e-3 * x[1]]))
     E, ν = 2e11, 0.3
@@ -131,7 +131,7 @@ def test_smooth_fields_converge_at_shared_points():
     errors = []
     for columns in (4, 8):
         tagged = deformed_blocks("quadrilateral", 2, columns=(columns, columns))
-        elastic, pairing = build(tagged, section_model("plane-strain", 1.0), 2)
+        elastic, pairing = build(tagged, kinematics_of("plane-strain", 1.0), 2)
         found = traction_of(elastic, pairing, lambda x: np.stack([0 * x[0], np.sin(40 * x[0])]))
         n, E, ν = pairing.normals, 2e11, 0.3
         side = pairing.sides[0]
@@ -143,7 +143,7 @@ def test_smooth_fields_converge_at_shared_points():
 @pytest.mark.parametrize("name", MODELS)
 def test_thermal_part_is_that_of_body_1(name):
     """requirement: prevented expansion adds -E α ΔT/(1 - 2ν), in plane stress -E α ΔT/(1 - ν)."""
-    model = section_model(name, 0.01)
+    model = kinematics_of(name, 0.01)
     elastic, pairing = build(deformed_blocks("triangle", 1), model, 1)
     per_kelvin = 2e11 * 1.2e-5 / (0.7 if name == "plane-stress" else 0.4)
     np.testing.assert_allclose(thermal_traction(elastic, pairing), per_kelvin, rtol=1e-12)

@@ -7,7 +7,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
@@ -205,7 +205,7 @@ def test_faces_of_a_torus_pair():
     settings = MeshTable(bodies={"plate": {"elements": 17}})
     bodies = distribute(geometry.build(settings, None), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
-    pairing = pair(*faces, section_model("axisymmetric", None), 9)
+    pairing = pair(*faces, kinematics_of("axisymmetric", None), 9)
     np.testing.assert_allclose(pairing.gap, 0.0, atol=2e-6 * 0.075)
     half_angle = np.arcsin(50 / 75)
     exact = 2 * np.pi * 0.07 * 2 * half_angle * 0.075  # Pappus

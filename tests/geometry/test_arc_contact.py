@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
@@ -153,7 +153,7 @@ def test_faces_pair_and_the_press_closes_them(geometry, outward):
     """
     bodies = distribute(geometry.build(MeshTable(elements=32), None), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
-    pairing = pair(*faces, section_model("plane-strain", geometry.thickness_factor), 8)
+    pairing = pair(*faces, kinematics_of("plane-strain", geometry.thickness_factor), 8)
     assert pairing.unpaired < 1e-12
     assert np.abs(pairing.gap).max() < 1e-12 * geometry.radius
     length = geometry.radius * (geometry.arc_end - geometry.arc_start)

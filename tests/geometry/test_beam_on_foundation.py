@@ -10,7 +10,7 @@ from dolfinx.fem.petsc import assemble_vector
 from dolfinx.mesh import meshtags
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.beam_on_foundation import BeamOnFoundation
@@ -87,7 +87,7 @@ def test_supports():
 def deflection(geometry, modulus, force):
     """Deflection of the lower face at the middle of the load, without contact [m]."""
     bodies = distribute(geometry.build(MeshTable(elements=40), None), MPI.COMM_SELF)
-    model = section_model("plane-stress", geometry.thickness_factor)
+    model = kinematics_of("plane-stress", geometry.thickness_factor)
     steel = ElasticMaterial(modulus, 0.3, 0.0)
     elastic = elasticity(
         bodies,

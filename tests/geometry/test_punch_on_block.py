@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.case.tables.geometry import Pressing
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
@@ -105,7 +105,7 @@ def test_faces_pair(geometry):
     """
     tagged = geometry.build(MeshTable(elements=10), (-5.1e-3, 5.1e-3))
     faces = [gather_face(distribute(tagged, MPI.COMM_SELF), name) for name in geometry.contact]
-    pairing = pair(*faces, section_model("plane-strain", geometry.thickness_factor), 6)
+    pairing = pair(*faces, kinematics_of("plane-strain", geometry.thickness_factor), 6)
     side = pairing.sides[0]
     x, y = side.face.points(side.facet, side.t).T
     over = np.clip(np.abs(x) - geometry.flat, 0.0, None)

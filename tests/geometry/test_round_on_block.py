@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.case.tables.geometry import Pressing
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
@@ -189,7 +189,7 @@ def test_the_gap_is_that_of_a_circle(geometry, model):
     division = MeshTable(elements=6, grading=0.3, bodies={"block": {"elements": 10}})
     bodies = distribute(geometry.build(division, (-5e-4, 5e-4)), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
-    pairing = pair(*faces, section_model(model, geometry.thickness_factor), 8)
+    pairing = pair(*faces, kinematics_of(model, geometry.thickness_factor), 8)
     first, second = (side.face.points(side.facet, side.t) for side in pairing.sides)
     x, y = first.T
     assert x.max() > 9e-4

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.kinematics import section_model
+from thermowear.bulk.kinematics import kinematics_of
 from thermowear.case.tables.geometry import Pressing
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
@@ -107,7 +107,7 @@ def test_they_touch_at_the_bottom_and_gape_beside_it(zone):
     geometry = tube()
     bodies = distribute(geometry.build(MeshTable(elements=20), zone), MPI.COMM_SELF)
     faces = [gather_face(bodies, name) for name in geometry.contact]
-    pairing = pair(*faces, section_model("plane-strain", geometry.thickness_factor), 6)
+    pairing = pair(*faces, kinematics_of("plane-strain", geometry.thickness_factor), 6)
     assert pairing.unpaired < 1e-12
     first, second = (side.face.points(side.facet, side.t) for side in pairing.sides)
     hole = R + geometry.support_clearance

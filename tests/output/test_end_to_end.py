@@ -8,8 +8,6 @@ import json
 import math
 from pathlib import Path
 
-from mpi4py import MPI
-
 import numpy as np
 import pytest
 import tomli_w
@@ -20,11 +18,10 @@ from thermowear.case.starters import starter_text, starters
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.output import tables
 from thermowear.output.quantities import FRICTION, HISTORY, INTERFACE, LOADS, PROFILE
-from thermowear.simulation.analyses.positioning import prepare
-from thermowear.timer import Phases
 
 from ..case import starter
 from ..case.starter import FRETTING, HERTZ, PUNCH, RECIPROCATING, RUNNING_IN, SPHERE, STEADY
+from ..systems import prepared
 
 ALWAYS = {
     "summary.json", "run.json", "case.resolved.toml", "interface.csv", "profile.csv", "fields.vtu",
@@ -186,7 +183,7 @@ def test_the_profile_is_that_of_the_interface(finished):
     rates = profile["wear_rate_along_press"] * along
     assert rates == pytest.approx(profile["wear_rate"], rel=1e-12, abs=0.0)
     # how much lies above the deepest point is known from the shape, the rest is gap and wear
-    pairing = prepare(tw.load(folder / "case.resolved.toml"), MPI.COMM_WORLD, Phases()).pairing
+    pairing = prepared(tw.load(folder / "case.resolved.toml")).pairing
     unlike = pairing.gap + i["wear_1"] + i["wear_2"]
     lost = i["shape"].max() - i["shape"] + unlike.min()
     heights = (lost / along).max() - lost / along
@@ -207,7 +204,7 @@ def test_a_starter_carries_its_load(finished):
         assert summary["normal_force_N"] == pytest.approx(2230.2, rel=2e-3)
     elif "z" in case.holder.free:
         history = case.load.history
-        pressed = 1.0 if history is None else history.factor_at(summary["time_s"])
+        pressed = 1.0 if history is None else history.loads.factor_at(summary["time_s"])
         expected = pytest.approx(pressed * case.force(), rel=1e-9, abs=1e-9)
         assert summary["normal_force_N"] == expected
     else:

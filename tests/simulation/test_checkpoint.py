@@ -11,7 +11,7 @@ import thermowear as tw
 from thermowear.contact.operators.heat import ThermalState
 from thermowear.serialise import pack
 from thermowear.simulation import HistoryRow, Observer
-from thermowear.simulation.analyses.run import run
+from thermowear.simulation.from_case import run
 
 from ..conftest import COLD_RUNNING_IN, DEMOS, HOT
 

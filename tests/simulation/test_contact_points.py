@@ -14,6 +14,8 @@ from thermowear.simulation.model.worn_geometry import along
 from thermowear.timer import Phases
 from thermowear.verification.starter import run_starter, starter
 
+from ..systems import built
+
 RADIUS = 2e-3
 CYLINDER = (
     "cylinder-on-block-growing",
@@ -30,7 +32,7 @@ CYLINDER = (
 
 def grooved(depth):
     """The system whose block has lost a depth at the abscissae of the contact points."""
-    system = build(starter(*CYLINDER), MPI.COMM_SELF, Phases())
+    system = built(starter(*CYLINDER), MPI.COMM_SELF)
     kept = GapWear(system)
     face, body = kept.faces[1], movable_body(system, kept.geometry.mesh, 1)
     amounts = face.amounts(depth(system.pairing.points[:, 0]))
@@ -42,7 +44,7 @@ def grooved(depth):
         depth=np.stack([np.zeros(len(system.weights)), face.depths(amounts)]),
         updates=1,
     )
-    return build(system.case, MPI.COMM_SELF, Phases(), None, SetupCache(), worn)
+    return build(system.model, MPI.COMM_SELF, Phases(), None, SetupCache(), worn)
 
 
 def test_the_unworn_gap_stays_where_faces_are_slanted():

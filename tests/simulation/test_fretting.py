@@ -4,18 +4,15 @@ import csv
 import json
 import re
 
-from mpi4py import MPI
-
 import numpy as np
 import pytest
 import tomli_w
 
 import thermowear as tw
 from thermowear.app.cli import main
-from thermowear.simulation.model.building import build
-from thermowear.timer import Phases
 
 from ..case.starter import FRETTING, SPHERE, solved, tables
+from ..systems import built
 
 SMALL = ("mesh.degree=2", "mesh.elements=16")
 TIMES = ["0 s", "1 s", "2 s", "3 s"]
@@ -128,7 +125,7 @@ def energy_missing(increments):
     case = tw.load(tables(FRETTING), (*SMALL, f"analysis.increments={increments}"))
     result = tw.run(case)
     table, f = columns(result), result.friction.last
-    gap = build(case, MPI.COMM_WORLD, Phases()).pairing.gap
+    gap = built(case).pairing.gap
     last = result.friction.rows[-1]
     stored = 0.5 * (
         last.normal_force * last.approach

@@ -7,11 +7,11 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.case.tables.facing import Facing
 from thermowear.case.tables.schema import as_plain
 from thermowear.errors import CaseError
 from thermowear.geometry.moving.remeshed import meshed_anew
-from thermowear.simulation.model.interface_laws import partition
+from thermowear.model.facing import Facing
+from thermowear.simulation.from_case import model_of
 
 from ..layered import layered_case, write_layered
 from .space import changed
@@ -181,7 +181,8 @@ def test_a_face_of_two_materials_shares_heat_point_by_point():
     heat |= {"bodies.block.specific_heat": "1600 J/(kg K)", "heat.partition": "effusivity"}
     case = tw.load(changed(layered_case("no.msh", LINING=first, BACKING=second), heat))
     parts = ("pad", "block", "pad.LINING", "pad.BACKING")
-    shares = partition(case, Facing(parts, (np.array([2, 3, 2]), np.array([1, 1, 1]))))
+    model, at = model_of(case), (np.array([2, 3, 2]), np.array([1, 1, 1]))
+    shares = model.interface.heat_partition(Facing(parts, at), model.materials)
     np.testing.assert_allclose(shares, [1 / 3, 3 / 7, 1 / 3], rtol=1e-12)
 
 

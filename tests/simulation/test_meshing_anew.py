@@ -18,7 +18,7 @@ import pytest
 from thermowear.geometry.mesh.shapes import quality
 from thermowear.serialise import pack
 from thermowear.simulation import Observer
-from thermowear.simulation.analyses.run import run
+from thermowear.simulation.from_case import run
 from thermowear.simulation.geometry_update import geometry_update
 from thermowear.simulation.geometry_update import remesh as meshing_anew
 from thermowear.verification.starter import run_starter, starter

@@ -7,7 +7,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.geometry.reading.export import write_mesh
-from thermowear.simulation.analyses.run import run
+from thermowear.simulation.from_case import run
 from thermowear.verification.starter import run_starter
 
 from ..conftest import two_blocks

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.simulation import Observer
-from thermowear.simulation.analyses.run import run
+from thermowear.simulation.from_case import run
 from thermowear.verification.starter import run_starter, starter
 
 SMALL = ("mesh.degree=3", "mesh.elements=12")

@@ -5,7 +5,7 @@ import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.simulation.analyses.run import run as run_case
+from thermowear.simulation.from_case import run as run_case
 
 from ..test_parallel import summaries
 from .space import BRAKE, PUNCH, changed

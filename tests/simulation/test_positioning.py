@@ -2,17 +2,15 @@
 
 import itertools
 
-from mpi4py import MPI
-
 import numpy as np
 import pytest
 
 import thermowear as tw
 from thermowear.reference.hertz import contact_modulus, line_contact
-from thermowear.simulation.analyses.positioning import prepare, touching
-from thermowear.timer import Phases
+from thermowear.simulation.analyses.positioning import touching
 
 from ..case.starter import GONE, HERTZ, PUNCH, SPHERE, STEADY, solved, tables
+from ..systems import prepared
 
 ROUNDED = {"geometry.edge_radius": "1 mm", "load": {"mean_pressure": "5 MPa"}}
 SLIDING = {"motion": {"velocity": "1 m/s"}}
@@ -22,7 +20,7 @@ THICK = {"geometry.block_height": "200 mm", "geometry.block_width": "400 mm"}
 def positioned(name, changes, *overrides):
     """System of a case, its element ends along x, its smallest element, and where it touches."""
     on = ("contact.positioning=true", *overrides)
-    system = prepare(tw.load(tables(name, changes), on), MPI.COMM_WORLD, Phases())
+    system = prepared(tw.load(tables(name, changes), on))
     nodes = system.pairing.sides[0].face.nodes
     sizes = np.linalg.norm(nodes[:, -1] - nodes[:, 0], axis=1)
     return system, nodes[:, [0, -1], 0].ravel(), sizes.min(), touching(system)
@@ -47,7 +45,7 @@ def test_element_ends_lie_at_the_edges(name, changes, degree):
     """requirement: within a tenth of the smallest element, on both sides where there are two."""
     settings = (f"mesh.degree={degree}", "mesh.elements=8")
     system, ends, smallest, zone = positioned(name, changes, *settings)
-    half = bool(system.case.geometry.symmetry) or name == SPHERE
+    half = bool(system.model.symmetry) or name == SPHERE
     for edge in zone[1:] if half else zone:
         assert 0 < abs(edge) < 0.9 * np.abs(ends).max()
         assert np.abs(ends - edge).min() <= 0.1 * smallest
@@ -115,7 +113,7 @@ def test_edges_settle_or_it_is_said():
     """requirement: edges that do not settle end with advice, never with a wrong mesh."""
     case = tw.load(tables(HERTZ), ("mesh.degree=2", "mesh.elements=8"))
     try:
-        system = prepare(case, MPI.COMM_WORLD, Phases())
+        system = prepared(case)
     except tw.ComputationError as error:
         assert "contact.positioning" in str(error)
     else:

@@ -1,7 +1,5 @@
 """Contact from far away, on rough faces: what comes back as converged is right."""
 
-from mpi4py import MPI
-
 import numpy as np
 import pytest
 
@@ -10,11 +8,10 @@ from thermowear.case.starters import starter_text
 from thermowear.parallel import sum_over_ranks
 from thermowear.simulation.interface.contact_solver import Slope
 from thermowear.simulation.interface.factory import interface_problem
-from thermowear.simulation.model.building import build
 from thermowear.simulation.model.conditions import ConditionModel
-from thermowear.timer import Phases
 
 from ..conftest import EXPLORES
+from ..systems import built
 
 TRIES = 200 if EXPLORES else 10
 
@@ -39,7 +36,7 @@ def test_no_wrong_pressure_is_returned(tables, method):
     """requirement: from random starts, re-checked with bodies solved anew."""
     changes = ("contact.positioning=false", f"contact.method={method}", "mesh.degree=3")
     case = tw.load(tables, (*changes, "load={force='1 N'}"))
-    system = build(case, MPI.COMM_WORLD, Phases())
+    system = built(case)
     rng = np.random.default_rng(7)
     nothing, everywhere = np.zeros(len(system.weights)), np.ones(len(system.weights), dtype=bool)
     for _ in range(TRIES):

@@ -3,8 +3,7 @@
 import csv
 import json
 import signal
-
-from mpi4py import MPI
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,11 +14,11 @@ from thermowear.app.cli import main
 from thermowear.simulation import Observer
 from thermowear.simulation.cycles.reciprocating_problem import ReciprocatingProblem
 from thermowear.simulation.cycles.stroke import moved, positions
-from thermowear.simulation.model.building import build
+from thermowear.simulation.from_case import analysis_of
 from thermowear.simulation.time.time_loop import moments
-from thermowear.timer import Phases
 
 from ..case.starter import RECIPROCATING, solved, tables
+from ..systems import built
 
 HALF, AMPLITUDE, THICKNESS, FORCE, FREQUENCY = 5e-3, 5e-3, 1e-2, 2e3, 2.0
 SPEED = 4 * AMPLITUDE * FREQUENCY
@@ -39,9 +38,14 @@ def run(changes=None, *overrides, cycles=200, **more):
     return solved(RECIPROCATING, settings | (changes or {}), *small, *overrides, **more)
 
 
-def system_of(changes=None, *overrides):
-    case = tw.load(tables(RECIPROCATING, changes), (*COARSE, *overrides))
-    return build(case, MPI.COMM_WORLD, Phases())
+def case_of(changes=None, *overrides):
+    return tw.load(tables(RECIPROCATING, changes), (*COARSE, *overrides))
+
+
+def stroke_of(case):
+    """System of a case, and its positions."""
+    system = built(case)
+    return system, positions(system, analysis_of(case))
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +60,7 @@ def worn():
 def test_positions_are_a_cycle():
     """requirement: they take the whole period and the whole way, at every place the right speed."""
     for friction, ways in ((0.0, 1), (0.2, 2)):
-        stroke = positions(system_of({"contact.friction": friction}))
+        _, stroke = stroke_of(case_of({"contact.friction": friction}))
         assert len(stroke) == 6 * ways
         assert sum(p.share for p in stroke) == close(1.0, rel=1e-12)
         assert sum(p.share * p.speed for p in stroke) == close(SPEED, rel=1e-12)
@@ -70,7 +74,7 @@ def test_a_moved_body_is_where_it_should_be():
     """requirement: points move, weights and gap stay, friction drags against the sliding; the
     holder's rotation is about the moved pivot.
     """
-    system = system_of({"holder.free": ["z", "rotation"], "load.point": ["1 mm"]})
+    system = built(case_of({"holder.free": ["z", "rotation"], "load.point": ["1 mm"]}))
     for way in (1, -1):
         there = moved(system, 2e-3, way)
         assert there.pairing.points[0, 0] == close(-3e-3)
@@ -86,7 +90,7 @@ def test_a_moved_body_is_where_it_should_be():
 def test_a_stroke_beyond_the_face_of_the_strip_is_a_fault():
     """requirement: one line that names the key and says what to do."""
     with pytest.raises(tw.CaseError, match=r"motion.amplitude: .*leaves strip_face.*stroke"):
-        positions(system_of({"motion.amplitude": "6 mm"}))
+        stroke_of(case_of({"motion.amplitude": "6 mm"}))
 
 
 # ---- volumes and tables ----
@@ -219,9 +223,9 @@ def test_a_steady_state_that_the_mesh_does_not_resolve():
 def test_a_punch_that_alone_wears_fits_everywhere():
     """requirement: the pressure is uniform, F/(2 h t), in every position, but at the edges."""
     changes = {"wear": {"punch": LAW}, "contact": {}}
-    system = system_of(changes, "mesh.degree=4", "mesh.elements=12")
-    problem = ReciprocatingProblem(system, positions(system))
-    *_, last = moments(problem, system.case.analysis.model_copy(update={"end_time": 1e3}), None)
+    case = case_of(changes, "mesh.degree=4", "mesh.elements=12")
+    problem = ReciprocatingProblem(*stroke_of(case))
+    *_, last = moments(problem, replace(analysis_of(case), end_time=1e3), None)
     pressure = last.state.pressure / (FORCE / (2 * HALF * THICKNESS))
     inner = slice(pressure.shape[1] // 6, -(pressure.shape[1] // 6))
     np.testing.assert_allclose(pressure[:, inner], 1.0, rtol=2e-2)

@@ -11,6 +11,7 @@ import thermowear as tw
 from thermowear.bulk.direct_solver import DirectSolver
 from thermowear.simulation.analyses import sweep as module
 from thermowear.simulation.analyses.sweep import Series, groups
+from thermowear.simulation.from_case import analysis_of, model_of
 
 from ..conftest import DEMOS
 
@@ -25,6 +26,14 @@ STORING = (
 
 def block(*changes: str, base=SMALL):
     return tw.load(BLOCK, (*base, *changes))
+
+
+def run_in(series, case):
+    return series.run(model_of(case), analysis_of(case))
+
+
+def grouped(cases):
+    return groups([model_of(case) for case in cases])
 
 
 @pytest.fixture
@@ -72,11 +81,11 @@ def test_what_needs_no_new_factor(changes, factors):
     every factor, and give the numbers of a run of their own.
     """
     first, second = block(), block(*changes)
-    assert groups([first, second]) == [[0, 1]]
+    assert grouped([first, second]) == [[0, 1]]
     series = Series()
-    series.run(first)
+    run_in(series, first)
     assert len(factors) == 2  # elasticity and conduction
-    result = series.run(second)
+    result = run_in(series, second)
     assert len(factors) == 2
     same(result, tw.run(second))
 
@@ -95,10 +104,10 @@ def test_cooling_needs_new_conduction_only(change, factors):
     requirement: cooling and given temperatures keep the elastic bodies.
     """
     first, second = block(RUNNING_IN), block(RUNNING_IN, change)
-    assert groups([first, second]) == [[0, 1]]
+    assert grouped([first, second]) == [[0, 1]]
     series = Series()
-    series.run(first)
-    result = series.run(second)
+    run_in(series, first)
+    result = run_in(series, second)
     assert len(factors) == 2 + (first.heat != second.heat)
     same(result, tw.run(second))
 
@@ -113,10 +122,10 @@ def test_what_shares_nothing(change, factors):
     requirement: whatever else is swept is computed anew, in a group of its own.
     """
     first, second = block(RUNNING_IN), block(RUNNING_IN, change)
-    assert groups([first, second]) == [[0], [1]]
+    assert grouped([first, second]) == [[0], [1]]
     series = Series()
-    series.run(first)
-    result = series.run(second)
+    run_in(series, first)
+    result = run_in(series, second)
     assert len(factors) == 4
     same(result, tw.run(second))
 
@@ -128,12 +137,12 @@ def test_a_mesh_that_follows_the_contact_is_not_shared():
     path = DEMOS / "cylinder_on_block.toml"
     base = ("mesh.degree=2", "contact.positioning=false")
     cases = [tw.load(path, (*base, f'load.approach="{δ} mm"')) for δ in (0.01, 0.05)]
-    assert groups(cases) == [[0], [1]]
+    assert grouped(cases) == [[0], [1]]
     series = Series()
     for case in cases:
-        same(series.run(case), tw.run(case))
+        same(run_in(series, case), tw.run(case))
     positioned = [tw.load(path, ("contact.positioning=true",)) for _ in range(2)]
-    assert groups(positioned) == [[0], [1]]
+    assert grouped(positioned) == [[0], [1]]
 
 
 def test_those_that_share_more_are_neighbours():
@@ -147,7 +156,7 @@ def test_those_that_share_more_are_neighbours():
         for force in (1, 2)
         for h in coolings
     ]
-    assert groups(cases) == [[0, 2, 1, 3], [4, 6, 5, 7]]
+    assert grouped(cases) == [[0, 2, 1, 3], [4, 6, 5, 7]]
 
 
 def test_speed_needs_new_conduction_where_the_disk_carries_heat():
@@ -157,7 +166,7 @@ def test_speed_needs_new_conduction_where_the_disk_carries_heat():
     speeds = [f'motion.angular_velocity="{speed} rad/s"' for speed in (0.1, 0.2)]
     for advection, shared in (("none", True), ("resolved", False)):
         one, two = (
-            module.inputs(block(speed, f'heat.advection="{advection}"', *STORING))
+            module.inputs(model_of(block(speed, f'heat.advection="{advection}"', *STORING)))
             for speed in speeds
         )
         assert one.elasticity == two.elasticity
@@ -173,10 +182,10 @@ def test_a_variant_that_fails_leaves_the_next_one_alone():
     against = ('motion.velocity="50 mm/s"', "contact.friction=9.0")
     good, locked = tw.load(path, base), tw.load(path, (*base, *against))
     series = Series()
-    before = series.run(good)
+    before = run_in(series, good)
     with pytest.raises(tw.ComputationError):
-        series.run(locked)
-    same(series.run(good), before)
+        run_in(series, locked)
+    same(run_in(series, good), before)
 
 
 def test_heat_changes_the_shape_and_not_the_pressure():

@@ -12,6 +12,7 @@ from thermowear.simulation.interface.sdirk import TrialStep, next_step
 from thermowear.simulation.time import time_loop as transient
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
+from ..systems import built
 
 FORCE = 50e6 * np.pi * (0.12**2 - 0.02**2)
 
@@ -83,15 +84,11 @@ def test_tolerance_rules_the_error():
 
 def test_second_order_in_time():
     """requirement: the error of the wear step falls with the square of its size."""
-    from mpi4py import MPI
-
     from thermowear.simulation.interface.factory import interface_problem
     from thermowear.simulation.interface.sdirk import advance
-    from thermowear.simulation.model.building import build
-    from thermowear.timer import Phases
 
     case = tw.load(COLD_RUNNING_IN, ("mesh.degree=3", "mesh.elements=8"))
-    problem = interface_problem(build(case, MPI.COMM_WORLD, Phases()))
+    problem = interface_problem(built(case))
     state = problem.start()
     for _ in range(40):  # let the singular start pass
         state = advance(problem, state, 0.0, 0.05)

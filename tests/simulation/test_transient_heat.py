@@ -3,8 +3,6 @@
 import csv
 import json
 
-from mpi4py import MPI
-
 import numpy as np
 import pytest
 import tomli_w
@@ -14,13 +12,12 @@ from thermowear.app.cli import main
 from thermowear.output import tables as csv_tables
 from thermowear.output.quantities import HEAT, HISTORY
 from thermowear.reference.sliding_rod import SlidingRod
-from thermowear.simulation.analyses.positioning import prepare
 from thermowear.simulation.heat.friction_heat import FrictionHeat
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.interface.sdirk import advance
-from thermowear.timer import Phases
 
 from ..case.starter import GONE, solved, tables
+from ..systems import prepared
 
 STOP, BLOCKS, PUNCH = "disk-brake-stop", "stacked-blocks", "annular-punch"
 COARSE = ("mesh.degree=3", "mesh.elements=5")
@@ -148,7 +145,7 @@ def test_tolerance_rules_the_error():
 def test_second_order():
     """requirement: order >= 1.9 with contact, wear and heat together, in steps of one size."""
     case = tw.load(tables(STOP), (*COARSE, "mesh.degree=2"))
-    problem = interface_problem(prepare(case, MPI.COMM_WORLD, Phases()))
+    problem = interface_problem(prepared(case))
 
     def march(state, begin, end, steps):
         step = (end - begin) / steps

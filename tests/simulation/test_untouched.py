@@ -11,6 +11,7 @@ from thermowear.simulation.analyses.untouched_contact import touching
 from thermowear.simulation.runtime.observer import Observer
 
 from ..case.starter import HERTZ, tables
+from ..systems import prepared
 
 
 class Notes(Observer):
@@ -42,12 +43,10 @@ def apart():
     """A system, and an outcome of it that has no pressure."""
     from mpi4py import MPI
 
-    from thermowear.simulation.analyses.positioning import prepare
     from thermowear.simulation.analyses.static import initial
-    from thermowear.timer import Phases
 
     def made(case):
-        system = prepare(case, MPI.COMM_SELF, Phases())
+        system = prepared(case, MPI.COMM_SELF)
         outcome = initial(system, Observer())
         nothing = np.zeros(len(system.weights))
         contact = replace(outcome.contact, pressure=nothing)

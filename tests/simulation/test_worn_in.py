@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.simulation.analyses.run import run
+from thermowear.simulation.from_case import run
 from thermowear.verification.starter import run_starter, starter
 
 RING = "annular-punch-running-in", "mesh.degree=6", "mesh.elements=4"

@@ -125,9 +125,10 @@ def _validate(chosen) -> int:
         start_petsc()
         from mpi4py import MPI
 
+        from ..simulation.from_case import model_of
         from ..simulation.model.building import check_contact_points
 
-        check_contact_points(case, MPI.COMM_SELF)
+        check_contact_points(model_of(case), MPI.COMM_SELF)
         about.append(f"initial shape {case.geometry.initial_shape}")
     print(f"{chosen.case}: ok ({', '.join(about)})")
     return 0

@@ -15,7 +15,16 @@ from ..output.folder import ResultsFolder
 from ..output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from ..parallel import on_root
 from ..serialise import Checkpoint, pack
-from ..simulation import CycleRow, Frame, HeatRow, HistoryRow, Interface, LoadRow, Observer, run
+from ..simulation import (
+    CycleRow,
+    Frame,
+    HeatRow,
+    HistoryRow,
+    InterfaceFields,
+    LoadRow,
+    Observer,
+    run,
+)
 from ..simulation.runtime.checkpoint_data import Saved
 from ..timer import Phases
 from .discretisations import COMPARED, side_by_side
@@ -56,7 +65,7 @@ class Recorder(Observer):
         if self._progress is not None:
             self._progress.note(text)
 
-    def output(self, time: float, interface: Interface, friction=None, track=None) -> None:
+    def output(self, time: float, interface: InterfaceFields, friction=None, track=None) -> None:
         self._save(lambda: self._folder.output(time, interface, friction, track))
 
     def frame(self, frame: Frame) -> None:

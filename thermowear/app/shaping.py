@@ -96,9 +96,10 @@ def shape(
 
     from ..simulation.analyses.design import steady_design
     from ..simulation.analyses.positioning import prepare
+    from ..simulation.from_case import model_of
     from ..timer import Phases
 
-    system = prepare(case, MPI.COMM_SELF, Phases(lambda _: None))
+    system = prepare(model_of(case), MPI.COMM_SELF, Phases(lambda _: None))
     return Shaped(case, body, steady_design(system, bodies.index(body) + 1))
 
 

@@ -52,15 +52,17 @@ def sweep(
         If a stop was requested during a variant; no further one is computed.
     """
     from ..simulation.analyses.sweep import Series, groups
+    from ..simulation.from_case import analysis_of, model_of
 
     source = as_plain(case) if isinstance(case, Case) else case
     found = variants(source, {key: [written(v) for v in values] for key, values in over.items()})
     results: dict[int, Result | ComputationError] = {}
-    for group in groups([variant.case for variant in found]):
+    for group in groups([model_of(variant.case) for variant in found]):
         series = Series()
         for k in group:
             try:
-                result = series.run(found[k].case)
+                case = found[k].case
+                result = series.run(model_of(case), analysis_of(case))
             except ComputationError as error:
                 results[k] = error
                 continue
@@ -133,8 +135,10 @@ def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, r
     """Compute groups of variants with shared factorisations, in parallel processes if several."""
     start_petsc()
     from ..simulation.analyses.sweep import groups
+    from ..simulation.from_case import model_of
 
-    tasks = [[jobs[k] for k in group] for group in groups([variant.case for variant in found])]
+    models = [model_of(variant.case) for variant in found]
+    tasks = [[jobs[k] for k in group] for group in groups(models)]
     processes = min(processes or len(os.sched_getaffinity(0)), len(tasks))
     if processes == 1:
         for task in tasks:
@@ -158,6 +162,7 @@ def compute(jobs: list[Job], tell: Callable[[Ended], None]) -> None:
 
 
 def _computed(series, job: Job) -> Ended:
+    from ..simulation.from_case import analysis_of, model_of
     from ..timer import Phases
     from .session import Recorder
 
@@ -166,7 +171,8 @@ def _computed(series, job: Job) -> Ended:
     try:
         folder = ResultsFolder(job.path, as_plain(job.case), 1, overwrite=True)
         try:
-            result = series.run(job.case, Recorder(series.comm, folder), phases)
+            observer, case = Recorder(series.comm, folder), job.case
+            result = series.run(model_of(case), analysis_of(case), observer, phases)
             with phases("write"):
                 folder.finish(result, phases.seconds)
             summary, problem = result.summary, result.stopped

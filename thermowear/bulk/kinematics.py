@@ -15,7 +15,7 @@ import ufl
 from ..compat import coordinate_element
 
 
-class Model(ABC):
+class Kinematics(ABC):
     """Interface of the kinematic models.
 
     Attributes
@@ -111,7 +111,7 @@ class Model(ABC):
         return np.zeros(x.shape[1], dtype=bool)
 
 
-class Axisymmetric(Model):
+class Axisymmetric(Kinematics):
     """Solids of revolution; coordinates (r, z), displacement (u_r, u_z), no torsion.
 
     Body 1 rotates about the axis.
@@ -154,7 +154,7 @@ class Axisymmetric(Model):
         return np.abs(x[0]) < 1e-12
 
 
-class PlaneStrain(Model):
+class PlaneStrain(Kinematics):
     """Plane strain of a section of given thickness.
 
     Body 1 slides along x or normal to the section, or body 2 rotates about a point of the section.
@@ -203,7 +203,7 @@ class PlaneStress(PlaneStrain):
         return ufl.as_tensor([[σ[0, 0], σ[0, 1], 0], [σ[1, 0], σ[1, 1], 0], [0, 0, 0]])
 
 
-class Spatial(Model):
+class Spatial(Kinematics):
     """Three-dimensional solids; coordinates (x, y, z).
 
     Body 1 slides along x, or body 2 rotates about a vertical axis.
@@ -236,7 +236,7 @@ def _along_or_round(points: np.ndarray, motion, center) -> np.ndarray:
     return velocity
 
 
-def section_model(name: str, thickness: float | None, sector: float = 1.0) -> Model:
+def kinematics_of(name: str, thickness: float | None, sector: float = 1.0) -> Kinematics:
     """Kinematic model by its name.
 
     Parameters

@@ -8,11 +8,11 @@ from dolfinx import default_scalar_type, fem
 
 from .bodies import Bodies
 from .compiled import compiled
-from .kinematics import Model
+from .kinematics import Kinematics
 
 
-def surface_area(bodies: Bodies, model: Model, surface: str) -> float:
+def surface_area(bodies: Bodies, kinematics: Kinematics, surface: str) -> float:
     """Area of a surface of the solid according to its kinematic model [m²]. Every rank calls."""
     one = fem.Constant(bodies.mesh, default_scalar_type(1.0))
-    form = model.integral(bodies.mesh, one, bodies.surface_measure(surface))
+    form = kinematics.integral(bodies.mesh, one, bodies.surface_measure(surface))
     return bodies.mesh.comm.allreduce(fem.assemble_scalar(compiled(form)), op=MPI.SUM)

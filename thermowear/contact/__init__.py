@@ -7,7 +7,7 @@ from .full.full_system import FullContact, FullSolution
 from .operators.condensation import CondensedContact, condense
 from .operators.heat import InterfaceHeat, ThermalState
 from .operators.heat_condensation import condense_distortion, condense_heat
-from .operators.holder import Holder, RigidMode, hold
+from .operators.holder import RigidHolder, RigidMode, hold
 from .operators.pressure import pressure_basis
 from .operators.sliding import Sliding, sliding
 from .operators.tangential import FrictionalContact, condense_tangential
@@ -25,10 +25,10 @@ __all__ = [
     "FrictionalContact",
     "FullContact",
     "FullSolution",
-    "Holder",
     "InterfaceHeat",
     "Loads",
     "Pairing",
+    "RigidHolder",
     "RigidMode",
     "SignoriniSolution",
     "Sliding",

@@ -48,3 +48,26 @@ class TimeCourse:
             cycles = times[1:] + self.period * again[:, None]
             times = np.concatenate([times[:1], cycles.ravel()])
         return tuple(float(time) for time in times if 0 < time <= end)
+
+
+@dataclass(frozen=True)
+class TimeFunction:
+    """Piecewise linear function of time.
+
+    Attributes
+    ----------
+    course : TimeCourse
+    values : tuple of float
+        Values at its instants, in SI.
+    """
+
+    course: TimeCourse
+    values: tuple[float, ...]
+
+    def at(self, time: float) -> float:
+        """Value at a time [s]."""
+        return self.course.value(self.values, time)
+
+    def corners(self, end: float) -> tuple[float, ...]:
+        """Corner times after 0 and up to a time, repetitions included [s]."""
+        return self.course.corners(end)

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..case import Case, as_plain, load
-from ..case.validation.comparison import forbidden_changes, irrelevant_changes_only, other_mesh
-from ..errors import CaseError
+from ..case.validation.comparison import forbidden_changes, irrelevant_changes_only
+from ..errors import CaseError, other_mesh
 from .checkpoint import read_checkpoint
 from .folder import ResultsFolder, now, versions
 from .frames import FRAMES, keep_indexed
@@ -86,7 +86,7 @@ def is_finished(path: Path, case: Case) -> bool:
         return False
     mesh = _mesh_of(path)
     if mesh is not None and mesh != case.tagged_mesh().checksum():
-        raise CaseError(other_mesh(case))
+        raise CaseError(other_mesh(as_plain(case)["geometry"]["path"]))
     return True
 
 

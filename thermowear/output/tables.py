@@ -28,7 +28,7 @@ def write_points(path: Path, table: dict[str, Quantity], points) -> None:
     path : Path
     table : dict of str to Quantity
         `INTERFACE` or `FRICTION`.
-    points : thermowear.simulation.Interface or FrictionInterface
+    points : thermowear.simulation.InterfaceFields or FrictionInterface
     """
     columns = [getattr(points, name) for name in table]
     _write(path, table, zip(*columns, strict=True))

@@ -1,7 +1,7 @@
 """Simulation: initial contact, steady state, transient, fretting, reciprocating, stability."""
 
-from .analyses.run import run
-from .results.result import BodyFields, Frame, FrictionInterface, Interface, Result, WornTrack
+from .from_case import run
+from .results.result import BodyFields, Frame, FrictionInterface, InterfaceFields, Result, WornTrack
 from .results.rows import CycleRow, HeatRow, HistoryRow, LoadRow
 from .runtime.observer import Observer
 
@@ -12,7 +12,7 @@ __all__ = [
     "FrictionInterface",
     "HeatRow",
     "HistoryRow",
-    "Interface",
+    "InterfaceFields",
     "LoadRow",
     "Observer",
     "Result",

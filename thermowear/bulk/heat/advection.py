@@ -18,7 +18,7 @@ from dolfinx import fem
 from ...compat import coordinate_element, evaluate
 from ..bodies import Bodies
 from ..field import reference_element
-from ..kinematics import Model, section_measure
+from ..kinematics import Kinematics, section_measure
 
 _RESOLVED_PECLET = 1.0
 """Largest cell Péclet number at which no stabilisation is needed."""
@@ -94,7 +94,7 @@ class Advection:
 
 def advection(
     bodies: Bodies,
-    model: Model,
+    kinematics: Kinematics,
     space: fem.FunctionSpace,
     passage: Passage,
     conductivities: dict[str, float],
@@ -109,7 +109,7 @@ def advection(
     Parameters
     ----------
     bodies : Bodies
-    model : Model
+    kinematics : Kinematics
     space : dolfinx.fem.FunctionSpace
         Temperature space.
     passage : Passage
@@ -137,8 +137,8 @@ def advection(
         flow = flow * δT
     into = ufl.max_value(-ufl.dot(v, ufl.FacetNormal(mesh)), 0)
     ds = ufl.ds(domain=mesh, metadata={"quadrature_degree": 2 * degree + 2})
-    carried = model.integral(mesh, flow, section_measure(mesh, degree))
-    return Advection(carried + model.integral(mesh, ρc * into * T * δT, ds), peclet, upwind)
+    carried = kinematics.integral(mesh, flow, section_measure(mesh, degree))
+    return Advection(carried + kinematics.integral(mesh, ρc * into * T * δT, ds), peclet, upwind)
 
 
 def _velocity(mesh, passage: Passage):

@@ -15,7 +15,7 @@ from dolfinx.fem.petsc import assemble_matrix
 from ..bodies import Bodies
 from ..compiled import compiled
 from ..field import owned
-from ..kinematics import Model, section_measure
+from ..kinematics import Kinematics, section_measure
 from .advection import Passage, advection
 from .conduction import Conduction, factorised, multiply
 from .even_paths import EvenPaths
@@ -36,7 +36,7 @@ class ThermalMaterial:
 
 def conduction(
     bodies: Bodies,
-    model: Model,
+    kinematics: Kinematics,
     space: fem.FunctionSpace,
     materials: dict[str, ThermalMaterial],
     cooling: dict[str, float],
@@ -49,7 +49,7 @@ def conduction(
     Parameters
     ----------
     bodies : Bodies
-    model : Model
+    kinematics : Kinematics
     space : dolfinx.fem.FunctionSpace
         Scalar space of the temperature rise.
     materials : dict of str to ThermalMaterial
@@ -73,12 +73,12 @@ def conduction(
     if passage is not None and passage.spread:
         even = EvenPaths(bodies, space, passage)
     elif passage is not None:
-        moving = advection(bodies, model, space, passage, conductivities, capacities)
+        moving = advection(bodies, kinematics, space, passage, conductivities, capacities)
     measure = section_measure(mesh, degree)
-    conductivity = _assembled(conducting(bodies, model, conductivities, degree)(T, δT))
+    conductivity = _assembled(conducting(bodies, kinematics, conductivities, degree)(T, δT))
     cooled = conductivity.duplicate()
     cooled.zeroEntries()
-    for form in transferring(bodies, model, cooling):
+    for form in transferring(bodies, kinematics, cooling):
         assemble_matrix(cooled, compiled(form(T, δT)), [])  # type: ignore[arg-type]  # dispatches on it
     cooled.assemble()
     structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
@@ -90,7 +90,7 @@ def conduction(
     capacity = None
     if len(capacities) == len(materials):
         density = bodies.per_body(capacities) * T * test
-        capacity = _assembled(model.integral(mesh, density, measure))
+        capacity = _assembled(kinematics.integral(mesh, density, measure))
 
     fixed, values = given_rises(bodies, space, given, even)
     factor = factorised(space, conductivity, bath, fixed, carried is None, even)
@@ -118,20 +118,26 @@ def _assembled(form) -> PETSc.Mat:
     return matrix
 
 
-def conducting(bodies: Bodies, model: Model, conductivities: dict[str, float], degree: int):
+def conducting(
+    bodies: Bodies, kinematics: Kinematics, conductivities: dict[str, float], degree: int
+):
     """Bilinear form of conduction, as a function of trial and test functions [W K]."""
     mesh, k = bodies.mesh, bodies.per_body(conductivities)
     measure = section_measure(mesh, degree)
-    return lambda T, δT: model.integral(mesh, k * ufl.inner(ufl.grad(T), ufl.grad(δT)), measure)
+    return lambda T, δT: kinematics.integral(
+        mesh, k * ufl.inner(ufl.grad(T), ufl.grad(δT)), measure
+    )
 
 
-def transferring(bodies: Bodies, model: Model, coefficients: dict[str, float]) -> list[Callable]:
+def transferring(
+    bodies: Bodies, kinematics: Kinematics, coefficients: dict[str, float]
+) -> list[Callable]:
     """Bilinear forms ``∫ h T δT dS`` as functions of T and δT, one per distinct value of h.
 
     Parameters
     ----------
     bodies : Bodies
-    model : Model
+    kinematics : Kinematics
     coefficients : dict of str to float
         Heat transfer coefficient h by surface [W/(m² K)].
     """
@@ -140,7 +146,7 @@ def transferring(bodies: Bodies, model: Model, coefficients: dict[str, float]) -
     def form(h: float) -> Callable:
         ds = bodies.surface_measure(*(s for s, other in coefficients.items() if other == h))
         constant = fem.Constant(mesh, default_scalar_type(h))
-        return lambda T, δT: model.integral(mesh, constant * T * δT, ds)
+        return lambda T, δT: kinematics.integral(mesh, constant * T * δT, ds)
 
     return [form(h) for h in dict.fromkeys(coefficients.values())]
 

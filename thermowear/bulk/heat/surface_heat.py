@@ -8,11 +8,11 @@ from dolfinx import default_scalar_type, fem
 
 from ..bodies import Bodies
 from ..compiled import assembled, compiled
-from ..kinematics import Model
+from ..kinematics import Kinematics
 
 
 def surface_heat(
-    bodies: Bodies, model: Model, space: fem.FunctionSpace, surface: str, flux: float
+    bodies: Bodies, kinematics: Kinematics, space: fem.FunctionSpace, surface: str, flux: float
 ) -> np.ndarray:
     """Nodal heat of a uniform flux into the body through a surface [W], owned rows.
 
@@ -21,7 +21,7 @@ def surface_heat(
     Parameters
     ----------
     bodies : Bodies
-    model : Model
+    kinematics : Kinematics
     space : dolfinx.fem.FunctionSpace
         Temperature space.
     surface : str
@@ -29,5 +29,5 @@ def surface_heat(
         Heat flux into the body [W/m²].
     """
     δT, q = ufl.TestFunction(space), fem.Constant(bodies.mesh, default_scalar_type(flux))
-    form = model.integral(bodies.mesh, q * δT, bodies.surface_measure(surface))
+    form = kinematics.integral(bodies.mesh, q * δT, bodies.surface_measure(surface))
     return assembled(compiled(form))

@@ -23,7 +23,7 @@ from dolfinx.fem.petsc import assemble_matrix
 from ..bodies import Bodies
 from ..compiled import compiled
 from ..field import as_function
-from ..kinematics import Model, section_measure
+from ..kinematics import Kinematics, section_measure
 from ..mechanics.elasticity import Elasticity
 from .conduction import Conduction
 from .heat_equation import ThermalMaterial
@@ -140,7 +140,7 @@ class VaryingConduction(Conduction):
 def varying_conduction(
     conducting: Conduction,
     bodies: Bodies,
-    model: Model,
+    kinematics: Kinematics,
     materials: dict[str, ThermalMaterial],
     factors: Mapping[str, PropertyMultiplier],
     ambient: float,
@@ -153,7 +153,7 @@ def varying_conduction(
     for name, factor in factors.items():
         alone = {part: (part == name) * m.conductivity for part, m in materials.items()}
         flow = bodies.per_body(alone) * ufl.inner(ufl.grad(T), ufl.grad(δT))
-        matrix = assemble_matrix(compiled(model.integral(mesh, flow, measure)))
+        matrix = assemble_matrix(compiled(kinematics.integral(mesh, flow, measure)))
         matrix.assemble()
         parts.append(VaryingConductivity(matrix, factor, ambient))
     constant = {field.name: getattr(conducting, field.name) for field in fields(Conduction)}

@@ -17,7 +17,7 @@ from ..bodies import Bodies
 from ..compiled import compiled
 from ..direct_solver import DirectSolver
 from ..field import lagrange_space, owned
-from ..kinematics import Model, section_measure
+from ..kinematics import Kinematics, section_measure
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Elasticity:
     Attributes
     ----------
     bodies : Bodies
-    model : Model
+    kinematics : Kinematics
     space : dolfinx.fem.FunctionSpace
         Displacement space [m].
     stiffness : petsc4py.PETSc.Mat
@@ -50,7 +50,7 @@ class Elasticity:
     """
 
     bodies: Bodies
-    model: Model
+    kinematics: Kinematics
     space: fem.FunctionSpace
     stiffness: PETSc.Mat
     fixed: np.ndarray
@@ -60,8 +60,8 @@ class Elasticity:
     def stress(self, u, rise=None):
         """Stress of a displacement and a temperature rise, 3 x 3 [Pa]."""
         λ, μ, m = self.lame
-        ε = self.model.strain(self.bodies.mesh, u)
-        return self.model.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
+        ε = self.kinematics.strain(self.bodies.mesh, u)
+        return self.kinematics.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
 
     def virtual_work(self, u, δu, degree: int):
         """Form of the virtual work of the stress of u on the strain of δu [J].
@@ -69,14 +69,14 @@ class Elasticity:
         `degree` is the polynomial degree for which the quadrature is exact.
         """
         measure = section_measure(self.bodies.mesh, degree)
-        return _virtual_work(self.bodies.mesh, self.model, self.lame, u, δu, measure)
+        return _virtual_work(self.bodies.mesh, self.kinematics, self.lame, u, δu, measure)
 
     def thermal_work(self, rise, δu, degree: int):
         """Form of the work of the thermal stress of a temperature rise on the strain of δu [J]."""
         mesh = self.bodies.mesh
-        ε = self.model.strain(mesh, δu)
+        ε = self.kinematics.strain(mesh, δu)
         measure = section_measure(mesh, degree)
-        return self.model.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
+        return self.kinematics.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
@@ -124,9 +124,9 @@ class Elasticity:
             modulus = self.bodies.per_body({only: 1.0})
             modulus.x.array[:] *= self.lame[2].x.array
         rise, δu = ufl.TrialFunction(temperature_space), ufl.TestFunction(self.space)
-        ε = self.model.strain(mesh, δu)
+        ε = self.kinematics.strain(mesh, δu)
         measure = section_measure(mesh, temperature_space.ufl_element().degree)
-        form = self.model.integral(mesh, modulus * rise * ufl.tr(ε), measure)
+        form = self.kinematics.integral(mesh, modulus * rise * ufl.tr(ε), measure)
         matrix = assemble_matrix(compiled(form))
         matrix.assemble()
         return matrix
@@ -134,7 +134,7 @@ class Elasticity:
 
 def elasticity(
     bodies: Bodies,
-    model: Model,
+    kinematics: Kinematics,
     degree: int,
     materials: dict[str, ElasticMaterial],
     clamped: list[str],
@@ -146,7 +146,7 @@ def elasticity(
     Parameters
     ----------
     bodies : Bodies
-    model : Model
+    kinematics : Kinematics
     degree : int
         Polynomial degree of the displacement.
     materials : dict of str to ElasticMaterial
@@ -160,14 +160,14 @@ def elasticity(
     """
     mesh = bodies.mesh
     space = lagrange_space(mesh, degree, mesh.geometry.dim)
-    lame = _lame(bodies, model, materials)
+    lame = _lame(bodies, kinematics, materials)
     u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
-    form = _virtual_work(mesh, model, lame, u, δu, section_measure(mesh, degree))
+    form = _virtual_work(mesh, kinematics, lame, u, δu, section_measure(mesh, degree))
     stiffness = assemble_matrix(compiled(form))
     stiffness.assemble()
-    fixed = fixed_values(bodies, model, space, clamped, {0: symmetric, 1: rollers})
+    fixed = fixed_values(bodies, kinematics, space, clamped, {0: symmetric, 1: rollers})
     factor = DirectSolver(supported(stiffness, fixed), dim=mesh.topology.dim)
-    return Elasticity(bodies, model, space, stiffness, fixed, factor, lame)
+    return Elasticity(bodies, kinematics, space, stiffness, fixed, factor, lame)
 
 
 def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
@@ -180,29 +180,29 @@ def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
     return result
 
 
-def _virtual_work(mesh, model: Model, lame, u, δu, measure):
+def _virtual_work(mesh, kinematics: Kinematics, lame, u, δu, measure):
     λ, μ, _ = lame
-    ε, δε = model.strain(mesh, u), model.strain(mesh, δu)
+    ε, δε = kinematics.strain(mesh, u), kinematics.strain(mesh, δu)
     density = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
-    return model.integral(mesh, density, measure)
+    return kinematics.integral(mesh, density, measure)
 
 
-def _lame(bodies: Bodies, model: Model, materials: dict[str, ElasticMaterial]):
+def _lame(bodies: Bodies, kinematics: Kinematics, materials: dict[str, ElasticMaterial]):
     λ, μ, m = {}, {}, {}
     for name, material in materials.items():
         E, ν = material.young_modulus, material.poisson_ratio
-        λ[name], μ[name] = model.lame(E, ν)
-        m[name] = model.thermal_modulus(E, ν) * material.expansion
+        λ[name], μ[name] = kinematics.lame(E, ν)
+        m[name] = kinematics.thermal_modulus(E, ν) * material.expansion
     return bodies.per_body(λ), bodies.per_body(μ), bodies.per_body(m)
 
 
-def fixed_values(bodies: Bodies, model: Model, space, clamped, guided) -> np.ndarray:
+def fixed_values(bodies: Bodies, kinematics: Kinematics, space, clamped, guided) -> np.ndarray:
     """Mask of the owned values fixed by supports, symmetry planes and the axis of symmetry.
 
     Parameters
     ----------
     bodies : Bodies
-    model : Model
+    kinematics : Kinematics
     space : dolfinx.fem.FunctionSpace
         Vector-valued space.
     clamped : sequence of str
@@ -218,7 +218,7 @@ def fixed_values(bodies: Bodies, model: Model, space, clamped, guided) -> np.nda
         facets = [bodies.facets(surface) for surface in clamped]
         facets += [bodies.facets(surface) for surface in guided.get(component, ())]
         if component == 0:
-            facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, model.on_axis))
+            facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, kinematics.on_axis))
         nodes = fem.locate_dofs_topological(
             space, tdim - 1, np.unique(np.concatenate(facets)).astype(np.int32)
         )

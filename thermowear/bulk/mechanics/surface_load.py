@@ -26,16 +26,16 @@ def surface_work(elastic: Elasticity, surface: str, force: np.ndarray) -> Callab
         Total force on the ring or over the thickness [N].
     """
     mesh, measure = elastic.bodies.mesh, elastic.bodies.surface_measure(surface)
-    area = surface_area(elastic.bodies, elastic.model, surface)
+    area = surface_area(elastic.bodies, elastic.kinematics, surface)
     traction = fem.Constant(mesh, np.asarray(force, dtype=PETSc.ScalarType) / area)
-    return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
+    return lambda δu: elastic.kinematics.integral(mesh, ufl.inner(traction, δu), measure)
 
 
 def pressure_work(elastic: Elasticity, surface: str, pressure: float) -> Callable:
     """Form of the work of a pressure [Pa] along the inward normal; see `surface_work`."""
     mesh, measure = elastic.bodies.mesh, elastic.bodies.surface_measure(surface)
     traction = -fem.Constant(mesh, PETSc.ScalarType(pressure)) * ufl.FacetNormal(mesh)
-    return lambda δu: elastic.model.integral(mesh, ufl.inner(traction, δu), measure)
+    return lambda δu: elastic.kinematics.integral(mesh, ufl.inner(traction, δu), measure)
 
 
 def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.ndarray:

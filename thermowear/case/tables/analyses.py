@@ -37,23 +37,7 @@ def _check_distinct(output_times: tuple[float, ...]) -> None:
 
 
 class Timed(Section):
-    """Base of analyses that integrate wear in time with adaptive steps.
-
-    Attributes
-    ----------
-    end_time : float or None
-        [s]
-    until : str or None
-        ``"steady"``: stop when the steady state is reached within `steady_tolerance`.
-    output_times : tuple of float
-        Times at which a separate interface file is written [s].
-    tolerance : float
-        Allowed error of one step, relative to the largest pressure and to the largest wear depth.
-    frames : int
-        Largest number of intermediate states stored for an animation.
-    checkpoint_every : float
-        Computing time between checkpoints, besides those at output times [s].
-    """
+    """Base of analyses in time, see `model.analyses.TimedAnalysis`."""
 
     type: str
     end_time: units.Time | None = None
@@ -90,17 +74,12 @@ class Transient(Timed):
 
 
 class Reciprocating(Timed):
-    """Reciprocating wear of body 1 and of the face that it slides on, averaged over cycles.
-
-    Steady once the wear rates along each worn face, apart from its ends, deviate from their mean
-    by less than `steady_tolerance` of it.
+    """Reciprocating sliding, see `model.analyses.ReciprocatingAnalysis`.
 
     Attributes
     ----------
     cycles : float or None
         Number of cycles, instead of an end time; equivalent to ``wear.cycles``.
-    positions : int
-        Positions of body 1 at which contact is solved, between the ends of the stroke.
     """
 
     type: Literal["reciprocating"]
@@ -130,27 +109,13 @@ def _jump(value: Any) -> Any:
 
 
 class Fretting(Section):
-    """Fretting: stick and slip under a load history.
+    """Fretting, see `model.analyses.FrettingAnalysis`.
 
     Attributes
     ----------
-    increments : int
-        Increments per load segment (from one corner of the history to the next).
-    output_times : tuple of float
-        Times at which separate files are written [s].
     cycles : int or None
-        Number of repetitions of the cycle of the history, see `History.cycle_start`; equivalent
-        to ``wear.cycles``. One by default.
-    jump : int or str
-        Number of cycles that each computed cycle stands for: its wear is multiplied by it.
-        ``"auto"``: as many as the tolerance allows.
-    tolerance : float
-        Allowed error of one cycle jump, relative to the largest wear depth.
-    frames : int
-        Largest number of intermediate states stored for an animation: ends of cycles, or of
-        increments where there is only one cycle.
-    checkpoint_every : float
-        Computing time between checkpoints, besides those at output times [s].
+        Number of repetitions of the cycle of the history, equivalent to ``wear.cycles``; one by
+        default.
     """
 
     type: Literal["fretting"]

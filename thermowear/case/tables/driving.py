@@ -14,13 +14,10 @@ FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
 
 
 class HolderTable(Section):
-    """Rigid holder of body 1.
+    """Rigid holder of body 1, see `model.holder.Holder`.
 
     Attributes
     ----------
-    free : tuple of str
-        Free rigid motions: ``"z"`` along the load direction, ``"x"`` (and ``"y"``) across it,
-        ``"rotation"`` in the section, ``"rotation-x"`` and ``"rotation-y"`` in space.
     pivot : tuple of float or None
         Centre of its rotation, by default that of the geometry, or the origin [m].
     """
@@ -91,19 +88,12 @@ class LoadTable(Section):
 
 
 class MotionTable(Section):
-    """Sliding motion.
+    """Sliding motion, see `model.motion.Motion`.
 
     Attributes
     ----------
-    angular_velocity : float or None
-        Rotation of body 1 about the axis of an axisymmetric model; of a disk or drum (body 2) about
-        its centre, anticlockwise, in plane models and seen from above in space [rad/s].
-    velocity : float or None
-        Velocity of body 1 relative to body 2 along x; negative: along -x [m/s].
     amplitude, frequency : float or None
         Reciprocating motion of body 1, ``x = amplitude sin(2 π frequency t)`` [m, Hz].
-    history : FactorHistory or None
-        Time-dependent factor of the speed in a transient analysis.
     """
 
     angular_velocity: units.AngularVelocity | None = None
@@ -111,10 +101,3 @@ class MotionTable(Section):
     amplitude: units.Length | None = None
     frequency: units.Frequency | None = None
     history: FactorHistory | None = None
-
-    @property
-    def one_way(self) -> MotionTable:
-        """Copy with the mean speed of a reciprocating motion as a velocity along +x."""
-        if self.amplitude is None or self.frequency is None:
-            return self
-        return self.model_copy(update={"velocity": 4 * self.amplitude * self.frequency})

@@ -54,37 +54,9 @@ GivenTemperature = Annotated[
 class HeatTable(Section):
     """Heat sources, thermal boundary conditions and thermal properties of the interface.
 
-    Friction heats the faces while the bodies slide; bodies in contact conduct also at rest.
-
-    Attributes
-    ----------
-    conductance : float, PressureConductance, TabulatedConductance or None
-        Contact conductance [W/(m² K)], or a law of the pressure; None: perfect contact.
-    gap_conductance : float or None
-        Conductance of separated faces [W/(m² K)]; None: they exchange no heat.
-    partition : float or str
-        Fraction of the friction heat released on body 1; ``"effusivity"``: ``e1/(e1 + e2)``.
-    advection : str
-        Heat transport by a body 2 that passes under body 1: ``"none"``, conduction as at rest;
-        ``"resolved"``, advection with the motion; ``"spread"``, the limit of fast motion, heat
-        distributed evenly along the track.
-    transient : bool
-        Temperatures in time, instead of the steady ones of the present friction heat.
-    initial : float or None
-        Initial temperature of both bodies, by default the ambient one [K].
-    ambient : float
-        Temperature of the surroundings and of the stress-free state [K].
-    ambient_history : TemperatureHistory or None
-        Time-dependent temperature of the surroundings; `ambient` remains that of the stress-free
-        state.
-    cooling : dict of str to float
-        Heat transfer coefficients of named surfaces [W/(m² K)].
-    temperature : dict of str to float or TemperatureHistory
-        Prescribed temperatures of named surfaces [K].
-    flux : dict of str to float
-        Heat flux into the body through named surfaces; negative: out of it [W/m²].
-    power : dict of str to float
-        Total heat into named surfaces, distributed evenly: on the whole ring or the thickness [W].
+    Friction heats the faces while the bodies slide; bodies in contact conduct also at rest. Keys
+    are those of `model.heat.Heat`; `conductance`, `gap_conductance` and `partition` are those of
+    `model.interface.Interface`.
     """
 
     conductance: Conductance | None = None

@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 
 from pydantic import TypeAdapter, ValidationError, ValidationInfo, model_validator
 
-from ...laws.time_course import TimeCourse
+from ...laws.load_history import KEYS, LoadHistory
+from ...laws.time_course import TimeCourse, TimeFunction
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
 from ..values.paths import UserFile
@@ -75,10 +76,6 @@ class TimeHistory(Section):
         """The instants."""
         return TimeCourse(self.time, self.repeat)
 
-    def corners(self, end: float) -> tuple[float, ...]:
-        """Ends of straight lines after 0 and up to a time, repetitions included [s]."""
-        return self.course.corners(end)
-
 
 def _charge(error: ValidationError, columns: Columns) -> None:
     """Refuse a value of a file with its line; other faults are those of the table."""
@@ -112,9 +109,10 @@ class FactorHistory(TimeHistory):
         self._closes("factor", self.factor)
         return self
 
-    def factor_at(self, time: float) -> float:
-        """Factor at a time [s]."""
-        return self.course.value(self.factor, time)
+    @property
+    def function(self) -> TimeFunction:
+        """The factor as a function of time."""
+        return TimeFunction(self.course, self.factor)
 
 
 class TemperatureHistory(TimeHistory):
@@ -136,24 +134,14 @@ class TemperatureHistory(TimeHistory):
         self._closes("temperature", self.temperature)
         return self
 
-    def at(self, time: float) -> float:
-        """Temperature [K] at a time [s]."""
-        return self.course.value(self.temperature, time)
+    @property
+    def function(self) -> TimeFunction:
+        """The temperature [K] as a function of time."""
+        return TimeFunction(self.course, self.temperature)
 
 
 class History(TimeHistory):
-    """Loads of the holder of body 1 at instants; straight lines between them.
-
-    Attributes
-    ----------
-    force, approach : tuple of float or None
-        Along the press [N, m]; at most one of them. Neither: the constant load of the case.
-    tangential_force, tangential_displacement : tuple of float or None
-        Along x [N, m]; at most one of them. Neither: the holder only moves along the press.
-    cycle_start : float or None
-        From there to the end the loads of a fretting analysis may be repeated, cycle by cycle; by
-        default the first of the instants with the loads of the last one [s].
-    """
+    """Loads of the holder of body 1 at instants, see `laws.load_history.LoadHistory`."""
 
     COLUMNS = {
         "time": "s",
@@ -190,38 +178,12 @@ class History(TimeHistory):
                     f"found {start:g} s; must be at least {self.time[0]:g} s and less than "
                     f"{self.time[-1]:g} s, the ends of time",
                 )
-            if not self._as_at_the_end(start):
+            if not self.loads.ends_as(start):
                 raise KeyFault("cycle_start", "a cycle must end with the loads that it begins with")
         return self
 
     @property
-    def cycle(self) -> tuple[float, float] | None:
-        """Begin and end of what may be repeated [s]; None where nothing can be."""
-        starts = self.time[:-1] if self.cycle_start is None else (self.cycle_start,)
-        closed = [start for start in starts if self._as_at_the_end(start)]
-        return (closed[0], self.time[-1]) if closed else None
-
-    def _as_at_the_end(self, time: float) -> bool:
-        """True if the loads at an instant equal those of the last one."""
-        now, last = self.at(time), self.at(self.time[-1])
-        sizes = {key: max(map(abs, getattr(self, key))) for key in now}
-        return all(abs(now[key] - last[key]) <= _CLOSED * sizes[key] for key in now)
-
-    @property
-    def tangential(self) -> bool:
-        """True if the holder has a tangential displacement or force."""
-        return self.tangential_force is not None or self.tangential_displacement is not None
-
-    def at(self, time: float) -> dict[str, float]:
-        """Values of the keys that are given, at a time [s]."""
-        keys = ("force", "approach", "tangential_force", "tangential_displacement")
-        given = {key: getattr(self, key) for key in keys}
-        return {
-            key: self.course.value(values, time)
-            for key, values in given.items()
-            if values is not None
-        }
-
-    def factor_at(self, time: float) -> float:
-        """Part of the largest force that presses at a time [s]; 1 where the force is constant."""
-        return 1.0 if self.force is None else self.at(time)["force"] / max(self.force)
+    def loads(self) -> LoadHistory:
+        """The loads as functions of time."""
+        values = {key: getattr(self, key) for key in KEYS}
+        return LoadHistory(self.course, **values, cycle_start=self.cycle_start)

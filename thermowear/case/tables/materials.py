@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated
 
 from pydantic import Field
@@ -15,17 +14,9 @@ from .multipliers import ExpansionTable, TemperatureTable
 
 
 class Properties(Section):
-    """Material properties, or the name of the body whose material applies (``like``).
+    """Keys of `model.material.Material`, or the name of the body whose material applies (``like``).
 
-    Attributes
-    ----------
-    conductivity, conductivity_factor
-        Value at the ambient temperature [W/(m K)], and its temperature-dependent factor.
-    expansion, expansion_factor
-        Secant coefficient from the ambient temperature [1/K], and its temperature-dependent factor:
-        the thermal strain is ``expansion factor(T) (T - ambient)``.
-    hardness : float or None
-        Hardness of the softer surface layer, for a pressure-dependent contact conductance [Pa].
+    Tables of factors are `conductivity_factor` and `expansion_factor`.
     """
 
     like: str | None = None
@@ -38,15 +29,6 @@ class Properties(Section):
     hardness: units.Pressure | None = None
     conductivity_factor: TemperatureTable | None = None
     expansion_factor: ExpansionTable | None = None
-
-    @property
-    def effusivity(self) -> float:
-        """Thermal effusivity ``sqrt(k rho c)`` [W sqrt(s)/(m² K)]."""
-        k, rho, c = self.conductivity, self.density, self.specific_heat
-        assert k is not None  # the case has been checked
-        assert rho is not None
-        assert c is not None
-        return math.sqrt(k * rho * c)
 
 
 class MaterialTable(Properties):

@@ -85,33 +85,14 @@ class MeshTable(Section):
 
 
 class ContactTable(Section):
-    """The interface.
+    """The interface, see `model.interface.Interface`.
 
     Attributes
     ----------
-    friction : float, Expression or NamedLaw
-        Coefficient of friction in the direction of sliding.
     friction_factor : MultiplierTables
-        Its multipliers: tables of the mean face temperature, the pressure and the speed.
-    friction_history : FactorHistory or None
-        Time-dependent factor of the friction in a transient analysis.
-    transverse_friction : float
-        Coefficient of friction across the sliding direction, on inclined faces (mu_d of Páczelt
-        and Mróz).
-    compliance : float or None
-        Compliance of a soft layer between the faces: compression per pressure [m/Pa].
-    method : str
-        ``"condensed"``: static condensation of the bodies to the interface; ``"penalty"`` and
-        ``"nitsche"``: full system.
-    pressure_degree : int or str or None
-        Degree of the pressure space, by default one below the displacement; ``"lobatto"``: nodal
-        values at Gauss-Lobatto points.
-    penalty : float or None
-        Penalty stiffness, pressure per penetration, by default from the mesh [Pa/m].
-    theta : int or None
-        Variant of Nitsche's method: 1 symmetric (default), 0 incomplete, -1 skew-symmetric.
-    gamma : float or None
-        Stabilisation parameter of Nitsche's method, in units of ``E degree² / h``.
+        Multipliers of the friction: tables of mean face temperature, pressure and speed.
+    method, penalty, theta, gamma
+        See `model.interface.ContactMethod`.
     positioning : bool
         Move the mesh until element ends coincide with the contact edges.
     """
@@ -210,11 +191,6 @@ class Case(Section):
         if self.heat is not None:
             found |= {f"heat.{key}": course for key, course in self.heat.histories.items()}
         return {key: course for key, course in found.items() if course is not None}
-
-    @property
-    def friction_varies(self) -> bool:
-        """True if the coefficient of friction depends on time, temperature, pressure or speed."""
-        return bool(self.friction_variables) or self.contact.friction_history is not None
 
     @property
     def friction_variables(self) -> frozenset[str]:

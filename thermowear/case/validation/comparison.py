@@ -48,15 +48,6 @@ def irrelevant_changes_only(before: Case, now: Case) -> bool:
     return all(change.key in _FREE | {"geometry.path"} for change in changes(before, now))
 
 
-def other_mesh(case: Case) -> str:
-    """Error message for a run resumed with a different mesh."""
-    path = as_plain(case)["geometry"]["path"]
-    return (
-        f"--resume: geometry.path: the mesh in {path} differs from that of the run; name "
-        "the file with that mesh, or start anew with --overwrite"
-    )
-
-
 def forbidden_changes(before: Case, now: Case, time: float) -> list[Change]:
     """Changes that prevent a case from resuming another one's run at a time [s].
 
@@ -102,9 +93,9 @@ def _end_time(case: Case) -> float | None:
 
 def _end_of_cycles(case: Case) -> float:
     """End time of the load history, including the repetitions of its cycle [s]."""
-    history = case.load.history
-    assert history is not None  # the case has been checked
-    begin, end = history.cycle or (0.0, history.time[-1])
+    assert case.load.history is not None  # the case has been checked
+    loads = case.load.history.loads
+    begin, end = loads.cycle or (0.0, loads.time[-1])
     return end + (int(case.cycles or 1) - 1) * (end - begin)
 
 

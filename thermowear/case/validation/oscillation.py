@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ...laws.load_history import LoadHistory
 from ..tables.analyses import Fretting, Reciprocating
 from ..tables.driving import MotionTable
-from ..tables.history import History
 from ..tables.schema import Case
 
 Fault = tuple[str, str]
@@ -29,9 +29,10 @@ def counted(case: Case) -> Iterator[Fault]:
 
 def fretting(case: Case) -> Iterator[Fault]:
     """Load history of a fretting analysis, and features that it does not support."""
-    analysis, history = case.analysis, case.load.history
+    analysis = case.analysis
     if not isinstance(analysis, Fretting):
         return
+    history = None if case.load.history is None else case.load.history.loads
     if history is None:
         yield "load.history", "missing; required in a fretting analysis"
     elif history.tangential and case.model == "axisymmetric":
@@ -76,7 +77,7 @@ def reciprocating(case: Case) -> Iterator[Fault]:
     yield from _end_conditions(case, analysis)
 
 
-def _load_cycles(case: Case, analysis: Fretting, history: History) -> Iterator[Fault]:
+def _load_cycles(case: Case, analysis: Fretting, history: LoadHistory) -> Iterator[Fault]:
     """Cycles need a closed load cycle; output times lie within the history and its repetitions."""
     end, count = history.time[-1], case.cycles or 1
     if history.cycle is not None:

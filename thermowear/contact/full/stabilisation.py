@@ -115,7 +115,7 @@ def _areas(elastic: Elasticity, side: PairedFace) -> np.ndarray:
     facet = np.repeat(np.arange(len(face.nodes)), len(x))
     t = np.tile(x, len(face.nodes))
     speed = np.linalg.norm(face.tangents(facet, t), axis=1)
-    density = speed * elastic.model.area_factor(face.points(facet, t))
+    density = speed * elastic.kinematics.area_factor(face.points(facet, t))
     return density.reshape(-1, len(x)) @ w
 
 

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from .holder import Holder
+from .holder import RigidHolder
 
 _COLUMNS = {2: 32, 3: 128}
 """Right-hand sides per solution, by dimension; limited by the caches, or the memory."""
@@ -82,14 +82,14 @@ class Influence:
     whole: np.ndarray | None
     comm: object
 
-    def condensed(self, traction: sp.csr_matrix, holder: Holder) -> CondensedContact:
+    def condensed(self, traction: sp.csr_matrix, holder: RigidHolder) -> CondensedContact:
         """Condensed contact for a friction and a holder, without elastic solution; collective.
 
         Parameters
         ----------
         traction : csr_matrix, shape (n_owned, n)
             B_tᵀ; the gap trace itself if there is no friction in the section.
-        holder : Holder
+        holder : RigidHolder
         """
         pulls = traction[self.touching] @ sp.csr_matrix(self.weighted)
         compliance = sum_over_ranks(self.comm, (pulls.T @ self.near).T)
@@ -150,7 +150,7 @@ def condense(
     trace: sp.csr_matrix,
     traction: sp.csr_matrix,
     basis: np.ndarray,
-    holder: Holder,
+    holder: RigidHolder,
     keep_influence: bool = False,
 ) -> CondensedContact:
     """Condense elasticity to the pressure space; parameters as in `influence` and `Influence`.

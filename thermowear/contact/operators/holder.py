@@ -36,7 +36,7 @@ class RigidMode:
 
 
 @dataclass(frozen=True)
-class Holder:
+class RigidHolder:
     """Rigid holder of body 1.
 
     Attributes
@@ -101,7 +101,7 @@ class Holder:
 
 def hold(
     pairing: Pairing, pull: np.ndarray, drives: list[RigidMode] | tuple[RigidMode, ...]
-) -> Holder:
+) -> RigidHolder:
     """Build the holder from its rigid modes.
 
     Parameters
@@ -115,4 +115,4 @@ def hold(
     moved = np.array([drive.motion.at(points) for drive in drives]).reshape(-1, *points.shape)
     closing = np.einsum("kni,ni->nk", moved, pairing.normals)
     carrying = np.einsum("kni,ni->nk", moved, pull)
-    return Holder(tuple(drives), closing, carrying)
+    return RigidHolder(tuple(drives), closing, carrying)

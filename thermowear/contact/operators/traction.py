@@ -104,7 +104,7 @@ def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.nd
     divergence : ndarray, shape (n, nodes, 2)
         tr ε per nodal displacement in each direction [1/m].
     """
-    mesh, model = elastic.bodies.mesh, elastic.model
+    mesh, model = elastic.bodies.mesh, elastic.kinematics
     element = reference_element(mesh, elastic.space.ufl_element().degree)
     map_ = coordinate_element(mesh)
     geometry = basix.create_element(

@@ -24,7 +24,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...bulk.kinematics import Model
+from ...bulk.kinematics import Kinematics
 from ...errors import CaseError
 from .common_face import opposite, stretch
 from .face import Face
@@ -114,7 +114,7 @@ class Pairing:
 def pair(
     face_1: Face | Surface,
     face_2: Face | Surface,
-    model: Model,
+    kinematics: Kinematics,
     order: int,
     refine: bool = True,
     sliver: float = SLIVER,
@@ -128,7 +128,7 @@ def pair(
     Parameters
     ----------
     face_1, face_2 : Face or Surface
-    model : thermowear.bulk.kinematics.Model
+    kinematics : thermowear.bulk.kinematics.Kinematics
     order : int
         Points per piece, on a surface per direction; the rule is exact to degree
         ``2 order - 3``.
@@ -150,17 +150,19 @@ def pair(
             f"geometry.contact: {face_1.name} and {face_2.name} do not lie opposite each other; "
             "their outward normals must point against each other where they are to touch"
         )
-    return paired(face_1, face_2, model, pieces)
+    return paired(face_1, face_2, kinematics, pieces)
 
 
-def paired(face_1: Face | Surface, face_2: Face | Surface, model: Model, pieces: Rule) -> Pairing:
+def paired(
+    face_1: Face | Surface, face_2: Face | Surface, kinematics: Kinematics, pieces: Rule
+) -> Pairing:
     """Pair two faces at given points of the face of body 1, merging coincident points."""
     facet, t = pieces.facet, pieces.t
     on_face = face_1.points(facet, t)
     pairs = opposite(face_1, facet, t, face_2)
     weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
     on_common = on_face + pairs.share[:, None] * pairs.offset
-    weights *= np.maximum(model.area_factor(on_common), 0.0)  # rounding on the axis
+    weights *= np.maximum(kinematics.area_factor(on_common), 0.0)  # rounding on the axis
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
     if covered.max() > 1.0 + _TWICE:
         raise CaseError(folded(face_1, face_2))

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...parallel import sum_over_ranks
 from ..operators.condensation import Influence
-from ..operators.holder import Holder
+from ..operators.holder import RigidHolder
 from ..operators.pressure import pressure_basis
 from ..search.pairing import Pairing
 from .signorini import solve_contact
@@ -24,7 +24,7 @@ def enriched_pressure(
     pairing: Pairing,
     influence: Influence,
     degree: int,
-    holder: Holder,
+    holder: RigidHolder,
     pressure: np.ndarray,
     gap: np.ndarray,
     local: np.ndarray,
@@ -38,7 +38,7 @@ def enriched_pressure(
     influence : Influence
     degree : int
         Degree of the pressure space Ψ.
-    holder : Holder
+    holder : RigidHolder
     pressure : ndarray, shape (n,) [Pa]
     gap : ndarray, shape (n,)
         Gap under that pressure, as accurate as available [m].

@@ -24,7 +24,7 @@ from functools import cached_property
 import numpy as np
 
 from ..operators.condensation import CondensedContact
-from ..operators.holder import Holder
+from ..operators.holder import RigidHolder
 
 _NONE = 1e-12
 """Relative area of a basis function that counts as zero."""
@@ -207,14 +207,14 @@ class EdgeSpace:
         return result
 
 
-def edge_space(contact: CondensedContact, points: np.ndarray, holder: Holder) -> EdgeSpace:
+def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolder) -> EdgeSpace:
     """Build the pressure space of a contact with pointwise pressures at given points.
 
     Parameters
     ----------
     contact : CondensedContact
     points : ndarray of bool, shape (n,)
-    holder : Holder
+    holder : RigidHolder
     """
     weights = contact.weighted.sum(axis=1)
     share = (~points @ contact.weighted) / contact.weighted.sum(axis=0)

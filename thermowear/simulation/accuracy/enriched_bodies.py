@@ -13,7 +13,6 @@ from dolfinx import fem
 
 from ...bulk.field import owned
 from ...bulk.heat.heat_equation import conducting, transferring
-from ...bulk.kinematics import Model
 from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
 from ...bulk.mechanics.surface_load import pressure_work, surface_work
@@ -21,11 +20,12 @@ from ...bulk.mechanics.surplus import surplus_space
 from ...contact.operators.heat import BaselineResponse, InterfaceHeat
 from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import gap_trace, value_trace, vector_trace
+from ...model.heat import Heat
 from ...parallel import sum_over_ranks
 from ..interface.body_state import BodyState, ContactState
 from ..model.elastic_system import supports
 from ..model.system import System
-from ..model.thermal_system import conducting_bodies
+from ..model.thermal_system import ThermalSystem, conducting_parts, cooling
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,12 @@ class EnrichedBodies:
     """
 
     def __init__(self, system: System):
-        elastic, degree = system.elastic, system.case.mesh.degree
+        elastic, degree = system.elastic, system.model.discretisation.degree
         bodies = elastic.bodies
         surplus = surplus_space(bodies.mesh, degree, bodies.mesh.geometry.dim)
-        clamped, symmetric, rollers = supports(system.case)
-        held = fixed_values(bodies, elastic.model, surplus, clamped, {0: symmetric, 1: rollers})
+        clamped, symmetric, rollers = supports(system.model)
+        guided = {0: symmetric, 1: rollers}
+        held = fixed_values(bodies, elastic.kinematics, surplus, clamped, guided)
         self._system = system
         self._degree = degree + 1
         self._problem = EnrichedProblem(
@@ -113,31 +114,31 @@ class EnrichedBodies:
                 for space in (problem.space, problem.surplus)
             ]
         )
-        press = system.press
-        for surface, force in system.case.load.surfaces.items():
+        holder, press = system.model.holder, system.press
+        for surface, force in holder.surface_forces.items():
             loads = loads + problem.loads(surface_work(system.elastic, surface, force * press))
-        for given in system.case.load.pressure.items():
+        for given in holder.surface_pressures.items():
             loads = loads + problem.loads(pressure_work(system.elastic, *given))
         return loads
 
 
-def warmer_faces(system: System, model: Model, contact: ContactState, state: BodyState):
+def warmer_faces(
+    system: System, heat: Heat, thermal: ThermalSystem, contact: ContactState, state: BodyState
+):
     """Change of the steady temperatures by the next degree for a given friction heat.
 
     Every rank calls.
     """
-    thermal = system.thermal
-    assert thermal is not None
     assert state.thermal is not None
     conduction, face, pairing = thermal.conduction, thermal.face, system.pairing
-    problem = _conducting(system, model)
+    problem = _conducting(system, heat, thermal)
     count = owned(conduction.space)
     surplus = [value_trace(problem.surplus, side) for side in pairing.sides]
-    heat = sum(
+    given = sum(
         trace @ (face.weights * flux)
         for trace, flux in zip(surplus, state.thermal.flux, strict=True)
     )
-    loads = np.concatenate([face.nodal_heat(state.thermal, bath=False), heat])
+    loads = np.concatenate([face.nodal_heat(state.thermal, bath=False), given])
     change = problem.correction(problem.residual(problem.field(np.asarray(state.rise)), loads))
     alone = np.array(
         [
@@ -169,21 +170,17 @@ def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -
     return rises + own * flux * np.array([[1.0], [-1.0]])
 
 
-def _conducting(system: System, model: Model) -> EnrichedProblem:
+def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedProblem:
     """Conduction with its surplus space; corrections transfer heat to a bath at both faces."""
-    assert system.thermal is not None
-    conduction, case, bodies = system.thermal.conduction, system.case, system.bodies
-    degree = case.mesh.degree
-    materials, times = conducting_bodies(case)
-    assert case.heat is not None
-    cooling = {surface: times[surface] * h for surface, h in case.heat.cooling.items()}
-    conductivities = {part: material.conductivity for part, material in materials.items()}
+    conduction, model, bodies = thermal.conduction, system.model, system.bodies
+    degree, kinematics = model.discretisation.degree, system.elastic.kinematics
+    conductivities = {part: m.conductivity for part, m in conducting_parts(model).items()}
     surplus = surplus_space(bodies.mesh, degree)
-    terms = [conducting(bodies, model, conductivities, degree + 1)]
-    terms += transferring(bodies, model, cooling)
-    shift = system.thermal.face.shift
-    bath = transferring(bodies, model, dict.fromkeys(case.geometry.contact, shift))
-    given = _on(bodies, surplus, list(case.heat.temperature))
+    terms = [conducting(bodies, kinematics, conductivities, degree + 1)]
+    terms += transferring(bodies, kinematics, cooling(model, heat))
+    shifts = dict.fromkeys(model.interface.faces, thermal.face.shift)
+    bath = transferring(bodies, kinematics, shifts)
+    given = _on(bodies, surplus, list(heat.temperature))
     return EnrichedProblem(
         conduction.space, surplus, terms, conduction.respond, (conduction.fixed, given), bath
     )

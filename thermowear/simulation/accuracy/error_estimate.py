@@ -22,13 +22,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...bulk.kinematics import section_model
 from ...contact.operators.holder import hold
 from ...contact.search.pairing import pair
 from ...contact.search.surface import Surface
 from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
 from ...laws import steady_pressure
+from ...model.analyses import Analysis
+from ..interface.body_state import ContactState
 from ..model.building import sliding_of
 from ..model.conditions import InterfaceConditions
 from ..model.system import System
@@ -86,8 +87,9 @@ class ErrorEstimates:
         )
 
 
-def estimate_errors(system: System, outcome: Outcome) -> ErrorEstimates:
+def estimate_errors(system: System, analysis: Analysis, outcome: Outcome) -> ErrorEstimates:
     """Estimate the errors at the end of an analysis. Every rank calls."""
+    steady = analysis.type == "steady"
     missing: dict[str, str] = {}
     warmer, why = _warmer(system, outcome)
     temperature = None if warmer is None else _of_temperature(outcome, warmer)
@@ -99,7 +101,7 @@ def estimate_errors(system: System, outcome: Outcome) -> ErrorEstimates:
     if system.thermal is not None and warmer is None:
         missing["shape"] = f"temperature: {why}"
     else:
-        shape = _of_shape(system, outcome, opened)
+        shape = _of_shape(system, outcome, opened, steady)
         if shape is None:
             missing["shape"] = "the faces have no shape by wear"
     pressure = largest = None
@@ -107,7 +109,10 @@ def estimate_errors(system: System, outcome: Outcome) -> ErrorEstimates:
         missing["pressure"] = "nothing presses"
     else:
         try:
-            richer = _richer_pressure(system, outcome, bodies, opened)
+            if steady:
+                richer = _finer_principle(system, outcome.contact)
+            else:
+                richer = _richer_pressure(system, outcome, bodies, opened)
             pressure, largest = _of_pressure(system, outcome.contact.pressure, richer)
             pressure = max(pressure, _of_edges(system, outcome))
         except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
@@ -117,7 +122,7 @@ def estimate_errors(system: System, outcome: Outcome) -> ErrorEstimates:
 
 def _warmer(system: System, outcome: Outcome) -> tuple[WarmerFaces | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
-    thermal, heat = system.thermal, system.case.heat
+    thermal, heat = system.thermal, system.model.heat
     if thermal is None or heat is None or outcome.state.thermal is None:
         return None, "isothermal"
     if heat.transient:
@@ -128,9 +133,7 @@ def _warmer(system: System, outcome: Outcome) -> tuple[WarmerFaces | None, str |
         return None, "not estimated where conductivity or expansion change with temperature"
     if heat.advection != "none":
         return None, "not estimated where a body carries heat along"
-    geometry = system.case.geometry
-    model = section_model(system.case.model, geometry.thickness_factor, geometry.sector)
-    return warmer_faces(system, model, outcome.contact, outcome.state), None
+    return warmer_faces(system, heat, thermal, outcome.contact, outcome.state), None
 
 
 def _of_temperature(outcome: Outcome, warmer: WarmerFaces) -> float | None:
@@ -139,9 +142,9 @@ def _of_temperature(outcome: Outcome, warmer: WarmerFaces) -> float | None:
     return _FOLLOWING * float(np.abs(warmer.faces).max()) / largest if largest > 0 else None
 
 
-def _of_shape(system: System, outcome: Outcome, opened: np.ndarray) -> float | None:
+def _of_shape(system: System, outcome: Outcome, opened: np.ndarray, steady: bool) -> float | None:
     interface = outcome.interface
-    worn = np.any([interface.wear_1, interface.wear_2]) or _is_steady(system)
+    worn = np.any([interface.wear_1, interface.wear_2]) or steady
     pressing, scale = interface.pressure > 0, float(np.ptp(interface.shape))
     flat = scale <= _FLAT * np.abs(outcome.state.opening).max(initial=0.0)
     if not worn or flat or not pressing.any():
@@ -176,24 +179,17 @@ def _of_pressure(system: System, pressure: np.ndarray, richer: np.ndarray) -> tu
     return _FOLLOWING * change / total, _FOLLOWING * peak / largest
 
 
-def _is_steady(system: System) -> bool:
-    return system.case.analysis.type == "steady"
-
-
 def _richer_pressure(
     system: System, outcome: Outcome, bodies: EnrichedBodies, opened: np.ndarray
 ) -> np.ndarray:
     """Pressure of an enriched discretisation at the contact points, shape (n,) [Pa]."""
-    if _is_steady(system):
-        return _finer_principle(system, outcome.contact.pressure, outcome.contact.conditions)
-    degree = system.case.contact.pressure_degree
-    if degree == "lobatto":
+    if system.model.interface.pressure_degree == "lobatto":
         raise ComputationError('not estimated for contact.pressure_degree = "lobatto"')
     interface, pressure = outcome.interface, outcome.contact.pressure
     return enriched_pressure(
         system.pairing,
         system.influence,
-        degree or max(system.case.mesh.degree - 1, 1),
+        system.model.pressure_degree,
         system.holder,
         pressure,
         interface.gap + opened,
@@ -218,9 +214,7 @@ def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
     return np.where(least[facet] > 0.0, least[facet], np.maximum(depth, 0.0)) / mean
 
 
-def _finer_principle(
-    system: System, pressure: np.ndarray, conditions: InterfaceConditions
-) -> np.ndarray:
+def _finer_principle(system: System, contact: ContactState) -> np.ndarray:
     """Steady pressure by a finer quadrature, the only discretisation error of the principle."""
     if system.worn is not None:
         raise ComputationError("not estimated on moved meshes")
@@ -229,7 +223,8 @@ def _finer_principle(
     coarse, fine = (_principle(part) for part in (system, _finer(system)))
     velocity = system.holder.modes @ coarse.velocity
     change = system.holder.modes @ fine.velocity - velocity
-    exponent = _exponent(system, pressure, conditions)
+    pressure = contact.pressure
+    exponent = _exponent(system, pressure, contact.conditions)
     moving = np.where(pressure > 0, velocity, 1.0)
     return pressure * (1 + change / (exponent * moving))
 
@@ -247,16 +242,15 @@ def _exponent(system: System, pressure: np.ndarray, conditions: InterfaceConditi
 
 def _finer(system: System) -> System:
     """System with more contact points, for the steady-state principle only."""
-    case, model = system.case, system.elastic.model
+    model, kinematics = system.model, system.elastic.kinematics
     face_1, face_2 = (side.face for side in system.pairing.sides)
-    lobatto = case.contact.pressure_degree == "lobatto"
-    order = case.mesh.degree + (2 if lobatto else 3)
-    pairing = pair(face_1, face_2, model, order, refine=not lobatto)
-    slides = sliding_of(case, model, pairing)
+    lobatto = model.interface.pressure_degree == "lobatto"
+    order = model.discretisation.degree + (2 if lobatto else 3)
+    pairing = pair(face_1, face_2, kinematics, order, refine=not lobatto)
+    slides = sliding_of(model, kinematics, pairing)
     assert slides is not None
-    pull = slides.pull(
-        pairing.normals, case.contact.nominal_friction, case.contact.transverse_friction
-    )
+    friction = system.friction, model.interface.transverse_friction
+    pull = slides.pull(pairing.normals, *friction)
     holder = hold(pairing, pull, system.holder.drives)
     return replace(
         system, pairing=pairing, slides=slides, pull=pull, speed=slides.speed, holder=holder

@@ -1,1 +1,1 @@
-"""Analyses selected by ``analysis.type`` of a case."""
+"""Analyses of a model, and checks of their results."""

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...errors import CaseError
 from ...laws.stability import (
     Disturbances,
     LoadFree,
@@ -61,10 +62,16 @@ class DisturbedContact:
     pressure : ndarray, shape (n,)
         Pressure of the base state [Pa].
     conditions : InterfaceConditions
+
+    Raises
+    ------
+    CaseError
+        If the model has no heat.
     """
 
     def __init__(self, system: System, pressure: np.ndarray, conditions: InterfaceConditions):
-        assert system.thermal is not None  # the case has been checked
+        if system.thermal is None:
+            raise CaseError("heat: missing; required in a stability analysis")
         self._system, self._pressure, self._conditions = system, pressure, conditions
         self._bodies = system.thermal
         self._heat = FrictionHeat(system, system.thermal)
@@ -121,12 +128,9 @@ class DisturbedContact:
 
     def _at(self, factor: float) -> DisturbedContact:
         """Perturbed contact at another speed."""
-        system, motion = self._system, self._system.case.motion
-        assert motion is not None  # the case has been checked
-        speeds = {"velocity": motion.velocity, "angular_velocity": motion.angular_velocity}
-        faster = {key: factor * v for key, v in speeds.items() if v is not None}
-        case = system.case.model_copy(update={"motion": motion.model_copy(update=faster)})
-        system = build(case, system.comm, system.phases, parts=system.parts)
+        model = self._system.model
+        model = replace(model, motion=model.motion.faster(factor))
+        system = build(model, self._system.comm, self._system.phases, parts=self._system.parts)
         conditions = replace(self._conditions, speed=factor * self._conditions.speed)
         return DisturbedContact(system, self._pressure, conditions)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...errors import ComputationError
+from ...model.analyses import Analysis
 from ..model.rigid_modes import applied
 from ..model.system import System
 from ..results.outcome import Outcome
@@ -17,19 +18,18 @@ _STEEP = -0.75
 """Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
 
 
-def went_back(system: System, outcome: Outcome) -> ComputationError | None:
+def went_back(system: System, analysis: Analysis, outcome: Outcome) -> ComputationError | None:
     """Error for a holder that has moved against its load; None if it has not.
 
     Without heat and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do positive work
     on the holder unless the drawn faces overlap.
     """
-    case, pairing = system.case, system.pairing
-    if case.analysis.type not in _ANALYSES or case.heat is not None or case.load.surfaces:
+    holder, pairing = system.model.holder, system.pairing
+    if analysis.type not in _ANALYSES or system.thermal is not None or holder.surface_forces:
         return None
-    force = case.force()
-    if force is None or system.worn is not None:
+    if holder.force is None or system.worn is not None:
         return None
-    back = -applied(case, outcome.motion) / force
+    back = -applied(holder, outcome.motion) / holder.force
     if back <= _BACK * pairing.extent:
         return None
     pressing = outcome.contact.pressure > 0

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...case.tables.schema import Case
 from ...contact.search.zones import contact_zones
 from ...errors import ComputationError
+from ...model.model import Model
 from ...timer import Phases
 from ..interface.factory import interface_problem
 from ..model.building import build
@@ -18,25 +18,25 @@ _STEEPEST = 4.0
 _LONGEST = 0.4  # relative to the zone, so that its edges cannot swap
 
 
-def prepare(case: Case, comm, phases: Phases) -> System:
-    """Build the system of a case, fitted to the contact edges if requested. Every rank calls.
+def prepare(model: Model, comm, phases: Phases) -> System:
+    """Build the system of a model, fitted to the contact edges if requested. Every rank calls.
 
     Raises
     ------
     CaseError, ComputationError
         If it cannot be meshed, or the contact edges do not converge.
     """
-    if not case.contact.positioning:
-        return build(case, comm, phases)
-    expected = case.geometry.expected_zone(case.pressing())
-    zone = np.array(touching(build(case, comm, phases)) if expected is None else expected)
+    if not model.discretisation.positioning:
+        return build(model, comm, phases)
+    expected = model.expected_zone
+    zone = np.array(touching(build(model, comm, phases)) if expected is None else expected)
     before: tuple[np.ndarray, np.ndarray] | None = None
     for _ in range(_PASSES):
-        system = build(case, comm, phases, (float(zone[0]), float(zone[1])))
+        system = build(model, comm, phases, (float(zone[0]), float(zone[1])))
         with phases("contact"):
             missed = np.array(touching(system)) - zone
         # half models have no left edge
-        off = np.abs(missed[1:] if case.geometry.symmetry else missed).max()
+        off = np.abs(missed[1:] if model.symmetry else missed).max()
         if off < _SETTLED * _smallest(system):
             return system
         zone, before = zone + _step(zone, missed, before), (zone, missed)

@@ -1,4 +1,4 @@
-"""Run a case: set-up, analysis, checks, error estimate and result."""
+"""Run an analysis of a model: set-up, analysis, checks, error estimate and result."""
 
 from __future__ import annotations
 
@@ -8,8 +8,15 @@ from dataclasses import replace
 from numpy.linalg import LinAlgError
 
 from ...balances import judged
-from ...case.tables.schema import Case
 from ...errors import CaseError, ComputationError
+from ...model.analyses import (
+    Analysis,
+    FrettingAnalysis,
+    ReciprocatingAnalysis,
+    StaticAnalysis,
+    TransientAnalysis,
+)
+from ...model.model import Model
 from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import fretting
@@ -37,17 +44,19 @@ _UNPAIRED = 1e-6
 
 
 def run(
-    case: Case,
+    model: Model,
+    analysis: Analysis,
     comm=None,
     observer: Observer | None = None,
     phases: Phases | None = None,
     saved: Saved | None = None,
 ) -> Result:
-    """Compute a case. Every rank calls.
+    """Compute an analysis of a model. Every rank calls.
 
     Parameters
     ----------
-    case : Case
+    model : Model
+    analysis : Analysis
     comm : mpi4py.MPI.Comm, optional
         All ranks by default.
     observer : Observer, optional
@@ -73,17 +82,19 @@ def run(
         comm = MPI.COMM_WORLD
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
-    system = prepare(case, comm, phases)
-    outcome = analyse(system, observer, saved)
+    system = prepare(model, comm, phases)
+    outcome = analyse(system, analysis, observer, saved)
     with phases("error estimate"):
-        outcome = estimated(system, outcome, observer)
+        outcome = estimated(system, analysis, outcome, observer)
     with phases("fields"):
         fields = sample(outcome.system or system, outcome.state, outcome.motion)
-    return conclude(system, outcome, fields)
+    return conclude(system, analysis, outcome, fields)
 
 
-def analyse(system: System, observer: Observer, saved: Saved | None = None) -> Outcome:
-    """Run the analysis of the case of a system, and note implausible results. Every rank calls.
+def analyse(
+    system: System, analysis: Analysis, observer: Observer, saved: Saved | None = None
+) -> Outcome:
+    """Run an analysis of a system, and note implausible results. Every rank calls.
 
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
@@ -93,8 +104,11 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
             "stays out of the contact"
         )
-    before = () if saved is None else (saved.of(system),)
-    outcome = _ANALYSES[system.case.analysis.type](system, observer, *before)
+    if isinstance(analysis, StaticAnalysis):
+        outcome = _STATIC[analysis.type](system, observer)
+    else:
+        before = None if saved is None else saved.of(system)
+        outcome = _STEPPED[type(analysis)](system, analysis, observer, before)
     if outgrown(outcome.system or system, outcome.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
@@ -107,8 +121,8 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
     if steep is not None:
         observer.note(steep)
     if outcome.stopped is None:
-        outcome = replace(outcome, stopped=went_back(system, outcome))
-    large = not_small(system, outcome.interface)
+        outcome = replace(outcome, stopped=went_back(system, analysis, outcome))
+    large = not_small(system, analysis, outcome.interface)
     if large is not None:
         observer.note(large)
     mesh = mesh_checksum(system)
@@ -117,7 +131,7 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
     )
 
 
-def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
+def estimated(system: System, analysis: Analysis, outcome: Outcome, observer: Observer) -> Outcome:
     """Add discretisation error estimates to the summary of an outcome; note large ones.
 
     Every rank calls.
@@ -125,7 +139,7 @@ def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
     if outcome.stopped is not None:
         return outcome
     try:
-        estimates = estimate_errors(outcome.system or system, outcome)
+        estimates = estimate_errors(outcome.system or system, analysis, outcome)
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
         return replace(
             outcome, extra=outcome.extra | {"error_estimate_missing": {"all": str(error)}}
@@ -136,10 +150,12 @@ def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
     return replace(outcome, extra=outcome.extra | estimates.summary())
 
 
-def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:
+def conclude(
+    system: System, analysis: Analysis, outcome: Outcome, fields: BodyFields | None
+) -> Result:
     """Result of a run; marked as failed if its balances do not hold."""
     system = outcome.system or system
-    summary = summarise(system, outcome)
+    summary = summarise(system, analysis, outcome)
     return Result(
         outcome.interface,
         profile(system, outcome.interface),
@@ -164,11 +180,13 @@ def _stability(system: System, observer: Observer) -> Outcome:
     return stability(system, unworn(system, cold), observer)
 
 
-_ANALYSES: dict[str, Callable[..., Outcome]] = {
+_STATIC: dict[str, Callable[[System, Observer], Outcome]] = {
     "initial": initial,
     "steady": steady,
-    "transient": running_in,
-    "fretting": fretting,
-    "reciprocating": reciprocating,
     "stability": _stability,
+}
+_STEPPED: dict[type, Callable[..., Outcome]] = {
+    TransientAnalysis: running_in,
+    FrettingAnalysis: fretting,
+    ReciprocatingAnalysis: reciprocating,
 }

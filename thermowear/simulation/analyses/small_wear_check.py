@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...case.tables.analyses import Fretting, Reciprocating
+from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
 from ..geometry_update.gap_wear import GapWear
 from ..model.system import System
-from ..results.result import Interface
+from ..results.result import InterfaceFields
 
 
-def not_small(system: System, interface: Interface) -> str | None:
+def not_small(system: System, analysis: Analysis, interface: InterfaceFields) -> str | None:
     """Note on an analysis without mesh motion that leaves the small-wear regime; every rank calls.
 
     In reciprocating sliding the depths are those at mid-stroke of body 1.
@@ -20,9 +20,9 @@ def not_small(system: System, interface: Interface) -> str | None:
     str or None
         None if the wear is small, or declared small by ``wear.update = "never"``.
     """
-    analysis, allowed = system.case.analysis, system.case.wear.largest_kept
-    if not isinstance(analysis, Fretting | Reciprocating):
+    if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis):
         return None
+    allowed = analysis.largest_kept
     fraction = GapWear(system).fraction(np.array([interface.wear_1, interface.wear_2]))
     if fraction <= allowed:
         return None

@@ -82,12 +82,11 @@ def _keys(
     unworn: Disturbance | None,
 ) -> dict:
     """Summary entries of a stability analysis."""
-    motion = system.case.motion
-    assert motion is not None  # the case has been checked
+    motion = system.model.motion
     given = {
         "critical_speed_factor": 1.0,
-        "critical_speed": motion.one_way.velocity,
-        "critical_angular_velocity": motion.one_way.angular_velocity,
+        "critical_speed": motion.velocity,
+        "critical_angular_velocity": motion.angular_velocity,
     }
     units = ("", "_m_per_s", "_rad_per_s")
     found: dict[str, float | None] = {}

@@ -76,6 +76,6 @@ def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, floa
     """Rigid-body wear velocities of the free holder modes, by summary key [m/s, rad/s]."""
     found: dict[str, float | None] = {_VELOCITIES["z"]: None}
     if velocity is not None:
-        names = system.case.holder.free
+        names = system.model.holder.free
         found |= {_VELOCITIES[k]: float(v) for k, v in zip(names, velocity, strict=True)}
     return found

@@ -1,11 +1,12 @@
-"""Sequential cases of a sweep with reuse of shared set-up results."""
+"""Sequential models of a sweep with reuse of shared set-up results."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-from ...case.tables.schema import Case
+from ...model.analyses import Analysis
+from ...model.model import Model
 from ...timer import Phases
 from ..model.building import build
 from ..model.setup_cache import SetupCache, inputs
@@ -17,7 +18,7 @@ from .run import analyse, conclude
 
 
 class Series:
-    """Sequence of cases with a shared set-up cache, see `groups`.
+    """Sequence of models with a shared set-up cache, see `groups`.
 
     Parameters
     ----------
@@ -34,9 +35,13 @@ class Series:
         self._parts = SetupCache()
 
     def run(
-        self, case: Case, observer: Observer | None = None, phases: Phases | None = None
+        self,
+        model: Model,
+        analysis: Analysis,
+        observer: Observer | None = None,
+        phases: Phases | None = None,
     ) -> Result:
-        """Compute the next case, as `run` does, without the fields in the bodies.
+        """Compute the next model, as `run` does, without the fields in the bodies.
 
         Every rank calls.
 
@@ -45,24 +50,24 @@ class Series:
         CaseError, ComputationError
         """
         observer = observer or Observer()
-        system = self._prepared(case, phases or Phases(observer.phase))
-        return conclude(system, analyse(system, observer), None)
+        system = self._prepared(model, phases or Phases(observer.phase))
+        return conclude(system, analysis, analyse(system, analysis, observer), None)
 
-    def _prepared(self, case: Case, phases: Phases) -> System:
-        if case.contact.positioning:  # its mesh depends on the contact of this case
-            return prepare(case, self.comm, phases)
-        return build(case, self.comm, phases, parts=self._parts)
+    def _prepared(self, model: Model, phases: Phases) -> System:
+        if model.discretisation.positioning:  # its mesh depends on the contact of this model
+            return prepare(model, self.comm, phases)
+        return build(model, self.comm, phases, parts=self._parts)
 
 
-def groups(cases: Sequence[Case]) -> list[list[int]]:
-    """Group case numbers by equal elastic bodies, ordered within by equal thermal set-up.
+def groups(models: Sequence[Model]) -> list[list[int]]:
+    """Group numbers of models by equal elastic bodies, ordered within by equal thermal set-up.
 
     Groups share no costly set-up results, and may be computed in parallel.
     """
     shared: list[tuple[Any, list[tuple[Any, list[int]]]]] = []
-    for number, case in enumerate(cases):
-        made_from = inputs(case)
-        bodies = None if case.contact.positioning else made_from.elasticity
+    for number, model in enumerate(models):
+        made_from = inputs(model)
+        bodies = None if model.discretisation.positioning else made_from.elasticity
         heated = _of(shared, bodies, bodies is None)
         _of(heated, made_from.conduction).append(number)
     return [[number for _, numbers in heated for number in numbers] for _, heated in shared]

@@ -17,13 +17,11 @@ from ..geometry_update.update_counts import UpdateCounts
 from ..interface.body_state import BodyState, ContactState
 from ..interface.interface_problem import InterfaceProblem
 from ..model.conditions import InterfaceConditions
-from ..model.rigid_modes import reference_point
 from ..model.system import System
 from ..model.worn_geometry import WornGeometry
 from ..results.recording import interface_at
-from ..results.result import Interface
+from ..results.result import InterfaceFields
 from ..results.rows import HeatRow, HistoryRow
-from ..results.summary import normal_force
 from ..runtime.frames import FrameRecorder
 from ..runtime.observer import Observer
 from ..time.time_loop import Moment
@@ -82,16 +80,18 @@ class RunningInRecord:
     ----------
     loop : OuterLoop
         Loop that provides the system and the problem at the last moment.
+    frames : int
+        Largest number of frames.
     observer : Observer
     """
 
-    def __init__(self, loop: OuterLoop, observer: Observer):
+    def __init__(self, loop: OuterLoop, frames: int, observer: Observer):
         self.rows: list[HistoryRow] = []
         self.heat: list[HeatRow] = []
-        self.outputs: dict[float, Interface] = {}
+        self.outputs: dict[float, InterfaceFields] = {}
         self._loop = loop
         self._observer = observer
-        self._film = FrameRecorder(loop.system.case, observer)
+        self._film = FrameRecorder(frames, observer)
         self._speed = 0.0
         self._last: Moment
 
@@ -116,7 +116,7 @@ class RunningInRecord:
             self.heat,
             system.worn,
             kept,
-            system.inputs.zone,
+            system.zone,
             self._loop.earlier,
         )
 
@@ -181,7 +181,9 @@ class RunningInRecord:
                 raise ComputationError(f"{reason}; {_UNSTABLE}") from None
             raise
 
-    def bodies(self, moment: Moment) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
+    def bodies(
+        self, moment: Moment
+    ) -> tuple[ContactState, RigidMotion, BodyState, InterfaceFields]:
         """Contact, motion of the holder, bodies and interface at a moment."""
         contact = self._problem.contact_state(moment.state, moment.time)
         motion = combined(self._system.holder.motions, moment.state.contact.motion)
@@ -219,7 +221,6 @@ class RunningInRecord:
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
         system, pressure = self._system, moment.state.pressure
         volumes = system.worn_volumes(self._by_body(moment.state.worn))
-        moved = combined(system.holder.motions, moment.state.contact.motion)
         return HistoryRow(
             time=moment.time,
             sliding_distance=slid + (self.rows[-1].sliding_distance if self.rows else 0.0),
@@ -228,7 +229,7 @@ class RunningInRecord:
             wear_volume_1=float(volumes[0]),
             wear_volume_2=float(volumes[1]),
             max_temperature=self._problem.hottest(moment.state),
-            approach=float(moved.at(reference_point(system.case)) @ system.press),
+            approach=float(system.approaches @ moment.state.contact.motion),
             step=moment.step,
             error=moment.error,
         )
@@ -239,7 +240,7 @@ class RunningInRecord:
         return HeatRow(
             time=moment.time,
             speed=self._speed,
-            normal_force=normal_force(self._system.rubbing(conditions.friction), pressure),
+            normal_force=self._system.rubbing(conditions.friction).normal_force(pressure),
             friction_power=float(self._system.weights @ (conditions.heating * pressure)),
             heat_in=balance.made,
             heat_stored=balance.stored,

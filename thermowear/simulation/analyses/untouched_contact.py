@@ -27,8 +27,8 @@ def touching(system: System, outcome: Outcome) -> tuple[Outcome, str | None]:
         return outcome, None
     gap = np.nanmin(outcome.interface.gap, initial=np.inf)
     apart = f"; the faces are {1e6 * gap:.4g} µm apart at least" if np.isfinite(gap) else ""
-    load = system.case.load
-    force = system.case.force() if load.history is None else None
+    holder = system.model.holder
+    force = holder.force if holder.history is None else None
     if force is None:
         return outcome, f"nothing touches at the end{apart}"
     reason = ComputationError(f"nothing carries the pressing force of {force:.4g} N{apart}")

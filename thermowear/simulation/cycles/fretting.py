@@ -8,14 +8,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...case.tables.analyses import Fretting
-from ...case.tables.schema import Case
 from ...contact.friction.loads import Loads
 from ...contact.friction.slip_wear import SlipWear, WornProfile, profile
 from ...contact.friction.stick_slip import advance, follow
 from ...contact.friction.stick_slip_state import StickSlipState, unloaded
 from ...contact.operators.tangential import FrictionalContact, condense_tangential
+from ...errors import CaseError
+from ...laws.load_history import LoadHistory
 from ...laws.motions import translation
+from ...model.analyses import FrettingAnalysis
+from ...model.holder import Holder
 from ..model.system import System
 from ..results.outcome import Outcome
 from ..runtime.guarded_loop import go_through
@@ -28,19 +30,32 @@ from .load_path import LoadSegment, by_fixed_jumps, cycle_legs, first_pass, to_s
 _ACROSS = (1.0, 0.0)
 
 
-def fretting(system: System, observer: Observer, before: Fretted | None = None) -> Outcome:
+def fretting(
+    system: System,
+    settings: FrettingAnalysis,
+    observer: Observer,
+    before: Fretted | None = None,
+) -> Outcome:
     """Follow the load history and its cycles, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept.
+
+    Raises
+    ------
+    CaseError
+        If the holder has no load history.
     """
-    translations = _translations(system.case)
+    history = system.model.holder.history
+    if history is None:
+        raise CaseError("load.history: missing; required in a fretting analysis")
+    translations = _translations(system.model.holder, history)
     with system.phases("condense elasticity"):
         condensed = condense_tangential(system.elastic, system.pairing, system.basis, translations)
     profiles = tuple(profile(system.pairing, condensed.weighted, body) for body in system.laws)
-    record = FrettingRecord(system, translations, profiles, observer)
+    record = FrettingRecord(system, settings, history, translations, profiles, observer)
     last = None if before is None else record.go_on(before)
-    instants = _Path(system, condensed, profiles).instants(last)
-    _, stopped = go_through(system, "load steps", instants, record, observer, last)
+    instants = _Path(system, settings, history, condensed, profiles).instants(last)
+    _, stopped = go_through(system, settings, "load steps", instants, record, observer, last)
     with system.phases("bodies"):
         contact, bodies, interface = record.interface()
     return Outcome(
@@ -56,25 +71,27 @@ def fretting(system: System, observer: Observer, before: Fretted | None = None) 
     )
 
 
-def _translations(case: Case) -> np.ndarray:
+def _translations(holder: Holder, history: LoadHistory) -> np.ndarray:
     """Unit holder translations: along the load, and tangential if the history prescribes it."""
-    directions = [case.geometry.press_direction]
-    if case.load.history is not None and case.load.history.tangential:
+    directions = [holder.press]
+    if history.tangential:
         directions.append(_ACROSS)
     return np.array(directions)
 
 
 class _Path:
-    """Increments of a contact along the load history of its case and through its cycles."""
+    """Increments of a contact along its load history and through the cycles."""
 
     def __init__(
-        self, system: System, contact: FrictionalContact, profiles: tuple[WornProfile, ...]
+        self,
+        system: System,
+        settings: FrettingAnalysis,
+        history: LoadHistory,
+        contact: FrictionalContact,
+        profiles: tuple[WornProfile, ...],
     ):
-        settings, history = system.case.analysis, system.case.load.history
-        assert isinstance(settings, Fretting)
-        assert history is not None  # the case has been checked
         self.areas = contact.weighted.sum(axis=0)
-        self._case, self._settings, self._history = system.case, settings, history
+        self._holder, self._settings, self._history = system.model.holder, settings, history
         self._contact, self._friction = contact, system.friction
         self._laws, self._profiles = tuple(system.laws.values()), profiles
 
@@ -98,13 +115,11 @@ class _Path:
 
     def going_on(self, behind: RestartPoint) -> Iterator[Increment]:
         """Increments of the cycles after a restart point."""
-        count = int(self._case.cycles or 1)
         history, settings = self._history, self._settings
+        count = settings.cycles
         if settings.jump == "auto":
             stops = to_stop_at(history, settings, count)
-            longest = self._case.wear.max_jump or math.inf
-            return adaptive_jumps(self, stops, behind, settings.tolerance, longest)
-        assert isinstance(settings.jump, int)
+            return adaptive_jumps(self, stops, behind, settings.tolerance, settings.max_jump)
         numbers = by_fixed_jumps(history, settings, count, settings.jump)
         return fixed_jumps(self, numbers, behind)
 
@@ -115,14 +130,14 @@ class _Path:
 
     def settled(self, end: Increment, worn: np.ndarray) -> StickSlipState:
         """See `cycle_jump.Cycles`."""
-        state, loads = replace(end.state, worn=worn), _loads(self._case, end.leg.instant)
+        state, loads = replace(end.state, worn=worn), self._loads(end.leg.instant)
         settled = advance(self._contact, self._friction, state, loads, self._wear(0.0))
         return replace(settled, dissipated=state.dissipated)
 
     def _along(self, legs: Iterator[LoadSegment], state: StickSlipState) -> Iterator[Increment]:
         count = self._settings.increments
         for leg in legs:
-            loads, step = _loads(self._case, leg.instant), (leg.end - leg.start) / count
+            loads, step = self._loads(leg.instant), (leg.end - leg.start) / count
             wear = self._wear(step, leg.repeats)
             states = follow(self._contact, self._friction, [loads], count, state, wear)
             for number, state in enumerate(states, start=1):
@@ -132,12 +147,9 @@ class _Path:
     def _wear(self, duration: float, repeats: int = 1) -> SlipWear:
         return SlipWear(self._laws, self._profiles, self._friction, duration, repeats)
 
-
-def _loads(case: Case, instant: float) -> Loads:
-    """Loads at a time of the history [s]."""
-    history = case.load.history
-    assert history is not None
-    given = history.at(instant)
-    if "force" not in given and "approach" not in given:
-        return Loads(normal_force=case.force(), approach=case.approach(), **given)
-    return Loads(normal_force=given.pop("force", None), **given)
+    def _loads(self, instant: float) -> Loads:
+        """Loads at a time of the history [s]."""
+        given, holder = self._history.at(instant), self._holder
+        if "force" not in given and "approach" not in given:
+            return Loads(normal_force=holder.force, approach=holder.approach, **given)
+        return Loads(normal_force=given.pop("force", None), **given)

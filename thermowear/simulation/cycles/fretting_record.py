@@ -8,12 +8,14 @@ import numpy as np
 
 from ...contact.friction.slip_wear import WornProfile
 from ...contact.friction.stick_slip_state import StickSlipState
+from ...laws.load_history import LoadHistory
 from ...laws.motions import translation
+from ...model.analyses import FrettingAnalysis
 from ...serialise import serialisable
 from ..interface.body_state import BodyState, ContactState, contact_state
 from ..model.system import System
 from ..results.recording import interface_at
-from ..results.result import FrictionHistory, FrictionInterface, Interface
+from ..results.result import FrictionHistory, FrictionInterface, InterfaceFields
 from ..results.rows import CycleRow, LoadRow
 from ..runtime.frames import FrameRecorder, Shown
 from ..runtime.observer import Observer
@@ -52,6 +54,8 @@ class FrettingRecord:
     Parameters
     ----------
     system : System
+    settings : FrettingAnalysis
+    history : LoadHistory
     translations : ndarray, shape (k, 2)
         Unit translations of the holder.
     profiles : tuple of WornProfile
@@ -65,17 +69,20 @@ class FrettingRecord:
     def __init__(
         self,
         system: System,
+        settings: FrettingAnalysis,
+        history: LoadHistory,
         translations: np.ndarray,
         profiles: tuple[WornProfile, ...],
         observer: Observer,
     ):
-        self.outputs: dict[float, Interface] = {}
+        self.outputs: dict[float, InterfaceFields] = {}
         self._system = system
         self._tables = FrettingTables(system)
         self._translations = translations
         self._profiles = profiles
         self._observer = observer
-        self._film = FrameRecorder(system.case, observer)
+        self._film = FrameRecorder(settings.frames, observer)
+        self._count, self._cycle_times = settings.cycles, history.cycle
         self._rows: list[LoadRow] = []
         self._cycles: list[CycleRow] = []
         self._frictions: dict[float, FrictionInterface] = {}
@@ -126,7 +133,7 @@ class FrettingRecord:
 
     def _keep_frame(self, instant: Increment) -> None:
         """Record a frame per jump end, or per increment if there is only one cycle."""
-        one = (self._system.case.cycles or 1) == 1
+        one = self._count == 1
         if one or instant.jump is not None:
             number = len(self._rows if one else self._cycles) - 1
             self._film.take(self._system, number, instant.time, self._shown)
@@ -135,14 +142,12 @@ class FrettingRecord:
         contact, bodies, interface = self.interface()
         return contact, translation(self.last.motion @ self._translations), bodies, interface
 
-    def interface(self) -> tuple[ContactState, BodyState, Interface]:
+    def interface(self) -> tuple[ContactState, BodyState, InterfaceFields]:
         """Contact, bodies and interface in the last state, wear rates averaged over its cycle."""
         system, state = self._system, self.last
         pressure, shear = system.basis @ state.pressure, system.basis @ state.shear[:, 0]
         moved = translation(state.motion @ self._translations)
-        history = system.case.load.history
-        assert history is not None  # the case has been checked
-        begin, end = history.cycle or (0.0, np.inf)
+        begin, end = self._cycle_times or (0.0, np.inf)
         rates = self._per_cycle / (end - begin)
         contact = contact_state(system, pressure, shear)
         bodies, found = interface_at(system, contact, moved, self._tables.depths(state), rates)

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ...case.tables.analyses import Fretting
-from ...case.tables.history import History
+from ...laws.load_history import LoadHistory
+from ...model.analyses import FrettingAnalysis
 from ...serialise import serialisable
 
 _SAME = 1e-9  # relative to the duration of the history: closer times are equal
@@ -42,7 +42,7 @@ class LoadSegment:
     ends_cycle: bool
 
 
-def first_pass(history: History, output_times: tuple[float, ...]) -> Iterator[LoadSegment]:
+def first_pass(history: LoadHistory, output_times: tuple[float, ...]) -> Iterator[LoadSegment]:
     """Load segments before the first cycle.
 
     The first one has no duration: it applies the loads of the first time of the history.
@@ -55,13 +55,13 @@ def first_pass(history: History, output_times: tuple[float, ...]) -> Iterator[Lo
 
 
 def cycle_legs(
-    history: History, output_times: tuple[float, ...], number: int, repeats: int = 1
+    history: LoadHistory, output_times: tuple[float, ...], number: int, repeats: int = 1
 ) -> Iterator[LoadSegment]:
     """Load segments of a cycle of a periodic history; time continues through all cycles.
 
     Parameters
     ----------
-    history : History
+    history : LoadHistory
     output_times : tuple of float
         Output times, each the end of a segment if it lies in the cycle [s].
     number : int
@@ -78,7 +78,9 @@ def cycle_legs(
         start = time
 
 
-def by_fixed_jumps(history: History, settings: Fretting, cycles: int, jump: int) -> list[int]:
+def by_fixed_jumps(
+    history: LoadHistory, settings: FrettingAnalysis, cycles: int, jump: int
+) -> list[int]:
     """Numbers of the computed cycles, each representing all since the previous one.
 
     Includes the first cycle, which starts from a different state, and all with output times.
@@ -88,7 +90,7 @@ def by_fixed_jumps(history: History, settings: Fretting, cycles: int, jump: int)
     return sorted({1, *by_jump, *of_outputs, cycles})
 
 
-def to_stop_at(history: History, settings: Fretting, cycles: int) -> list[int]:
+def to_stop_at(history: LoadHistory, settings: FrettingAnalysis, cycles: int) -> list[int]:
     """Numbers of the cycles that no jump may pass over.
 
     A cycle with an output time before its end is computed individually.
@@ -99,7 +101,7 @@ def to_stop_at(history: History, settings: Fretting, cycles: int) -> list[int]:
     return sorted(found - {0})
 
 
-def _passed(history: History, settings: Fretting) -> Iterator[float]:
+def _passed(history: LoadHistory, settings: FrettingAnalysis) -> Iterator[float]:
     """Numbers of cycles elapsed at the output times after the first pass."""
     if history.cycle is None:
         return
@@ -112,7 +114,7 @@ def _passed(history: History, settings: Fretting) -> Iterator[float]:
 
 
 def _corners(
-    history: History, begin: float, end: float, shift: float, outputs: tuple[float, ...]
+    history: LoadHistory, begin: float, end: float, shift: float, outputs: tuple[float, ...]
 ) -> list[tuple[float, float, bool]]:
     """Times of the history in ``begin < instant <= end`` at which a load segment ends.
 

@@ -6,22 +6,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...case.tables.analyses import Reciprocating
-from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion, combined
+from ...model.analyses import ReciprocatingAnalysis
 from ...serialise import serialisable
 from ..interface.body_state import BodyState, ContactState, contact_state
 from ..interface.factory import interface_problem
-from ..model.rigid_modes import reference_point
 from ..model.system import System
 from ..results.outcome import Outcome
 from ..results.recording import interface_at
-from ..results.result import Interface, TrackHistory, WornTrack
+from ..results.result import InterfaceFields, TrackHistory, WornTrack
 from ..results.rows import HistoryRow
 from ..runtime.frames import FrameRecorder
 from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer
-from ..time.step_sizes import AnySize, StepSizes
+from ..time.step_sizes import AnySize
 from ..time.time_loop import Moment, moments
 from .reciprocating_problem import ReciprocatingProblem
 from .stroke import positions
@@ -47,17 +45,20 @@ class Reciprocated:
 
 
 def reciprocating(
-    system: System, observer: Observer, before: Reciprocated | None = None
+    system: System,
+    settings: ReciprocatingAnalysis,
+    observer: Observer,
+    before: Reciprocated | None = None,
 ) -> Outcome:
     """Follow the cycle-averaged wear in time, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept.
     """
-    problem = ReciprocatingProblem(system, positions(system))
-    record = _Record(system, problem, observer)
+    problem = ReciprocatingProblem(system, positions(system, settings))
+    record = _Record(system, settings, problem, observer)
     last = None if before is None else record.go_on(before)
-    run = moments(problem, _in_time(system.case), None, _sizes(system.case), last)
-    _, stopped = go_through(system, "time stepping", run, record, observer, last)
+    run = moments(problem, settings, None, AnySize(settings.max_jump / settings.frequency), last)
+    _, stopped = go_through(system, settings, "time stepping", run, record, observer, last)
     with system.phases("bodies"):
         contact, motion, state, interface = record.in_the_middle()
     return Outcome(
@@ -73,41 +74,26 @@ def reciprocating(
     )
 
 
-def _in_time(case: Case) -> Reciprocating:
-    """Settings of the analysis, with the end time from the number of cycles if given."""
-    settings, count = case.analysis, case.cycles
-    assert isinstance(settings, Reciprocating)
-    if count is None:
-        return settings
-    return settings.model_copy(update={"end_time": count / _frequency(case)})
-
-
-def _sizes(case: Case) -> StepSizes:
-    """Step sizes limited to the largest allowed jump (``wear.max_jump``)."""
-    longest = case.wear.max_jump
-    return AnySize() if longest is None else AnySize(longest / _frequency(case))
-
-
-def _frequency(case: Case) -> float:
-    """Frequency of the reciprocating motion [Hz]."""
-    assert case.motion is not None  # the case has been checked
-    assert case.motion.frequency is not None
-    return case.motion.frequency
-
-
 class _Record:
     """Recorder of the rows and outputs so far."""
 
     last: Moment
 
-    def __init__(self, system: System, problem: ReciprocatingProblem, observer: Observer):
+    def __init__(
+        self,
+        system: System,
+        settings: ReciprocatingAnalysis,
+        problem: ReciprocatingProblem,
+        observer: Observer,
+    ):
         self.rows: list[HistoryRow] = []
-        self.outputs: dict[float, Interface] = {}
+        self.outputs: dict[float, InterfaceFields] = {}
         self.tracks: dict[float, WornTrack] = {}
         self._system = system
+        self._frequency = settings.frequency
         self._problem = problem
         self._observer = observer
-        self._film = FrameRecorder(system.case, observer)
+        self._film = FrameRecorder(settings.frames, observer)
 
     def go_on(self, before: Reciprocated) -> Moment:
         """Restore the record of an earlier run; return the moment to restart from."""
@@ -133,7 +119,7 @@ class _Record:
         number, shown = len(self.rows) - 1, self.in_the_middle
         self._film.take(self._system, number, moment.time, shown, self.worn_track)
 
-    def in_the_middle(self) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
+    def in_the_middle(self) -> tuple[ContactState, RigidMotion, BodyState, InterfaceFields]:
         """Contact, motion of the holder, bodies and interface at mid-stroke of body 1."""
         system, state = self._system, self.last.state
         worn, rates = (self._seen(v) for v in (state.worn, self._problem.rates(state.pressure)))
@@ -163,7 +149,7 @@ class _Record:
         return {
             "steps": len(self.rows) - 1,
             "time_s": row.time,
-            "cycles": row.time * _frequency(self._system.case),
+            "cycles": row.time * self._frequency,
             "sliding_distance_m": row.sliding_distance,
             "distance_from_steady": self.last.distance,
             "max_pressure_of_cycle_Pa": row.max_pressure,
@@ -188,7 +174,6 @@ class _Record:
         volumes = self._volumes(state.worn)
         mean_speed = float(np.average(system.speed, weights=system.weights))
         of_cycle = self._problem.of_cycle(state.contact)
-        moved = combined(system.holder.motions, of_cycle.motion)
         return HistoryRow(
             time=moment.time,
             sliding_distance=mean_speed * moment.time,
@@ -197,7 +182,7 @@ class _Record:
             wear_volume_1=volumes[0],
             wear_volume_2=volumes[1],
             max_temperature=float("nan"),
-            approach=float(moved.at(reference_point(system.case)) @ system.press),
+            approach=float(system.approaches @ of_cycle.motion),
             step=moment.step,
             error=moment.error,
         )

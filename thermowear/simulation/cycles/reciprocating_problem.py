@@ -81,8 +81,6 @@ class ReciprocatingProblem:
     areas: tuple[np.ndarray, np.ndarray]
 
     def __init__(self, system: System, stroke: list[Position]):
-        factor = system.case.geometry.thickness_factor
-        assert factor is not None  # plane models have one
         self._systems = [position.system for position in stroke]
         self._holder = system.holder
         self._laws, self._friction = system.laws, system.friction
@@ -92,7 +90,7 @@ class ReciprocatingProblem:
         self._length = float(system.pairing.position[-1])
         # resolution is limited by the parts of the stroke and by the pressure basis
         spacing = max(float(np.mean(lengths)), self._length / system.basis.shape[1])
-        self.track = track(pairings, lengths, spacing, factor)
+        self.track = track(pairings, lengths, spacing, system.model.thickness or 1.0)
         self._contacts = condensed(stroke, self.track)
         self._shares = np.array([position.share for position in stroke])
         weighted = system.contact.weighted

@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...bulk.kinematics import section_model
-from ...case.tables.analyses import Reciprocating
 from ...contact.operators.holder import hold
 from ...contact.operators.sliding import sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.solvers.coupled_positions import CoupledContacts
 from ...contact.wear.track import StrokeGrid
 from ...errors import CaseError
+from ...model.analyses import ReciprocatingAnalysis
 from ..model.contact_points import contact_points
 from ..model.rigid_modes import drives
 from ..model.setup_cache import SetupCache
@@ -48,25 +47,20 @@ class Position:
     system: System
 
 
-def positions(system: System) -> list[Position]:
+def positions(system: System, settings: ReciprocatingAnalysis) -> list[Position]:
     """Midpoints of stroke parts of equal duration, from one end to the other.
 
     Time shares and mean speeds reproduce the period and the length of the stroke exactly. Without
     friction in the section both sliding directions are equivalent; otherwise both are listed.
     """
-    settings, motion = system.case.analysis, system.case.motion
-    assert isinstance(settings, Reciprocating)
-    assert motion is not None  # the case has been checked
-    assert motion.amplitude is not None
-    assert motion.frequency is not None
     count = settings.positions
-    ends = motion.amplitude * np.sin(np.pi * (np.arange(count + 1) / count - 0.5))
+    ends = settings.amplitude * np.sin(np.pi * (np.arange(count + 1) / count - 0.5))
     ways = (1, -1) if system.traction is not system.trace else (1,)
     return [
         Position(
             offset=float(start + end) / 2,
             length=float(end - start),
-            speed=float(end - start) * 2 * count * motion.frequency,
+            speed=float(end - start) * 2 * count * settings.frequency,
             share=1 / (count * len(ways)),
             system=moved(system, float(start + end) / 2, way),
         )
@@ -83,32 +77,32 @@ def moved(system: System, offset: float, way: int) -> System:
     CaseError
         If body 1 leaves the face of body 2.
     """
-    case, elastic, geometry = system.case, system.elastic, system.case.geometry
+    model, kinematics = system.model, system.elastic.kinematics
     face_1, face_2 = (side.face for side in system.pairing.sides)
     face_1 = replace(face_1, nodes=face_1.nodes + np.array([offset, 0.0]))
-    model = section_model(case.model, geometry.thickness_factor)
     with system.phases("pair"):
-        pairing, basis = contact_points(case, system.comm, model, face_1, face_2)
+        pairing, basis = contact_points(model, system.comm, kinematics, face_1, face_2)
     if pairing.unpaired > system.pairing.unpaired + _UNPAIRED:
         raise CaseError(
-            f"motion.amplitude: {pairing.unpaired:.2%} of {geometry.contact[0]} leaves "
-            f"{geometry.contact[1]} where body 1 is moved by {offset:.4g} m; a longer face of "
+            f"motion.amplitude: {pairing.unpaired:.2%} of {model.interface.faces[0]} leaves "
+            f"{model.interface.faces[1]} where body 1 is moved by {offset:.4g} m; a longer face of "
             "body 2 is needed (geometry.stroke)"
         )
-    assert case.motion is not None  # the case has been checked
-    velocity = way * model.sliding(pairing.points, case.motion.one_way)
-    slides = sliding(velocity, pairing.normals, geometry.press_direction)
-    friction = case.contact.nominal_friction, case.contact.transverse_friction
+    velocity = way * kinematics.sliding(pairing.points, model.motion)
+    slides = sliding(velocity, pairing.normals, model.holder.press)
+    friction = system.friction, model.interface.transverse_friction
     pull = slides.pull(pairing.normals, *friction)
     on_1, on_2 = pairing.sides
     in_place = replace(pairing, sides=(replace(on_1, face=system.pairing.sides[0].face), on_2))
     return replace(
         system,
         pairing=pairing,
-        trace=gap_trace(elastic.space, pairing),
+        trace=gap_trace(system.elastic.space, pairing),
         basis=basis,
         holder=hold(
-            in_place, pull, drives(case, in_place, lambda motion: system.dead_resultant(motion)[0])
+            in_place,
+            pull,
+            drives(model.holder, in_place, lambda motion: system.dead_resultant(motion)[0]),
         ),
         slides=slides,
         pull=pull,

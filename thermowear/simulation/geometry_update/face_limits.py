@@ -9,8 +9,7 @@ from ..model.system import System
 
 def beyond(system: System) -> tuple[bool, bool]:
     """Test whether the first and the last end of the face lie outside the expected zone."""
-    case, x = system.case, system.pairing.points[:, 0]
-    zone = case.geometry.expected_zone(case.pressing())
+    zone, x = system.model.expected_zone, system.pairing.points[:, 0]
     if zone is None:
         return False, False
     margin = 1e-6 * (zone[1] - zone[0])

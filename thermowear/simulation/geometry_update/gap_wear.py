@@ -125,13 +125,13 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     pairing, comm = system.pairing, system.comm
     mesh, paths = on_root(comm, lambda: _ways(system))
     directions = tuple(path.directions for path in paths)
-    nothing, geometry = np.zeros(3), system.case.geometry
+    nothing = np.zeros(3)
     return WornGeometry(
         mesh=mesh,
         directions=directions,
         held=tuple(path.held for path in paths),
         sizes=tuple(side.face.sizes for side in pairing.sides),
-        best=np.array([quality(mesh, geometry.parts_of(body)) for body in geometry.bodies]),
+        best=np.array([quality(mesh, body.parts) for body in system.model.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
         lacking=pairing.gap - _along_ways(pairing, directions, bodies)[1],
@@ -171,7 +171,7 @@ def _along_ways(
 
 def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
     """Unworn mesh, and the paths of the nodes of its faces."""
-    mesh = system.case.tagged_mesh(system.inputs.zone)
+    mesh = system.model.meshes.mesh(system.zone)
     paths = []
     for index, side in enumerate(system.pairing.sides):
         body = movable_body(system, mesh, index)
@@ -181,9 +181,9 @@ def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
 
 def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody | MovableSolid:
     """Movable body of the mesh of a system, by its index."""
-    geometry, face = system.case.geometry, system.pairing.sides[index].face
+    face = system.pairing.sides[index].face
     movable = MovableSolid if isinstance(face, Surface) else MovableBody
-    return movable(mesh, geometry.parts_of(geometry.bodies[index]), nodes_of(face))
+    return movable(mesh, system.model.bodies[index].parts, nodes_of(face))
 
 
 def _curvature(face) -> float:
@@ -193,11 +193,11 @@ def _curvature(face) -> float:
 
 def _thickness(system: System, index: int) -> float:
     """Thickness of a body behind the middle of its contact face [m]; every rank calls."""
-    pairing, geometry, bodies = system.pairing, system.case.geometry, system.bodies
+    pairing, bodies = system.pairing, system.bodies
     out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
     out = out / np.linalg.norm(out)
     middle = np.average(pairing.points, axis=0, weights=pairing.weights)
-    parts = geometry.parts_of(geometry.bodies[index])
+    parts = system.model.bodies[index].parts
     cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
     nodes = bodies.mesh.geometry.x[geometry_dofmap(bodies.mesh)[cells].ravel(), : len(middle)]
     return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

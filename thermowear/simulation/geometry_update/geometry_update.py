@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...balances import relative, require
-from ...bulk.kinematics import section_model
 from ...bulk.transfer import transferred
 from ...contact.search.refinement import Rule
 from ...contact.search.surface import Surface
@@ -70,9 +69,7 @@ def updated(
         state = replace(state, worn=worn_in(system, problem, state, time))
         worn, renewed = _moved(system, kept, state)
     try:
-        following = build(
-            system.case, system.comm, system.phases, system.inputs.zone, SetupCache(), worn
-        )
+        following = build(system.model, system.comm, system.phases, system.zone, SetupCache(), worn)
     except CaseError as fault:  # blames the input; here the bodies are computed
         raise ComputationError(
             f"wear: at {time:.6g} s the worn faces do not fit each other any more ({fault})"
@@ -218,10 +215,7 @@ def _followed(
     Displacements of the faces are scaled slightly so that the meshes lose the worn volumes: the
     volume of a curved layer is not exactly its area times its depth.
     """
-    case, mesh = system.case, worn.mesh
-    factor = section_model(
-        case.model, case.geometry.thickness_factor, case.geometry.sector
-    ).area_factor
+    mesh, factor = worn.mesh, system.elastic.kinematics.area_factor
     lost = np.zeros(2)
     renewed: dict[int, NewFace] = {}
     for index, face in faces.items():
@@ -244,12 +238,11 @@ def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.n
     """Temperature rise of the bodies transferred to the moved mesh [K], and its error."""
     assert before.thermal is not None
     assert after.thermal is not None
-    geometry = before.case.geometry
     return transferred(
         rise,
         before.thermal.conduction.space,
         after.thermal.conduction.space,
         before.bodies,
         after.bodies,
-        [geometry.parts_of(body) for body in geometry.bodies],
+        [body.parts for body in before.model.bodies],
     )

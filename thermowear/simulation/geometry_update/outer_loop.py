@@ -12,11 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...case.tables.analyses import Transient
 from ...contact.search.refinement import Rule
 from ...errors import ComputationError
 from ...geometry.mesh.tagged import TaggedMesh
 from ...geometry.moving.new_face import NewFace
+from ...model.analyses import TransientAnalysis
 from ...serialise import serialisable
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
@@ -57,6 +57,7 @@ class OuterLoop:
     ----------
     system : System
         System of the unworn bodies.
+    settings : TransientAnalysis
     problem : InterfaceProblem
     principle : callable
         Function of a system for its steady state; None if there is none.
@@ -82,6 +83,7 @@ class OuterLoop:
     def __init__(
         self,
         system: System,
+        settings: TransientAnalysis,
         problem: InterfaceProblem,
         principle: Principle,
         sizes: StepSizes,
@@ -89,7 +91,8 @@ class OuterLoop:
     ):
         self.system, self.problem, self.steady = system, problem, principle(system)
         self.largest_kept = 0.0
-        self.allowed = system.case.wear.largest_kept
+        self.allowed = settings.largest_kept
+        self._settings = settings
         self._principle = principle
         self._sizes = Limited(sizes)
         self._observer = observer
@@ -112,17 +115,16 @@ class OuterLoop:
         self.largest_kept, self.allowed, self._sizes.largest = kept
         self.earlier = earlier
         unworn = self.system
-        zone = unworn.inputs.zone if zone is None else zone
-        if worn is None and zone == unworn.inputs.zone:
+        zone = unworn.zone if zone is None else zone
+        if worn is None and zone == unworn.zone:
             return
-        self.system = build(unworn.case, unworn.comm, unworn.phases, zone, SetupCache(), worn)
+        self.system = build(unworn.model, unworn.comm, unworn.phases, zone, SetupCache(), worn)
         self.problem, self.steady = interface_problem(self.system), self._principle(self.system)
 
     def moments(self, last: Moment | None = None) -> Iterator[Moment]:
         """Accepted moments, see `time_loop.moments`."""
         system, problem, steady = self.system, self.problem, self.steady
-        settings = system.case.analysis
-        assert isinstance(settings, Transient)
+        settings = self._settings
         kept, fraction = self._kept_wear(system, last)
         while True:
             if last is not None and self._widens(system, last):
@@ -192,8 +194,7 @@ class OuterLoop:
 
     def _widens(self, system: System, moment: Moment) -> bool:
         """True if a wearing contact has outgrown its zone before the end of the run."""
-        settings = system.case.analysis
-        assert isinstance(settings, Transient)
+        settings = self._settings
         if self._narrow or not moment.state.worn.any() or is_over(settings, self.problem, moment):
             return False
         return wider_zone(system, moment.state.pressure) is not None
@@ -224,9 +225,7 @@ class OuterLoop:
 
         Always False at the end of the run.
         """
-        settings = self.system.case.analysis
-        assert isinstance(settings, Transient)
-        if fraction <= self.allowed or is_over(settings, self.problem, moment):
+        if fraction <= self.allowed or is_over(self._settings, self.problem, moment):
             return False
         return kept.fraction(kept.movable(kept.depth(moment.state.worn))) > self.allowed
 
@@ -249,7 +248,7 @@ class OuterLoop:
         system, problem, last = self._update(system, problem, kept, last)
         grown, expected = (system.worn.carried(v, system.pairing) for v in (grown, pressure))
         disturbed = float(np.abs(last.state.pressure - expected).max())
-        allowed = system.case.analysis.tolerance * float(expected.max())
+        allowed = self._settings.tolerance * float(expected.max())
         if last.state.stored is not None or disturbed <= allowed:
             return system, problem, last
         start = replace(last.state, worn=last.state.worn - grown)
@@ -260,8 +259,8 @@ class OuterLoop:
         """System, problem and moment after moving the meshes; adapts the allowed fraction."""
         new = updated(system, problem, kept, last.state, last.time)
         change = new.change
-        automatic = system.case.wear.largest_kept
-        if system.case.wear.update == "auto" and change > 0.0:
+        automatic = self._settings.largest_kept
+        if self._settings.adapts and change > 0.0:
             wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
             self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
         return new.system, new.problem, replace(last, state=new.state)

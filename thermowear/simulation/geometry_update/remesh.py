@@ -64,7 +64,7 @@ def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) 
     """
     directions, held, sizes = (list(pair) for pair in (worn.directions, worn.held, worn.sizes))
     best = worn.best.copy()
-    depth, at, bodies = worn.depth.copy(), worn.at, system.case.geometry.bodies
+    depth, at, bodies = worn.depth.copy(), worn.at, system.model.bodies
     for index, new in faces.items():
         side = system.pairing.sides[index]
         assert isinstance(side.face, Face)
@@ -76,7 +76,7 @@ def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) 
         held[index] = np.zeros(len(ways), dtype=bool)
         held[index][[0, -1]] = worn.held[index][[0, -1]]
         sizes[index] = new.sizes
-        best[index] = quality(worn.mesh, system.case.geometry.parts_of(bodies[index]))
+        best[index] = quality(worn.mesh, bodies[index].parts)
     return replace(
         worn,
         directions=tuple(directions),

@@ -28,11 +28,11 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
 
     None if it has not, or if the mesh has no zone.
     """
-    zone, pairing = system.inputs.zone, system.pairing
+    zone, pairing = system.zone, system.pairing
     if zone is None or isinstance(pairing.sides[0].face, Surface) or not np.any(pressure > 0):
         return None
     x = pairing.points[:, 0]
-    middle = 0.0 if system.case.geometry.symmetry else (zone[0] + zone[1]) / 2
+    middle = 0.0 if system.model.symmetry else (zone[0] + zone[1]) / 2
     pressing = x[pressure > 0]
     found, wide = list(zone), False
     each = zip(beyond(system), (pressing.min(), pressing.max()), x[[0, -1]], strict=True)
@@ -40,7 +40,7 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
         if open_ended and abs(edge - zone[side]) >= abs(end - zone[side]) / 2 > 0.0:
             wide |= abs(edge - middle) > abs(zone[side] - middle)
             found[side] = middle + _WIDER * (edge - middle)
-    if system.case.geometry.symmetry:
+    if system.model.symmetry:
         found[0] = -found[1]
     return (float(found[0]), float(found[1])) if wide else None
 
@@ -58,7 +58,7 @@ def meshed_wider(
     if state.stored is not None:
         return "temperatures that are followed in time are not carried over to a wider zone"
     try:
-        following = build(system.case, system.comm, system.phases, zone)
+        following = build(system.model, system.comm, system.phases, zone)
     except CaseError as reason:
         return str(reason)
     after = interface_problem(following)

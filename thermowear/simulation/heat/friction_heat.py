@@ -14,7 +14,6 @@ from ...contact.operators.heat import BaselineResponse, ThermalState, at_rest
 from ...contact.operators.heat_condensation import condense_heat
 from ...parallel import sum_over_ranks
 from ..model.conditions import InterfaceConditions
-from ..model.interface_laws import partition
 from ..model.system import System
 from ..model.thermal_system import ThermalSystem
 from .condensed_distortion import CondensedDistortion
@@ -42,15 +41,21 @@ class FrictionHeat:
     ----------
     system : System
     thermal : ThermalSystem
+
+    Attributes
+    ----------
+    ambient : float
+        Temperature of the surroundings [K].
     """
 
     def __init__(self, system: System, thermal: ThermalSystem):
         self._system = system
         self._thermal = thermal
+        self.ambient = thermal.ambient
         self._steps: OrderedDict[float, HeatOperators] = OrderedDict()
-        self._distorts = system.case.contact.method == "condensed"
+        self._distorts = system.model.interface.method.name == "condensed"
         self.condensed = CondensedDistortion(system, thermal)
-        heat = system.case.heat
+        heat = system.model.heat
         self._driven = heat is not None and heat.driven
 
     @cached_property
@@ -192,26 +197,21 @@ class FrictionHeat:
             return 0.0
         return max(self._system.comm.allgather(float(np.abs(rise).max(initial=0.0))))
 
-    @property
-    def ambient(self) -> float:
-        """Temperature of the surroundings [K]."""
-        return self._thermal.ambient
-
     def first_step(self, friction_heat: float) -> float:
         """Initial step size: small penetration depth of heat or small surface temperature rise [s].
 
         The surface of a half-space under a constant flux q warms by ``2 q √(t/π)/√(k ρ c)``.
         Infinite without any heat source at the start, friction [W/m²] or other.
         """
-        case, thermal = self._system.case, self._thermal
+        system, thermal = self._system, self._thermal
         if self._driven:
-            return (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
+            return (_SHALLOW * system.pairing.extent) ** 2 / thermal.diffusivity
         if friction_heat == 0.0:
             return np.inf
-        share = partition(case, self._system.facing)
-        first, second = self._system.facing.of(case.located_material, "effusivity")
+        share = thermal.face.partition
+        first, second = system.facing.effusivities(system.model.materials)
         steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
-        through = (_SHALLOW * self._system.pairing.extent) ** 2 / thermal.diffusivity
+        through = (_SHALLOW * system.pairing.extent) ** 2 / thermal.diffusivity
         return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
 
     def at_rest(self, rise: np.ndarray) -> BaselineResponse:

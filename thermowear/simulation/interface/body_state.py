@@ -126,8 +126,7 @@ def _force_error(system: System, contact: ContactState, displacement, loads, str
     drives = [*_with_rotations(system), *_across(system)]
     nodes = system.elastic.nodes()
     reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
-    geometry = system.case.geometry
-    upper = system.elastic.owned_by(*geometry.parts_of(geometry.bodies[0]))
+    upper = system.elastic.owned_by(*system.model.bodies[0].parts)
     carried, borne_by_2 = (_work(system, contact, drives, side) for side in system.pairing.sides)
     errors, scales = np.zeros(len(drives)), np.zeros(len(drives))
     strained = system.elastic.compressibility() * strained.reshape(nodes.shape)
@@ -160,7 +159,8 @@ def _with_rotations(system: System) -> list[RigidMode]:
     Rotations are linear in the coordinates: in cells with a geometry of higher degree than the
     displacement they cause small strains, and moments balance only within the discretisation error.
     """
-    curved = coordinate_element(system.bodies.mesh).degree > system.case.mesh.degree
+    degree = system.model.discretisation.degree
+    curved = coordinate_element(system.bodies.mesh).degree > degree
     return [d for d in system.holder.drives if not (curved and d.motion.rotation.any())]
 
 
@@ -177,11 +177,11 @@ def _work(system: System, contact: ContactState, drives, side: PairedFace) -> np
 def _across(system: System) -> list[RigidMode]:
     """Translations along the axes without a load, balanced independently of the holder."""
     gdim = system.pairing.points.shape[1]
-    axes = [system.press] if system.case.model == "axisymmetric" else np.eye(gdim)
+    axes = [system.press] if system.model.kinematics == "axisymmetric" else np.eye(gdim)
     return [RigidMode(translation(axis), amount=0.0) for axis in axes]
 
 
 def _part(load: np.ndarray, largest: np.ndarray) -> float:
-    """Fraction of the loads of the case that is applied."""
+    """Fraction of the largest loads that is applied."""
     size = float(largest @ largest)
     return float(load @ largest) / size if size > 0 else 1.0

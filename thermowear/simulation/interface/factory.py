@@ -15,7 +15,7 @@ from .interface_problem import InterfaceProblem
 def interface_problem(
     system: System, note: Callable[[str], None] | None = None
 ) -> InterfaceProblem:
-    """Interface problem of a system, with the contact method of the case. Every rank calls.
+    """Interface problem of a system, with the contact method of its model. Every rank calls.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def interface_problem(
 
 
 def _solver(system: System) -> ContactSolver:
-    if system.case.contact.method == "condensed":
+    if system.model.interface.method.name == "condensed":
         return CondensedMethod(system)
     with system.phases("contact operators"):
         return FullMethod(system)

@@ -17,7 +17,6 @@ from ...contact.operators.traction import normal_traction, thermal_traction
 from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..model.contact_points import pressure_degree
 from ..model.system import System
 from .anderson import Mixing
 from .contact_solver import ContactSolution, WearRates
@@ -94,7 +93,7 @@ class FullMethod:
     def _edge_compliance(self) -> np.ndarray:
         """Compliance ε of the points at the edge of the wear, shape (n,) [m/Pa]."""
         system = self._system
-        degree = pressure_degree(system.case)
+        degree = system.model.pressure_degree
         return wave_compliance(system.elastic, system.pairing, degree)
 
     def _deflection(self, points: np.ndarray | None) -> EdgeDeflection | None:
@@ -125,16 +124,15 @@ class FullMethod:
 
 
 def _full_contact(system: System) -> tuple[FullContact, str | None]:
-    """Contact equations of the case, and a warning if its parameters are out of range."""
-    settings, holder = system.case.contact, system.holder
+    """Contact equations of a system, and a warning if its parameters are out of range."""
+    settings, holder = system.model.interface.method, system.holder
     elastic, pairing = system.elastic, system.pairing
     stress, note = None, None
-    theta = 1 if settings.theta is None else settings.theta
-    if settings.method == "nitsche":
+    if settings.name == "nitsche":
         stress = normal_traction(elastic, pairing)
         gamma = () if settings.gamma is None else (settings.gamma,)
         stiffness = nitsche_stiffness(elastic, pairing, *gamma)
-        note = nitsche_warning(stiffness, stability_limit(elastic, pairing), theta)
+        note = nitsche_warning(stiffness, stability_limit(elastic, pairing), settings.theta)
     elif settings.penalty is not None:
         stiffness = np.full(len(pairing.weights), settings.penalty)
     else:
@@ -148,6 +146,6 @@ def _full_contact(system: System) -> tuple[FullContact, str | None]:
         holder.force_modes,
         stiffness,
         stress,
-        theta,
+        settings.theta,
     )
     return contact, note

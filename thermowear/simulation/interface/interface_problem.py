@@ -52,8 +52,8 @@ class InterfaceProblem:
         self._gap = system.pairing.gap - system.holder.imposed
         self._softness = np.full(len(self._gap), system.softness)
         self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
-        case = system.case
-        self._transient = case.heat is not None and case.heat.transient
+        given = system.model.heat
+        self._transient = given is not None and given.transient
 
     @property
     def stores_heat(self) -> bool:
@@ -338,7 +338,7 @@ class InterfaceProblem:
     def _guess(self) -> ContactSolution:
         """Initial guess: the mean pressure, uniform over the face."""
         area = float(self._system.weights.sum())
-        pressure = np.full(len(self._gap), (self._system.case.force() or area) / area)
+        pressure = np.full(len(self._gap), (self._system.model.holder.force or area) / area)
         return ContactSolution(pressure, np.zeros(0), None)
 
     def _heat_at_end(self, before: InterfaceState, step: float, time: float) -> HeatStage | None:

@@ -52,7 +52,7 @@ def steady_state(system: System) -> SteadyState:
     """
     heat = friction_heat(system)
     area = float(system.weights.sum())
-    even = np.full(len(system.weights), (system.case.force() or area) / area)
+    even = np.full(len(system.weights), (system.model.holder.force or area) / area)
     nothing = np.zeros((len(system.laws), len(even)))
     start = Trial(even, None if heat is None else heat.steady.unheated, nothing)
 

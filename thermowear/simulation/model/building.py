@@ -1,4 +1,4 @@
-"""Build a system from a case: mesh, pair and assemble, or reuse cached set-up results."""
+"""Build a system from a model: mesh, pair and assemble, or reuse cached set-up results."""
 
 from __future__ import annotations
 
@@ -7,44 +7,44 @@ from dataclasses import replace
 import numpy as np
 
 from ...bulk.bodies import Bodies, distribute
-from ...bulk.kinematics import Model, section_model
-from ...case.tables.facing import Facing
-from ...case.tables.schema import Case
+from ...bulk.kinematics import Kinematics, kinematics_of
 from ...contact.operators.holder import hold
 from ...contact.operators.sliding import Sliding, sliding
 from ...contact.search.closed_face import gather_faces
 from ...contact.search.pairing import Pairing
 from ...geometry.mesh.tagged import TaggedMesh
+from ...model.facing import Facing
+from ...model.meshes import Zone
+from ...model.model import Model
 from ...parallel import on_root
 from ...timer import Phases
 from .contact_points import contact_points, facing_parts, worn_contact_points
 from .elastic_system import dead_load, dead_resultant, elastic_system
-from .interface_laws import partition
 from .rigid_modes import drives
 from .setup_cache import SetupCache, inputs
 from .system import System
 from .thermal_system import ThermalSystem, thermal_system
-from .wear_shares import closes_by_wear, softness_of_parts
+from .wear_shares import softness_of_parts
 from .worn_geometry import WornGeometry
 
 
 def build(
-    case: Case,
+    model: Model,
     comm,
     phases: Phases,
-    zone: tuple[float, float] | None = None,
+    zone: Zone | None = None,
     parts: SetupCache | None = None,
     worn: WornGeometry | None = None,
 ) -> System:
-    """Mesh, pair and assemble a case. Every rank calls.
+    """Mesh, pair and assemble a model. Every rank calls.
 
     Parameters
     ----------
-    case : Case
+    model : Model
     comm : mpi4py.MPI.Comm
     phases : Phases
     zone : tuple of float, optional
-        Range of x to mesh for, by default the contact zone that the case expects [m].
+        Range of x to mesh for, by default the contact zone that the model expects [m].
     parts : SetupCache, optional
         Set-up results of earlier systems on the same ranks, reused where the keys agree.
     worn : WornGeometry, optional
@@ -53,36 +53,41 @@ def build(
     Raises
     ------
     CaseError
-        If the geometry cannot be meshed or paired.
+        If the bodies cannot be meshed or paired.
     """
-    parts, made_from = SetupCache() if parts is None else parts, inputs(case, zone)
-    geometry = case.geometry
-    model = section_model(case.model, geometry.thickness_factor, geometry.sector)
+    parts, made_from = SetupCache() if parts is None else parts, inputs(model, zone)
+    interface = model.interface
+    kinematics = kinematics_of(model.kinematics, model.thickness, model.sector)
     with phases("mesh"):
-        bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(case, comm, zone, worn))
+        bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(model, comm, zone, worn))
     with phases("pair"):
         pairing, basis = parts.get(
-            "points", made_from.points, lambda: _paired(case, comm, model, bodies, worn)
+            "points", made_from.points, lambda: _paired(model, comm, kinematics, bodies, worn)
         )
     with phases("assemble elasticity"):
         elastic, trace = parts.get(
-            "elasticity", made_from.elasticity, lambda: elastic_system(case, model, bodies, pairing)
+            "elasticity",
+            made_from.elasticity,
+            lambda: elastic_system(model, kinematics, bodies, pairing),
         )
-    slides = sliding_of(case, model, pairing)
+    slides = sliding_of(model, kinematics, pairing)
     pull, speed = pairing.normals, np.zeros(len(pairing.weights))
     if slides is not None:
-        friction = case.contact.nominal_friction, case.contact.transverse_friction
+        friction = interface.nominal_friction, interface.transverse_friction
         pull, speed = slides.pull(pairing.normals, *friction), slides.speed
     facing = facing_parts(bodies, pairing)
-    dead = dead_load(case, elastic)
-    driven = drives(case, pairing, lambda motion: dead_resultant(case, elastic, dead, motion)[0])
+    dead = dead_load(model.holder, elastic)
+    upper = model.bodies[0].parts
+    driven = drives(
+        model.holder, pairing, lambda motion: dead_resultant(elastic, upper, dead, motion)[0]
+    )
     thermal = parts.get(
         "conduction",
         made_from.conduction,
-        lambda: thermal_system(case, bodies, model, pairing, elastic, basis, facing, phases),
+        lambda: thermal_system(model, bodies, pairing, elastic, basis, facing, phases),
     )
     return System(
-        case=case,
+        model=model,
         bodies=bodies,
         pairing=pairing,
         elastic=elastic,
@@ -93,57 +98,54 @@ def build(
         pull=pull,
         speed=speed,
         dead_load=dead,
-        thermal=None if thermal is None else _exchanging(thermal, case, facing),
+        thermal=None if thermal is None else _exchanging(thermal, model, facing),
         phases=phases,
         parts=parts,
         inputs=made_from,
+        zone=made_from.zone,
         worn=worn,
     )
 
 
-def check_contact_points(case: Case, comm) -> None:
-    """Mesh and pair a case as a run does, to detect errors in either step. Every rank calls.
+def check_contact_points(model: Model, comm) -> None:
+    """Mesh and pair a model as a run does, to detect errors in either step. Every rank calls.
 
     Raises
     ------
     CaseError
     """
-    geometry = case.geometry
-    model = section_model(case.model, geometry.thickness_factor, geometry.sector)
-    _paired(case, comm, model, _meshed(case, comm, None, None), None)
+    kinematics = kinematics_of(model.kinematics, model.thickness, model.sector)
+    _paired(model, comm, kinematics, _meshed(model, comm, None, None), None)
 
 
-def _meshed(
-    case: Case, comm, zone: tuple[float, float] | None, worn: WornGeometry | None
-) -> Bodies:
+def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) -> Bodies:
     def mesh() -> TaggedMesh:
-        return case.tagged_mesh(zone) if worn is None else worn.mesh
+        return model.meshes.mesh(zone) if worn is None else worn.mesh
 
     return distribute(on_root(comm, mesh), comm)
 
 
 def _paired(
-    case: Case, comm, model: Model, bodies: Bodies, worn: WornGeometry | None
+    model: Model, comm, kinematics: Kinematics, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Pairing, np.ndarray]:
-    softness = bodies.per_body(softness_of_parts(case))
-    gathered = gather_faces(bodies, case.geometry.contact, softness)
-    faces = [replace(face, wears=closes_by_wear(case)) for face in gathered]
+    softness, wears = softness_of_parts(model), bool(model.interface.wearing_in_place)
+    gathered = gather_faces(bodies, model.interface.faces, bodies.per_body(softness))
+    faces = [replace(face, wears=wears) for face in gathered]
     if worn is None:
-        return contact_points(case, comm, model, *faces)
-    return worn_contact_points(case, model, worn, *faces)
+        return contact_points(model, comm, kinematics, *faces)
+    return worn_contact_points(model, kinematics, worn, *faces)
 
 
-def _exchanging(thermal: ThermalSystem, case: Case, facing: Facing) -> ThermalSystem:
-    """Thermal system with the heat partition of this case."""
-    return replace(thermal, face=replace(thermal.face, partition=partition(case, facing)))
+def _exchanging(thermal: ThermalSystem, model: Model, facing: Facing) -> ThermalSystem:
+    """Thermal system with the heat partition of this model."""
+    partition = model.interface.heat_partition(facing, model.materials)
+    return replace(thermal, face=replace(thermal.face, partition=partition))
 
 
-def sliding_of(case: Case, model: Model, pairing: Pairing) -> Sliding | None:
-    """Sliding kinematics of body 1; None without motion."""
-    if case.motion is None:
+def sliding_of(model: Model, kinematics: Kinematics, pairing: Pairing) -> Sliding | None:
+    """Sliding kinematics of body 1; None at rest."""
+    motion = model.motion
+    if motion.at_rest:
         return None
-    geometry = case.geometry
-    velocity = model.sliding(
-        pairing.points, case.motion.one_way, geometry.rotation_center, geometry.slides_across
-    )
-    return sliding(velocity, pairing.normals, geometry.press_direction)
+    velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
+    return sliding(velocity, pairing.normals, model.holder.press)

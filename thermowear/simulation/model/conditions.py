@@ -8,13 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ...case.tables.history import FactorHistory, History
-from ...case.tables.wear import BodyWearTable
 from ...contact.operators.heat import ThermalState
 from ...errors import ComputationError
-from ...laws.coefficients.multipliers import Multipliers
 from ...laws.interfaces import InterfaceLaw, WearRate
-from .interface_laws import conductance_law, friction_law
 from .system import System
 
 _SETTLED = 1e-10
@@ -89,43 +85,13 @@ def _difference(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(a - b).max() / max(np.abs(a).max(), np.abs(b).max()))
 
 
-def _part(course: History | FactorHistory | None, time: float) -> float:
+def _part(value: float) -> float:
     """History factor of a load, speed or friction; values at rounding level count as 0."""
-    part = 1.0 if course is None else course.factor_at(time)
-    return part if part > _ROUNDING else 0.0
-
-
-@dataclass(frozen=True)
-class _WearingBody:
-    """Settings of a wearing body outside its wear law.
-
-    Attributes
-    ----------
-    index : int
-        Index of the body, 0 is body 1.
-    variables : frozenset of str
-        State variables of the law.
-    factors : Multipliers
-        Tabulated factors of the rate.
-    friction_exponent : float
-        Exponent of the coefficient of friction in a law per friction stress; 0 in other laws.
-    """
-
-    index: int
-    variables: frozenset[str]
-    factors: Multipliers
-    friction_exponent: float
-
-    @classmethod
-    def of(cls, index: int, wear: BodyWearTable) -> _WearingBody:
-        """Read the settings from the table of the case."""
-        stress = wear.law is None and wear.per == "friction-stress"
-        exponent = wear.pressure_exponent if stress else 0.0
-        return cls(index, wear.variables, wear.factor.multipliers, exponent)
+    return value if value > _ROUNDING else 0.0
 
 
 class ConditionModel:
-    """Interface conditions of a case as functions of time, pressure and temperature.
+    """Interface conditions as functions of time, pressure and temperature.
 
     Parameters
     ----------
@@ -133,13 +99,14 @@ class ConditionModel:
     """
 
     def __init__(self, system: System):
+        model, interface = system.model, system.model.interface
         self._system = system
-        self._case = system.case
-        names = self._case.geometry.bodies
-        self._wearing = [_WearingBody.of(i, self._case.wear[names[i]]) for i in system.laws]
-        self._friction_law = friction_law(self._case)
-        self._varies, self._friction_varies = self._case.varies, self._case.friction_varies
-        self._courses = list(self._case.histories.values())
+        self._interface = interface
+        self._wearing = list(interface.wear.items())
+        self._friction_law = interface.friction_law
+        self._varies, self._friction_varies = interface.varies, interface.friction_varies
+        self._load, self._motion = model.holder.history, model.motion.history
+        self._courses = model.histories
         self._lasting: tuple[bytes, InterfaceConditions] | None = None
 
     def at(
@@ -172,13 +139,11 @@ class ConditionModel:
         return self._lasting[1]
 
     def _present(self, time, pressure, faces, closed, depth) -> InterfaceConditions:
-        system, case = self._system, self._case
-        load, motion = case.load.history, case.motion
-        pressed = _part(load, time)
-        moved = _part(None if motion is None else motion.history, time)
-        speed = moved * system.speed
+        system = self._system
+        pressed = 1.0 if self._load is None else _part(self._load.factor_at(time))
+        speed = self._speed(time)
         temperatures = self._temperatures(faces)
-        own = None if temperatures is None else [temperatures[body.index] for body in self._wearing]
+        own = None if temperatures is None else [temperatures[index] for index, _ in self._wearing]
         friction = self._friction(time, temperatures, pressure, speed)
         return InterfaceConditions(
             load=pressed * system.holder.load + system.holder.dead,
@@ -193,6 +158,11 @@ class ConditionModel:
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end at which a history has a corner [s]."""
         return tuple(t for course in self._courses for t in course.corners(end))
+
+    def _speed(self, time: float) -> np.ndarray:
+        """Sliding speed at the points, shape (n,) [m/s]."""
+        part = 1.0 if self._motion is None else _part(self._motion.at(time))
+        return part * self._system.speed
 
     def _temperatures(self, faces: ThermalState | None):
         if self._system.thermal is None:
@@ -210,15 +180,16 @@ class ConditionModel:
     def _of_wear(self, name: str, values: Sequence[np.ndarray] | None, pressure) -> np.ndarray:
         """Values of a state variable for the wear laws that depend on it; 0 for the others."""
         result = np.zeros((len(self._wearing), len(pressure)))
-        for row, body in enumerate(self._wearing):
-            if values is not None and name in body.variables:
+        for row, (_, wear) in enumerate(self._wearing):
+            if values is not None and name in wear.law.variables:
                 result[row] = values[row]
         return result
 
     def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
         """Coefficient of friction, at least 0; `require_friction` checks the converged state."""
         value = self._friction_law.value(pressure, speed, self._mean(temperatures))
-        return _part(self._case.contact.friction_history, time) * np.maximum(value, 0.0)
+        history = self._interface.friction_history
+        return (1.0 if history is None else _part(history.at(time))) * np.maximum(value, 0.0)
 
     def require_friction(
         self, time: float, pressure: np.ndarray, faces: ThermalState | None
@@ -231,9 +202,8 @@ class ConditionModel:
         """
         if not self._friction_law.variables:
             return
-        temperatures, motion = self._temperatures(faces), self._case.motion
-        mean = np.broadcast_to(self._mean(temperatures), pressure.shape)
-        speed = _part(None if motion is None else motion.history, time) * self._system.speed
+        mean = np.broadcast_to(self._mean(self._temperatures(faces)), pressure.shape)
+        speed = self._speed(time)
         value = self._friction_law.value(pressure, speed, mean)
         lowest = int(np.argmin(np.where(pressure > 0, value, np.inf)))
         if pressure[lowest] > 0 and value[lowest] < 0:
@@ -246,22 +216,22 @@ class ConditionModel:
     def _wear(self, temperatures, pressure, speed, friction) -> np.ndarray:
         """Factors of the wear rates from tables and from friction other than the nominal."""
         result = np.ones((len(self._wearing), len(pressure)))
-        for row, body in enumerate(self._wearing):
+        for row, (_, wear) in enumerate(self._wearing):
             own = 0.0 if temperatures is None else temperatures[row]
-            result[row] = body.factors.value(pressure, speed, own)
-            if body.friction_exponent and self._friction_varies:
-                result[row] *= (friction / self._system.friction) ** body.friction_exponent
+            result[row] = wear.factors.value(pressure, speed, own)
+            if wear.friction_exponent and self._friction_varies:
+                nominal = self._interface.nominal_friction
+                result[row] *= (friction / nominal) ** wear.friction_exponent
         return result
 
     @cached_property
     def _conductance_law(self) -> InterfaceLaw | None:
-        return conductance_law(self._case, self._system.facing)
+        return self._interface.conductance_law(self._system.facing, self._system.model.materials)
 
     def _conductance(self, temperatures, pressure, speed, touching) -> np.ndarray:
-        heat = self._case.heat
-        if heat is None:
+        if self._system.thermal is None:
             return np.zeros(len(pressure))
         law = self._conductance_law
         at = pressure, speed, self._mean(temperatures)
         closed = np.inf if law is None else law.value(*at)
-        return np.where(touching, closed, heat.gap_conductance or 0.0)
+        return np.where(touching, closed, self._interface.gap_conductance)

@@ -7,9 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...bulk.bodies import Bodies
-from ...bulk.kinematics import Model
-from ...case.tables.facing import Facing
-from ...case.tables.schema import Case
+from ...bulk.kinematics import Kinematics
 from ...contact.operators.pressure import pressure_basis
 from ...contact.search.face import Face
 from ...contact.search.pairing import Pairing, pair, paired
@@ -18,6 +16,8 @@ from ...contact.search.refinement import BESIDE, SLIVER
 from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import ways_between
 from ...laws.motions import RigidMotion
+from ...model.facing import Facing
+from ...model.model import Model
 from .initial_shape import initial_gap
 from .wear_shares import LEAST
 from .worn_geometry import WornGeometry
@@ -28,17 +28,23 @@ _ALONG = 0.05
 """Largest overhang past the end of the other face by the holder's motion, relative to the face."""
 
 
-def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pairing, np.ndarray]:
+def contact_points(
+    model: Model, comm, kinematics: Kinematics, face_1, face_2
+) -> tuple[Pairing, np.ndarray]:
     """Contact points, with the gap of the initial shape, and pressure space Ψ."""
-    pairing, basis = _points(case, model, face_1, face_2)
-    if case.geometry.initial_shape is not None:
-        gap = initial_gap(comm, case.geometry.initial_shape, pairing)
-        pairing = replace(pairing, gap=gap)
+    pairing, basis = _points(model, kinematics, face_1, face_2)
+    shape = model.interface.initial_shape
+    if shape is not None:
+        pairing = replace(pairing, gap=initial_gap(comm, shape, pairing))
     return pairing, basis
 
 
 def worn_contact_points(
-    case: Case, model: Model, worn: WornGeometry, face_1: Face | Surface, face_2: Face | Surface
+    model: Model,
+    kinematics: Kinematics,
+    worn: WornGeometry,
+    face_1: Face | Surface,
+    face_2: Face | Surface,
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points of worn faces at the present position of body 1, with the unworn gap.
 
@@ -52,10 +58,11 @@ def worn_contact_points(
     motion = RigidMotion(moved, turned, np.zeros(3))
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
     if worn.pieces is None:
-        pairing, basis = _points(case, model, closer, face_2, _SLIVER, _beside(worn, face_1))
+        beside = _beside(worn, face_1)
+        pairing, basis = _points(model, kinematics, closer, face_2, _SLIVER, beside)
     else:
-        pairing = paired(closer, face_2, model, worn.pieces)
-        basis = _basis(case, pairing)
+        pairing = paired(closer, face_2, kinematics, worn.pieces)
+        basis = pressure_basis(pairing, model.pressure_degree)
     first, second = pairing.sides
     on_face = face_1.points(first.facet, first.t)
     to = motion.at(on_face)
@@ -92,28 +99,20 @@ def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:
 
 
 def _points(
-    case: Case, model: Model, face_1, face_2, sliver: float = SLIVER, beside: float = BESIDE
+    model: Model,
+    kinematics: Kinematics,
+    face_1,
+    face_2,
+    sliver: float = SLIVER,
+    beside: float = BESIDE,
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points of two faces, and pressure space Ψ."""
-    degree, pressure_degree = case.mesh.degree, case.contact.pressure_degree
-    if pressure_degree == "lobatto":  # collocation at the nodes of body 1's facets
-        pairing = pair(face_1, face_2, model, degree + 1, refine=False)
+    degree = model.discretisation.degree
+    if model.interface.pressure_degree == "lobatto":  # at the nodes of body 1's facets
+        pairing = pair(face_1, face_2, kinematics, degree + 1, refine=False)
         return pairing, np.eye(len(pairing.weights))
-    pairing = pair(face_1, face_2, model, degree + 2, sliver=sliver, beside=beside)
-    return pairing, _basis(case, pairing)
-
-
-def _basis(case: Case, pairing: Pairing) -> np.ndarray:
-    """Pressure space Ψ."""
-    return pressure_basis(pairing, pressure_degree(case))
-
-
-def pressure_degree(case: Case) -> int:
-    """Degree of the pressure space, by default one below that of the displacement."""
-    degree = case.contact.pressure_degree
-    if degree == "lobatto":  # as many functions per facet as the displacement
-        return case.mesh.degree
-    return degree or max(case.mesh.degree - 1, 1)
+    pairing = pair(face_1, face_2, kinematics, degree + 2, sliver=sliver, beside=beside)
+    return pairing, pressure_basis(pairing, model.pressure_degree)
 
 
 def facing_parts(bodies: Bodies, pairing: Pairing) -> Facing:

@@ -1,4 +1,4 @@
-"""Rigid modes of the holder of body 1 and their loads, from the settings of the case."""
+"""Rigid modes of the holder of body 1 and their loads."""
 
 from __future__ import annotations
 
@@ -6,17 +6,18 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...case.tables.schema import Case
 from ...contact.operators.holder import RigidMode
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion, rotation, translation
+from ...model.holder import Holder
+from ...model.model import Model
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
 _TURNS = {"rotation-x": (1.0, 0.0, 0.0), "rotation-y": (0.0, 1.0, 0.0)}
 
 
 def drives(
-    case: Case, pairing: Pairing, dead: Callable[[RigidMotion], float]
+    holder: Holder, pairing: Pairing, dead: Callable[[RigidMotion], float]
 ) -> tuple[RigidMode, ...]:
     """Rigid modes of the holder, the load direction first, with the load or motion of each.
 
@@ -25,29 +26,29 @@ def drives(
 
     Parameters
     ----------
-    case : Case
+    holder : Holder
     pairing : Pairing
     dead : callable
         Generalised force on a motion of body 1 that does not come from the holder [N or N m].
     """
-    names, approach = case.holder.free, case.approach()
+    approach = holder.approach
     return tuple(
         RigidMode(m, amount=approach, dead=float(dead(m)))
         if approach is not None and name == "z"
-        else RigidMode(m, load=_load(case, m, names), dead=float(dead(m)))
-        for name, m in ((name, _motion(case, name, pairing)) for name in names)
+        else RigidMode(m, load=_load(holder, m), dead=float(dead(m)))
+        for name, m in ((name, _motion(holder, name, pairing)) for name in holder.free)
     )
 
 
-def guides(case: Case) -> dict[str, RigidMotion]:
+def guides(model: Model) -> dict[str, RigidMotion]:
     """Rigid motions by name, conjugate to the guide forces and moments on body 1.
 
     Along x (and y), upwards, and about the pivot; none in an axisymmetric model.
     """
-    if case.model == "axisymmetric":
+    if model.kinematics == "axisymmetric":
         return {}
-    pivot = reference_point(case)
-    if case.model == "3d":
+    pivot = np.array(model.holder.pivot)
+    if model.kinematics == "3d":
         turns = {name: rotation(axis, pivot) for name, axis in _TURNS.items()}
         shifts = {name: translation(axis) for name, axis in _AXES.items()}
         return shifts | {"z": translation((0.0, 0.0, 1.0))} | turns
@@ -55,43 +56,24 @@ def guides(case: Case) -> dict[str, RigidMotion]:
     return {"x": translation(_AXES["x"]), "z": translation(up), "rotation": rotation(out, pivot)}
 
 
-def reference_point(case: Case) -> np.ndarray:
-    """Pivot of the holder, else of the geometry, else the origin, shape (gdim,) [m]."""
-    pivot = case.holder.pivot or case.geometry.pivot_point
-    dim = len(case.geometry.press_direction)
-    return np.zeros(dim) if pivot is None else np.array(pivot)
+def applied(holder: Holder, motion: RigidMotion) -> float:
+    """Generalised force of the loads of the holder on a motion; moments by the right-hand rule."""
+    force = (holder.force or 0.0) * np.array(holder.press)
+    force[0] += holder.tangential_force
+    work = force @ motion.at(np.array(holder.point)) + np.array(holder.moments) @ motion.rotation
+    return float(work)
 
 
-def applied(case: Case, motion: RigidMotion) -> float:
-    """Generalised force of the loads of the case on a motion; moments by the right-hand rule."""
-    press = np.array(case.geometry.press_direction)
-    load, dim = case.load, len(press)
-    point = reference_point(case)
-    if load.lever is not None:
-        point = point + load.lever * np.eye(dim)[0]
-    if load.point is not None:
-        point = point.copy()
-        point[: len(load.point)] = load.point
-    moments = np.zeros(3)
-    if load.moments is not None:
-        moments[: len(load.moments)] = load.moments
-    if load.moment is not None:
-        moments[2] = load.moment
-    force = (case.force() or 0.0) * press
-    force[0] += load.tangential_force or 0.0
-    return float(force @ motion.at(point) + moments @ motion.rotation)
-
-
-def _motion(case: Case, name: str, pairing: Pairing) -> RigidMotion:
+def _motion(holder: Holder, name: str, pairing: Pairing) -> RigidMotion:
     if name == "z":
-        return translation(case.geometry.press_direction)
+        return translation(holder.press)
     if name in _AXES:
         return translation(_AXES[name])
-    pivot = reference_point(case)
+    pivot = np.array(holder.pivot)
     if name in _TURNS:
         return rotation(_TURNS[name], pivot)
     turn = rotation((0.0, 0.0, 1.0), pivot)
-    if case.holder.free == ("rotation",):
+    if holder.free == ("rotation",):
         return rotation((0.0, 0.0, _closing_sense(turn, pairing)), pivot)
     return turn
 
@@ -102,7 +84,6 @@ def _closing_sense(turn: RigidMotion, pairing: Pairing) -> float:
     return 1.0 if pairing.weights @ closing >= 0.0 else -1.0
 
 
-def _load(case: Case, motion: RigidMotion, names: tuple[str, ...]) -> float:
-    if names == ("rotation",) and case.load.moment is not None:
-        return case.load.moment  # positive where it presses, in either sense of rotation
-    return applied(case, motion)
+def _load(holder: Holder, motion: RigidMotion) -> float:
+    closing = holder.closing_moment
+    return applied(holder, motion) if closing is None else closing

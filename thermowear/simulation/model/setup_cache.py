@@ -6,13 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from ...case.tables.schema import Case
-from .wear_shares import closes_by_wear, softness_of_parts
+from ...model.meshes import Zone
+from ...model.model import Model
+from .wear_shares import softness_of_parts
 
 Part = TypeVar("Part")
-
-_EXCHANGE = ("conductance", "gap_conductance", "partition")
-"""Keys of the heat table for the interface alone, no inputs of the conduction in the bodies."""
 
 
 class SetupCache:
@@ -56,36 +54,28 @@ class CacheKeys:
     conduction: tuple
 
     @property
-    def zone(self) -> tuple[float, float] | None:
+    def zone(self) -> Zone | None:
         """Range of x that the bodies are meshed for [m]."""
         return self.mesh[-1]
 
 
-def inputs(case: Case, zone: tuple[float, float] | None = None) -> CacheKeys:
-    """Cache keys of a case meshed for a zone (by default the expected contact zone)."""
-    if zone is None:
-        zone = case.geometry.expected_zone(case.pressing())
-    mesh = (case.model, case.geometry, case.mesh, case.contact.pressure_degree, zone)
-    materials = {part: case.material(part).model_dump() for part in case.geometry.parts}
-    hot = case.heat is not None
-    elastic = (
-        "young_modulus",
-        "poisson_ratio",
-        *(("expansion", "expansion_factor") if hot else ()),
-    )
-    points = (mesh, softness_of_parts(case), closes_by_wear(case))
-    elasticity = (points, hot, _chosen(materials, lambda key: key in elastic))
-    if case.heat is None:
-        return CacheKeys(mesh, points, elasticity, ())
-    bodies = _chosen(materials, lambda key: key not in ("hardness", *elastic))
-    heat = {key: value for key, value in case.heat.model_dump().items() if key not in _EXCHANGE}
-    carried = case.motion if heat.get("advection") == "resolved" else None
-    return CacheKeys(mesh, points, elasticity, (elasticity, bodies, heat, carried))
-
-
-def _chosen(tables: dict[str, dict], chooses: Callable[[str], bool]) -> dict[str, dict]:
-    """Tables reduced to the chosen keys."""
-    return {
-        name: {key: value for key, value in table.items() if chooses(key)}
-        for name, table in tables.items()
+def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
+    """Cache keys of a model meshed for a zone (by default the expected contact zone)."""
+    interface, materials, heat = model.interface, model.materials, model.heat
+    zone = model.expected_zone if zone is None else zone
+    section = model.kinematics, model.thickness, model.sector, model.symmetry
+    spaces = model.discretisation.degree, interface.pressure_degree
+    mesh = (section, model.meshes, spaces, zone)
+    shares = softness_of_parts(model), bool(interface.wearing_in_place)
+    points = (mesh, interface.initial_shape, shares)
+    strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}
+    if heat is None:
+        return CacheKeys(mesh, points, (points, strained), ())
+    expanding = {part: (m.expansion, m.expansion_factor) for part, m in materials.items()}
+    elasticity = (points, strained, expanding)
+    conducting = {
+        part: (m.conductivity, m.conductivity_factor, m.density, m.specific_heat)
+        for part, m in materials.items()
     }
+    carried = model.motion if heat.advection == "resolved" else None
+    return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried))

@@ -1,4 +1,4 @@
-"""System of a case: meshed, paired and assembled bodies; condensed on first use."""
+"""System of a model: meshed, paired and assembled bodies; condensed on first use."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ import scipy.sparse as sp
 
 from ...bulk.bodies import Bodies
 from ...bulk.mechanics.elasticity import Elasticity
-from ...case.tables.facing import Facing
-from ...case.tables.schema import Case
 from ...contact.operators.condensation import CondensedContact, Influence, influence
-from ...contact.operators.holder import Holder, hold
+from ...contact.operators.holder import RigidHolder, hold
 from ...contact.operators.sliding import Sliding
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
-from ...laws.distribution import Distribution, DutyFactor, InPlace, UniformTrack, rings
+from ...laws.distribution import Distribution
 from ...laws.interfaces import WearRate
 from ...laws.motions import RigidMotion
+from ...model.facing import Facing
+from ...model.meshes import Zone
+from ...model.model import Model
 from ...parallel import sum_over_ranks
 from ...timer import Phases
 from .contact_points import facing_parts
 from .elastic_system import dead_resultant
 from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem
-from .wear_laws import wear_laws
 from .worn_geometry import WornGeometry
 
 
@@ -36,7 +36,7 @@ class System:
 
     Attributes
     ----------
-    case : Case
+    model : Model
     bodies : Bodies
     pairing : Pairing
     elastic : Elasticity
@@ -44,7 +44,7 @@ class System:
         Bᵀ, see `contact.search.pairing`.
     basis : ndarray, shape (n, m)
         Pressure basis Ψ.
-    holder : Holder
+    holder : RigidHolder
     slides : Sliding or None
         Sliding kinematics of body 1; None without motion.
     pull : ndarray, shape (n, gdim)
@@ -56,21 +56,23 @@ class System:
     thermal : ThermalSystem or None
     phases : Phases
     parts : SetupCache
-        Set-up results shared with the systems of other cases.
+        Set-up results shared with other systems.
     inputs : CacheKeys
         Cache keys of this system.
+    zone : tuple of float or None
+        Range of x that the bodies are meshed for; None where the mesh has no zone [m].
     worn : WornGeometry or None
         Present if the meshes have been moved to the worn faces. The gap of the pairing remains that
         of the unworn bodies: the gap of the moved meshes minus the depths that they have lost.
     """
 
-    case: Case
+    model: Model
     bodies: Bodies
     pairing: Pairing
     elastic: Elasticity
     trace: sp.csr_matrix
     basis: np.ndarray
-    holder: Holder
+    holder: RigidHolder
     slides: Sliding | None
     pull: np.ndarray
     speed: np.ndarray
@@ -79,6 +81,7 @@ class System:
     phases: Phases
     parts: SetupCache
     inputs: CacheKeys
+    zone: Zone | None
     worn: WornGeometry | None = None
 
     @property
@@ -99,48 +102,47 @@ class System:
 
     def dead_resultant(self, motion: RigidMotion) -> np.ndarray:
         """Generalised forces of the dead load on a motion of each body, shape (2,) [N or N m]."""
-        return dead_resultant(self.case, self.elastic, self.dead_load, motion)
+        return dead_resultant(self.elastic, self.model.bodies[0].parts, self.dead_load, motion)
 
     @cached_property
     def facing(self) -> Facing:
         """Parts in contact at the contact points."""
         return facing_parts(self.bodies, self.pairing)
 
-    @property
+    @cached_property
     def press(self) -> np.ndarray:
         """Load direction of body 1, a unit vector of shape (gdim,)."""
-        return np.array(self.case.geometry.press_direction)
+        return np.array(self.model.holder.press)
+
+    @cached_property
+    def approaches(self) -> np.ndarray:
+        """Displacement of the pivot along the load direction per mode of the holder, (n_modes,)."""
+        pivot = np.array(self.model.holder.pivot)
+        return np.array([motion.at(pivot) @ self.press for motion in self.holder.motions])
+
+    def normal_force(self, pressure: np.ndarray) -> float:
+        """Resultant of a pressure (n,) and its friction along the load direction [N]."""
+        return float(self.weights @ (pressure * (self.pull @ self.press)))
 
     @property
     def softness(self) -> float:
         """Compliance of the layer between the faces [m/Pa]."""
-        return self.case.contact.compliance or 0.0
+        return self.model.interface.compliance
 
     @property
     def friction(self) -> float:
-        return self.case.contact.nominal_friction
+        return self.model.interface.nominal_friction
 
     @cached_property
     def laws(self) -> dict[int, WearRate]:
         """Wear laws by index of the body (0 is body 1); bodies that do not wear are left out."""
-        return wear_laws(self.case)
+        return {index: wear.law for index, wear in self.model.interface.wear.items()}
 
     @cached_property
     def spreads(self) -> dict[int, Distribution]:
         """Distribution of the wear of each wearing body, by its index."""
-        return {index: self._spread(index) for index in self.laws}
-
-    def _spread(self, index: int) -> Distribution:
-        geometry = self.case.geometry
-        if self.case.wear[geometry.bodies[index]].spread == "in-place":
-            return InPlace()
-        if geometry.duty is not None:
-            arms = self.pairing.points[:, :2] - np.array(geometry.rotation_center)
-            return rings(np.linalg.norm(arms, axis=1), self.weights, geometry.duty)
-        if geometry.track is None:
-            return DutyFactor(geometry.sector)
-        assert geometry.thickness_factor is not None  # only plane models have tracks
-        return UniformTrack(self.weights / geometry.thickness_factor / geometry.track)
+        at = self.pairing.points, self.weights, self.model.thickness or 1.0
+        return {index: wear.distribution(*at) for index, wear in self.model.interface.wear.items()}
 
     def worn_volumes(self, worn: np.ndarray) -> np.ndarray:
         """Wear volumes of both bodies, whole tracks, from depths (2, n), shape (2,) [m³]."""
@@ -177,7 +179,7 @@ class System:
         """System with given coefficients of friction (n,) in place of the nominal one."""
         if self.slides is None or np.all(friction == self.friction):
             return self
-        transverse = self.case.contact.transverse_friction
+        transverse = self.model.interface.transverse_friction
         pull = self.slides.pull(self.pairing.normals, friction[:, None], transverse)
         return replace(self, holder=hold(self.pairing, pull, self.holder.drives), pull=pull)
 

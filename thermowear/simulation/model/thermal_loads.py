@@ -11,10 +11,11 @@ from ...bulk.bodies import Bodies
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.heat_equation import given_rises
 from ...bulk.heat.surface_heat import surface_heat
-from ...bulk.kinematics import Model
+from ...bulk.kinematics import Kinematics
 from ...bulk.surface_area import surface_area
-from ...case.tables.heat import HeatTable
-from ...case.tables.history import TemperatureHistory
+from ...laws.time_course import TimeFunction
+from ...model.heat import Heat
+from ...model.model import Model
 
 
 @dataclass(frozen=True)
@@ -25,13 +26,13 @@ class ThermalLoad:
     ----------
     heat : ndarray, shape (n_owned,)
         Nodal heat: prescribed, and from surroundings at other than the ambient temperature of the
-        case [W].
+        model [W].
     prescribed : float
         Heat into the bodies through surfaces with a given flux or power [W].
     magnitude : float
         Sum of the magnitudes of that heat [W].
     ambient : float
-        Rise of the surroundings over the ambient temperature of the case [K].
+        Rise of the surroundings over the ambient temperature of the model [K].
     given : ndarray or None, shape (n_owned,)
         Prescribed rises at the fixed nodes, zero elsewhere; None: those of the conduction [K].
     """
@@ -48,15 +49,15 @@ class ThermalLoad:
 
 
 class ThermalLoads:
-    """Thermal loads of a case as functions of time.
+    """Thermal loads as functions of time.
 
     Parameters
     ----------
     constant : ThermalLoad
         Loads constant in time.
     ambient : float
-        Ambient temperature of the case [K].
-    given : dict of str to (TemperatureHistory or float, ndarray)
+        Ambient temperature of the model [K].
+    given : dict of str to (TimeFunction or float, ndarray)
         Prescribed temperatures by surface, with the nodal rises (n_owned,) per unit rise of it;
         empty if all are constant.
     surroundings : tuple or None
@@ -67,8 +68,8 @@ class ThermalLoads:
         self,
         constant: ThermalLoad,
         ambient: float,
-        given: Mapping[str, tuple[TemperatureHistory | float, np.ndarray]],
-        surroundings: tuple[TemperatureHistory, np.ndarray] | None,
+        given: Mapping[str, tuple[TimeFunction | float, np.ndarray]],
+        surroundings: tuple[TimeFunction, np.ndarray] | None,
     ):
         self._constant = constant
         self._ambient = ambient
@@ -90,37 +91,23 @@ class ThermalLoads:
         return ThermalLoad(heat, constant.prescribed, constant.magnitude, above, given)
 
 
-def temperature_at(given: TemperatureHistory | float, time: float) -> float:
+def temperature_at(given: TimeFunction | float, time: float) -> float:
     """Prescribed temperature [K] at a time [s]."""
-    return given.at(time) if isinstance(given, TemperatureHistory) else given
+    return given.at(time) if isinstance(given, TimeFunction) else given
 
 
 def thermal_loads(
-    heat: HeatTable,
-    bodies: Bodies,
-    model: Model,
-    conduction: Conduction,
-    round_the_ring: Mapping[str, float],
+    model: Model, heat: Heat, bodies: Bodies, kinematics: Kinematics, conduction: Conduction
 ) -> ThermalLoads:
-    """Assemble the thermal loads of a case. Every rank calls.
-
-    Parameters
-    ----------
-    heat : HeatTable
-    bodies : Bodies
-    model : Model
-    conduction : Conduction
-    round_the_ring : mapping of str to float
-        Ratio of the area of each surface of the case to its area in the model.
-    """
+    """Assemble the thermal loads of a model with heat. Every rank calls."""
     space = conduction.space
     total = np.zeros(len(conduction.fixed))
-    areas = {s: surface_area(bodies, model, s) for s in (*heat.flux, *heat.power)}
-    powers = {s: q * round_the_ring[s] * areas[s] for s, q in heat.flux.items()} | heat.power
+    areas = {s: surface_area(bodies, kinematics, s) for s in (*heat.flux, *heat.power)}
+    powers = {s: q * model.ring(s) * areas[s] for s, q in heat.flux.items()} | dict(heat.power)
     for surface, power in powers.items():
-        total += surface_heat(bodies, model, space, surface, power / areas[surface])
+        total += surface_heat(bodies, kinematics, space, surface, power / areas[surface])
     given, surroundings = {}, None
-    if any(isinstance(T, TemperatureHistory) for T in heat.temperature.values()):
+    if any(isinstance(T, TimeFunction) for T in heat.temperature.values()):
         for surface, T in heat.temperature.items():
             unit = {name: float(name == surface) for name in heat.temperature}
             given[surface] = T, given_rises(bodies, space, unit, conduction.even)[1]

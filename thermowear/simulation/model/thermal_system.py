@@ -1,4 +1,4 @@
-"""Heat conduction in the bodies of a case and heat exchange at their contact."""
+"""Heat conduction in the bodies of a model and heat exchange at their contact."""
 
 from __future__ import annotations
 
@@ -20,16 +20,15 @@ from ...bulk.heat.varying import (
     varying_conduction,
     varying_expansion,
 )
-from ...bulk.kinematics import Model
 from ...bulk.mechanics.elasticity import Elasticity
-from ...case.tables.facing import Facing
-from ...case.tables.schema import Case
 from ...contact.operators.heat import InterfaceHeat
 from ...contact.operators.heat_condensation import bath_matrix, condense_heat
 from ...contact.operators.traces import value_trace
 from ...contact.search.pairing import Pairing
+from ...model.facing import Facing
+from ...model.heat import Heat
+from ...model.model import Model
 from ...timer import Phases
-from .interface_laws import partition
 from .thermal_loads import ThermalLoads, temperature_at, thermal_loads
 
 
@@ -75,9 +74,8 @@ class ThermalSystem:
 
 
 def thermal_system(
-    case: Case,
-    bodies: Bodies,
     model: Model,
+    bodies: Bodies,
     pairing: Pairing,
     elastic: Elasticity,
     basis: np.ndarray,
@@ -85,28 +83,35 @@ def thermal_system(
     phases: Phases,
 ) -> ThermalSystem | None:
     """Assemble and condense conduction; None without heat. Every rank calls."""
-    heat = case.heat
+    heat, kinematics = model.heat, elastic.kinematics
     if heat is None:
         return None
     with phases("assemble conduction"):
-        space = lagrange_space(bodies.mesh, case.mesh.degree)
+        space = lagrange_space(bodies.mesh, model.discretisation.degree)
         upper, lower = pairing.sides
         traces = (value_trace(space, upper), value_trace(space, lower))
-        materials, times = conducting_bodies(case)
-        cooling = {surface: times[surface] * h for surface, h in heat.cooling.items()}
-        shift = max(_conductivities(case, materials)) / pairing.extent
+        materials = conducting_parts(model)
+        shift = max(_conductivities(model, heat, materials)) / pairing.extent
         given = {
             name: temperature_at(value, 0.0) - heat.ambient
             for name, value in heat.temperature.items()
         }
         bath = bath_matrix(space, traces, pairing.weights, shift)
-        passage = _passage(case)
-        conducting = conduction(bodies, model, space, materials, cooling, given, bath, passage)
+        conducting = conduction(
+            bodies,
+            kinematics,
+            space,
+            materials,
+            cooling(model, heat),
+            given,
+            bath,
+            _passage(model, heat),
+        )
         load = elastic.thermal_load(space)
-        loads = thermal_loads(heat, bodies, model, conducting, times)
-        conducting, expansions = _varying(case, conducting, bodies, model, elastic, materials)
+        loads = thermal_loads(model, heat, bodies, kinematics, conducting)
+        conducting, expansions = _varying(model, heat, conducting, elastic, materials)
     with phases("condense conduction"):
-        share = partition(case, facing)
+        share = model.interface.heat_partition(facing, model.materials)
         face = condense_heat(conducting, pairing.weights, basis, traces, shift, share)
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
@@ -116,69 +121,56 @@ def thermal_system(
 
 
 def _varying(
-    case: Case,
-    conducting: Conduction,
-    bodies: Bodies,
     model: Model,
+    heat: Heat,
+    conducting: Conduction,
     elastic: Elasticity,
     materials: dict[str, ThermalMaterial],
 ) -> tuple[Conduction, tuple[VaryingExpansion, ...]]:
-    """Make conductivity and expansion temperature-dependent where the case has tables."""
-    assert case.heat is not None
-    found = {part: case.material(part) for part in case.geometry.parts}
-    conducts = {p: m.conductivity_factor.table for p, m in found.items() if m.conductivity_factor}
-    expands = {p: m.expansion_factor.table for p, m in found.items() if m.expansion_factor}
+    """Make conductivity and expansion temperature-dependent where materials have tables."""
+    found, ambient = model.materials.items(), heat.ambient
+    conducts = {p: m.conductivity_factor for p, m in found if m.conductivity_factor is not None}
+    expands = {p: m.expansion_factor for p, m in found if m.expansion_factor is not None}
     if not conducts and not expands:
         return conducting, ()
-    ambient = case.heat.ambient
     return (
-        varying_conduction(conducting, bodies, model, materials, conducts, ambient),
+        varying_conduction(
+            conducting, elastic.bodies, elastic.kinematics, materials, conducts, ambient
+        ),
         varying_expansion(elastic, conducting.space, expands, ambient),
     )
 
 
-def _conductivities(case: Case, materials: dict[str, ThermalMaterial]) -> list[float]:
+def _conductivities(model: Model, heat: Heat, materials: dict[str, ThermalMaterial]) -> list[float]:
     """Conductivities of all parts at the ambient temperature, tables included [W/(m K)]."""
-    assert case.heat is not None
-    factors = [case.material(part).conductivity_factor for part in materials]
-    ambient = np.array(case.heat.ambient)
+    factors = [model.materials[part].conductivity_factor for part in materials]
     return [
-        material.conductivity * (1.0 if factor is None else float(factor.table.value(ambient)))
+        material.conductivity * (1.0 if factor is None else float(factor.value(heat.ambient)))
         for material, factor in zip(materials.values(), factors, strict=True)
     ]
 
 
-def _passage(case: Case) -> Passage | None:
+def _passage(model: Model, heat: Heat) -> Passage | None:
     """Motion of body 2 past body 1 for advection; None where conduction neglects it."""
-    heat, geometry, motion = case.heat, case.geometry, case.motion
-    assert heat is not None
-    if heat.advection == "none" or motion is None:
+    motion = model.motion
+    if heat.advection == "none" or motion.at_rest:
         return None
-    parts, center = geometry.parts_of(geometry.bodies[1]), geometry.rotation_center
-    one_way = motion.one_way  # body 1 over body 2 along x, or body 2 about a centre
-    speed = -(one_way.velocity or 0.0) if center is None else one_way.angular_velocity or 0.0
-    return Passage(parts, center, speed, spread=heat.advection == "spread")
+    # body 1 over body 2 along x, or body 2 about a centre
+    speed = -(motion.velocity or 0.0) if motion.center is None else motion.angular_velocity or 0.0
+    return Passage(model.bodies[1].parts, motion.center, speed, spread=heat.advection == "spread")
 
 
-def thermal_material(case: Case, part: str) -> ThermalMaterial:
-    """Conductivity and heat capacity of a part."""
-    material = case.material(part)
-    assert material.conductivity is not None  # the case has been checked
-    if material.density is None or material.specific_heat is None:
-        return ThermalMaterial(material.conductivity)
-    return ThermalMaterial(material.conductivity, material.density * material.specific_heat)
+def conducting_parts(model: Model) -> dict[str, ThermalMaterial]:
+    """Conductivity and heat capacity by part, of whole rings where these pass the contact."""
+    why = "needed because the model has heat"
+    return {
+        part: ThermalMaterial(m.known("conductivity", why), m.capacity).times(ring)
+        for body in model.bodies
+        for ring in [body.ring]
+        for part, m in body.materials.items()
+    }
 
 
-def conducting_bodies(case: Case) -> tuple[dict[str, ThermalMaterial], dict[str, float]]:
-    """Materials by part and area factors by surface, for the modelled sector.
-
-    All of a rotating body 2 passes under a body 1 that covers a sector and is heated: its whole
-    ring conducts, stores and cools.
-    """
-    geometry = case.geometry
-    moving, sector = geometry.bodies[1], geometry.sector
-    materials = {part: thermal_material(case, part) for part in geometry.parts}
-    for part in geometry.parts_of(moving):
-        materials[part] = materials[part].times(1 / sector)
-    times = {s: 1 / sector if s.startswith(f"{moving}_") else 1.0 for s in geometry.surfaces}
-    return materials, times
+def cooling(model: Model, heat: Heat) -> dict[str, float]:
+    """Heat transfer coefficients by surface, of whole rings likewise [W/(m² K)]."""
+    return {surface: model.ring(surface) * h for surface, h in heat.cooling.items()}

@@ -26,7 +26,7 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
     Every rank calls; ranks other than 0 return None. Cells are in the order of the mesh file.
     """
     mesh, elastic = system.bodies.mesh, system.elastic
-    n = max(system.case.mesh.degree, 2)
+    n = max(system.model.discretisation.degree, 2)
     grid, pieces = _GRIDS[mesh.topology.cell_name()](n)
     centre = grid.mean(axis=0)
     inside = centre + (grid - centre) * (1 - _INSET)
@@ -65,15 +65,14 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
 
 def _body_of_tag(system: System) -> np.ndarray:
     """Number of the body (from 1) by cell tag, including the tags of its zones; 0 for tag 0."""
-    geometry = system.case.geometry
-    owners = [geometry.zones.get(part, part) for part in system.bodies.names]
-    return np.array([0, *(geometry.bodies.index(owner) + 1 for owner in owners)])
+    bodies = enumerate(system.model.bodies, start=1)
+    numbers = {part: number for number, body in bodies for part in body.parts}
+    return np.array([0, *(numbers[part] for part in system.bodies.names)])
 
 
 def _with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -> np.ndarray:
     """Add the rigid motion of the holder to the nodes of body 1."""
-    geometry = system.case.geometry
-    upper = system.elastic.owned_by(*geometry.parts_of(geometry.bodies[0]))
+    upper = system.elastic.owned_by(*system.model.bodies[0].parts)
     nodes = system.elastic.nodes()
     moved = displacement.reshape(nodes.shape).copy()
     moved[upper] += motion.at(nodes[upper])

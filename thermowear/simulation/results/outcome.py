@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from ...laws.motions import RigidMotion
 from ..interface.body_state import BodyState, ContactState
 from ..model.system import System
-from .result import FrictionHistory, Interface, Modes, TrackHistory
+from .result import FrictionHistory, InterfaceFields, Modes, TrackHistory
 from .rows import HeatRow, HistoryRow
 
 
@@ -21,11 +21,11 @@ class Outcome:
     motion : RigidMotion
         Rigid motion of the holder.
     state : BodyState
-    interface : Interface
+    interface : InterfaceFields
     extra : dict
         Entries that the analysis adds to the summary.
     history : list of HistoryRow
-    outputs : dict of float to Interface
+    outputs : dict of float to InterfaceFields
         Interface at the output times, by time [s].
     friction : FrictionHistory or None
         Results of a fretting analysis.
@@ -44,10 +44,10 @@ class Outcome:
     contact: ContactState
     motion: RigidMotion
     state: BodyState
-    interface: Interface
+    interface: InterfaceFields
     extra: dict
     history: list[HistoryRow]
-    outputs: dict[float, Interface]
+    outputs: dict[float, InterfaceFields]
     friction: FrictionHistory | None = None
     track: TrackHistory | None = None
     heat: list[HeatRow] = field(default_factory=list)

@@ -10,7 +10,7 @@ from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
 
 
 @dataclass(frozen=True)
-class Interface:
+class InterfaceFields:
     """State of the interface, one entry per contact point; names, units as in ``interface.csv``.
 
     Without ``[heat]`` temperatures and fluxes are NaN. Temperatures are absolute.
@@ -179,7 +179,7 @@ class Frame:
         Earlier frames whose number is no multiple of this are discarded.
     time : float
         [s]
-    interface : Interface
+    interface : InterfaceFields
     fields : BodyFields or None
         Fields of the bodies, on rank 0 only.
     track : WornTrack or None
@@ -189,7 +189,7 @@ class Frame:
     number: int
     every: int
     time: float
-    interface: Interface
+    interface: InterfaceFields
     fields: BodyFields | None
     track: WornTrack | None = None
 
@@ -200,14 +200,14 @@ class Result:
 
     Attributes
     ----------
-    interface : Interface
+    interface : InterfaceFields
         Interface at the end.
     profile : Profile
     summary : dict
         Numbers in SI, the unit in each key.
     history : list of HistoryRow
         Steps of a transient analysis.
-    outputs : dict of float to Interface
+    outputs : dict of float to InterfaceFields
         Interface at the output times, by time [s].
     fields : BodyFields or None
         Fields of the bodies, on rank 0 only.
@@ -223,11 +223,11 @@ class Result:
         Results of a stability analysis.
     """
 
-    interface: Interface
+    interface: InterfaceFields
     profile: Profile
     summary: dict
     history: list[HistoryRow]
-    outputs: dict[float, Interface]
+    outputs: dict[float, InterfaceFields]
     fields: BodyFields | None
     friction: FrictionHistory | None = None
     track: TrackHistory | None = None

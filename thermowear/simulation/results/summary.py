@@ -6,7 +6,9 @@ import numpy as np
 
 from ...bulk.field import total
 from ...contact.search.zones import contact_zones
-from ..model.rigid_modes import applied, guides, reference_point
+from ...laws.coefficients.constant import Constant
+from ...model.analyses import Analysis
+from ..model.rigid_modes import applied, guides
 from ..model.system import System
 from ..model.thermal_loads import ThermalLoad
 from ..model.thermal_system import ThermalSystem
@@ -30,9 +32,9 @@ _ROTATIONS = {
 """Keys of the holder rotations, in the order of the components of a rotation vector."""
 
 
-def summarise(system: System, outcome: Outcome) -> dict:
+def summarise(system: System, analysis: Analysis, outcome: Outcome) -> dict:
     """All numbers of ``summary.json`` except timings. Quantities that do not exist are None."""
-    case, w = system.case, system.weights
+    model, w = system.model, system.weights
     contact, interface = outcome.contact, outcome.interface
     p, sliding = contact.pressure, system.slides is not None
     friction = sliding * contact.conditions.friction * p  # at rest there is none
@@ -41,15 +43,15 @@ def summarise(system: System, outcome: Outcome) -> dict:
     worn = interface.pressure > 0
     volumes = system.worn_volumes(np.array([interface.wear_1, interface.wear_2]))
     summary = {
-        "title": case.title,
-        "analysis": case.analysis.type,
-        "model": case.model,
-        "method": case.contact.method,
+        "title": model.title,
+        "analysis": analysis.type,
+        "model": model.kinematics,
+        "method": model.interface.method.name,
         "dofs_displacement": total(system.elastic.space),
         "dofs_temperature": _thermal_dofs(system),
         "contact_points": len(w),
-        "friction": system.friction if isinstance(case.contact.friction, float) else None,
-        "normal_force_N": normal_force(system, p),
+        "friction": system.friction if isinstance(model.interface.friction, Constant) else None,
+        "normal_force_N": system.normal_force(p),
         "friction_force_N": float(w @ friction),
         "friction_torque_Nm": _torque(system, friction),
         "guide_force_N": None,
@@ -59,7 +61,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": float(outcome.motion.at(reference_point(case)) @ system.press),
+        "approach_m": float(outcome.motion.at(np.array(model.holder.pivot)) @ system.press),
         "max_temperature_K": _number(outcome.state.hottest),
         "friction_power_W": float(w @ (contact.conditions.heating * p)),
         **_conducted(system, outcome),
@@ -70,7 +72,9 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "wear_volume_1_m3": float(volumes[0]),
         "wear_volume_2_m3": float(volumes[1]),
         "wear_coefficient_per": {
-            name: law.per for name, law in case.wear.items() if law.coefficient is not None
+            model.bodies[index].name: wear.per
+            for index, wear in model.interface.wear.items()
+            if wear.per is not None
         },
     }
     about = _passing(system, outcome) | _guide_reactions(system, p) | _rotations(system, outcome)
@@ -80,7 +84,7 @@ def summarise(system: System, outcome: Outcome) -> dict:
 def _friction(system: System, outcome: Outcome) -> dict[str, float]:
     """Range of the coefficient of friction in contact and its force-weighted mean, if varying."""
     pressure = outcome.contact.pressure
-    if not system.case.friction_varies or not pressure.any():
+    if not system.model.interface.friction_varies or not pressure.any():
         return {}
     friction, carries = outcome.contact.conditions.friction, pressure > 0
     return {
@@ -108,15 +112,15 @@ def _thermal_load(thermal: ThermalSystem, outcome: Outcome) -> ThermalLoad:
 
 def _passing(system: System, outcome: Outcome) -> dict:
     """Advection of heat by a body 2 passing under body 1, and heat losses of the bodies."""
-    thermal, rise, heat = system.thermal, outcome.state.rise, system.case.heat
-    if thermal is None or rise is None or heat is None or not system.case.geometry.passes:
+    thermal, rise, heat = system.thermal, outcome.state.rise, system.model.heat
+    if thermal is None or rise is None or heat is None or not system.model.motion.passes:
         return {}
     advection = thermal.conduction.advection
     stabilised = advection is not None and advection.stabilised
     ambient = _thermal_load(thermal, outcome).ambient
     still = np.zeros(len(rise))
     cooled, _, carried = thermal.conduction.losses(rise, still, ambient=ambient)
-    leaves = advection is not None and system.case.geometry.rotation_center is None
+    leaves = advection is not None and system.model.motion.center is None
     return {
         "heat_advection": "stabilised" if stabilised else heat.advection,
         "max_cell_peclet_number": None if advection is None else advection.peclet,
@@ -125,20 +129,14 @@ def _passing(system: System, outcome: Outcome) -> dict:
     }
 
 
-def normal_force(system: System, pressure: np.ndarray) -> float:
-    """Resultant of pressure and friction along the load direction [N]."""
-    return float(system.weights @ (pressure * (system.pull @ system.press)))
-
-
 def _torque(system: System, friction: np.ndarray) -> float | None:
     """Friction moment about the axis of rotation of body 1 or 2 [N m]; None without one."""
-    case, motion = system.case, system.case.motion
-    if case.model == "axisymmetric" and (motion is None or motion.velocity is None):
+    motion = system.model.motion
+    if system.model.kinematics == "axisymmetric" and motion.velocity is None:
         return float(system.weights @ (friction * system.pairing.points[:, 0]))
-    center = case.geometry.rotation_center
-    if center is None:
+    if motion.center is None:
         return None
-    arms = system.pairing.points[:, :2] - np.array(center)
+    arms = system.pairing.points[:, :2] - np.array(motion.center)
     return float(system.weights @ (friction * np.linalg.norm(arms, axis=1)))
 
 
@@ -147,21 +145,21 @@ def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
 
     For the whole body: the forces between the halves of a symmetric section cancel.
     """
-    case, points = system.case, system.pairing.on_body_1
+    model, points = system.model, system.pairing.on_body_1
     reactions = {}
-    for name, motion in guides(case).items():
-        if name not in case.holder.free:
+    for name, motion in guides(model).items():
+        if name not in model.holder.free:
             work = np.einsum("ni,ni->n", motion.at(points), system.pull)
-            given = applied(case, motion) + float(system.dead_resultant(motion)[0])
+            given = applied(model.holder, motion) + float(system.dead_resultant(motion)[0])
             reaction = float(system.weights @ (pressure * work)) - given
-            reactions[_GUIDES[name]] = 0.0 if case.geometry.symmetry else reaction
+            reactions[_GUIDES[name]] = 0.0 if model.symmetry else reaction
     return reactions
 
 
 def _rotations(system: System, outcome: Outcome) -> dict[str, float]:
     """Rotation of the holder about each of its free axes [rad]."""
     turned = zip(_ROTATIONS.items(), outcome.motion.rotation, strict=True)
-    return {key: float(angle) for (name, key), angle in turned if name in system.case.holder.free}
+    return {key: float(angle) for (name, key), angle in turned if name in system.model.holder.free}
 
 
 def _thermal_dofs(system: System) -> int:

@@ -7,8 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...case.validation.comparison import other_mesh
-from ...errors import CaseError
+from ...errors import CaseError, other_mesh
 from ...serialise import serialisable
 from ..model.system import System
 
@@ -67,7 +66,7 @@ class Saved:
             If the bodies differ from those that the analysis started with.
         """
         if self.mesh not in (None, mesh_checksum(system)):
-            raise CaseError(other_mesh(system.case))
+            raise CaseError(other_mesh(system.model.meshes.path))
         if not all(system.comm.allgather(self._began_with(system))):
             raise CaseError(
                 "--resume: the meshed bodies are not those of the checkpoint; the initial shape or "
@@ -88,4 +87,4 @@ class Saved:
 
 def mesh_checksum(system: System) -> str | None:
     """Checksum of the mesh of a system if read from a file; None otherwise."""
-    return system.bodies.checksum if system.case.geometry.from_file else None
+    return None if system.model.meshes.path is None else system.bodies.checksum

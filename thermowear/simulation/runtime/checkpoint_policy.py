@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...case.tables.analyses import Fretting, Timed
+from ...model.analyses import SteppedAnalysis
 from ..model.system import System
 from .checkpoint_data import Progress, Saved
 from .observer import Observer
@@ -30,14 +30,15 @@ class Saving:
     ----------
     system : System
         System that the analysis starts with.
+    settings : SteppedAnalysis
     record : KeptStates
     observer : Observer
         Observer that receives the checkpoints.
     """
 
-    def __init__(self, system: System, record: KeptStates, observer: Observer):
-        settings = system.case.analysis
-        assert isinstance(settings, Timed | Fretting)
+    def __init__(
+        self, system: System, settings: SteppedAnalysis, record: KeptStates, observer: Observer
+    ):
         self._system = system
         self._record = record
         self._observer = observer

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ...case.tables.analyses import Fretting, Timed
-from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion
 from ..interface.body_state import BodyState, ContactState
 from ..model.system import System
 from ..results.fields import sample
-from ..results.result import Frame, Interface, WornTrack
+from ..results.result import Frame, InterfaceFields, WornTrack
 from .observer import Observer
 
-Shown = tuple[ContactState, RigidMotion, BodyState, Interface]
+Shown = tuple[ContactState, RigidMotion, BodyState, InterfaceFields]
 
 
 class FrameRecorder:
@@ -25,16 +23,14 @@ class FrameRecorder:
 
     Parameters
     ----------
-    case : Case
-        Case whose analysis limits the number of frames.
+    most : int
+        Largest number of frames.
     observer : Observer
         Observer that receives the frames.
     """
 
-    def __init__(self, case: Case, observer: Observer):
-        settings = case.analysis
-        assert isinstance(settings, Timed | Fretting)
-        self._most = settings.frames
+    def __init__(self, most: int, observer: Observer):
+        self._most = most
         self._observer = observer
 
     def take(

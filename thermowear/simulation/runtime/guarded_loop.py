@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TypeVar
 
 from ...errors import ComputationError, UnwritableError
+from ...model.analyses import SteppedAnalysis
 from ..model.system import System
 from .checkpoint_policy import KeptStates, Saving
 from .observer import Observer
@@ -16,6 +17,7 @@ State = TypeVar("State")
 
 def go_through(
     system: System,
+    settings: SteppedAnalysis,
     phase: str,
     states: Iterable[State],
     record: KeptStates,
@@ -30,6 +32,7 @@ def go_through(
     Parameters
     ----------
     system : System
+    settings : SteppedAnalysis
     phase : str
         Name of the phase for timing.
     states : iterable
@@ -53,7 +56,7 @@ def go_through(
     UnwritableError
         If results cannot be written.
     """
-    saving = Saving(system, record, observer)
+    saving = Saving(system, settings, record, observer)
     stopped: BaseException | None = None
     with system.phases(phase), StopRequest() as stop:
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..results.result import Frame, FrictionInterface, Interface, WornTrack
+from ..results.result import Frame, FrictionInterface, InterfaceFields, WornTrack
 from ..results.rows import CycleRow, HeatRow, HistoryRow, LoadRow
 from .checkpoint_data import Saved
 
@@ -33,7 +33,7 @@ class Observer:
     def output(
         self,
         time: float,
-        interface: Interface,
+        interface: InterfaceFields,
         friction: FrictionInterface | None = None,
         track: WornTrack | None = None,
     ) -> None:

@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from ...case.tables.analyses import Timed
 from ...errors import ComputationError
+from ...model.analyses import TimedAnalysis
 from ...serialise import serialisable
 from ..interface.sdirk import InterfaceState, TrialStep, WearProblem, advance_with_error, next_step
 from .step_sizes import AnySize, StepSizes, ends
@@ -56,7 +56,7 @@ class Moment:
 
 def moments(
     problem: WearProblem,
-    settings: Timed,
+    settings: TimedAnalysis,
     steady,
     sizes: StepSizes | None = None,
     last: Moment | None = None,
@@ -66,7 +66,7 @@ def moments(
     Parameters
     ----------
     problem : WearProblem
-    settings : Timed
+    settings : TimedAnalysis
     steady : object
         Steady state in the form that ``problem.steady`` takes; None without one.
     sizes : StepSizes, optional
@@ -97,7 +97,7 @@ def moments(
         yield last
 
 
-def is_over(settings: Timed, problem: WearProblem, last: Moment) -> bool:
+def is_over(settings: TimedAnalysis, problem: WearProblem, last: Moment) -> bool:
     """Test whether the running-in ends with this state."""
     end = times_to_hit(settings, problem)[-1]
     return last.time >= end or _is_steady(settings, last.distance)
@@ -111,7 +111,12 @@ def _first(problem: WearProblem, steady: np.ndarray | None) -> Moment:
 
 
 def _next(
-    problem: WearProblem, settings: Timed, steady, sizes: StepSizes, target: float, last: Moment
+    problem: WearProblem,
+    settings: TimedAnalysis,
+    steady,
+    sizes: StepSizes,
+    target: float,
+    last: Moment,
 ) -> Moment:
     """Step towards a target time that must be hit exactly [s]."""
     way = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
@@ -171,12 +176,12 @@ def _accept(
     raise ComputationError(f"{settings.type}: no step is small enough at {last.time:g} s{trouble}")
 
 
-def times_to_hit(settings: Timed, problem: WearProblem) -> list[float]:
+def times_to_hit(settings: TimedAnalysis, problem: WearProblem) -> list[float]:
     """Times that must be hit exactly, in increasing order; the last one ends the run [s]."""
-    end = np.inf if settings.end_time is None else settings.end_time
-    corners = () if settings.end_time is None else problem.corners(end)
+    end = settings.end_time
+    corners = () if end == np.inf else problem.corners(end)
     return sorted({*settings.output_times, *corners, end})
 
 
-def _is_steady(settings: Timed, distance: float) -> bool:
+def _is_steady(settings: TimedAnalysis, distance: float) -> bool:
     return settings.until == "steady" and distance <= settings.steady_tolerance

@@ -17,7 +17,7 @@ from ...case.starters import starter_text
 from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion, rotation, translation
 from ...simulation import Result
-from ...simulation.model.rigid_modes import reference_point
+from ...simulation.from_case import model_of
 from ..check import Check, compare
 from ..computed import computed
 
@@ -118,7 +118,7 @@ def _motion(case: Case, name: str) -> RigidMotion:
     if name in _AXES:
         return translation(_AXES[name])
     if name in _TURNS:
-        return rotation(_TURNS[name], reference_point(case))
+        return rotation(_TURNS[name], np.array(model_of(case).holder.pivot))
     return translation(case.geometry.press_direction)
 
 

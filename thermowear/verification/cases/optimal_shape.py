@@ -16,6 +16,7 @@ from ...geometry.cad.design import Design, write_table
 from ...simulation import Result
 from ...simulation.analyses.design import steady_design
 from ...simulation.analyses.positioning import prepare
+from ...simulation.from_case import model_of
 from ...timer import Phases
 from ..check import Check, compare
 from ..computed import computed
@@ -101,7 +102,7 @@ def design_of(case: Case, body: int) -> Design:
     """Steady shape of a body's face."""
     from mpi4py import MPI
 
-    return steady_design(prepare(case, MPI.COMM_WORLD, Phases(lambda _: None)), body)
+    return steady_design(prepare(model_of(case), MPI.COMM_WORLD, Phases(lambda _: None)), body)
 
 
 def furthest(steady: Result, state, chosen: np.ndarray) -> float:

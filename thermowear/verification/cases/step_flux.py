@@ -13,6 +13,7 @@ from ...case.tables.schema import Case
 from ...reference.step_flux import HalfSpace, surface_rises
 from ...simulation import Result
 from ...simulation.analyses.positioning import prepare
+from ...simulation.from_case import model_of
 from ...simulation.interface.factory import interface_problem
 from ...simulation.interface.interface_problem import InterfaceProblem
 from ...simulation.interface.sdirk import InterfaceState, advance
@@ -97,7 +98,7 @@ def _temperatures(
 
 def _orders() -> Iterator[Check]:
     """Convergence order in time, from equal steps that are halved successively."""
-    problem = interface_problem(prepare(heated(0.5, 1e4), MPI.COMM_WORLD, Phases()))
+    problem = interface_problem(prepare(model_of(heated(0.5, 1e4)), MPI.COMM_WORLD, Phases()))
     start = problem.start()
     warm = _march(problem, start, 0.0, 1.0, FINEST)
     for name, state, begin in (("from 1 s on", warm, 1.0), ("from the start on", start, 0.0)):

@@ -165,7 +165,7 @@ def _consistent(case: Case, result: Result, title: str) -> Iterator[Check]:
     assert case.motion is not None
     turned = case.geometry.rotation_center
     arms = i.x if turned is None else np.hypot(i.x - turned[0], i.y - turned[1])
-    speed = case.motion.one_way.angular_velocity * arms
+    speed = case.motion.angular_velocity * arms
     mean = (i.temperature_1 + i.temperature_2) / 2
     friction = case.contact.friction * case.contact.friction_factor.multipliers.value(
         i.pressure, speed, mean

@@ -1,0 +1,166 @@
+"""Interface of two bodies: contact faces and the laws of friction, heat and wear."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from ..laws.coefficients.conductance import PressureConductance, harmonic_mean
+from ..laws.coefficients.constant import Constant
+from ..laws.coefficients.multipliers import Multiplied, Multipliers
+from ..laws.interfaces import InterfaceLaw
+from ..laws.plausible import typical_rate, typical_value
+from ..laws.time_course import TimeFunction
+from .facing import WHY, Facing
+from .material import Material
+from .wear import FaceWear
+
+
+@dataclass(frozen=True)
+class HardnessConductance:
+    """Conductance in proportion to the pressure over the hardness of the faces.
+
+    Attributes
+    ----------
+    coefficient : float
+        [1/m], see `laws.coefficients.conductance`.
+    """
+
+    coefficient: float
+
+    def law(self, facing: Facing, materials: Mapping[str, Material]) -> PressureConductance:
+        """Conductance at the contact points of two faces."""
+        k = facing.of(materials, lambda material: material.known("conductivity", WHY))
+        hardness = facing.of(materials, lambda material: material.known("hardness", WHY))
+        return PressureConductance(self.coefficient, harmonic_mean(*k), harmonic_mean(*hardness))
+
+
+@dataclass(frozen=True)
+class ContactMethod:
+    """Contact solver and its parameters.
+
+    Attributes
+    ----------
+    name : str
+        ``"condensed"``: static condensation of the bodies to the interface; ``"penalty"`` and
+        ``"nitsche"``: full system.
+    penalty : float or None
+        Penalty stiffness, by default from the mesh [Pa/m].
+    theta : int
+        Variant of Nitsche's method: 1 symmetric, 0 incomplete, -1 skew-symmetric.
+    gamma : float or None
+        Stabilisation parameter of Nitsche's method, in units of ``E degree² / h``.
+    """
+
+    name: Literal["condensed", "penalty", "nitsche"] = "condensed"
+    penalty: float | None = None
+    theta: int = 1
+    gamma: float | None = None
+
+
+@dataclass(frozen=True)
+class Interface:
+    """Pair of contact faces, and their laws.
+
+    Attributes
+    ----------
+    faces : tuple of str
+        Contact surfaces of body 1 and of body 2.
+    friction : InterfaceLaw
+        Coefficient of friction in the direction of sliding.
+    friction_factors : Multipliers
+        Tabulated factors of the friction.
+    friction_history : TimeFunction or None
+        Time-dependent factor of the friction.
+    transverse_friction : float
+        Coefficient of friction across the sliding direction, on inclined faces (mu_d of Páczelt
+        and Mróz).
+    conductance : InterfaceLaw, HardnessConductance or None
+        Contact conductance [W/(m² K)]; None: perfect contact.
+    gap_conductance : float
+        Conductance of separated faces [W/(m² K)].
+    partition : float or str
+        Fraction of the friction heat released on body 1; ``"effusivity"``: ``e1/(e1 + e2)``.
+    wear : mapping of int to FaceWear
+        Wear of both faces by index (0 is body 1); faces that do not wear are left out.
+    closes_by_wear : bool
+        True if the gap between opposite points closes by wear where faces wear in place, as in
+        continued sliding; False if by elastic deflection, as in fretting.
+    compliance : float
+        Compliance of a soft layer between the faces [m/Pa].
+    initial_shape : str or None
+        File with an initial worn shape.
+    pressure_degree : int, str or None
+        Degree of the pressure space, by default one below the displacement; ``"lobatto"``: nodal
+        values at Gauss-Lobatto points.
+    method : ContactMethod
+    """
+
+    faces: tuple[str, str]
+    friction: InterfaceLaw = field(default_factory=lambda: Constant(0.0))
+    friction_factors: Multipliers = field(default_factory=Multipliers)
+    friction_history: TimeFunction | None = None
+    transverse_friction: float = 0.0
+    conductance: InterfaceLaw | HardnessConductance | None = None
+    gap_conductance: float = 0.0
+    partition: float | Literal["effusivity"] = 0.5
+    wear: Mapping[int, FaceWear] = field(default_factory=dict)
+    closes_by_wear: bool = True
+    compliance: float = 0.0
+    initial_shape: str | None = None
+    pressure_degree: int | Literal["lobatto"] | None = None
+    method: ContactMethod = field(default_factory=ContactMethod)
+
+    @cached_property
+    def friction_law(self) -> InterfaceLaw:
+        """Friction with its tabulated factors, without its history in time."""
+        factors = self.friction_factors
+        return Multiplied(self.friction, factors) if factors.variables else self.friction
+
+    @cached_property
+    def nominal_friction(self) -> float:
+        """Coefficient of friction without its factors; of a law, its value in a typical state."""
+        return typical_value(self.friction)
+
+    @property
+    def friction_varies(self) -> bool:
+        """True if the friction depends on time, temperature, pressure or speed."""
+        return bool(self.friction_law.variables) or self.friction_history is not None
+
+    @property
+    def varies(self) -> bool:
+        """True if friction, wear or conductance depend on temperature, pressure or speed."""
+        return (
+            not isinstance(self.conductance, Constant | None)
+            or bool(self.friction_law.variables)
+            or any(wear.varies for wear in self.wear.values())
+        )
+
+    @property
+    def wearing_in_place(self) -> dict[int, float]:
+        """Typical wear rates of the faces that close the gap by wear in place, by index [m/s]."""
+        return {
+            index: typical_rate(wear.law, self.nominal_friction)
+            for index, wear in self.wear.items()
+            if self.closes_by_wear and wear.in_place
+        }
+
+    def conductance_law(
+        self, facing: Facing, materials: Mapping[str, Material]
+    ) -> InterfaceLaw | None:
+        """Contact conductance at the points [W/(m² K)]; None: perfect contact."""
+        given = self.conductance
+        return given.law(facing, materials) if isinstance(given, HardnessConductance) else given
+
+    def heat_partition(
+        self, facing: Facing, materials: Mapping[str, Material]
+    ) -> float | np.ndarray:
+        """Fraction of the friction heat released into body 1, shape (n,) or uniform."""
+        if not isinstance(self.partition, str):
+            return self.partition
+        e1, e2 = facing.effusivities(materials)
+        return e1 / (e1 + e2)

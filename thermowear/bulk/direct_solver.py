@@ -9,9 +9,11 @@ import scipy.sparse as sp
 
 from ..errors import ComputationError
 
+_SINGULAR = "it is singular: a part of a body is not supported, or its cells are degenerate"
 _FAILURES = {
+    -6: _SINGULAR,
     -9: "its work space was too small",
-    -10: "it is singular: a part of a body is not supported, or its cells are degenerate",
+    -10: _SINGULAR,
     -13: "the memory does not suffice; use fewer elements or a lower degree",
 }
 """Reasons by the error code of MUMPS (INFOG(1))."""

@@ -9,11 +9,11 @@ import pytest
 
 import thermowear as tw
 from thermowear.case.tables.schema import as_plain
+from thermowear.contact.wear.implicit_step import newton_with_wear
 from thermowear.errors import ComputationError
 from thermowear.laws import parameter, registered, registered_laws
 from thermowear.laws.registry import REGISTERED
 from thermowear.simulation.interface import interface_problem
-from thermowear.simulation.interface.contact_solver import newton_with_wear
 
 from ..case.starter import FRETTING, GONE, RECIPROCATING, RUNNING_IN, solved, tables
 

@@ -27,15 +27,15 @@ import numpy as np
 
 from ...contact.solvers.coupled_positions import CoupledSolution, solve_coupled
 from ...contact.solvers.signorini import solve_contact
+from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.track import StrokeGrid, track
 from ...errors import ComputationError
+from ...laws.interfaces import WearRate
 from ..interface.contact_solver import ContactSolution
 from ..interface.sdirk import InterfaceState
 from ..model.system import System
 from .stroke import Position, condensed, spreading
 
-_NEWTON_STEPS = 40
-_SETTLED = 1e-11  # relative to the largest local rate
 _INNER = 0.9  # part of the faces that the distance from the steady state covers, without their ends
 
 
@@ -85,8 +85,8 @@ class ReciprocatingProblem:
         assert factor is not None  # plane models have one
         self._systems = [position.system for position in stroke]
         self._holder = system.holder
-        self._laws, self._friction = system.laws, system.friction
-        self._speeds = np.array([[position.speed] for position in stroke])
+        speeds = np.array([[position.speed] for position in stroke])
+        self._local = _LocalWear(tuple(system.laws.values()), speeds, system.friction)
         pairings = [there.pairing for there in self._systems]
         lengths = [position.length for position in stroke]
         self._length = float(system.pairing.position[-1])
@@ -129,7 +129,7 @@ class ReciprocatingProblem:
         pressure : ndarray, shape (J, m)
             Coefficients [Pa].
         """
-        return np.einsum("bjnm,bjm->n", self._spread, self._local(pressure))[None]
+        return np.einsum("bjnm,bjm->n", self._spread, self._local.value(pressure))[None]
 
     def of_cycle(self, contact: ContactSolution) -> CycleContact:
         """Contact quantities of the cycle over all positions."""
@@ -196,9 +196,7 @@ class ReciprocatingProblem:
         )
 
     def _solve(self, worn: np.ndarray, step: float, guess: ContactSolution) -> ContactSolution:
-        """Contact at the end of a step, by Newton's method for the wear laws.
-
-        An iterate is damped by half if its residual has not decreased.
+        """Contact at the end of a step.
 
         Parameters
         ----------
@@ -217,38 +215,56 @@ class ReciprocatingProblem:
                 "wear: more is worn off than the contact is long; where the steady state is asked "
                 "for, it needs more elements, or a larger analysis.steady_tolerance"
             )
-        pressure, least = guess.pressure, np.inf
-        for _ in range(_NEWTON_STEPS):
-            rates, slopes = self._local(pressure), self._slopes(pressure)
-            before = np.einsum("bjnm,bjm->n", self._spread, rates - slopes * pressure)
-            gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slopes)
-            solution = solve_coupled(
-                self._contacts, worn + step * before, gains, guess.memory.active
-            )
-            guess = self._contact(solution)
-            exact = self._local(guess.pressure)
-            error = np.abs(exact - rates - slopes * (guess.pressure - pressure)).max()
-            if error <= _SETTLED * exact.max():
-                return guess
-            back = 0.0 if error < least else 0.5
-            pressure, least = back * pressure + (1 - back) * guess.pressure, min(error, least)
-        raise ComputationError("contact: Newton's method for the implicit step of wear failed")
+
+        def solve(start: np.ndarray, slope: _LocalSlope, last: ContactSolution) -> ContactSolution:
+            gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slope.each)
+            depths = worn + step * np.einsum("bjnm,bjm->n", self._spread, start)
+            return self._contact(solve_coupled(self._contacts, depths, gains, last.memory.active))
+
+        return newton_with_wear(solve, self._local, guess)
 
     def _contact(self, solution: CoupledSolution) -> ContactSolution:
         motion = np.array([self._holder.amounts(d) for d in solution.motion])
         return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
 
-    def _local(self, pressure: np.ndarray) -> np.ndarray:
-        """Local wear rates of the wearing bodies, shape (n_wearing, J, m) [m/s]."""
-        return self._each(pressure, [law.rate for law in self._laws.values()])
 
-    def _slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivatives of the local wear rates with respect to pressure [m/s/Pa]."""
-        return self._each(pressure, [law.slope for law in self._laws.values()])
+@dataclass(frozen=True)
+class _LocalSlope:
+    """Derivatives of local wear rates by the local pressure, shape (n_wearing, J, m)."""
+
+    each: np.ndarray
+
+    def __matmul__(self, pressure: np.ndarray) -> np.ndarray:
+        return self.each * pressure
+
+
+@dataclass(frozen=True)
+class _LocalWear:
+    """Local wear rates in all positions, see `contact.wear.implicit_step`.
+
+    Attributes
+    ----------
+    laws : tuple of WearRate
+        Wear laws of the wearing bodies.
+    speeds : ndarray, shape (J, 1) [m/s]
+    friction : float
+    """
+
+    laws: tuple[WearRate, ...]
+    speeds: np.ndarray
+    friction: float
+
+    def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
+        """Local rates under coefficients of the pressure (J, m), shape (n_wearing, J, m) [m/s]."""
+        return self._each(pressure, [law.rate for law in self.laws])
+
+    def slope(self, pressure: np.ndarray, last: object = None) -> _LocalSlope:
+        """Derivatives of the local rates with respect to pressure [m/s/Pa]."""
+        return _LocalSlope(self._each(pressure, [law.slope for law in self.laws]))
 
     def _each(self, pressure: np.ndarray, functions) -> np.ndarray:
-        at = pressure, self._speeds
-        return np.array([of_law(*at, friction=self._friction) for of_law in functions])
+        at = pressure, self.speeds
+        return np.array([of_law(*at, friction=self.friction) for of_law in functions])
 
 
 def _unevenness(rate: np.ndarray, place: np.ndarray) -> float:

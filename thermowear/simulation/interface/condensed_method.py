@@ -8,10 +8,11 @@ import numpy as np
 
 from ...contact.operators.condensation import CondensedContact
 from ...contact.solvers.signorini import NoEquilibrium, SignoriniSolution, solve_contact
+from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
 from ..model.system import System
-from .contact_solver import ContactSolution, Slope, WearRates, newton_with_wear
+from .contact_solver import ContactSolution, Slope, StepWear, WearRates
 
 _TURNS = 60
 _HOT = (
@@ -100,8 +101,7 @@ class CondensedMethod:
             lambda worn, slope, last: self._solved(
                 contact, None, rigid, resting, worn, slope, last, load
             ),
-            rates,
-            1.0,
+            StepWear(rates, 1.0),
             start,
         ).pressure
 

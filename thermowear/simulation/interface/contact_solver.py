@@ -1,4 +1,4 @@
-"""Interface of contact solvers, and Newton's method for an implicit step of wear."""
+"""Interface of contact solvers, and wear rates with their derivative."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...errors import ComputationError
 from ...laws.distribution import Distribution
 from ...laws.interfaces import WearRate
 from ...serialise import serialisable
 from ..heat.heat_stages import HeatStage
 from ..model.conditions import InterfaceConditions
-
-_NEWTON_STEPS = 40
 
 
 @serialisable
@@ -139,7 +136,7 @@ class Slope:
         """Derivative with an additional local compliance (n,) [m/Pa]."""
         return Slope(self.point + point, self.rows, self.reach)
 
-    def opened(self, pressure: np.ndarray) -> np.ndarray:
+    def __matmul__(self, pressure: np.ndarray) -> np.ndarray:
         """Gap opened by a pressure (n,) [m]."""
         return self.point * pressure + self.reach @ (self.rows @ pressure)
 
@@ -181,32 +178,24 @@ class WearRates:
         return Slope(point, np.vstack(rows), np.hstack(reach))
 
 
-def newton_with_wear(
-    solve, rates: WearRates, step: float, guess: ContactSolution
-) -> ContactSolution:
-    """Solve contact with pressure-dependent wear in an implicit step by Newton's method.
+@dataclass(frozen=True)
+class StepWear:
+    """Total depth worn in an implicit step, see `contact.wear.implicit_step`.
 
-    Parameters
+    Attributes
     ----------
-    solve : callable
-        Contact for a wear depth at zero pressure (n,), its slope by the pressures, and a guess.
     rates : WearRates
     step : float
         [s]
-    guess : ContactSolution
-
-    Raises
-    ------
-    ComputationError
     """
-    pressure = guess.pressure
-    for _ in range(_NEWTON_STEPS):
-        rate = step * rates(pressure).sum(axis=0)
-        slope = rates.slope(pressure).times(step)
-        guess = solve(rate - slope.opened(pressure), slope, guess)
-        change = guess.pressure - pressure
-        pressure = guess.pressure
-        exact = step * rates(pressure).sum(axis=0)
-        if np.abs(exact - rate - slope.opened(change)).max() <= 1e-11 * np.abs(exact).max():
-            return guess
-    raise ComputationError("contact: Newton's method for the implicit step of wear failed")
+
+    rates: WearRates
+    step: float
+
+    def value(self, pressure: np.ndarray, last: ContactSolution) -> np.ndarray:
+        """Depth at the points, shape (n,) [m]."""
+        return self.step * self.rates(pressure).sum(axis=0)
+
+    def slope(self, pressure: np.ndarray, last: ContactSolution) -> Slope:
+        """Derivative of the depth by the pressures."""
+        return self.rates.slope(pressure).times(self.step)

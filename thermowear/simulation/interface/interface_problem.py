@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...contact.wear.edge_times import closing_times
+from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.wear_edge import WearEdge
 from ..heat.friction_heat import FrictionHeat
 from ..heat.heat_stages import HeatStage, InitialHeat
@@ -15,7 +16,7 @@ from ..heat.heat_states import HeatBalance
 from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
 from .body_state import ContactState
-from .contact_solver import ContactSolution, ContactSolver, Slope, WearRates, newton_with_wear
+from .contact_solver import ContactSolution, ContactSolver, Slope, StepWear, WearRates
 from .fixed_point import Trial, self_consistent
 from .sdirk import InterfaceState
 from .steady import SteadyState
@@ -388,4 +389,4 @@ class InterfaceProblem:
         if step == 0.0 or not self._laws:
             return solve(still, rigid, guess)
         guess = guess or solve(still, rigid, None)
-        return newton_with_wear(solve, self._rates(conditions), step, guess)
+        return newton_with_wear(solve, StepWear(self._rates(conditions), step), guess)

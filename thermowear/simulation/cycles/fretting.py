@@ -15,20 +15,19 @@ from ...contact.friction.slip_wear import SlipWear, WornProfile, profile
 from ...contact.friction.stick_slip import advance, follow
 from ...contact.friction.stick_slip_state import StickSlipState, unloaded
 from ...contact.operators.tangential import FrictionalContact, condense_tangential
-from ...laws.motions import translation
 from ..model.system import System
 from ..results.outcome import Outcome
-from ..runtime.guarded_loop import go_through
+from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
 from .cycle_jump import adaptive_jumps, fixed_jumps
-from .fretting_record import Fretted, FrettingRecord
+from .fretting_history import FrettingHistory
 from .increments import Increment, RestartPoint
 from .load_path import LoadSegment, by_fixed_jumps, cycle_legs, first_pass, to_stop_at
 
 _ACROSS = (1.0, 0.0)
 
 
-def fretting(system: System, observer: Observer, before: Fretted | None = None) -> Outcome:
+def fretting(system: System, observer: Observer, before: Progress | None = None) -> Outcome:
     """Follow the load history and its cycles, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept.
@@ -37,23 +36,9 @@ def fretting(system: System, observer: Observer, before: Fretted | None = None) 
     with system.phases("condense elasticity"):
         condensed = condense_tangential(system.elastic, system.pairing, system.basis, translations)
     profiles = tuple(profile(system.pairing, condensed.weighted, body) for body in system.laws)
-    record = FrettingRecord(system, translations, profiles, observer)
-    last = None if before is None else record.go_on(before)
-    instants = _Path(system, condensed, profiles).instants(last)
-    _, stopped = go_through(system, "load steps", instants, record, observer, last)
-    with system.phases("bodies"):
-        contact, bodies, interface = record.interface()
-    return Outcome(
-        contact=contact,
-        motion=translation(record.last.motion @ translations),
-        state=bodies,
-        interface=interface,
-        extra=record.extra(),
-        history=[],
-        outputs=record.outputs,
-        friction=record.history(),
-        stopped=stopped,
-    )
+    history = FrettingHistory(system, observer, translations, profiles)
+    path = _Path(system, condensed, profiles)
+    return history.outcome(history.follow("load steps", path.instants(history.resume(before))))
 
 
 def _translations(case: Case) -> np.ndarray:

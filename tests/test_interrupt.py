@@ -17,7 +17,7 @@ from thermowear.output import tables
 from thermowear.output.folder import ResultsFolder
 from thermowear.output.quantities import HISTORY, INTERFACE
 from thermowear.simulation import Observer
-from thermowear.simulation.runtime.history import History
+from thermowear.simulation.runtime.history import AnalysisHistory
 
 from .conftest import COLD_RUNNING_IN
 
@@ -59,7 +59,7 @@ def beside_a_failure(heeds_ctrl_c, monkeypatch):
                 signal.raise_signal(signal.SIGINT)
                 raise error
 
-        monkeypatch.setattr(History, "save_if_due", save_if_due)
+        monkeypatch.setattr(AnalysisHistory, "save_if_due", save_if_due)
 
     yield make
     signal.signal(signal.SIGTERM, handler)

@@ -20,7 +20,7 @@ from ..model.worn_geometry import WornGeometry
 from ..results.recording import interface_at
 from ..results.rows import HeatRow, HistoryRow
 from ..results.summary import normal_force
-from ..runtime.history import History, Snapshot
+from ..runtime.history import AnalysisHistory, Snapshot
 from ..runtime.observer import Observer
 from ..time.time_loop import Moment
 from .static import wear_velocity
@@ -62,7 +62,7 @@ class TransientRestart:
     earlier: UpdateCounts = field(default_factory=UpdateCounts)
 
 
-class TransientHistory(History[Moment]):
+class TransientHistory(AnalysisHistory[Moment]):
     """History of the accepted moments of a running-in.
 
     Parameters

@@ -13,13 +13,13 @@ from ..interface.body_state import contact_state
 from ..model.system import System
 from ..results.recording import interface_at
 from ..results.rows import CycleRow, LoadRow
-from ..runtime.history import History, Snapshot
+from ..runtime.history import AnalysisHistory, Snapshot
 from ..runtime.observer import Observer
 from .fretting_tables import FrettingTables
 from .increments import Increment
 
 
-class FrettingHistory(History[Increment]):
+class FrettingHistory(AnalysisHistory[Increment]):
     """History of the increments of a load history and of its cycles.
 
     Parameters

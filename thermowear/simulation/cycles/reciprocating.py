@@ -17,7 +17,7 @@ from ..results.recording import interface_at
 from ..results.result import WornTrack
 from ..results.rows import HistoryRow
 from ..runtime.checkpoint_data import Progress
-from ..runtime.history import History, Snapshot
+from ..runtime.history import AnalysisHistory, Snapshot
 from ..runtime.observer import Observer
 from ..time.step_sizes import AnySize, StepSizes
 from ..time.time_loop import Moment, moments
@@ -59,7 +59,7 @@ def _frequency(case: Case) -> float:
     return case.motion.frequency
 
 
-class ReciprocatingHistory(History[Moment]):
+class ReciprocatingHistory(AnalysisHistory[Moment]):
     """History of reciprocating wear.
 
     Parameters

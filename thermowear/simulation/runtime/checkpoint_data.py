@@ -27,7 +27,7 @@ class Progress:
     tables : dict of str to list
         Rows recorded so far, by the name of their kind.
     own : object
-        Restart data of the analysis, see `History.restart_data`.
+        Restart data of the analysis, see `AnalysisHistory.restart_data`.
     """
 
     state: Any

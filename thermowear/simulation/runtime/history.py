@@ -77,7 +77,7 @@ class Snapshot:
     track: WornTrack | None = None
 
 
-class History(ABC, Generic[State]):
+class AnalysisHistory(ABC, Generic[State]):
     """Accepted states of an analysis: rows of its tables, outputs, frames and checkpoints.
 
     An analysis derives from it the rows and the snapshot of a state, and the data to restart from.

@@ -4,7 +4,7 @@ from thermowear.case.tables.analyses import Fretting
 from thermowear.case.tables.history import History
 from thermowear.simulation.cycles.load_path import (
     by_fixed_jumps,
-    cycle_legs,
+    cycle_segments,
     first_pass,
     to_stop_at,
 )
@@ -21,7 +21,7 @@ def way(loads, cycles=1, jump=1, output_times=()):
     if loads.cycle is None:
         return legs
     for number in by_fixed_jumps(loads, settings, cycles, jump):
-        legs += cycle_legs(loads, settings.output_times, number, number - before)
+        legs += cycle_segments(loads, settings.output_times, number, number - before)
         before = number
     return legs
 

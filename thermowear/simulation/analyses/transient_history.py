@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ...laws.motions import combined
 from ...serialise import serialisable
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.update_counts import UpdateCounts
+from ..heat.linearisation import LastTangents
 from ..model.conditions import InterfaceConditions
 from ..model.rigid_modes import reference_point
 from ..model.worn_geometry import WornGeometry
@@ -28,8 +28,8 @@ from .static import wear_velocity
 _MELTED = 5000.0  # K, above the melting point of any solid
 _STEEPER = 3.0  # heating rate over mean rate so far; linear rise of load and speed gives 2.5
 _UNSTABLE = (
-    "the temperature runs away: friction heat makes the bodies bulge, so that they press and heat "
-    "each other ever more (thermoelastic instability); reduce the speed or the friction"
+    "thermal runaway: friction heat distorts the bodies, which concentrates pressure and heat "
+    "(thermoelastic instability); reduce the speed or the friction"
 )
 
 
@@ -40,8 +40,8 @@ class TransientRestart:
 
     Attributes
     ----------
-    heat : object
-        Internal state of the heat model.
+    heat : LastTangents or None
+        Linearisation points of nonlinear heat.
     speed : float
         Mean sliding speed [m/s].
     worn : WornGeometry or None
@@ -54,7 +54,7 @@ class TransientRestart:
         Counts of the updates of meshes for narrower zones.
     """
 
-    heat: Any
+    heat: LastTangents | None
     speed: float
     worn: WornGeometry | None
     kept: tuple[float, float, float]
@@ -79,13 +79,13 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def restart_data(self) -> TransientRestart:
         loop, system = self._loop, self._loop.system
-        memory, zone = loop.problem.memory(), system.inputs.zone
-        return TransientRestart(memory, self._speed, system.worn, loop.kept, zone, loop.earlier)
+        heat, zone = loop.problem.restart_data(), system.inputs.zone
+        return TransientRestart(heat, self._speed, system.worn, loop.kept, zone, loop.earlier)
 
     def restore(self, data: TransientRestart) -> None:
         self._speed = data.speed
         self._loop.go_on(data.worn, data.kept, data.zone, data.earlier)
-        self._loop.problem.recall(data.heat)
+        self._loop.problem.restore(data.heat)
 
     def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
         problem = self._loop.problem
@@ -114,7 +114,8 @@ class TransientHistory(AnalysisHistory[Moment]):
                 hottest = self._loop.problem.hottest(moment.state)
                 if self._loop.problem.stores_heat and hottest > _MELTED:
                     raise ComputationError(
-                        f"transient: {hottest:.3g} K at {moment.time:g} s, no solid is as hot"
+                        f"transient: {hottest:.3g} K at {moment.time:g} s, above the melting point "
+                        "of any solid"
                     )
         except ComputationError as reason:
             if self._runs_away():

@@ -48,7 +48,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
         self._per_cycle = np.zeros((2, len(system.weights)))
 
     def rows_of(self, state: Increment) -> list[LoadRow | CycleRow]:
-        if self._cycle and self._cycle[-1].leg.cycle != state.leg.cycle:
+        if self._cycle and self._cycle[-1].segment.cycle != state.segment.cycle:
             self._cycle = self._cycle[-1:]
         self._cycle.append(state)
         rows: list[LoadRow | CycleRow] = [self._tables_of.row(state)]
@@ -57,13 +57,13 @@ class FrettingHistory(AnalysisHistory[Increment]):
             start, end = (self._tables_of.depths(i.state) for i in (self._turn, state))
             self._per_cycle = (end - start) / state.jump.cycles
             rows.append(self._tables_of.cycle(self._cycle, state.jump))
-        if state.behind is not None:
+        if state.restart is not None:
             self._turn = state
         return rows
 
     def may_restart(self, state: Increment) -> bool:
         """True at the end of a jump and, before cycle 1, of a segment."""
-        return state.behind is not None
+        return state.restart is not None
 
     def restart_data(self) -> np.ndarray:
         """Worn depth per cycle on both bodies, shape (2, n) [m]."""

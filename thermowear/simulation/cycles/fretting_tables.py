@@ -26,14 +26,14 @@ class FrettingTables:
         both[list(system.laws)] = state.worn @ system.basis.T
         return both
 
-    def row(self, instant: Increment) -> LoadRow:
+    def row(self, increment: Increment) -> LoadRow:
         """Load row at the end of an increment."""
-        system, state = self._system, instant.state
+        system, state = self._system, increment.state
         w, pressure = system.weights, system.basis @ state.pressure
         forces, motions = (np.append(v, [0.0, 0.0]) for v in (state.force, state.motion))
         volumes = self.depths(state) @ w
         return LoadRow(
-            time=instant.time,
+            time=increment.time,
             normal_force=float(forces[0]),
             approach=float(motions[0]),
             tangential_force=float(forces[1]),
@@ -43,18 +43,18 @@ class FrettingTables:
             stick_area=float(w[self._sticking(state)].sum()),
             dissipated=float(w @ state.dissipated),
             iterations=state.iterations,
-            cycle=instant.leg.cycle,
+            cycle=increment.segment.cycle,
             wear_volume_1=float(volumes[0]),
             wear_volume_2=float(volumes[1]),
         )
 
-    def cycle(self, instants: list[Increment], jump: Jump) -> CycleRow:
+    def cycle(self, increments: list[Increment], jump: Jump) -> CycleRow:
         """Cycle row from the increments of the last cycle of a jump."""
-        w, last = self._system.weights, instants[-1]
+        w, last = self._system.weights, increments[-1]
         end = self.depths(last.state)
-        pressures = np.array([i.state.pressure for i in instants]) @ self._system.basis.T
+        pressures = np.array([i.state.pressure for i in increments]) @ self._system.basis.T
         return CycleRow(
-            cycle=last.leg.cycle,
+            cycle=last.segment.cycle,
             time=last.time,
             wear_volume_1=float(end[0] @ w),
             wear_volume_2=float(end[1] @ w),

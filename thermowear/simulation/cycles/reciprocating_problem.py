@@ -32,7 +32,7 @@ from ...contact.wear.track import StrokeGrid, track
 from ...errors import ComputationError
 from ...laws.interfaces import WearRate
 from ..interface.contact_solver import ContactSolution
-from ..interface.sdirk import InterfaceState
+from ..interface.sdirk import InterfaceState, WearProblem
 from ..model.system import System
 from .stroke import Position, condensed, spreading
 
@@ -58,7 +58,7 @@ class CycleContact:
     motion: np.ndarray
 
 
-class ReciprocatingProblem:
+class ReciprocatingProblem(WearProblem):
     """Contact in all positions of the stroke, coupled by the worn depths.
 
     Depths form one row of N values: coefficients of body 1, then nodal values of body 2.
@@ -145,24 +145,6 @@ class ReciprocatingProblem:
             motion=self._shares @ contact.motion,
         )
 
-    def corners(self, end: float) -> tuple[float, ...]:
-        """No times with kinks in the conditions."""
-        return ()
-
-    def difference(
-        self, before: InterfaceState, one: InterfaceState, other: InterfaceState
-    ) -> float:
-        """Largest difference of two pressures [Pa]."""
-        return float(np.abs(one.pressure - other.pressure).max())
-
-    def edge_steps(self, states, step: float, time: float) -> tuple[float, float]:
-        """No limit: contact is not enforced pointwise."""
-        return 0.0, np.inf
-
-    def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
-        """Zero: there are no temperatures."""
-        return 0.0
-
     def first_step(self, state: InterfaceState) -> float:
         """Step in which wear is small compared with the elastic deflection of the bodies [s]."""
         opened = np.einsum("jmn,jn->jm", self._contacts.compliance, state.pressure)
@@ -181,10 +163,6 @@ class ReciprocatingProblem:
         """
         parts = zip(self.split(self.rates(state.pressure)), self._places, strict=True)
         return max(_unevenness(rate, place) for rate, place in parts if rate.any())
-
-    def begin(self, state: InterfaceState) -> InterfaceState:
-        """Return the state: no pre-step selection is needed."""
-        return state
 
     def stage(
         self, before: InterfaceState, step: float, time: float, guess: InterfaceState
@@ -212,14 +190,16 @@ class ReciprocatingProblem:
         """
         if worn.max() > self._length:
             raise ComputationError(
-                "wear: more is worn off than the contact is long; where the steady state is asked "
-                "for, it needs more elements, or a larger analysis.steady_tolerance"
+                "wear: the worn depth exceeds the length of the contact; to reach the steady "
+                "state, use more elements or a larger analysis.steady_tolerance"
             )
 
         def solve(start: np.ndarray, slope: _LocalSlope, last: ContactSolution) -> ContactSolution:
             gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slope.each)
             depths = worn + step * np.einsum("bjnm,bjm->n", self._spread, start)
-            return self._contact(solve_coupled(self._contacts, depths, gains, last.memory.active))
+            return self._contact(
+                solve_coupled(self._contacts, depths, gains, last.warm_start.active)
+            )
 
         return newton_with_wear(solve, self._local, guess)
 

@@ -61,22 +61,22 @@ def positions(system: System) -> list[Position]:
     assert motion.frequency is not None
     count = settings.positions
     ends = motion.amplitude * np.sin(np.pi * (np.arange(count + 1) / count - 0.5))
-    ways = (1, -1) if system.traction is not system.trace else (1,)
+    directions = (1, -1) if system.traction is not system.trace else (1,)
     return [
         Position(
             offset=float(start + end) / 2,
             length=float(end - start),
             speed=float(end - start) * 2 * count * motion.frequency,
-            share=1 / (count * len(ways)),
-            system=moved(system, float(start + end) / 2, way),
+            share=1 / (count * len(directions)),
+            system=moved(system, float(start + end) / 2, direction),
         )
-        for way in ways
+        for direction in directions
         for start, end in itertools.pairwise(ends)
     ]
 
 
-def moved(system: System, offset: float, way: int) -> System:
-    """System with body 1 moved along x and sliding along +x (way 1) or -x (way -1).
+def moved(system: System, offset: float, direction: int) -> System:
+    """System with body 1 moved along x and sliding along +x (direction 1) or -x (direction -1).
 
     Raises
     ------
@@ -96,7 +96,7 @@ def moved(system: System, offset: float, way: int) -> System:
             "body 2 is needed (geometry.stroke)"
         )
     assert case.motion is not None  # the case has been checked
-    velocity = way * model.sliding(pairing.points, case.motion.one_way)
+    velocity = direction * model.sliding(pairing.points, case.motion.one_way)
     slides = sliding(velocity, pairing.normals, geometry.press_direction)
     friction = case.contact.nominal_friction, case.contact.transverse_friction
     pull = slides.pull(pairing.normals, *friction)

@@ -10,7 +10,7 @@ import numpy as np
 from ...laws.distribution import Distribution
 from ...laws.interfaces import WearRate
 from ...serialise import serialisable
-from ..heat.heat_stages import HeatStage
+from ..heat.heat_steps import HeatStep
 from ..model.conditions import InterfaceConditions
 
 
@@ -24,8 +24,8 @@ class ContactSolution:
     pressure : ndarray, shape (n,) [Pa]
     motion : ndarray, shape (n_drives,)
         Amount of each rigid mode of the holder [m or rad].
-    memory : object
-        Warm start of the solver.
+    warm_start : object
+        Solution to start the solver from.
     apart : ndarray or None, shape (n,)
         Gap of the points with pointwise contact: 0 where they press, NaN at other points; None
         without such points [m].
@@ -33,7 +33,7 @@ class ContactSolution:
 
     pressure: np.ndarray
     motion: np.ndarray
-    memory: Any
+    warm_start: Any
     apart: np.ndarray | None = None
 
 
@@ -54,7 +54,7 @@ class ContactSolver(Protocol):
         slope: Slope,
         guess: ContactSolution | None,
         conditions: InterfaceConditions,
-        heat: HeatStage | None,
+        heat: HeatStep | None,
         pointwise: np.ndarray | None = None,
     ) -> ContactSolution:
         """Solve contact of bodies with friction heat and a local compliance.
@@ -67,7 +67,7 @@ class ContactSolver(Protocol):
             Gap per pressure in addition to the deflection of the bodies [m/Pa].
         guess : ContactSolution or None
         conditions : InterfaceConditions
-        heat : HeatStage or None
+        heat : HeatStep or None
         pointwise : ndarray of bool, shape (n,), optional
             Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
 
@@ -124,7 +124,7 @@ class Slope:
     reach: np.ndarray
 
     @classmethod
-    def on_the_spot(cls, point: np.ndarray) -> Slope:
+    def diagonal(cls, point: np.ndarray) -> Slope:
         """Diagonal derivative, without means."""
         return cls(point, np.zeros((0, len(point))), np.zeros((len(point), 0)))
 
@@ -132,7 +132,7 @@ class Slope:
         """Derivative scaled by a step size."""
         return Slope(step * self.point, step * self.rows, self.reach)
 
-    def softer_by(self, point: np.ndarray) -> Slope:
+    def with_compliance(self, point: np.ndarray) -> Slope:
         """Derivative with an additional local compliance (n,) [m/Pa]."""
         return Slope(self.point + point, self.rows, self.reach)
 
@@ -176,26 +176,3 @@ class WearRates:
                 rows.append(spread.varying_rows * local)
                 reach.append(spread.reach(n))
         return Slope(point, np.vstack(rows), np.hstack(reach))
-
-
-@dataclass(frozen=True)
-class StepWear:
-    """Total depth worn in an implicit step, see `contact.wear.implicit_step`.
-
-    Attributes
-    ----------
-    rates : WearRates
-    step : float
-        [s]
-    """
-
-    rates: WearRates
-    step: float
-
-    def value(self, pressure: np.ndarray, last: ContactSolution) -> np.ndarray:
-        """Depth at the points, shape (n,) [m]."""
-        return self.step * self.rates(pressure).sum(axis=0)
-
-    def slope(self, pressure: np.ndarray, last: ContactSolution) -> Slope:
-        """Derivative of the depth by the pressures."""
-        return self.rates.slope(pressure).times(self.step)

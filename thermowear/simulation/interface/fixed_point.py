@@ -49,11 +49,11 @@ class Trial:
 
 
 def self_consistent(
-    surroundings: ConditionModel,
+    model: ConditionModel,
     time: float,
     start: TrialState,
     respond: Callable[[InterfaceConditions], Found],
-    complaint: str,
+    failure: str,
     closed: np.ndarray | None = None,
 ) -> tuple[InterfaceConditions, Found]:
     """Find a state that is consistent with its own conditions.
@@ -64,13 +64,13 @@ def self_consistent(
 
     Parameters
     ----------
-    surroundings : ConditionModel
+    model : ConditionModel
     time : float
         [s]
     start : TrialState
     respond : callable
         State under given conditions.
-    complaint : str
+    failure : str
         Message of the error if the iteration does not converge.
     closed : ndarray of bool, shape (n,), optional
         Points that exchange heat by contact; by default the points in contact of each state.
@@ -82,14 +82,14 @@ def self_consistent(
 
     def conditions_of(state: TrialState) -> InterfaceConditions:
         touching = state.pressure > 0 if closed is None else closed
-        return surroundings.at(time, state.pressure, state.faces, touching, state.worn)
+        return model.at(time, state.pressure, state.faces, touching, state.worn)
 
     tried, mixing = start, None
     for _ in range(_TURNS):
         conditions = conditions_of(tried)
         found = respond(conditions)
         if conditions_of(found).settled(conditions):
-            surroundings.require_friction(time, found.pressure, found.faces)
+            model.require_friction(time, found.pressure, found.faces)
             return conditions, found
         before, after = _stacked(tried, found), _stacked(found, found)
         missed = after - before
@@ -97,7 +97,7 @@ def self_consistent(
             mixing = Mixing()
         following = before + _DAMPED * missed if mixing is None else mixing.next(before, missed)
         tried = _unstacked(following, found)
-    raise ComputationError(complaint)
+    raise ComputationError(failure)
 
 
 def _scales(found: TrialState) -> tuple[float, float]:

@@ -53,7 +53,7 @@ class FullMethod:
     def solve(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None
     ) -> ContactSolution:
-        start, load = None if guess is None else guess.memory, conditions.load
+        start, load = None if guess is None else guess.warm_start, conditions.load
         slope = slope.point  # means occur for rotating disks in 3D, with condensed contact only
         edge = self._deflection(pointwise)
         if heat is None:
@@ -67,8 +67,8 @@ class FullMethod:
                 return self._result(start)
             pressure = mixing.next(pressure, missed)
         raise ComputationError(
-            f"contact: heat and pressure do not settle in {_PASSES} turns; reduce the speed, "
-            'or use contact.method = "condensed", which solves both at once'
+            f"contact: heat and pressure did not converge in {_PASSES} iterations; reduce the "
+            'speed, or use contact.method = "condensed", which solves both at once'
         )
 
     def yielding(self, points) -> np.ndarray:
@@ -88,7 +88,7 @@ class FullMethod:
     def _opened(self, contact: ContactSolution) -> np.ndarray:
         """Change of the gap by elastic deflection at the points, shape (n,) [m]."""
         system = self._system
-        return sum_over_ranks(system.comm, system.trace.T @ contact.memory.displacement)
+        return sum_over_ranks(system.comm, system.trace.T @ contact.warm_start.displacement)
 
     @cached_property
     def _edge_compliance(self) -> np.ndarray:

@@ -72,12 +72,12 @@ class FewSizes:
             size /= 2
         return size
 
-    def _unit(self, way: float) -> float:
+    def _unit(self, interval: float) -> float:
         """Unit of the step sizes: common measure of all times, or the interval if too fine [s]."""
         measure = self._measure or 1.0
-        if way == math.inf or round(way / measure).bit_count() <= _FEW:
+        if interval == math.inf or round(interval / measure).bit_count() <= _FEW:
             return measure
-        return way
+        return interval
 
 
 class Limited:

@@ -59,8 +59,8 @@ def state_of(worn):
     return StickSlipState(nothing, none, none, none[0], none[0], nothing, none, nothing, worn)
 
 
-def run(cycles, tolerance=1e-2, stops=(1, COUNT), longest=np.inf, behind=None):
-    return list(adaptive_jumps(cycles, stops, behind or cycles.start(), tolerance, longest))
+def run(cycles, tolerance=1e-2, stops=(1, COUNT), longest=np.inf, restart=None):
+    return list(adaptive_jumps(cycles, stops, restart or cycles.start(), tolerance, longest))
 
 
 def turns(increments):
@@ -101,8 +101,8 @@ def test_the_estimate_is_that_of_the_halves():
     for start, span in ((20, 10), (200, 100), (30, 7)):
         cycles = Growing()
         state = one_by_one(start)
-        behind = RestartPoint(start, state, span)
-        (turn,) = turns(run(cycles, 0.1, (start + span,), behind=behind))
+        restart = RestartPoint(start, state, span)
+        (turn,) = turns(run(cycles, 0.1, (start + span,), restart=restart))
         assert turn.jump.cycles == span
         n1 = span - span // 2
         first = list(cycles.cycle(state, start + n1, n1))[-1].state
@@ -213,7 +213,7 @@ def test_a_run_goes_on_as_if_it_had_not_stopped(after):
     """requirement: the end of a jump holds all that the next one takes."""
     stops = (1, 500, COUNT)
     straight = turns(run(Growing(), stops=stops))
-    resumed = turns(run(Growing(), stops=stops, behind=straight[after].behind))
+    resumed = turns(run(Growing(), stops=stops, restart=straight[after].restart))
     assert [i.segment.cycle for i in straight[after + 1 :]] == [i.segment.cycle for i in resumed]
     np.testing.assert_array_equal(straight[-1].state.worn, resumed[-1].state.worn)
 

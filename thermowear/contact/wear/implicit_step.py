@@ -19,34 +19,26 @@ _TOLERANCE = 1e-11
 _FAILED = "contact: Newton's method for the implicit step of wear did not converge"
 
 
-class Pressed(Protocol):
-    """Solution of a contact problem."""
-
-    @property
-    def pressure(self) -> np.ndarray:
-        """Pressure, or its coefficients [Pa]."""
+Solution = TypeVar("Solution", bound=Any)
+"""Solution of a contact problem, with its `pressure`, or coefficients of it [Pa]."""
 
 
-Solution = TypeVar("Solution", bound=Pressed)
-Given = TypeVar("Given", contravariant=True)
-
-
-class PressureDependentWear(Protocol[Given]):
+class PressureDependentWear(Protocol):
     """Wear as a function of the pressure at the end of a step: depths, or rates.
 
     It may also depend on the last contact solution, which is not linearised.
     """
 
-    def value(self, pressure: np.ndarray, last: Given) -> np.ndarray:
+    def value(self, pressure: np.ndarray, last: Any) -> np.ndarray:
         """Worn depth [m], or wear rate [m/s]."""
 
-    def slope(self, pressure: np.ndarray, last: Given) -> Any:
+    def slope(self, pressure: np.ndarray, last: Any) -> Any:
         """Derivative of the value, a linear map ``slope @ pressure``."""
 
 
 def newton_with_wear(
     solve: Callable[[np.ndarray, Any, Solution], Solution],
-    wear: PressureDependentWear[Solution],
+    wear: PressureDependentWear,
     guess: Solution,
     tolerance: float = _TOLERANCE,
     failure: str = _FAILED,

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from ...balances import require
 from ...errors import ComputationError
 from ...laws.motions import combined
-from ...serialise import serialisable
 from ..geometry_update.outer_loop import OuterLoop
-from ..geometry_update.update_counts import UpdateCounts
-from ..heat.linearisation import LastTangents
 from ..model.conditions import InterfaceConditions
 from ..model.rigid_modes import reference_point
-from ..model.worn_geometry import WornGeometry
 from ..results.recording import interface_at
 from ..results.rows import HeatRow, HistoryRow
 from ..results.summary import normal_force
@@ -31,35 +26,6 @@ _UNSTABLE = (
     "thermal runaway: friction heat distorts the bodies, which concentrates pressure and heat "
     "(thermoelastic instability); reduce the speed or the friction"
 )
-
-
-@serialisable
-@dataclass(frozen=True)
-class TransientRestart:
-    """Data to restart a transient analysis from, beside its last moment.
-
-    Attributes
-    ----------
-    heat : LastTangents or None
-        Linearisation points of nonlinear heat.
-    speed : float
-        Mean sliding speed [m/s].
-    worn : WornGeometry or None
-        Worn geometry, if meshes have been moved.
-    kept : tuple of float
-        See `OuterLoop.kept`.
-    zone : tuple of float or None
-        Range of x that the mesh was made for [m].
-    earlier : UpdateCounts
-        Counts of the updates of meshes for narrower zones.
-    """
-
-    heat: LastTangents | None
-    speed: float
-    worn: WornGeometry | None
-    kept: tuple[float, float, float]
-    zone: tuple[float, float] | None = None
-    earlier: UpdateCounts = field(default_factory=UpdateCounts)
 
 
 class TransientHistory(AnalysisHistory[Moment]):
@@ -77,15 +43,14 @@ class TransientHistory(AnalysisHistory[Moment]):
         self._loop = loop
         self._speed = 0.0
 
-    def restart_data(self) -> TransientRestart:
-        loop, system = self._loop, self._loop.system
-        heat, zone = loop.problem.restart_data(), system.inputs.zone
-        return TransientRestart(heat, self._speed, system.worn, loop.kept, zone, loop.earlier)
+    def restart_data(self) -> tuple:
+        """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
+        return self._speed, self._loop.restart_data(), self._loop.problem.restart_data()
 
-    def restore(self, data: TransientRestart) -> None:
-        self._speed = data.speed
-        self._loop.go_on(data.worn, data.kept, data.zone, data.earlier)
-        self._loop.problem.restore(data.heat)
+    def restore(self, data: tuple) -> None:
+        self._speed, loop, heat = data
+        self._loop.restore(loop)
+        self._loop.problem.restore(heat)
 
     def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
         problem = self._loop.problem

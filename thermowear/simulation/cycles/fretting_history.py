@@ -12,11 +12,13 @@ from ...laws.motions import translation
 from ..interface.body_state import contact_state
 from ..model.system import System
 from ..results.recording import interface_at
+from ..results.result import FrictionInterface
 from ..results.rows import CycleRow, LoadRow
 from ..runtime.history import AnalysisHistory, Snapshot
 from ..runtime.observer import Observer
-from .fretting_tables import FrettingTables
-from .increments import Increment
+from .increments import Increment, Jump
+
+_SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips
 
 
 class FrettingHistory(AnalysisHistory[Increment]):
@@ -40,7 +42,6 @@ class FrettingHistory(AnalysisHistory[Increment]):
         profiles: tuple[WornProfile, ...],
     ):
         super().__init__(system, observer)
-        self._tables_of = FrettingTables(system)
         self._translations = translations
         self._profiles = profiles
         self._cycle: list[Increment] = []  # increments of the current cycle, and that before it
@@ -51,12 +52,12 @@ class FrettingHistory(AnalysisHistory[Increment]):
         if self._cycle and self._cycle[-1].segment.cycle != state.segment.cycle:
             self._cycle = self._cycle[-1:]
         self._cycle.append(state)
-        rows: list[LoadRow | CycleRow] = [self._tables_of.row(state)]
+        rows: list[LoadRow | CycleRow] = [self._load_row(state)]
         if state.jump is not None:
             assert self._turn is not None  # the first pass ends before the first jump
-            start, end = (self._tables_of.depths(i.state) for i in (self._turn, state))
+            start, end = (self._depths(i.state) for i in (self._turn, state))
             self._per_cycle = (end - start) / state.jump.cycles
-            rows.append(self._tables_of.cycle(self._cycle, state.jump))
+            rows.append(self._cycle_row(state.jump))
         if state.restart is not None:
             self._turn = state
         return rows
@@ -88,9 +89,9 @@ class FrettingHistory(AnalysisHistory[Increment]):
         begin, turn = history.cycle or (0.0, np.inf)
         rates = self._per_cycle / (turn - begin)
         contact = contact_state(system, pressure, shear)
-        bodies, found = interface_at(system, contact, moved, self._tables_of.depths(end), rates)
+        bodies, found = interface_at(system, contact, moved, self._depths(end), rates)
         found = replace(found, gap=found.gap + system.basis @ self._slid_along(end))
-        friction = self._tables_of.friction(end)
+        friction = self._friction(end)
         return Snapshot(system, contact, moved, bodies, found, friction)
 
     def summary(self) -> dict:
@@ -118,3 +119,74 @@ class FrettingHistory(AnalysisHistory[Increment]):
             return nothing
         pairs = zip(self._profiles, state.worn, strict=True)
         return sum((own.seen(state.motion[1]) @ ω - ω for own, ω in pairs), start=nothing)
+
+    def _load_row(self, increment: Increment) -> LoadRow:
+        """Load row at the end of an increment."""
+        system, state = self._system, increment.state
+        w, pressure = system.weights, system.basis @ state.pressure
+        forces, motions = (np.append(v, [0.0, 0.0]) for v in (state.force, state.motion))
+        volumes = self._depths(state) @ w
+        return LoadRow(
+            time=increment.time,
+            normal_force=float(forces[0]),
+            approach=float(motions[0]),
+            tangential_force=float(forces[1]),
+            tangential_displacement=float(motions[1]),
+            max_pressure=float(pressure.max()),
+            contact_area=float(w[pressure > 0].sum()),
+            stick_area=float(w[self._sticking(state)].sum()),
+            dissipated=float(w @ state.dissipated),
+            iterations=state.iterations,
+            cycle=increment.segment.cycle,
+            wear_volume_1=float(volumes[0]),
+            wear_volume_2=float(volumes[1]),
+        )
+
+    def _cycle_row(self, jump: Jump) -> CycleRow:
+        """Cycle row at the end of a jump, from the increments of its last cycle."""
+        w, last = self._system.weights, self._cycle[-1]
+        end = self._depths(last.state)
+        pressures = np.array([i.state.pressure for i in self._cycle]) @ self._system.basis.T
+        return CycleRow(
+            cycle=last.segment.cycle,
+            time=last.time,
+            wear_volume_1=float(end[0] @ w),
+            wear_volume_2=float(end[1] @ w),
+            dissipated=float(w @ last.state.dissipated),
+            max_wear_1=float(end[0].max()),
+            max_wear_2=float(end[1].max()),
+            contact_area=float(w[(pressures > 0).any(axis=0)].sum()),
+            max_pressure=float(pressures.max()),
+            jump=jump.cycles,
+            error=jump.error,
+        )
+
+    def _depths(self, state: StickSlipState) -> np.ndarray:
+        """Worn depths of both bodies at the contact points, shape (2, n) [m]."""
+        system = self._system
+        both = np.zeros((2, len(system.weights)))
+        both[list(system.laws)] = state.worn @ system.basis.T
+        return both
+
+    def _friction(self, state: StickSlipState) -> FrictionInterface:
+        """Stick and slip at the contact points in a state."""
+        system = self._system
+        points, pressure = system.pairing.on_body_1, system.basis @ state.pressure
+        status = np.where(pressure > 0, np.where(self._sticking(state), 1, 2), 0)
+        return FrictionInterface(
+            x=points[:, 0],
+            y=points[:, 1],
+            s=system.pairing.position,
+            weight=system.weights,
+            pressure=pressure,
+            shear=system.basis @ state.shear[:, 0],
+            slip=state.point_slip[:, 0],
+            dissipated=state.dissipated,
+            status=status,
+        )
+
+    def _sticking(self, state: StickSlipState) -> np.ndarray:
+        """Mask of points with shear below the friction limit, shape (n,)."""
+        basis = self._system.basis
+        pressure, shear = basis @ state.pressure, basis @ state.shear[:, 0]
+        return np.abs(shear) < _SLIDES * self._system.friction * pressure

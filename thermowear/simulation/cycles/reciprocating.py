@@ -77,13 +77,13 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         system, state = self._system, moment.state
         volumes = self._volumes(state.worn)
         mean_speed = float(np.average(system.speed, weights=system.weights))
-        of_cycle = self._problem.of_cycle(state.contact)
-        moved = combined(system.holder.motions, of_cycle.motion)
+        largest, area, motion = self._problem.of_cycle(state.contact)
+        moved = combined(system.holder.motions, motion)
         row = HistoryRow(
             time=moment.time,
             sliding_distance=mean_speed * moment.time,
-            max_pressure=of_cycle.max_pressure,
-            contact_area=of_cycle.contact_area,
+            max_pressure=largest,
+            contact_area=area,
             wear_volume_1=volumes[0],
             wear_volume_2=volumes[1],
             max_temperature=float("nan"),

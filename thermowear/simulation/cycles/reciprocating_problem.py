@@ -31,31 +31,12 @@ from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.track import StrokeGrid, track
 from ...errors import ComputationError
 from ...laws.interfaces import WearRate
-from ..interface.contact_solver import ContactSolution
+from ..interface.contact_solver import ContactSolution, Slope
 from ..interface.sdirk import InterfaceState, WearProblem
 from ..model.system import System
 from .stroke import Position, condensed, spreading
 
 _INNER = 0.9  # part of the faces that the distance from the steady state covers, without their ends
-
-
-@dataclass(frozen=True)
-class CycleContact:
-    """Contact quantities of a cycle over all positions.
-
-    Attributes
-    ----------
-    max_pressure : float
-        Maximum over positions and points [Pa].
-    contact_area : float
-        Mean [m²].
-    motion : ndarray, shape (n_drives,)
-        Mean amplitudes of the rigid modes of the holder [m or rad].
-    """
-
-    max_pressure: float
-    contact_area: float
-    motion: np.ndarray
 
 
 class ReciprocatingProblem(WearProblem):
@@ -131,19 +112,14 @@ class ReciprocatingProblem(WearProblem):
         """
         return np.einsum("bjnm,bjm->n", self._spread, self._local.value(pressure))[None]
 
-    def of_cycle(self, contact: ContactSolution) -> CycleContact:
-        """Contact quantities of the cycle over all positions."""
-        at_points = [
-            system.basis @ λ for system, λ in zip(self._systems, contact.pressure, strict=True)
-        ]
-        areas = [
-            system.weights[p > 0].sum() for system, p in zip(self._systems, at_points, strict=True)
-        ]
-        return CycleContact(
-            max_pressure=float(max(p.max() for p in at_points)),
-            contact_area=float(self._shares @ areas),
-            motion=self._shares @ contact.motion,
-        )
+    def of_cycle(self, contact: ContactSolution) -> tuple[float, float, np.ndarray]:
+        """Largest pressure over all positions [Pa], mean contact area [m²] and mean motion."""
+        areas, largest = [], 0.0
+        for system, λ in zip(self._systems, contact.pressure, strict=True):
+            p = system.basis @ λ
+            areas.append(system.weights[p > 0].sum())
+            largest = max(largest, float(p.max()))
+        return largest, float(self._shares @ areas), self._shares @ contact.motion
 
     def first_step(self, state: InterfaceState) -> float:
         """Step in which wear is small compared with the elastic deflection of the bodies [s]."""
@@ -194,8 +170,8 @@ class ReciprocatingProblem(WearProblem):
                 "state, use more elements or a larger analysis.steady_tolerance"
             )
 
-        def solve(start: np.ndarray, slope: _LocalSlope, last: ContactSolution) -> ContactSolution:
-            gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slope.each)
+        def solve(start: np.ndarray, slope: Slope, last: ContactSolution) -> ContactSolution:
+            gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slope.point)
             depths = worn + step * np.einsum("bjnm,bjm->n", self._spread, start)
             return self._contact(
                 solve_coupled(self._contacts, depths, gains, last.warm_start.active)
@@ -206,16 +182,6 @@ class ReciprocatingProblem(WearProblem):
     def _contact(self, solution: CoupledSolution) -> ContactSolution:
         motion = np.array([self._holder.amounts(d) for d in solution.motion])
         return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
-
-
-@dataclass(frozen=True)
-class _LocalSlope:
-    """Derivatives of local wear rates by the local pressure, shape (n_wearing, J, m)."""
-
-    each: np.ndarray
-
-    def __matmul__(self, pressure: np.ndarray) -> np.ndarray:
-        return self.each * pressure
 
 
 @dataclass(frozen=True)
@@ -238,9 +204,9 @@ class _LocalWear:
         """Local rates under coefficients of the pressure (J, m), shape (n_wearing, J, m) [m/s]."""
         return self._each(pressure, [law.rate for law in self.laws])
 
-    def slope(self, pressure: np.ndarray, last: object = None) -> _LocalSlope:
+    def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
         """Derivatives of the local rates with respect to pressure [m/s/Pa]."""
-        return _LocalSlope(self._each(pressure, [law.slope for law in self.laws]))
+        return Slope.diagonal(self._each(pressure, [law.slope for law in self.laws]))
 
     def _each(self, pressure: np.ndarray, functions) -> np.ndarray:
         at = pressure, self.speeds

@@ -23,22 +23,6 @@ _LEAST_RISE = 1.0  # K
 
 
 @dataclass(frozen=True)
-class Coupling:
-    """Thermal contribution to the condensed interface under given conditions.
-
-    Attributes
-    ----------
-    compliance : ndarray, shape (m, m)
-        Weak gap per pressure coefficient, ``H diag(mu v) Ψ``, added to the elastic compliance.
-    resting : ndarray, shape (m,)
-        Weak gap by heat other than friction heat [m³].
-    """
-
-    compliance: np.ndarray
-    resting: np.ndarray
-
-
-@dataclass(frozen=True)
 class LinearHeatStep:
     """Linear conduction at one time: operators, loads and stored heat.
 
@@ -74,14 +58,22 @@ class LinearHeatStep:
         heat = self.operators.face.nodal_heat(faces, bath=True) + self.supplied
         return self.load.on(self.operators.conduction).solve(heat)
 
-    def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
-        """Thermal coupling of the condensed interface."""
+    def coupling(
+        self, conditions: InterfaceConditions, basis: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Thermal contribution to the condensed interface.
+
+        Returns
+        -------
+        compliance : ndarray, shape (m, m)
+            Weak gap per pressure coefficient, added to the elastic compliance.
+        opening : ndarray, shape (m,)
+            Weak gap by heat other than friction heat [m³].
+        """
         operators = self.operators
         exchange = operators.exchange(conditions.conductance)
-        return Coupling(
-            operators.compliance(conditions, basis),
-            operators.distortion.at_rest(exchange, self.resting),
-        )
+        opening = operators.distortion.at_rest(exchange, self.resting)
+        return operators.compliance(conditions, basis), opening
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Test whether the last coupling has converged at a pressure: linear heat always has."""
@@ -129,8 +121,10 @@ class NonlinearHeatStep:
         self._newton(lambda: faces)
         return self.last_rise
 
-    def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
-        """Thermal coupling of the condensed interface, linearised about the last temperatures."""
+    def coupling(
+        self, conditions: InterfaceConditions, basis: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Thermal contribution to the condensed interface, about the last temperatures."""
         return self._linear.coupling(conditions, basis)
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
@@ -186,10 +180,12 @@ class InitialHeat:
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         return self.initial
 
-    def coupling(self, conditions: InterfaceConditions, basis: np.ndarray) -> Coupling:
+    def coupling(
+        self, conditions: InterfaceConditions, basis: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         opening, m = self._resting.opening, basis.shape[1]
         assert opening is not None
-        return Coupling(np.zeros((m, m)), opening)
+        return np.zeros((m, m)), opening
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         return True

@@ -14,7 +14,6 @@ import numpy as np
 
 from ...contact.operators.heat import BaselineResponse, at_rest
 from ...contact.operators.heat_condensation import condense_heat
-from ...serialise import serialisable
 from ..model.system import System
 from ..model.thermal_loads import ThermalLoad
 from ..model.thermal_system import ThermalSystem
@@ -47,23 +46,6 @@ class Tangents:
     step: float | None
     reference: np.ndarray | None = None
     last: HeatOperators | None = None
-
-
-@serialisable
-@dataclass(frozen=True)
-class LastTangents:
-    """Linearisation points of the cached tangents, which the Newton iterates depend on.
-
-    Attributes
-    ----------
-    steps : dict of float to (ndarray or None)
-        Rise (n_owned,) by step size, the last used at the end [K].
-    steady : tuple or None
-        Linearisation point of the steady state, its last temperatures, and their last change.
-    """
-
-    steps: dict[float, np.ndarray | None]
-    steady: tuple[np.ndarray | None, np.ndarray, float] | None
 
 
 class HeatSteps:
@@ -100,25 +82,29 @@ class HeatSteps:
         supplied = load.heat + before.content / step
         return self._conducting(tangents, load, supplied, before.rise)
 
-    def restart_data(self) -> LastTangents | None:
-        """Linearisation points, to restart from; None for linear heat."""
+    def restart_data(self) -> tuple | None:
+        """Linearisation points, which the Newton iterates depend on; None for linear heat.
+
+        Rise (n_owned,) by step size, the last used at the end; and for the steady state this rise,
+        the last temperatures [K], and their last change.
+        """
         if not self._thermal.varies:
             return None
-        steps, steady = {size: t.reference for size, t in self._steps.items()}, None
-        if self._steady is not None:
-            tangents, last = self._steady
-            assert isinstance(last, NonlinearHeatStep)
-            steady = tangents.reference, last.last_rise, last.last_change
-        return LastTangents(steps, steady)
+        steps = {step: tangents.reference for step, tangents in self._steps.items()}
+        if self._steady is None:
+            return steps, None
+        tangents, last = self._steady
+        assert isinstance(last, NonlinearHeatStep)
+        return steps, (tangents.reference, last.last_rise, last.last_change)
 
-    def restore(self, data: LastTangents | None) -> None:
+    def restore(self, data: tuple | None) -> None:
         """Restore the linearisation points from `restart_data`."""
         if data is None:
             return
-        for step, reference in data.steps.items():
-            self._steps[step] = Tangents(step, reference)
-        if data.steady is not None:
-            reference, rise, change = data.steady
+        steps, steady = data
+        self._steps.update({step: Tangents(step, rise) for step, rise in steps.items()})
+        if steady is not None:
+            reference, rise, change = steady
             self._steady = self._steady_about(Tangents(None, reference), rise, change)
 
     def at_rest(

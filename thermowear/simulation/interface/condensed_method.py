@@ -13,7 +13,6 @@ from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
 from ..model.system import System
 from .contact_solver import ContactSolution, Slope, WearRates
-from .worn_contact import StepWear
 
 _ITERATIONS = 60
 _HOT = (
@@ -71,9 +70,9 @@ class CondensedMethod:
             resting = np.zeros(len(compliance))
             return self._solved(bodies, edge, compliance, resting, gap, slope, guess, load)
         for _ in range(_ITERATIONS):
-            hot = heat.coupling(conditions, bodies.basis)
-            both = compliance + hot.compliance
-            guess = self._solved(bodies, edge, both, hot.resting, gap, slope, guess, load)
+            thermal, opening = heat.coupling(conditions, bodies.basis)
+            both = compliance + thermal
+            guess = self._solved(bodies, edge, both, opening, gap, slope, guess, load)
             if heat.holds(conditions, guess.pressure):
                 return guess
         raise ComputationError(
@@ -102,7 +101,7 @@ class CondensedMethod:
             lambda worn, slope, last: self._solved(
                 contact, None, rigid, resting, worn, slope, last, load
             ),
-            StepWear(rates, 1.0),
+            rates,
             start,
         ).pressure
 

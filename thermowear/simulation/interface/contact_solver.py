@@ -112,7 +112,7 @@ class Slope:
     Attributes
     ----------
     point : ndarray, shape (n,)
-        Derivative by the pressure at the same point [m/Pa].
+        Derivative by the pressure at the same point; of any shape without means [m/Pa].
     rows : ndarray, shape (k, n)
         Derivatives of k means by the pressures at the points [m/Pa].
     reach : ndarray, shape (n, k)
@@ -128,16 +128,14 @@ class Slope:
         """Diagonal derivative, without means."""
         return cls(point, np.zeros((0, len(point))), np.zeros((len(point), 0)))
 
-    def times(self, step: float) -> Slope:
-        """Derivative scaled by a step size."""
-        return Slope(step * self.point, step * self.rows, self.reach)
-
     def with_compliance(self, point: np.ndarray) -> Slope:
         """Derivative with an additional local compliance (n,) [m/Pa]."""
         return Slope(self.point + point, self.rows, self.reach)
 
     def __matmul__(self, pressure: np.ndarray) -> np.ndarray:
-        """Gap opened by a pressure (n,) [m]."""
+        """Gap opened by a pressure [m]."""
+        if not len(self.rows):
+            return self.point * pressure
         return self.point * pressure + self.reach @ (self.rows @ pressure)
 
 
@@ -152,11 +150,14 @@ class WearRates:
     spreads : list of Distribution
         Distributions of the wear of these bodies.
     conditions : InterfaceConditions
+    step : float
+        Time in which `value` is worn, see `contact.wear.implicit_step` [s].
     """
 
     laws: list[WearRate]
     spreads: list[Distribution]
     conditions: InterfaceConditions
+    step: float = 1.0
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates, shape (n_wearing, n) [m/s]."""
@@ -165,8 +166,12 @@ class WearRates:
             rates[row] = spread.rate(self.conditions.wear_rate(row, law, pressure))
         return rates
 
-    def slope(self, pressure: np.ndarray) -> Slope:
-        """Derivative of the sum of the wear rates by the pressures [m/s/Pa]."""
+    def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
+        """Total depth worn in the time step, shape (n,) [m]."""
+        return self.step * self(pressure).sum(axis=0)
+
+    def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
+        """Derivative of `value` by the pressures [m/Pa]."""
         n = len(pressure)
         point, rows, reach = np.zeros(n), [np.zeros((0, n))], [np.zeros((n, 0))]
         for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
@@ -175,4 +180,4 @@ class WearRates:
             if spread.varying_rows is not None:
                 rows.append(spread.varying_rows * local)
                 reach.append(spread.reach(n))
-        return Slope(point, np.vstack(rows), np.hstack(reach))
+        return Slope(self.step * point, self.step * np.vstack(rows), np.hstack(reach))

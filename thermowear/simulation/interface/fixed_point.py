@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -20,23 +20,8 @@ _TURNS = 100
 _LEAST_RISE = 1.0  # K
 
 
-class TrialState(Protocol):
-    """State that the interface conditions depend on."""
-
-    @property
-    def pressure(self) -> np.ndarray:
-        """Pressure at the points, shape (n,) [Pa]."""
-
-    @property
-    def faces(self) -> ThermalState | None:
-        """Temperatures and fluxes of the faces; None without heat."""
-
-    @property
-    def worn(self) -> np.ndarray:
-        """Depths worn off the wearing bodies, shape (n_wearing, n) [m]."""
-
-
-Found = TypeVar("Found", bound=TrialState)
+Found = TypeVar("Found", bound=Any)
+"""State with the `pressure`, `faces` and `worn` that interface conditions depend on."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +36,7 @@ class Trial:
 def self_consistent(
     model: ConditionModel,
     time: float,
-    start: TrialState,
+    start: Any,
     respond: Callable[[InterfaceConditions], Found],
     failure: str,
     closed: np.ndarray | None = None,
@@ -67,7 +52,8 @@ def self_consistent(
     model : ConditionModel
     time : float
         [s]
-    start : TrialState
+    start : Trial
+        Or another state with its attributes.
     respond : callable
         State under given conditions.
     failure : str
@@ -80,7 +66,7 @@ def self_consistent(
     ComputationError
     """
 
-    def conditions_of(state: TrialState) -> InterfaceConditions:
+    def conditions_of(state: Any) -> InterfaceConditions:
         touching = state.pressure > 0 if closed is None else closed
         return model.at(time, state.pressure, state.faces, touching, state.worn)
 
@@ -100,19 +86,19 @@ def self_consistent(
     raise ComputationError(failure)
 
 
-def _scales(found: TrialState) -> tuple[float, float]:
+def _scales(found: Any) -> tuple[float, float]:
     rise = 0.0 if found.faces is None else float(np.max(np.abs(found.faces.rise)))
     return float(found.pressure.max()) or 1.0, max(rise, _LEAST_RISE)
 
 
-def _stacked(state: TrialState, found: TrialState) -> np.ndarray:
+def _stacked(state: Any, found: Any) -> np.ndarray:
     """Dimensionless vector of a state, scaled by the pressure and rise of the last response."""
     pascal, kelvin = _scales(found)
     rises = () if state.faces is None else state.faces.rise
     return np.concatenate([state.pressure / pascal, *(rise / kelvin for rise in rises)])
 
 
-def _unstacked(vector: np.ndarray, found: TrialState) -> Trial:
+def _unstacked(vector: np.ndarray, found: Any) -> Trial:
     """Inverse of `_stacked`, with the contact set of the last response."""
     pascal, kelvin = _scales(found)
     pressure, *rises = np.split(vector, 1 if found.faces is None else 3)

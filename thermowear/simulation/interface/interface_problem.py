@@ -9,7 +9,6 @@ import numpy as np
 from ..heat.friction_heat import FrictionHeat
 from ..heat.heat_states import HeatBalance
 from ..heat.heat_steps import HeatStep, InitialHeat
-from ..heat.linearisation import LastTangents
 from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
 from .body_state import ContactState
@@ -232,11 +231,11 @@ class InterfaceProblem(WearProblem):
             return 0.0
         return self._heat.difference(one.stored, other.stored)
 
-    def restart_data(self) -> LastTangents | None:
+    def restart_data(self) -> tuple | None:
         """Internal state to restart from beside the last interface state; see `restore`."""
         return None if self._heat is None else self._heat.steps.restart_data()
 
-    def restore(self, data: LastTangents | None) -> None:
+    def restore(self, data: tuple | None) -> None:
         """Restore the internal state from `restart_data`."""
         if self._heat is not None:
             self._heat.steps.restore(data)

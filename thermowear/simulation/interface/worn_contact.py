@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...contact.wear.implicit_step import newton_with_wear
@@ -11,29 +9,6 @@ from ..heat.heat_steps import HeatStep
 from ..model.conditions import InterfaceConditions
 from ..model.system import System
 from .contact_solver import ContactSolution, ContactSolver, Slope, WearRates
-
-
-@dataclass(frozen=True)
-class StepWear:
-    """Total depth worn in an implicit step, see `contact.wear.implicit_step`.
-
-    Attributes
-    ----------
-    rates : WearRates
-    step : float
-        [s]
-    """
-
-    rates: WearRates
-    step: float
-
-    def value(self, pressure: np.ndarray, last: ContactSolution) -> np.ndarray:
-        """Depth at the points, shape (n,) [m]."""
-        return self.step * self.rates(pressure).sum(axis=0)
-
-    def slope(self, pressure: np.ndarray, last: ContactSolution) -> Slope:
-        """Derivative of the depth by the pressures."""
-        return self.rates.slope(pressure).times(self.step)
 
 
 class ContactOfWornFaces:
@@ -64,9 +39,9 @@ class ContactOfWornFaces:
         pressure = np.full(len(self._gap), (self._system.case.force() or area) / area)
         return ContactSolution(pressure, np.zeros(0), None)
 
-    def rates(self, conditions: InterfaceConditions) -> WearRates:
-        """Wear rates under given conditions."""
-        return WearRates(self._laws, self._spreads, conditions)
+    def rates(self, conditions: InterfaceConditions, step: float = 1.0) -> WearRates:
+        """Wear rates under given conditions, for wear in a time step [s]."""
+        return WearRates(self._laws, self._spreads, conditions, step)
 
     def solve(
         self,
@@ -110,4 +85,4 @@ class ContactOfWornFaces:
         if step == 0.0 or not self._laws:
             return solve(still, rigid, guess)
         guess = guess or solve(still, rigid, None)
-        return newton_with_wear(solve, StepWear(self.rates(conditions), step), guess)
+        return newton_with_wear(solve, self.rates(conditions, step), guess)

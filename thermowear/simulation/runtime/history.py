@@ -6,7 +6,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -35,19 +35,8 @@ AnyRow = HistoryRow | HeatRow | LoadRow | CycleRow
 Row = TypeVar("Row", bound=AnyRow)
 
 
-class RecordedState(Protocol):
-    """Accepted state of an analysis."""
-
-    @property
-    def time(self) -> float:
-        """Time reached [s]."""
-
-    @property
-    def is_output(self) -> bool:
-        """True at an output time."""
-
-
-State = TypeVar("State", bound=RecordedState)
+State = TypeVar("State", bound=Any)
+"""Accepted state of an analysis, with a `time` [s], and `is_output` true at an output time."""
 
 
 @dataclass(frozen=True)

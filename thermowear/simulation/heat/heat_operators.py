@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,6 +17,7 @@ from ...contact.operators.heat_condensation import (
     gap_per_rise,
 )
 from ..model.conditions import InterfaceConditions
+from ..model.setup_cache import SetupCache
 from ..model.system import System
 from ..model.thermal_system import ThermalSystem
 
@@ -37,15 +39,19 @@ class CondensedDistortion:
     thermal: ThermalSystem
 
     def __call__(
-        self, conduction: Conduction, face: InterfaceHeat, rise: np.ndarray | None = None
+        self,
+        conduction: Conduction,
+        face: InterfaceHeat,
+        slope: Callable[[], np.ndarray] | None = None,
     ) -> ThermalDistortion:
-        """Condense the weak gap per heat at the faces, linearised at a rise (n_owned,).
+        """Condense the weak gap per heat at the faces, with `per_rise` or another slope.
 
         Every rank calls.
         """
 
         def condensed() -> ThermalDistortion:
-            return condense_distortion(conduction, self.slope(rise), face)
+            per_rise = self.per_rise if slope is None else slope()
+            return condense_distortion(conduction, per_rise, face)
 
         with self.system.phases("condense distortion"):
             if conduction is not self.thermal.conduction:  # of a time step, or a tangent
@@ -61,7 +67,7 @@ class CondensedDistortion:
             lambda: gap_per_rise(self.thermal.load, self.system.contact),
         )
 
-    def slope(self, rise: np.ndarray | None) -> np.ndarray:
+    def slope(self, rise: np.ndarray) -> np.ndarray:
         """Derivative of the weak gap by a nodal rise, shape (n_owned, m) [m³/K]."""
         result = self.per_rise
         for part, per_rise in self._per_excess:
@@ -111,13 +117,12 @@ class HeatOperators:
         self.face = face
         self.reference = reference
         self._condensed = condensed
-        self._exchange: tuple[bytes, HeatExchange] | None = None
-        self._compliance: tuple[bytes, np.ndarray] | None = None
+        self._last = SetupCache()
 
     @cached_property
     def distortion(self) -> ThermalDistortion:
         """Weak gap per heat at the faces. Every rank calls."""
-        return self._condensed(self.conduction, self.face, self.reference)
+        return self._condensed(self.conduction, self.face, lambda: self.per_rise)
 
     @cached_property
     def per_rise(self) -> np.ndarray:
@@ -127,14 +132,14 @@ class HeatOperators:
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Heat exchange of the faces for conductances at the points, shape (n,)."""
         key = conductance.tobytes()
-        if self._exchange is None or self._exchange[0] != key:
-            self._exchange = (key, self.face.exchange(conductance))
-        return self._exchange[1]
+        return self._last.get("exchange", key, lambda: self.face.exchange(conductance))
 
     def compliance(self, conditions: InterfaceConditions, basis: np.ndarray) -> np.ndarray:
         """Thermal compliance ``H diag(mu v) Ψ``, shape (m, m)."""
-        key = conditions.conductance.tobytes() + conditions.heating.tobytes()
-        if self._compliance is None or self._compliance[0] != key:
-            per_heat = self.distortion.per_friction_heat(self.exchange(conditions.conductance))
-            self._compliance = (key, per_heat @ (conditions.heating[:, None] * basis))
-        return self._compliance[1]
+        conductance, heating = conditions.conductance, conditions.heating
+
+        def condensed() -> np.ndarray:
+            per_heat = self.distortion.per_friction_heat(self.exchange(conductance))
+            return per_heat @ (heating[:, None] * basis)
+
+        return self._last.get("compliance", conductance.tobytes() + heating.tobytes(), condensed)

@@ -18,6 +18,7 @@ from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wav
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from ..model.contact_points import pressure_degree
+from ..model.setup_cache import SetupCache
 from ..model.system import System
 from .anderson import Mixing
 from .contact_solver import ContactSolution, WearRates
@@ -48,7 +49,7 @@ class FullMethod:
         self._dead = still if system.dead_load is None else system.dead_load
         heated = system.thermal is not None
         self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
-        self._last_deflection: tuple[np.ndarray, EdgeDeflection] | None = None
+        self._last = SetupCache()
 
     def solve(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None
@@ -101,11 +102,12 @@ class FullMethod:
         """Unresolved deflection at given points, None without any; the last result is cached."""
         if points is None:
             return None
-        last, system = self._last_deflection, self._system
-        if last is None or not np.array_equal(last[0], points):
-            own = edge_deflection(system.basis, system.weights, points, self._edge_compliance)
-            last = self._last_deflection = points, own
-        return last[1]
+        basis, weights = self._system.basis, self._system.weights
+        return self._last.get(
+            "deflection",
+            points.tobytes(),
+            lambda: edge_deflection(basis, weights, points, self._edge_compliance),
+        )
 
     def _warm(self, gap, slope, start, conditions, heat, pressure, edge) -> FullSolution:
         """Solve contact of bodies distorted by the friction heat of a pressure."""

@@ -47,7 +47,7 @@ class GrowingEdge:
         self._weights = system.weights
         self._method = method
 
-    def points(self, worn: np.ndarray) -> np.ndarray:
+    def points(self, worn: np.ndarray) -> np.ndarray | None:
         """Points at the edge of given wear depths (n_wearing, n), shape (n,) of bool."""
         return self._edge.points(worn)
 

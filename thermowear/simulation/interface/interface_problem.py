@@ -8,7 +8,7 @@ import numpy as np
 
 from ..heat.friction_heat import FrictionHeat
 from ..heat.heat_states import HeatBalance
-from ..heat.heat_steps import HeatStep, InitialHeat
+from ..heat.heat_steps import ConductingStep, InitialHeat
 from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
 from .body_state import ContactState
@@ -167,9 +167,8 @@ class InterfaceProblem(WearProblem):
         conditions, found = self_consistent(
             self._model, time, guess, respond, _STEP, closed=guess.pressure > 0
         )
-        if before.stored is None:
+        if self._heat is None or heat is None or before.stored is None or found.faces is None:
             return found
-        assert self._heat is not None
         made = conditions.heating * found.pressure
         stored = self._heat.stored(before.stored, step, heat, found.faces, made)
         return replace(found, stored=stored)
@@ -274,7 +273,9 @@ class InterfaceProblem(WearProblem):
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
 
-    def _heat_at_end(self, before: InterfaceState, step: float, time: float) -> HeatStep | None:
+    def _heat_at_end(
+        self, before: InterfaceState, step: float, time: float
+    ) -> ConductingStep | None:
         if self._heat is None:
             return None
         if before.stored is None:

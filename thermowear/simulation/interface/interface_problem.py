@@ -15,9 +15,9 @@ from .body_state import ContactState
 from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent
 from .growing_edge import GrowingEdge
+from .implicit_contact import ImplicitContact
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
-from .worn_contact import ContactOfWornFaces
 
 _UNWORN = (
     "contact: the iteration for the contact set and the state-dependent properties did not "
@@ -42,7 +42,7 @@ class InterfaceProblem(WearProblem):
         self._heat = heat
         self._model = ConditionModel(system)
         self._edge = GrowingEdge(system, method)
-        self._contact = ContactOfWornFaces(system, method)
+        self._contact = ImplicitContact(system, method)
         case = system.case
         self._transient = case.heat is not None and case.heat.transient
 

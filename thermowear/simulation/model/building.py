@@ -17,7 +17,7 @@ from ...contact.search.pairing import Pairing
 from ...geometry.mesh.tagged import TaggedMesh
 from ...parallel import on_root
 from ...timer import Phases
-from .contact_points import contact_points, facing_parts, worn_contact_points
+from .contact_points import contact_points, facing_parts, implicit_contact_points
 from .elastic_system import dead_load, dead_resultant, elastic_system
 from .interface_laws import partition
 from .rigid_modes import drives
@@ -130,7 +130,7 @@ def _paired(
     faces = [replace(face, wears=closes_by_wear(case)) for face in gathered]
     if worn is None:
         return contact_points(case, comm, model, *faces)
-    return worn_contact_points(case, model, worn, *faces)
+    return implicit_contact_points(case, model, worn, *faces)
 
 
 def _exchanging(thermal: ThermalSystem, case: Case, facing: Facing) -> ThermalSystem:

@@ -37,7 +37,7 @@ def contact_points(case: Case, comm, model: Model, face_1, face_2) -> tuple[Pair
     return pairing, basis
 
 
-def worn_contact_points(
+def implicit_contact_points(
     case: Case, model: Model, worn: WornGeometry, face_1: Face | Surface, face_2: Face | Surface
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points of worn faces at the present position of body 1, with the unworn gap.

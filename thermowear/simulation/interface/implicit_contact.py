@@ -1,4 +1,4 @@
-"""Contact of worn faces, and at the end of an implicit step of wear, for given conditions."""
+"""Contact at the end of an implicit step of wear, for given interface conditions."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from ..model.system import System
 from .contact_solver import ContactSolution, ContactSolver, Slope, WearRates
 
 
-class ContactOfWornFaces:
-    """Contact of the bodies of a system whose faces have worn.
+class ImplicitContact:
+    """Contact of the bodies of a system with worn faces, by an implicit step of wear.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from thermowear.output import tables
 from thermowear.output.folder import ResultsFolder
 from thermowear.output.quantities import HISTORY, INTERFACE
 from thermowear.simulation import Observer
-from thermowear.simulation.runtime.checkpoint_policy import Saving
+from thermowear.simulation.runtime.history import AnalysisHistory
 
 from .conftest import COLD_RUNNING_IN
 
@@ -54,12 +54,12 @@ def beside_a_failure(heeds_ctrl_c, monkeypatch):
     handler, count = signal.getsignal(signal.SIGTERM), itertools.count(1)
 
     def make(number, error):
-        def passed(self, state):
+        def save_if_due(self):
             if next(count) == number:
                 signal.raise_signal(signal.SIGINT)
                 raise error
 
-        monkeypatch.setattr(Saving, "passed", passed)
+        monkeypatch.setattr(AnalysisHistory, "save_if_due", save_if_due)
 
     yield make
     signal.signal(signal.SIGTERM, handler)

@@ -44,13 +44,13 @@ class Growing:
             gained = repeats / 2 * self.rate(state.worn, repeats)
             lost = state.dissipated + (gained * AREAS)[0]
             state = replace(state, worn=state.worn + gained, dissipated=lost)
-            leg = LoadSegment(
+            segment = LoadSegment(
                 number - 1.5 + half / 2, number - 1 + half / 2, 0, number, repeats, False, half == 2
             )
-            yield Increment(leg.end, leg, True, state)
+            yield Increment(segment.end, segment, True, state)
 
     def settled(self, end, worn):
-        self.settled_at.append(end.leg.cycle)
+        self.settled_at.append(end.segment.cycle)
         return replace(end.state, worn=worn, dissipated=np.full(3, np.nan))
 
 
@@ -59,12 +59,12 @@ def state_of(worn):
     return StickSlipState(nothing, none, none, none[0], none[0], nothing, none, nothing, worn)
 
 
-def run(cycles, tolerance=1e-2, stops=(1, COUNT), longest=np.inf, behind=None):
-    return list(adaptive_jumps(cycles, stops, behind or cycles.start(), tolerance, longest))
+def run(cycles, tolerance=1e-2, stops=(1, COUNT), longest=np.inf, restart=None):
+    return list(adaptive_jumps(cycles, stops, restart or cycles.start(), tolerance, longest))
 
 
-def turns(instants):
-    return [instant for instant in instants if instant.jump is not None]
+def turns(increments):
+    return [increment for increment in increments if increment.jump is not None]
 
 
 def one_by_one(count=COUNT):
@@ -73,9 +73,9 @@ def one_by_one(count=COUNT):
     return last.state
 
 
-def error(instants):
+def error(increments):
     known = one_by_one().worn
-    return np.abs(instants[-1].state.worn - known).max() / known.max()
+    return np.abs(increments[-1].state.worn - known).max() / known.max()
 
 
 def test_jumps_are_long_and_good():
@@ -84,7 +84,7 @@ def test_jumps_are_long_and_good():
     found = run(cycles)
     assert len(cycles.computed) < 150
     assert error(found) < 2e-3
-    sizes = [instant.jump.cycles for instant in turns(found)]
+    sizes = [increment.jump.cycles for increment in turns(found)]
     assert sizes[0] == 1
     assert sizes[-1] > 100
 
@@ -101,8 +101,8 @@ def test_the_estimate_is_that_of_the_halves():
     for start, span in ((20, 10), (200, 100), (30, 7)):
         cycles = Growing()
         state = one_by_one(start)
-        behind = RestartPoint(start, state, span)
-        (turn,) = turns(run(cycles, 0.1, (start + span,), behind=behind))
+        restart = RestartPoint(start, state, span)
+        (turn,) = turns(run(cycles, 0.1, (start + span,), restart=restart))
         assert turn.jump.cycles == span
         n1 = span - span // 2
         first = list(cycles.cycle(state, start + n1, n1))[-1].state
@@ -118,8 +118,8 @@ def test_pairs_of_cycles_are_exact():
     """requirement: where no error is allowed each cycle is computed, and nothing is corrected."""
     cycles = Growing()
     found = run(cycles, 1e-15, (1, 30))
-    assert {instant.jump.cycles for instant in turns(found)} <= {1, 2}
-    assert all(instant.jump.error == 0.0 for instant in turns(found))
+    assert {increment.jump.cycles for increment in turns(found)} <= {1, 2}
+    assert all(increment.jump.error == 0.0 for increment in turns(found))
     assert not cycles.settled_at
     np.testing.assert_array_equal(found[-1].state.worn, one_by_one(30).worn)
 
@@ -128,7 +128,7 @@ def test_pairs_of_cycles_are_exact():
 def test_no_jump_is_longer_than_allowed(longest):
     """requirement: the largest jump, and nothing else, is bounded by it."""
     found = run(Growing(), longest=longest)
-    sizes = [instant.jump.cycles for instant in turns(found)]
+    sizes = [increment.jump.cycles for increment in turns(found)]
     assert max(sizes) <= longest
     assert sum(sizes) == COUNT
     assert error(found) < 2e-3
@@ -138,27 +138,27 @@ def test_all_stops_are_hit():
     """requirement: exact totals, no jump across a stop, none that leaves a few cycles over."""
     stops = (1, 2, 999, 1000, 1777, COUNT)
     found = turns(run(Growing(), stops=stops))
-    numbers = [instant.leg.cycle for instant in found]
+    numbers = [increment.segment.cycle for increment in found]
     assert set(stops) <= set(numbers)
-    assert numbers == list(np.cumsum([instant.jump.cycles for instant in found]))
+    assert numbers == list(np.cumsum([increment.jump.cycles for increment in found]))
     after = found[numbers.index(1000) + 1]
     assert after.jump.cycles > 50  # a short jump to a stop does not shorten the next one
 
 
 def test_what_was_too_long_leaves_no_trace():
-    """requirement: numbers and energies only grow; rejected jumps are not among the instants."""
+    """requirement: numbers and energies only grow; rejected jumps are not among the increments."""
     cycles = Growing()
     found = run(cycles, 1e-4)
-    numbers = [instant.leg.cycle for instant in found]
+    numbers = [increment.segment.cycle for increment in found]
     assert numbers == sorted(numbers)
-    assert np.all(np.diff([instant.state.dissipated.sum() for instant in found]) > 0)
+    assert np.all(np.diff([increment.state.dissipated.sum() for increment in found]) > 0)
     assert len(found) < 2 * len(cycles.computed)
 
 
 def test_volumes_stay_those_of_the_energy():
     """requirement: what is taken out of the depths is taken out of the energy too."""
-    for instant in turns(run(Growing())):
-        volume, lost = (instant.state.worn @ AREAS)[0], instant.state.dissipated.sum()
+    for increment in turns(run(Growing())):
+        volume, lost = (increment.state.worn @ AREAS)[0], increment.state.dissipated.sum()
         assert volume == pytest.approx(lost, rel=1e-12)
 
 
@@ -173,21 +173,21 @@ def test_wear_never_goes_back():
     """requirement: no depth shrinks where a long jump wears what shorter ones do not reach."""
     cycles = Widening()
     found = turns(run(cycles, 0.1, (1, 200)))
-    worn = np.array([instant.state.worn[0] for instant in found])
+    worn = np.array([increment.state.worn[0] for increment in found])
     assert np.all(np.diff(worn, axis=0) >= 0)
     assert cycles.settled_at
-    for instant in found:
-        volume, lost = (instant.state.worn @ AREAS)[0], instant.state.dissipated.sum()
+    for increment in found:
+        volume, lost = (increment.state.worn @ AREAS)[0], increment.state.dissipated.sum()
         assert volume == pytest.approx(lost, rel=1e-12)
 
 
 def test_jumps_that_cannot_be_computed_are_halved():
     """requirement: a failing cycle that stands for many is no end of the run."""
     found = run(Growing(most=20))
-    assert max(instant.jump.cycles for instant in turns(found)) <= 20
+    assert max(increment.jump.cycles for increment in turns(found)) <= 20
     assert error(found) < 2e-3
     singles = turns(run(Growing(most=1), stops=(1, 9)))
-    assert [instant.jump.cycles for instant in singles] == [1] * 9
+    assert [increment.jump.cycles for increment in singles] == [1] * 9
     with pytest.raises(ComputationError):
         run(Growing(most=0))
 
@@ -213,8 +213,8 @@ def test_a_run_goes_on_as_if_it_had_not_stopped(after):
     """requirement: the end of a jump holds all that the next one takes."""
     stops = (1, 500, COUNT)
     straight = turns(run(Growing(), stops=stops))
-    resumed = turns(run(Growing(), stops=stops, behind=straight[after].behind))
-    assert [i.leg.cycle for i in straight[after + 1 :]] == [i.leg.cycle for i in resumed]
+    resumed = turns(run(Growing(), stops=stops, restart=straight[after].restart))
+    assert [i.segment.cycle for i in straight[after + 1 :]] == [i.segment.cycle for i in resumed]
     np.testing.assert_array_equal(straight[-1].state.worn, resumed[-1].state.worn)
 
 
@@ -223,5 +223,5 @@ def test_fixed_jumps_have_no_estimate():
     cycles = Growing()
     found = turns(fixed_jumps(cycles, (1, 5, 9), cycles.start()))
     assert cycles.computed == [(1, 1), (5, 4), (9, 4)]
-    assert [instant.jump.cycles for instant in found] == [1, 4, 4]
-    assert all(np.isnan(instant.jump.error) for instant in found)
+    assert [increment.jump.cycles for increment in found] == [1, 4, 4]
+    assert all(np.isnan(increment.jump.error) for increment in found)

@@ -6,7 +6,7 @@ from thermowear.case.tables.history import History
 from thermowear.model import FrettingAnalysis
 from thermowear.simulation.cycles.load_path import (
     by_fixed_jumps,
-    cycle_legs,
+    cycle_segments,
     first_pass,
     to_stop_at,
 )
@@ -23,7 +23,7 @@ def way(loads, cycles=1, jump=1, output_times=()):
     if loads.cycle is None:
         return legs
     for number in by_fixed_jumps(loads, settings, cycles, jump):
-        legs += cycle_legs(loads, settings.output_times, number, number - before)
+        legs += cycle_segments(loads, settings.output_times, number, number - before)
         before = number
     return legs
 

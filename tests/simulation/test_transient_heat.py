@@ -12,7 +12,7 @@ from thermowear.app.cli import main
 from thermowear.output import tables as csv_tables
 from thermowear.output.quantities import HEAT, HISTORY
 from thermowear.reference.sliding_rod import SlidingRod
-from thermowear.simulation.heat.friction_heat import FrictionHeat
+from thermowear.simulation.heat.linearisation import HeatSteps
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.interface.sdirk import advance
 
@@ -112,10 +112,13 @@ def test_hot_bodies_that_nothing_presses_are_in_equilibrium():
 def test_steps_are_efficient(monkeypatch):
     """requirement: no tiny steps to begin with, few sizes, few steps."""
     sizes = []
-    make = FrictionHeat._operators
-    monkeypatch.setattr(
-        FrictionHeat, "_operators", lambda heat, step: sizes.append(step) or make(heat, step)
-    )
+    make = HeatSteps._operators
+
+    def counted(steps, rise, step):
+        sizes.append(step)
+        return make(steps, rise, step)
+
+    monkeypatch.setattr(HeatSteps, "_operators", counted)
     result = solved(STOP, None, *COARSE)
     assert len(result.history) < 80
     assert result.history[1].step > 1e-4
@@ -339,7 +342,7 @@ def test_runaway_is_called_by_its_name(tmp_path, capsys):
     late = ["--set=analysis.end_time=4000 s", "--set=analysis.tolerance=1e-3", "--no-pictures"]
     assert main(["run", str(file), "-o", str(folder), *late]) == 2
     said = " ".join(capsys.readouterr().err.split())
-    assert "runs away" in said
+    assert "thermal runaway" in said
     assert "thermoelastic instability" in said
     heat = csv_tables.read(folder / "heat.csv", HEAT)
     assert heat["max_temperature_1"][-1] > 5000.0

@@ -111,6 +111,14 @@ class Conduction:
             raise ComputationError("heat: density and specific heat of the bodies are not given")
         return self.plus(self.capacity, 1 / step, self.symmetric)
 
+    def tangent(self, rise: np.ndarray, step: float | None = None) -> Conduction:
+        """Linearised conduction at a rise (n_owned,), within a time step [s] if one is given."""
+        return self if step is None else self.storing(step)
+
+    def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray | float:
+        """Difference of tangent (at a reference) and nonlinear conduction of a rise [W]."""
+        return 0.0
+
     def plus(self, matrix: PETSc.Mat, times: float, symmetric: bool) -> Conduction:
         """Add a multiple of a matrix of the same pattern to the conductivity, and factorise."""
         sum_ = self.conductivity.copy()

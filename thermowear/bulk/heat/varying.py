@@ -108,10 +108,6 @@ class VaryingConduction(Conduction):
     parts: tuple[VaryingConductivity, ...]
 
     def tangent(self, rise: np.ndarray, step: float | None = None) -> Conduction:
-        """Linearised conduction at a rise, within a time step [s] if one is given.
-
-        Every rank calls.
-        """
         change = self.conductivity.duplicate()
         change.zeroEntries()
         for part in self.parts:
@@ -122,7 +118,6 @@ class VaryingConduction(Conduction):
         return self.plus(change, 1.0, symmetric=not self.parts and self.symmetric)
 
     def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:
-        """Difference of tangent (at a reference) and nonlinear conduction of a rise [W]."""
         tangents = ((p.matrix, p.slope(reference) * rise - p.excess(rise)) for p in self.parts)
         return _products(len(rise), tangents)
 

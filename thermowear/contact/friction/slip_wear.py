@@ -17,18 +17,13 @@ its adjoint, which conserves volume.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...errors import ComputationError
 from ...laws.interfaces import WearRate
 from ..search.pairing import Pairing
 from .stick_slip_state import StickSlipState
-
-_PASSES = 40
-_SETTLED = 1e-6  # of the depth worn in the increment
 
 
 @dataclass(frozen=True)
@@ -143,63 +138,56 @@ class SlipWear:
         return replace(self, duration=self.duration / 2)
 
 
-def implicitly(
-    solve: Callable[[StickSlipState, np.ndarray, np.ndarray], StickSlipState],
-    wear: SlipWear,
-    slid: float,
-    before: StickSlipState,
-    unworn: StickSlipState,
-    areas: np.ndarray,
-) -> tuple[StickSlipState, np.ndarray]:
-    """Implicit increment: end state, and depths worn by the pressure at the end.
+@dataclass(frozen=True)
+class IncrementWear:
+    """Depth worn at the contact in an increment, see `contact.wear.implicit_step`.
 
-    Stable for any amount of wear. Each pass is a Newton step for the pressure, damped by one half
-    if the last pass increased the error, with the slip of the pass before.
+    The slip is that of the last solution.
 
-    Parameters
+    Attributes
     ----------
-    solve : callable
-        End state for a guess and a linearised worn depth at the contact: value at zero pressure,
-        shape (m,), and derivative by the pressure, shape (m, m).
     wear : SlipWear
-    slid : float
-        Displacement of body 1 along +x [m].
-    before, unworn : StickSlipState
-        State at the start of the increment, and at its end without wear.
+    before : StickSlipState
+        State at the start of the increment.
     areas : ndarray, shape (m,)
         Areas of the basis functions [m²].
-
-    Returns
-    -------
-    StickSlipState
-    depths : ndarray, shape (n_wearing, m)
-        Coefficients in the profile of each body [m].
-
-    Raises
-    ------
-    ComputationError
-        If slip and wear do not converge.
+    lost : ndarray, shape (n_wearing, m, m)
+        Coefficients in the profile of each body from its depth worn at the contact.
+    opens : ndarray, shape (n_wearing, m, m)
+        Depth of the profile at the contact from the depth worn at the contact.
     """
-    m = len(areas)
-    kept = np.reshape([profile.lost(slid) for profile in wear.profiles], (-1, m, m))
-    seen = np.reshape([profile.seen(slid) for profile in wear.profiles], (-1, m, m))
-    opens = seen @ kept
-    after, expected = unworn, np.zeros(m)
-    pressure, least = unworn.pressure, np.inf
-    for _ in range(_PASSES):
-        slip = after.moves * np.linalg.norm(after.slip - before.slip, axis=1) / areas
-        depths = wear.depths(after.pressure, slip)
-        opened = np.einsum("bmn,bn->m", opens, depths)
-        error = np.abs(opened - expected).max()
-        if error <= _SETTLED * opened.max():
-            return after, np.einsum("bmn,bn->bm", kept, depths)
-        back = 0.0 if error < least else 0.5
-        pressure, least = back * pressure + (1 - back) * after.pressure, min(error, least)
-        slope = np.einsum("bmn,bn->mn", opens, wear.slopes(pressure, slip))
-        start = np.einsum("bmn,bn->m", opens, wear.depths(pressure, slip)) - slope @ pressure
-        after = solve(after, start, slope)
-        expected = start + slope @ after.pressure
-    raise ComputationError(
-        "contact: slip and wear of an increment do not settle; take smaller increments, or let "
-        "each computed cycle stand for fewer (analysis.jump)"
-    )
+
+    wear: SlipWear
+    before: StickSlipState
+    areas: np.ndarray
+    lost: np.ndarray
+    opens: np.ndarray
+
+    @classmethod
+    def at(
+        cls, wear: SlipWear, before: StickSlipState, areas: np.ndarray, slid: float
+    ) -> IncrementWear:
+        """Wear of an increment that ends at a displacement of body 1 along +x [m]."""
+        m = len(areas)
+        lost = np.reshape([profile.lost(slid) for profile in wear.profiles], (-1, m, m))
+        seen = np.reshape([profile.seen(slid) for profile in wear.profiles], (-1, m, m))
+        return cls(wear, before, areas, lost, seen @ lost)
+
+    def value(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
+        """Depth at the contact, shape (m,) [m]."""
+        depths = self.wear.depths(pressure, self._slip(last))
+        return np.einsum("bmn,bn->m", self.opens, depths)
+
+    def slope(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
+        """Derivative of the depth, shape (m, m) [m/Pa]."""
+        slopes = self.wear.slopes(pressure, self._slip(last))
+        return np.einsum("bmn,bn->mn", self.opens, slopes)
+
+    def profiles(self, after: StickSlipState) -> np.ndarray:
+        """Worn coefficients in the profile of each body, shape (n_wearing, m) [m]."""
+        depths = self.wear.depths(after.pressure, self._slip(after))
+        return np.einsum("bmn,bn->bm", self.lost, depths)
+
+    def _slip(self, after: StickSlipState) -> np.ndarray:
+        """Magnitude of the weighted mean slip of the increment, shape (m,) [m]."""
+        return after.moves * np.linalg.norm(after.slip - self.before.slip, axis=1) / self.areas

@@ -15,14 +15,20 @@ import numpy as np
 from ...errors import ComputationError
 from ..operators.tangential import FrictionalContact
 from ..solvers.signorini import solve_contact
+from ..wear.implicit_step import newton_with_wear
 from .coulomb import CoulombProblem, CoulombSolution
 from .coulomb_solver import solve_directly, solve_patiently
 from .gross_slip import FullSliding, refuse_sliding
 from .loads import Loads
-from .slip_wear import SlipWear, implicitly
+from .slip_wear import IncrementWear, SlipWear
 from .stick_slip_state import Status, StickSlipState, unloaded
 
 _HALVINGS = 6
+_SETTLED = 1e-6  # of the depth worn in the increment
+_UNSETTLED = (
+    "contact: the iteration for slip and wear of an increment did not converge; take smaller "
+    "increments, or let each computed cycle stand for fewer (analysis.jump)"
+)
 
 
 def advance(
@@ -61,7 +67,7 @@ def advance(
     slid = _slid(state, loads)
     worn = state.worn.sum(axis=0) if wear is None else wear.seen(state.worn, slid)
 
-    def solve(guess: StickSlipState, lost: np.ndarray, slope: np.ndarray) -> StickSlipState:
+    def solve(lost: np.ndarray, slope: np.ndarray, guess: StickSlipState) -> StickSlipState:
         """Solve contact with the worn depths ``lost + slope λ``."""
         gap = contact.weighted.T @ contact.gap + mean @ (worn + lost)
         compliance = contact.compliance.copy()
@@ -69,10 +75,13 @@ def advance(
         return _solved(contact, friction, state, guess, loads, compliance, gap)
 
     nothing = np.zeros_like(mean)
-    after = solve(state, nothing[0], nothing)
+    after = solve(nothing[0], nothing, state)
     if wear is None:
         return after
-    after, depths = implicitly(solve, wear, slid, state, after, mean.sum(axis=1))
+    by_slip = IncrementWear.at(wear, state, mean.sum(axis=1), slid)
+    if by_slip.value(after.pressure, after).any():
+        after = newton_with_wear(solve, by_slip, after, _SETTLED, _UNSETTLED)
+    depths = by_slip.profiles(after)
     lost = wear.repeats * (after.dissipated - state.dissipated)
     return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
 

@@ -16,7 +16,8 @@ from ...errors import ComputationError
 from ...serialise import serialisable
 from ..solvers.signorini import solve_contact
 from ..wear.edge_deflection import EdgeDeflection
-from .equations import ContactEquations, Loading
+from .equations import ContactEquations
+from .loading import Loading
 
 _TOLERANCE = 1e-10
 _LOOSE = 1e-8

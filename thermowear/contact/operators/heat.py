@@ -211,8 +211,12 @@ def at_rest(
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     comm,
     per_rise: np.ndarray | None = None,
+    excess: np.ndarray | float = 0.0,
 ) -> BaselineResponse:
-    """Response of faces and, with `per_rise`, of the weak gap to a nodal rise (n_owned,)."""
+    """Response of faces and, with `per_rise`, of the weak gap to a nodal rise (n_owned,).
+
+    The weak gap may have a part of this rank in `excess` of the linear one.
+    """
     T1, T2 = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
-    opening = None if per_rise is None else sum_over_ranks(comm, per_rise.T @ rise)
+    opening = None if per_rise is None else sum_over_ranks(comm, per_rise.T @ rise + excess)
     return BaselineResponse((T1, T2), opening)

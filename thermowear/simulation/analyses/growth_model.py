@@ -15,11 +15,11 @@ from petsc4py import PETSc
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
-from ...contact.operators.heat import InterfaceHeat
+from ...contact.operators.heat import InterfaceHeat, at_rest
 from ...contact.operators.heat_condensation import condense_heat
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
-from ..heat.friction_heat import FrictionHeat
+from ..heat.heat_operators import CondensedDistortion
 from ..model.conditions import InterfaceConditions
 from ..model.system import System
 
@@ -57,7 +57,7 @@ class GrowthModel:
     ----------
     system : System
         System with a thermal model and known heat capacity.
-    heat : FrictionHeat
+    distortion : CondensedDistortion
     conditions : InterfaceConditions
         Conditions of the perturbed state.
     elastic : ndarray, shape (m, m)
@@ -69,14 +69,14 @@ class GrowthModel:
     def __init__(
         self,
         system: System,
-        heat: FrictionHeat,
+        distortion: CondensedDistortion,
         conditions: InterfaceConditions,
         elastic: np.ndarray,
         space: LoadFree,
     ):
         assert system.thermal is not None
         self._system, self._thermal = system, system.thermal
-        self._heat, self._conditions = heat, conditions
+        self._distortion, self._conditions = distortion, conditions
         self._elastic, self._space = elastic, space
         self._friction = conditions.heating[:, None] * (system.basis @ space.pressures)
         self._fields: np.ndarray | None = None
@@ -138,14 +138,14 @@ class GrowthModel:
 
     def disturbances(self) -> Disturbances:
         """Matrices of the present model; every rank calls."""
-        system, heat, space = self._system, self._heat, self._space
-        conduction, X = self._thermal.conduction, self._fields
+        system, space, thermal = self._system, self._space, self._thermal
+        conduction, X = thermal.conduction, self._fields
         assert X is not None
         assert conduction.capacity is not None
-        at = heat.at_rest(X)
+        at = at_rest(X, thermal.face.traces, system.comm, self._distortion.per_rise)
         T1, T2 = at.rise
         weights = system.weights[:, None]
-        f = np.reshape(self._thermal.face.partition, (-1, 1))
+        f = np.reshape(thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # each field satisfies the interface heat law
         carried = np.zeros((X.shape[1],) * 2)
         if conduction.carried is not None:

@@ -19,7 +19,7 @@ from ...laws.stability import (
     load_free,
     static_modes,
 )
-from ..heat.friction_heat import FrictionHeat
+from ..heat.heat_operators import CondensedDistortion
 from ..model.building import build
 from ..model.conditions import InterfaceConditions
 from ..model.system import System
@@ -74,7 +74,7 @@ class DisturbedContact:
             raise CaseError("heat: missing; required in a stability analysis")
         self._system, self._pressure, self._conditions = system, pressure, conditions
         self._bodies = system.thermal
-        self._heat = FrictionHeat(system, system.thermal)
+        self._distortion = CondensedDistortion(system, system.thermal)
 
     @property
     def stores(self) -> bool:
@@ -140,7 +140,8 @@ class DisturbedContact:
 
     @cached_property
     def _model(self) -> GrowthModel:
-        model = GrowthModel(self._system, self._heat, self._conditions, self._elastic, self._kinds)
+        heat, elastic, kinds = self._distortion, self._elastic, self._kinds
+        model = GrowthModel(self._system, heat, self._conditions, elastic, kinds)
         model.begin()
         return model
 
@@ -154,7 +155,7 @@ class DisturbedContact:
     def _thermal(self) -> np.ndarray:
         """Weak thermal opening per pressure coefficient, H, at the given speed."""
         conduction, face = self._bodies.conduction, self._bodies.face
-        per_heat = self._heat.condensed(conduction, face).per_friction_heat(
+        per_heat = self._distortion(conduction, face).per_friction_heat(
             face.exchange(self._conditions.conductance)
         )
         return per_heat @ (self._conditions.heating[:, None] * self._system.basis)

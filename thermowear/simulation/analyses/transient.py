@@ -12,19 +12,18 @@ from ..interface.factory import interface_problem
 from ..interface.steady import SteadyState, steady_state
 from ..model.system import System
 from ..results.outcome import Outcome
-from ..runtime.guarded_loop import go_through
+from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
 from ..time.step_sizes import AnySize, FewSizes
 from ..time.time_loop import times_to_hit
-from .static import wear_velocity
-from .transient_record import RunningIn, RunningInRecord
+from .transient_history import TransientHistory
 
 
 def running_in(
     system: System,
     settings: TransientAnalysis,
     observer: Observer,
-    before: RunningIn | None = None,
+    before: Progress | None = None,
 ) -> Outcome:
     """Follow contact in time, from the start or from a checkpoint.
 
@@ -33,27 +32,10 @@ def running_in(
     """
     problem = interface_problem(system, observer.note)
     sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
-    approached = partial(_principle, settings)
-    loop = OuterLoop(system, settings, problem, approached, sizes, observer)
-    record = RunningInRecord(loop, settings.frames, observer)
-    begun = None if before is None else record.go_on(before)
-    passing = record.watched(loop.moments(begun))
-    last, stopped = go_through(system, settings, "time stepping", passing, record, observer, begun)
-    with system.phases("bodies"):
-        contact, motion, state, interface = record.bodies(last)
-    velocity = None if loop.steady is None else loop.steady.wear.velocity
-    return Outcome(
-        contact=contact,
-        motion=motion,
-        state=state,
-        interface=interface,
-        extra=record.extra() | wear_velocity(system, velocity),
-        history=record.rows,
-        outputs=record.outputs,
-        heat=record.heat,
-        stopped=stopped,
-        system=loop.system,
-    )
+    loop = OuterLoop(system, settings, problem, partial(_principle, settings), sizes, observer)
+    history = TransientHistory(loop, settings, observer)
+    passing = history.watched(loop.moments(history.resume(before)))
+    return history.outcome(history.follow("time stepping", passing))
 
 
 def _principle(settings: TransientAnalysis, system: System) -> SteadyState | None:

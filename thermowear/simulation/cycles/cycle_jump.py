@@ -48,20 +48,20 @@ class Cycles(Protocol):
 
 
 def fixed_jumps(
-    cycles: Cycles, numbers: Iterable[int], behind: RestartPoint
+    cycles: Cycles, numbers: Iterable[int], restart: RestartPoint
 ) -> Iterator[Increment]:
     """Compute the cycles of these numbers, each representing all since the previous one."""
     for number in numbers:
-        if number > behind.cycle:
-            span = number - behind.cycle
-            for instant in cycles.cycle(behind.state, number, span):
-                state = instant.state
-                yield _marked(instant, Jump(span, math.nan, span))
-            behind = RestartPoint(number, state, span)
+        if number > restart.cycle:
+            span = number - restart.cycle
+            for increment in cycles.cycle(restart.state, number, span):
+                state = increment.state
+                yield _marked(increment, Jump(span, math.nan, span))
+            restart = RestartPoint(number, state, span)
 
 
 def adaptive_jumps(
-    cycles: Cycles, stops: Iterable[int], behind: RestartPoint, tolerance: float, longest: float
+    cycles: Cycles, stops: Iterable[int], restart: RestartPoint, tolerance: float, longest: float
 ) -> Iterator[Increment]:
     """Compute all cycles in jumps with an error within the tolerance.
 
@@ -70,7 +70,7 @@ def adaptive_jumps(
     cycles : Cycles
     stops : iterable of int
         Cycles that no jump passes over, in order, including the last one.
-    behind : RestartPoint
+    restart : RestartPoint
     tolerance : float
         Error relative to the largest worn depth.
     longest : float
@@ -87,16 +87,17 @@ def adaptive_jumps(
         If a single cycle fails.
     """
     for stop in stops:
-        while behind.cycle < stop:
-            span = _at_most(min(behind.following, longest), stop - behind.cycle)
-            wanted = behind.following
-            for instant in _jumped(cycles, behind, span, tolerance):
-                if instant.jump is not None and instant.leg.cycle == stop:
-                    following = max(instant.jump.following, wanted)
-                    instant = replace(instant, jump=replace(instant.jump, following=following))
-                yield instant
-            assert instant.jump is not None  # it ends the jump
-            behind = RestartPoint(instant.leg.cycle, instant.state, instant.jump.following)
+        while restart.cycle < stop:
+            span = _at_most(min(restart.following, longest), stop - restart.cycle)
+            wanted = restart.following
+            for increment in _jumped(cycles, restart, span, tolerance):
+                if increment.jump is not None and increment.segment.cycle == stop:
+                    following = max(increment.jump.following, wanted)
+                    jump = replace(increment.jump, following=following)
+                    increment = replace(increment, jump=jump)
+                yield increment
+            assert increment.restart is not None  # it ends the jump
+            restart = increment.restart
 
 
 def _at_most(wanted: float, left: int) -> int:
@@ -105,10 +106,10 @@ def _at_most(wanted: float, left: int) -> int:
 
 
 def _jumped(
-    cycles: Cycles, behind: RestartPoint, wanted: int, tolerance: float
+    cycles: Cycles, restart: RestartPoint, wanted: int, tolerance: float
 ) -> Iterable[Increment]:
     """Increments of one jump, which is halved until its error is within the tolerance."""
-    start, state, span, whole = behind.cycle, behind.state, wanted, None
+    start, state, span, whole = restart.cycle, restart.state, wanted, None
     while span > 1:
         n1, n2 = span - span // 2, span // 2
         try:
@@ -126,8 +127,8 @@ def _jumped(
             jump = Jump(span, error, span * _growth(error, tolerance))
             return [*first, *second[:-1], replace(done_twice.corrected(cycles), jump=jump)]
         span, whole = n1, first  # the whole of the next attempt
-    jump = Jump(1, 0.0, behind.following if wanted == 1 else 2.0)
-    return (_marked(instant, jump) for instant in cycles.cycle(state, start + 1, 1))
+    jump = Jump(1, 0.0, restart.following if wanted == 1 else 2.0)
+    return (_marked(increment, jump) for increment in cycles.cycle(state, start + 1, 1))
 
 
 @dataclass(frozen=True)
@@ -194,7 +195,7 @@ def _forward(gains: np.ndarray, areas: np.ndarray) -> np.ndarray:
     return kept * np.maximum(gains @ areas / volumes, 0.0)[:, None]
 
 
-def _marked(instant: Increment, jump: Jump) -> Increment:
+def _marked(increment: Increment, jump: Jump) -> Increment:
     """Increment with the jump attached if it ends a cycle."""
-    ends = instant.ends_leg and instant.leg.ends_cycle
-    return replace(instant, jump=jump) if ends else instant
+    ends = increment.ends_segment and increment.segment.ends_cycle
+    return replace(increment, jump=jump) if ends else increment

@@ -15,17 +15,16 @@ from ...contact.friction.stick_slip_state import StickSlipState, unloaded
 from ...contact.operators.tangential import FrictionalContact, condense_tangential
 from ...errors import CaseError
 from ...laws.load_history import LoadHistory
-from ...laws.motions import translation
 from ...model.analyses import FrettingAnalysis
 from ...model.holder import Holder
 from ..model.system import System
 from ..results.outcome import Outcome
-from ..runtime.guarded_loop import go_through
+from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
 from .cycle_jump import adaptive_jumps, fixed_jumps
-from .fretting_record import Fretted, FrettingRecord
+from .fretting_history import FrettingHistory
 from .increments import Increment, RestartPoint
-from .load_path import LoadSegment, by_fixed_jumps, cycle_legs, first_pass, to_stop_at
+from .load_path import LoadSegment, by_fixed_jumps, cycle_segments, first_pass, to_stop_at
 
 _ACROSS = (1.0, 0.0)
 
@@ -34,7 +33,7 @@ def fretting(
     system: System,
     settings: FrettingAnalysis,
     observer: Observer,
-    before: Fretted | None = None,
+    before: Progress | None = None,
 ) -> Outcome:
     """Follow the load history and its cycles, from the start or from a checkpoint.
 
@@ -52,23 +51,9 @@ def fretting(
     with system.phases("condense elasticity"):
         condensed = condense_tangential(system.elastic, system.pairing, system.basis, translations)
     profiles = tuple(profile(system.pairing, condensed.weighted, body) for body in system.laws)
-    record = FrettingRecord(system, settings, history, translations, profiles, observer)
-    last = None if before is None else record.go_on(before)
-    instants = _Path(system, settings, history, condensed, profiles).instants(last)
-    _, stopped = go_through(system, settings, "load steps", instants, record, observer, last)
-    with system.phases("bodies"):
-        contact, bodies, interface = record.interface()
-    return Outcome(
-        contact=contact,
-        motion=translation(record.last.motion @ translations),
-        state=bodies,
-        interface=interface,
-        extra=record.extra(),
-        history=[],
-        outputs=record.outputs,
-        friction=record.history(),
-        stopped=stopped,
-    )
+    record = FrettingHistory(system, settings, observer, history.cycle, translations, profiles)
+    path = _Path(system, settings, history, condensed, profiles)
+    return record.outcome(record.follow("load steps", path.increments(record.resume(before))))
 
 
 def _translations(holder: Holder, history: LoadHistory) -> np.ndarray:
@@ -95,54 +80,55 @@ class _Path:
         self._contact, self._friction = contact, system.friction
         self._laws, self._profiles = tuple(system.laws.values()), profiles
 
-    def instants(self, last: Increment | None = None) -> Iterator[Increment]:
+    def increments(self, last: Increment | None = None) -> Iterator[Increment]:
         """Increments up to the start of the cycles, then through them.
 
         Either all increments, or the ones after an increment with a restart point.
         """
         history, settings = self._history, self._settings
-        behind, passed = RestartPoint(0, unloaded(self._contact, len(self._laws))), -math.inf
+        restart, passed = RestartPoint(0, unloaded(self._contact, len(self._laws))), -math.inf
         if last is not None:
-            assert last.behind is not None
-            behind, passed = last.behind, last.leg.end
-        if behind.cycle == 0:
-            legs = (leg for leg in first_pass(history, settings.output_times) if leg.end > passed)
-            for instant in self._along(legs, behind.state):
-                behind = RestartPoint(0, instant.state)
-                yield instant
+            assert last.restart is not None
+            restart, passed = last.restart, last.segment.end
+        if restart.cycle == 0:
+            first = first_pass(history, settings.output_times)
+            left = (segment for segment in first if segment.end > passed)
+            for increment in self._along(left, restart.state):
+                restart = RestartPoint(0, increment.state)
+                yield increment
         if history.cycle is not None:
-            yield from self.going_on(behind)
+            yield from self.going_on(restart)
 
-    def going_on(self, behind: RestartPoint) -> Iterator[Increment]:
+    def going_on(self, restart: RestartPoint) -> Iterator[Increment]:
         """Increments of the cycles after a restart point."""
         history, settings = self._history, self._settings
         count = settings.cycles
         if settings.jump == "auto":
             stops = to_stop_at(history, settings, count)
-            return adaptive_jumps(self, stops, behind, settings.tolerance, settings.max_jump)
+            return adaptive_jumps(self, stops, restart, settings.tolerance, settings.max_jump)
         numbers = by_fixed_jumps(history, settings, count, settings.jump)
-        return fixed_jumps(self, numbers, behind)
+        return fixed_jumps(self, numbers, restart)
 
     def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Increment]:
         """See `cycle_jump.Cycles`."""
         times = self._settings.output_times
-        return self._along(cycle_legs(self._history, times, number, repeats), state)
+        return self._along(cycle_segments(self._history, times, number, repeats), state)
 
     def settled(self, end: Increment, worn: np.ndarray) -> StickSlipState:
         """See `cycle_jump.Cycles`."""
-        state, loads = replace(end.state, worn=worn), self._loads(end.leg.instant)
+        state, loads = replace(end.state, worn=worn), self._loads(end.segment.instant)
         settled = advance(self._contact, self._friction, state, loads, self._wear(0.0))
         return replace(settled, dissipated=state.dissipated)
 
-    def _along(self, legs: Iterator[LoadSegment], state: StickSlipState) -> Iterator[Increment]:
+    def _along(self, segments: Iterator[LoadSegment], state: StickSlipState) -> Iterator[Increment]:
         count = self._settings.increments
-        for leg in legs:
-            loads, step = self._loads(leg.instant), (leg.end - leg.start) / count
-            wear = self._wear(step, leg.repeats)
+        for segment in segments:
+            loads, step = self._loads(segment.instant), (segment.end - segment.start) / count
+            wear = self._wear(step, segment.repeats)
             states = follow(self._contact, self._friction, [loads], count, state, wear)
             for number, state in enumerate(states, start=1):
-                time = leg.end if number == count else leg.start + number * step
-                yield Increment(time, leg, number == count, state)
+                time = segment.end if number == count else segment.start + number * step
+                yield Increment(time, segment, number == count, state)
 
     def _wear(self, duration: float, repeats: int = 1) -> SlipWear:
         return SlipWear(self._laws, self._profiles, self._friction, duration, repeats)

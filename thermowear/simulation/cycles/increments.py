@@ -39,30 +39,30 @@ class Increment:
     ----------
     time : float
         [s]
-    leg : LoadSegment
-    ends_leg : bool
+    segment : LoadSegment
+    ends_segment : bool
     state : StickSlipState
     jump : Jump or None
         Jump that ends here.
     """
 
     time: float
-    leg: LoadSegment
-    ends_leg: bool
+    segment: LoadSegment
+    ends_segment: bool
     state: StickSlipState
     jump: Jump | None = None
 
     @property
     def is_output(self) -> bool:
         """True if the increment ends at an output time."""
-        return self.ends_leg and self.leg.is_output
+        return self.ends_segment and self.segment.is_output
 
     @property
-    def behind(self) -> RestartPoint | None:
+    def restart(self) -> RestartPoint | None:
         """Restart point at the end of a jump, or of a segment before cycle 1; None elsewhere."""
         if self.jump is not None:
-            return RestartPoint(self.leg.cycle, self.state, self.jump.following)
-        before = self.ends_leg and self.leg.cycle == 0
+            return RestartPoint(self.segment.cycle, self.state, self.jump.following)
+        before = self.ends_segment and self.segment.cycle == 0
         return RestartPoint(0, self.state) if before else None
 
 

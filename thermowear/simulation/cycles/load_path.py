@@ -54,7 +54,7 @@ def first_pass(history: LoadHistory, output_times: tuple[float, ...]) -> Iterato
         start = time
 
 
-def cycle_legs(
+def cycle_segments(
     history: LoadHistory, output_times: tuple[float, ...], number: int, repeats: int = 1
 ) -> Iterator[LoadSegment]:
     """Load segments of a cycle of a periodic history; time continues through all cycles.

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ...laws.motions import RigidMotion, combined
+from ...laws.motions import combined
 from ...model.analyses import ReciprocatingAnalysis
-from ...serialise import serialisable
-from ..interface.body_state import BodyState, ContactState, contact_state
+from ..interface.body_state import contact_state
 from ..interface.factory import interface_problem
+from ..interface.sdirk import InterfaceState
 from ..model.system import System
 from ..results.outcome import Outcome
 from ..results.recording import interface_at
-from ..results.result import InterfaceFields, TrackHistory, WornTrack
+from ..results.result import WornTrack
 from ..results.rows import HistoryRow
-from ..runtime.frames import FrameRecorder
-from ..runtime.guarded_loop import go_through
+from ..runtime.checkpoint_data import Progress
+from ..runtime.history import AnalysisHistory, Snapshot
 from ..runtime.observer import Observer
 from ..time.step_sizes import AnySize
 from ..time.time_loop import Moment, moments
@@ -25,112 +23,78 @@ from .reciprocating_problem import ReciprocatingProblem
 from .stroke import positions
 
 
-@serialisable
-@dataclass(frozen=True)
-class Reciprocated:
-    """Progress of a reciprocating analysis: the data needed to restart it.
-
-    Attributes
-    ----------
-    moment : Moment
-    rows : list of HistoryRow
-    """
-
-    moment: Moment
-    rows: list[HistoryRow]
-
-    @property
-    def time(self) -> float:
-        return self.moment.time
-
-
 def reciprocating(
     system: System,
     settings: ReciprocatingAnalysis,
     observer: Observer,
-    before: Reciprocated | None = None,
+    before: Progress | None = None,
 ) -> Outcome:
     """Follow the cycle-averaged wear in time, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept.
     """
     problem = ReciprocatingProblem(system, positions(system, settings))
-    record = _Record(system, settings, problem, observer)
-    last = None if before is None else record.go_on(before)
-    run = moments(problem, settings, None, AnySize(settings.max_jump / settings.frequency), last)
-    _, stopped = go_through(system, settings, "time stepping", run, record, observer, last)
-    with system.phases("bodies"):
-        contact, motion, state, interface = record.in_the_middle()
-    return Outcome(
-        contact=contact,
-        motion=motion,
-        state=state,
-        interface=interface,
-        extra=record.extra(),
-        history=record.rows,
-        outputs=record.outputs,
-        track=TrackHistory(record.worn_track(), record.tracks),
-        stopped=stopped,
-    )
+    history = ReciprocatingHistory(system, settings, observer, problem)
+    sizes = AnySize(settings.max_jump / settings.frequency)
+    run = moments(problem, settings, None, sizes, history.resume(before))
+    return history.outcome(history.follow("time stepping", run))
 
 
-class _Record:
-    """Recorder of the rows and outputs so far."""
+class ReciprocatingHistory(AnalysisHistory[Moment]):
+    """History of reciprocating wear.
 
-    last: Moment
+    Parameters
+    ----------
+    system : System
+    settings : ReciprocatingAnalysis
+    observer : Observer
+    problem : ReciprocatingProblem
+    """
 
     def __init__(
         self,
         system: System,
         settings: ReciprocatingAnalysis,
-        problem: ReciprocatingProblem,
         observer: Observer,
+        problem: ReciprocatingProblem,
     ):
-        self.rows: list[HistoryRow] = []
-        self.outputs: dict[float, InterfaceFields] = {}
-        self.tracks: dict[float, WornTrack] = {}
-        self._system = system
+        super().__init__(system, settings, observer)
         self._frequency = settings.frequency
         self._problem = problem
-        self._observer = observer
-        self._film = FrameRecorder(settings.frames, observer)
 
-    def go_on(self, before: Reciprocated) -> Moment:
-        """Restore the record of an earlier run; return the moment to restart from."""
-        self.last, self.rows = before.moment, before.rows
-        self._observer.resumed(self.rows)
-        return self.last
+    def rows_of(self, moment: Moment) -> list[HistoryRow]:
+        system, state = self._system, moment.state
+        volumes = self._volumes(state.worn)
+        mean_speed = float(np.average(system.speed, weights=system.weights))
+        largest, area, motion = self._problem.of_cycle(state.contact)
+        row = HistoryRow(
+            time=moment.time,
+            sliding_distance=mean_speed * moment.time,
+            max_pressure=largest,
+            contact_area=area,
+            wear_volume_1=volumes[0],
+            wear_volume_2=volumes[1],
+            max_temperature=float("nan"),
+            approach=float(system.approaches @ motion),
+            step=moment.step,
+            error=moment.error,
+        )
+        return [row]
 
-    def progress(self) -> Reciprocated:
-        return Reciprocated(self.last, self.rows)
-
-    def keep(self, moment: Moment) -> None:
-        """Record an accepted step."""
-        self.last = moment
-        self.rows.append(self._row(moment))
-        self._observer.step(self.rows[-1], moment.distance)
-        if moment.is_output:
-            with self._system.phases("output"):
-                time = moment.time
-                _, _, state, self.outputs[time] = self.in_the_middle()
-                state.require_balance()
-                self.tracks[time] = self.worn_track()
-                self._observer.output(time, self.outputs[time], track=self.tracks[time])
-        number, shown = len(self.rows) - 1, self.in_the_middle
-        self._film.take(self._system, number, moment.time, shown, self.worn_track)
-
-    def in_the_middle(self) -> tuple[ContactState, RigidMotion, BodyState, InterfaceFields]:
-        """Contact, motion of the holder, bodies and interface at mid-stroke of body 1."""
-        system, state = self._system, self.last.state
+    def snapshot(self, moment: Moment) -> Snapshot:
+        """Contact and bodies at mid-stroke of body 1, and the worn track; every rank calls."""
+        system, state = self._system, moment.state
         worn, rates = (self._seen(v) for v in (state.worn, self._problem.rates(state.pressure)))
         found = interface_problem(system).worn(worn.sum(axis=0))
         motion = combined(system.holder.motions, found.motion)
         contact = contact_state(system, found.pressure)
-        return contact, motion, *interface_at(system, contact, motion, worn, rates)
+        bodies, interface = interface_at(system, contact, motion, worn, rates)
+        track = self._worn_track(state)
+        return Snapshot(system, contact, motion, bodies, interface, track=track)
 
-    def worn_track(self) -> WornTrack:
+    def _worn_track(self, state: InterfaceState) -> WornTrack:
         """Worn depths and wear rates along the face of body 2."""
-        state, face = self.last.state, self._system.pairing.sides[1].face
+        face = self._system.pairing.sides[1].face
         rates = self._problem.rates(state.pressure)
         ends = face.position(np.arange(len(face.nodes)), np.ones(len(face.nodes)))
         x = np.interp(
@@ -140,14 +104,14 @@ class _Record:
         )
         return WornTrack(x, self._problem.split(state.worn)[1], self._problem.split(rates)[1])
 
-    def extra(self) -> dict:
-        """Summary entries of a reciprocating analysis."""
-        row, pressure = self.rows[-1], self.last.state.pressure
+    def summary(self) -> dict:
+        rows, pressure = self.table(HistoryRow), self.last.state.pressure
+        row = rows[-1]
         volumes = self._volumes(self._problem.rates(pressure))
         lengths = (area.sum() for area in self._problem.areas)
         means = [float(volume / area) for volume, area in zip(volumes, lengths, strict=True)]
         return {
-            "steps": len(self.rows) - 1,
+            "steps": len(rows) - 1,
             "time_s": row.time,
             "cycles": row.time * self._frequency,
             "sliding_distance_m": row.sliding_distance,
@@ -168,21 +132,3 @@ class _Record:
     def _volumes(self, depths: np.ndarray) -> list[float]:
         pairs = zip(self._problem.areas, self._problem.split(depths), strict=True)
         return [float(area @ depth) for area, depth in pairs]
-
-    def _row(self, moment: Moment) -> HistoryRow:
-        system, state = self._system, moment.state
-        volumes = self._volumes(state.worn)
-        mean_speed = float(np.average(system.speed, weights=system.weights))
-        of_cycle = self._problem.of_cycle(state.contact)
-        return HistoryRow(
-            time=moment.time,
-            sliding_distance=mean_speed * moment.time,
-            max_pressure=of_cycle.max_pressure,
-            contact_area=of_cycle.contact_area,
-            wear_volume_1=volumes[0],
-            wear_volume_2=volumes[1],
-            max_temperature=float("nan"),
-            approach=float(system.approaches @ of_cycle.motion),
-            step=moment.step,
-            error=moment.error,
-        )

@@ -27,38 +27,19 @@ import numpy as np
 
 from ...contact.solvers.coupled_positions import CoupledSolution, solve_coupled
 from ...contact.solvers.signorini import solve_contact
+from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.track import StrokeGrid, track
 from ...errors import ComputationError
-from ..interface.contact_solver import ContactSolution
-from ..interface.sdirk import InterfaceState
+from ...laws.interfaces import WearRate
+from ..interface.contact_solver import ContactSolution, Slope
+from ..interface.sdirk import InterfaceState, WearProblem
 from ..model.system import System
 from .stroke import Position, condensed, spreading
 
-_NEWTON_STEPS = 40
-_SETTLED = 1e-11  # relative to the largest local rate
 _INNER = 0.9  # part of the faces that the distance from the steady state covers, without their ends
 
 
-@dataclass(frozen=True)
-class CycleContact:
-    """Contact quantities of a cycle over all positions.
-
-    Attributes
-    ----------
-    max_pressure : float
-        Maximum over positions and points [Pa].
-    contact_area : float
-        Mean [m²].
-    motion : ndarray, shape (n_drives,)
-        Mean amplitudes of the rigid modes of the holder [m or rad].
-    """
-
-    max_pressure: float
-    contact_area: float
-    motion: np.ndarray
-
-
-class ReciprocatingProblem:
+class ReciprocatingProblem(WearProblem):
     """Contact in all positions of the stroke, coupled by the worn depths.
 
     Depths form one row of N values: coefficients of body 1, then nodal values of body 2.
@@ -83,8 +64,8 @@ class ReciprocatingProblem:
     def __init__(self, system: System, stroke: list[Position]):
         self._systems = [position.system for position in stroke]
         self._holder = system.holder
-        self._laws, self._friction = system.laws, system.friction
-        self._speeds = np.array([[position.speed] for position in stroke])
+        speeds = np.array([[position.speed] for position in stroke])
+        self._local = _LocalWear(tuple(system.laws.values()), speeds, system.friction)
         pairings = [there.pairing for there in self._systems]
         lengths = [position.length for position in stroke]
         self._length = float(system.pairing.position[-1])
@@ -127,39 +108,16 @@ class ReciprocatingProblem:
         pressure : ndarray, shape (J, m)
             Coefficients [Pa].
         """
-        return np.einsum("bjnm,bjm->n", self._spread, self._local(pressure))[None]
+        return np.einsum("bjnm,bjm->n", self._spread, self._local.value(pressure))[None]
 
-    def of_cycle(self, contact: ContactSolution) -> CycleContact:
-        """Contact quantities of the cycle over all positions."""
-        at_points = [
-            system.basis @ λ for system, λ in zip(self._systems, contact.pressure, strict=True)
-        ]
-        areas = [
-            system.weights[p > 0].sum() for system, p in zip(self._systems, at_points, strict=True)
-        ]
-        return CycleContact(
-            max_pressure=float(max(p.max() for p in at_points)),
-            contact_area=float(self._shares @ areas),
-            motion=self._shares @ contact.motion,
-        )
-
-    def corners(self, end: float) -> tuple[float, ...]:
-        """No times with kinks in the conditions."""
-        return ()
-
-    def difference(
-        self, before: InterfaceState, one: InterfaceState, other: InterfaceState
-    ) -> float:
-        """Largest difference of two pressures [Pa]."""
-        return float(np.abs(one.pressure - other.pressure).max())
-
-    def edge_steps(self, states, step: float, time: float) -> tuple[float, float]:
-        """No limit: contact is not enforced pointwise."""
-        return 0.0, np.inf
-
-    def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
-        """Zero: there are no temperatures."""
-        return 0.0
+    def of_cycle(self, contact: ContactSolution) -> tuple[float, float, np.ndarray]:
+        """Largest pressure over all positions [Pa], mean contact area [m²] and mean motion."""
+        areas, largest = [], 0.0
+        for system, λ in zip(self._systems, contact.pressure, strict=True):
+            p = system.basis @ λ
+            areas.append(system.weights[p > 0].sum())
+            largest = max(largest, float(p.max()))
+        return largest, float(self._shares @ areas), self._shares @ contact.motion
 
     def first_step(self, state: InterfaceState) -> float:
         """Step in which wear is small compared with the elastic deflection of the bodies [s]."""
@@ -180,10 +138,6 @@ class ReciprocatingProblem:
         parts = zip(self.split(self.rates(state.pressure)), self._places, strict=True)
         return max(_unevenness(rate, place) for rate, place in parts if rate.any())
 
-    def begin(self, state: InterfaceState) -> InterfaceState:
-        """Return the state: no pre-step selection is needed."""
-        return state
-
     def stage(
         self, before: InterfaceState, step: float, time: float, guess: InterfaceState
     ) -> InterfaceState:
@@ -194,9 +148,7 @@ class ReciprocatingProblem:
         )
 
     def _solve(self, worn: np.ndarray, step: float, guess: ContactSolution) -> ContactSolution:
-        """Contact at the end of a step, by Newton's method for the wear laws.
-
-        An iterate is damped by half if its residual has not decreased.
+        """Contact at the end of a step.
 
         Parameters
         ----------
@@ -212,41 +164,51 @@ class ReciprocatingProblem:
         """
         if worn.max() > self._length:
             raise ComputationError(
-                "wear: more is worn off than the contact is long; where the steady state is asked "
-                "for, it needs more elements, or a larger analysis.steady_tolerance"
+                "wear: the worn depth exceeds the length of the contact; to reach the steady "
+                "state, use more elements or a larger analysis.steady_tolerance"
             )
-        pressure, least = guess.pressure, np.inf
-        for _ in range(_NEWTON_STEPS):
-            rates, slopes = self._local(pressure), self._slopes(pressure)
-            before = np.einsum("bjnm,bjm->n", self._spread, rates - slopes * pressure)
-            gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slopes)
-            solution = solve_coupled(
-                self._contacts, worn + step * before, gains, guess.memory.active
+
+        def solve(start: np.ndarray, slope: Slope, last: ContactSolution) -> ContactSolution:
+            gains = step * np.einsum("bjnm,bjm->jnm", self._spread, slope.point)
+            depths = worn + step * np.einsum("bjnm,bjm->n", self._spread, start)
+            return self._contact(
+                solve_coupled(self._contacts, depths, gains, last.warm_start.active)
             )
-            guess = self._contact(solution)
-            exact = self._local(guess.pressure)
-            error = np.abs(exact - rates - slopes * (guess.pressure - pressure)).max()
-            if error <= _SETTLED * exact.max():
-                return guess
-            back = 0.0 if error < least else 0.5
-            pressure, least = back * pressure + (1 - back) * guess.pressure, min(error, least)
-        raise ComputationError("contact: Newton's method for the implicit step of wear failed")
+
+        return newton_with_wear(solve, self._local, guess)
 
     def _contact(self, solution: CoupledSolution) -> ContactSolution:
         motion = np.array([self._holder.amounts(d) for d in solution.motion])
         return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
 
-    def _local(self, pressure: np.ndarray) -> np.ndarray:
-        """Local wear rates of the wearing bodies, shape (n_wearing, J, m) [m/s]."""
-        return self._each(pressure, [law.rate for law in self._laws.values()])
 
-    def _slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivatives of the local wear rates with respect to pressure [m/s/Pa]."""
-        return self._each(pressure, [law.slope for law in self._laws.values()])
+@dataclass(frozen=True)
+class _LocalWear:
+    """Local wear rates in all positions, see `contact.wear.implicit_step`.
+
+    Attributes
+    ----------
+    laws : tuple of WearRate
+        Wear laws of the wearing bodies.
+    speeds : ndarray, shape (J, 1) [m/s]
+    friction : float
+    """
+
+    laws: tuple[WearRate, ...]
+    speeds: np.ndarray
+    friction: float
+
+    def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
+        """Local rates under coefficients of the pressure (J, m), shape (n_wearing, J, m) [m/s]."""
+        return self._each(pressure, [law.rate for law in self.laws])
+
+    def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
+        """Derivatives of the local rates with respect to pressure [m/s/Pa]."""
+        return Slope.diagonal(self._each(pressure, [law.slope for law in self.laws]))
 
     def _each(self, pressure: np.ndarray, functions) -> np.ndarray:
-        at = pressure, self._speeds
-        return np.array([of_law(*at, friction=self._friction) for of_law in functions])
+        at = pressure, self.speeds
+        return np.array([of_law(*at, friction=self.friction) for of_law in functions])
 
 
 def _unevenness(rate: np.ndarray, place: np.ndarray) -> float:

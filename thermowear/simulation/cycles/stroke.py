@@ -55,22 +55,22 @@ def positions(system: System, settings: ReciprocatingAnalysis) -> list[Position]
     """
     count = settings.positions
     ends = settings.amplitude * np.sin(np.pi * (np.arange(count + 1) / count - 0.5))
-    ways = (1, -1) if system.traction is not system.trace else (1,)
+    directions = (1, -1) if system.traction is not system.trace else (1,)
     return [
         Position(
             offset=float(start + end) / 2,
             length=float(end - start),
             speed=float(end - start) * 2 * count * settings.frequency,
-            share=1 / (count * len(ways)),
-            system=moved(system, float(start + end) / 2, way),
+            share=1 / (count * len(directions)),
+            system=moved(system, float(start + end) / 2, direction),
         )
-        for way in ways
+        for direction in directions
         for start, end in itertools.pairwise(ends)
     ]
 
 
-def moved(system: System, offset: float, way: int) -> System:
-    """System with body 1 moved along x and sliding along +x (way 1) or -x (way -1).
+def moved(system: System, offset: float, direction: int) -> System:
+    """System with body 1 moved along x and sliding along +x (direction 1) or -x (direction -1).
 
     Raises
     ------
@@ -88,7 +88,7 @@ def moved(system: System, offset: float, way: int) -> System:
             f"{model.interface.faces[1]} where body 1 is moved by {offset:.4g} m; a longer face of "
             "body 2 is needed (geometry.stroke)"
         )
-    velocity = way * kinematics.sliding(pairing.points, model.motion)
+    velocity = direction * kinematics.sliding(pairing.points, model.motion)
     slides = sliding(velocity, pairing.normals, model.holder.press)
     friction = system.friction, model.interface.transverse_friction
     pull = slides.pull(pairing.normals, *friction)

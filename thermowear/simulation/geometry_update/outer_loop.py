@@ -27,7 +27,7 @@ from ..model.setup_cache import SetupCache
 from ..model.system import System
 from ..model.worn_geometry import WornGeometry
 from ..runtime.observer import Observer
-from ..time.step_sizes import Limited, StepSizes
+from ..time.step_sizes import StepSizes
 from ..time.time_loop import Moment, is_over, moments
 from .gap_wear import GapWear
 from .geometry_update import updated
@@ -94,26 +94,20 @@ class OuterLoop:
         self.allowed = settings.largest_kept
         self._settings = settings
         self._principle = principle
-        self._sizes = Limited(sizes)
+        self._sizes = sizes
         self._observer = observer
         self._narrow = ""
         self.earlier = UpdateCounts()
 
-    @property
-    def kept(self) -> tuple[float, float, float]:
-        """Largest fraction so far, allowed fraction, and largest next step [s]."""
-        return self.largest_kept, self.allowed, self._sizes.largest
+    def restart_data(self) -> tuple:
+        """Worn geometry, zone of the mesh [m], counts for earlier zones, limits of kept wear."""
+        limits = self.largest_kept, self.allowed, self._sizes.largest
+        return self.system.worn, self.system.zone, self.earlier, limits
 
-    def go_on(
-        self,
-        worn: WornGeometry | None,
-        kept: tuple[float, float, float],
-        zone: tuple[float, float] | None,
-        earlier: UpdateCounts,
-    ) -> None:
+    def restore(self, data: tuple) -> None:
         """Restore an earlier loop after its last update or wider zone, if any."""
-        self.largest_kept, self.allowed, self._sizes.largest = kept
-        self.earlier = earlier
+        worn, zone, self.earlier, limits = data
+        self.largest_kept, self.allowed, self._sizes.largest = limits
         unworn = self.system
         zone = unworn.zone if zone is None else zone
         if worn is None and zone == unworn.zone:

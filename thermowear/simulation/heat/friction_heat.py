@@ -1,37 +1,33 @@
-"""Friction heat, proportional to the pressure, as part of the interface problem."""
+"""Friction heat of the interface problem: initial and stored heat, temperatures, balances."""
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from ...balances import relative
-from ...contact.operators.heat import BaselineResponse, ThermalState, at_rest
-from ...contact.operators.heat_condensation import condense_heat
+from ...contact.operators.heat import ThermalState
 from ...parallel import sum_over_ranks
 from ..model.conditions import InterfaceConditions
 from ..model.system import System
 from ..model.thermal_system import ThermalSystem
-from .condensed_distortion import CondensedDistortion
-from .heat_stages import ConductingStage, HeatOperators, InitialHeat, LinearHeatStep
 from .heat_states import HeatBalance, StoredHeat, TemperatureField
+from .heat_steps import ConductingStep, InitialHeat
+from .linearisation import HeatSteps
 
-_MEMORY = 1e9
-"""Memory limit for the operators of all step sizes on a rank [bytes]."""
-_FEWEST = 3
-"""Least number of step sizes whose operators are kept: a step, its half and its double."""
-_FILL = {2: 100, 3: 1000}
-"""Entries of the triangular factors per unknown, by dimension of the mesh."""
 _ROUNDING = 1e-3
 """Least scale of the heat balance, relative to the initial heat content (rounding)."""
 _SHALLOW = 1e-3
 """Penetration depth of heat in the first step, relative to the length of the contact."""
 _HARDLY = 0.1
 """Surface temperature rise allowed in the first step [K]."""
+
+
+def friction_heat(system: System) -> FrictionHeat | None:
+    """Friction heat of a system; None without heat."""
+    return None if system.thermal is None else FrictionHeat(system, system.thermal)
 
 
 class FrictionHeat:
@@ -46,55 +42,30 @@ class FrictionHeat:
     ----------
     ambient : float
         Temperature of the surroundings [K].
+    steps : HeatSteps
+        Conduction, steady and in time steps.
     """
 
     def __init__(self, system: System, thermal: ThermalSystem):
+        self.ambient = thermal.ambient
+        self.steps = HeatSteps(system, thermal)
         self._system = system
         self._thermal = thermal
-        self.ambient = thermal.ambient
-        self._steps: OrderedDict[float, HeatOperators] = OrderedDict()
-        self._distorts = system.model.interface.method.name == "condensed"
-        self.condensed = CondensedDistortion(system, thermal)
         heat = system.model.heat
         self._driven = heat is not None and heat.driven
-
-    @cached_property
-    def steady(self) -> ConductingStage:
-        """Steady conduction."""
-        thermal = self._thermal
-        operators = HeatOperators(thermal.conduction, thermal.face, self.condensed)
-        load = thermal.loads.at(0.0)
-        resting = self._system.parts.get(
-            "at rest",
-            (self._system.inputs.conduction, self._distorts),
-            lambda: self.at_rest(thermal.conduction.solve(load.heat)),
-        )
-        return LinearHeatStep(operators, load, load.heat, resting)
-
-    def after(self, before: StoredHeat, step: float, time: float) -> ConductingStage:
-        """Conduction in an implicit Euler step that ends at a time [s]; every rank calls."""
-        if step not in self._steps:
-            self._steps[step] = self._operators(step)
-            if len(self._steps) > self._kept:
-                self._steps.popitem(last=False)
-        self._steps.move_to_end(step)
-        operators, load = self._steps[step], self._thermal.loads.at(time)
-        supplied = load.heat + before.content / step
-        alone = load.on(operators.conduction).solve(supplied)
-        return LinearHeatStep(operators, load, supplied, self.at_rest(alone))
 
     @cached_property
     def frozen(self) -> InitialHeat:
         """Initial temperatures, before any friction heat has flowed; every rank calls."""
         conduction = self._thermal.conduction
         rise = np.where(conduction.fixed, conduction.given, self._thermal.initial)
-        resting = self.at_rest(rise)
+        resting = self.steps.at_rest(rise)
         largest = max(float(np.abs(resting.rise).max()), self._largest(rise))
         return InitialHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(3), largest), resting)
 
     def at_moment(self, stored: StoredHeat) -> InitialHeat:
         """Known temperatures at a later time; every rank calls."""
-        return InitialHeat(stored, self.at_rest(stored.rise))
+        return InitialHeat(stored, self.steps.at_rest(stored.rise))
 
     def take_over(self, former: FrictionHeat, stored: StoredHeat, rise: np.ndarray) -> StoredHeat:
         """Transfer stored heat from a former mesh; every rank calls.
@@ -119,7 +90,7 @@ class FrictionHeat:
         self,
         before: StoredHeat,
         step: float,
-        heat: ConductingStage,
+        heat: ConductingStep,
         faces: ThermalState,
         friction_heat: np.ndarray,
     ) -> StoredHeat:
@@ -130,8 +101,8 @@ class FrictionHeat:
         before : StoredHeat
         step : float
             [s]
-        heat : ConductingStage
-            From `after`.
+        heat : ConductingStep
+            From `HeatSteps.after`.
         faces : ThermalState
             Temperatures and fluxes of the faces at the end.
         friction_heat : ndarray, shape (n,)
@@ -150,19 +121,12 @@ class FrictionHeat:
         turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])
         return StoredHeat(rise, content, turnover, largest)
 
-    def memory(self) -> Any:
-        """Internal state to restart from, see `recall`; None for linear heat."""
-        return None
-
-    def recall(self, memory: Any) -> None:
-        """Restore the internal state from `memory`."""
-
     def lasting(self, conditions: InterfaceConditions, pressure: np.ndarray) -> TemperatureField:
         """Steady temperatures under a pressure (n,) [Pa]."""
         conduction, face = self._thermal.conduction, self._thermal.face
-        faces = self.steady.faces(conditions, pressure)
-        rise = self.steady.rise(faces)
-        load = self.steady.load
+        steady = self.steps.steady
+        faces, load = steady.faces(conditions, pressure), steady.load
+        rise = steady.rise(faces)
         heat = face.nodal_heat(faces, bath=False) + load.heat
         made = float(face.weights @ (conditions.heating * pressure))
         lost = sum(conduction.losses(rise, heat))
@@ -213,31 +177,3 @@ class FrictionHeat:
         steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
         through = (_SHALLOW * system.pairing.extent) ** 2 / thermal.diffusivity
         return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
-
-    def at_rest(self, rise: np.ndarray) -> BaselineResponse:
-        """Interface response to a nodal rise (n_owned,); every rank calls."""
-        per_rise = self.condensed.per_rise if self._distorts else None
-        return at_rest(rise, self._thermal.face.traces, self._system.comm, per_rise)
-
-    @cached_property
-    def _kept(self) -> int:
-        """Number of step sizes whose operators are kept."""
-        conduction, points = self._thermal.conduction, len(self._thermal.face.weights)
-        dense, nodes = 12 * points**2, len(conduction.fixed)
-        numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes
-        least = min(self._system.comm.allgather(_MEMORY / (8 * numbers)))
-        return max(int(least), _FEWEST)
-
-    def _operators(self, step: float) -> HeatOperators:
-        steady = self._thermal.face
-        with self._system.phases("condense conduction"):
-            conduction = self._thermal.conduction.storing(step)
-            face = condense_heat(
-                conduction,
-                steady.weights,
-                steady.basis,
-                steady.traces,
-                steady.shift,
-                steady.partition,
-            )
-        return HeatOperators(conduction, face, self.condensed)

@@ -15,8 +15,8 @@ from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import PairedFace
 from ...laws.motions import translation
 from ...parallel import sum_over_ranks
+from ..heat.friction_heat import friction_heat
 from ..heat.heat_states import TemperatureField
-from ..heat.varying_heat import friction_heat
 from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
 

@@ -8,19 +8,20 @@ import numpy as np
 
 from ...contact.operators.condensation import CondensedContact
 from ...contact.solvers.signorini import NoEquilibrium, SignoriniSolution, solve_contact
+from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
 from ..model.system import System
-from .contact_solver import ContactSolution, Slope, WearRates, newton_with_wear
+from .contact_solver import ContactSolution, Slope, WearRates
 
-_TURNS = 60
+_ITERATIONS = 60
 _HOT = (
     "with friction heat this happens beyond the critical sliding speed (thermoelastic "
     "instability): reduce the speed, or the expansion, or the friction"
 )
 _LOCKED = (
-    "friction along the faces locks body 1 or tips it over an edge: lower contact.friction, turn "
-    "the motion round, or change the line of the load or the free motions of the holder"
+    "friction along the faces locks body 1 or tips it over an edge: lower contact.friction, "
+    "reverse the motion, or change the line of the load or the free motions of the holder"
 )
 _TIPPED = (
     "the load lifts body 1 off or tips it over an edge: change the line of the load or the free "
@@ -68,15 +69,15 @@ class CondensedMethod:
         if heat is None:
             resting = np.zeros(len(compliance))
             return self._solved(bodies, edge, compliance, resting, gap, slope, guess, load)
-        for _ in range(_TURNS):
-            hot = heat.coupling(conditions, bodies.basis)
-            both = compliance + hot.compliance
-            guess = self._solved(bodies, edge, both, hot.resting, gap, slope, guess, load)
+        for _ in range(_ITERATIONS):
+            thermal, opening = heat.coupling(conditions, bodies.basis)
+            both = compliance + thermal
+            guess = self._solved(bodies, edge, both, opening, gap, slope, guess, load)
             if heat.holds(conditions, guess.pressure):
                 return guess
         raise ComputationError(
-            "contact: pressure and temperatures do not settle where conductivity or expansion "
-            "change; reduce the speed"
+            "contact: the iteration for pressure and temperatures with temperature-dependent "
+            "conductivity or expansion did not converge; reduce the speed"
         )
 
     def yielding(self, points) -> np.ndarray:
@@ -101,7 +102,6 @@ class CondensedMethod:
                 contact, None, rigid, resting, worn, slope, last, load
             ),
             rates,
-            1.0,
             start,
         ).pressure
 
@@ -109,12 +109,12 @@ class CondensedMethod:
         return float(self._opened(contact).max())
 
     def bending(self, contact: ContactSolution) -> float:
-        opened = self._opened(contact)[contact.memory.active]
+        opened = self._opened(contact)[contact.warm_start.active]
         return float(np.ptp(opened)) if opened.size else 0.0
 
     def _opened(self, contact: ContactSolution) -> np.ndarray:
         """Change of the gap by elastic deflection, means over the basis functions, (m,) [m]."""
-        opened = self._contact.compliance @ contact.memory.coefficients
+        opened = self._contact.compliance @ contact.warm_start.coefficients
         return opened / self._contact.weighted.sum(axis=0)
 
     def _rubbed(self, friction: np.ndarray) -> CondensedContact:
@@ -134,7 +134,7 @@ class CondensedMethod:
             last = self._last_space = bodies, points, space
         return last[2]
 
-    def _opening_on_the_spot(
+    def _opening_at_points(
         self, space: CondensedContact | EdgeSpace, slope: np.ndarray
     ) -> np.ndarray:
         """Weak gaps (k, k) per coefficient by a local compliance [m/Pa]; the last are cached."""
@@ -157,12 +157,12 @@ class CondensedMethod:
     ) -> ContactSolution:
         """Solve contact for a compliance (m, m) and a weak gap without pressure (m,)."""
         space = bodies if edge is None else edge
-        start = None if guess is None else guess.memory.active
+        start = None if guess is None else guess.warm_start.active
         if edge is not None:
             compliance, resting = edge.compliance(compliance), edge.seen.T @ resting
             start = None if guess is None else edge.pressing(guess.pressure)
         if slope.point.any():
-            compliance = compliance + self._opening_on_the_spot(space, slope.point)
+            compliance = compliance + self._opening_at_points(space, slope.point)
         if len(slope.rows):
             reach = space.weighted.T @ slope.reach
             compliance = compliance + reach @ (slope.rows @ space.basis)

@@ -1,4 +1,4 @@
-"""Interface of contact solvers, and Newton's method for an implicit step of wear."""
+"""Interface of contact solvers, and wear rates with their derivative."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...errors import ComputationError
 from ...laws.distribution import Distribution
 from ...laws.interfaces import WearRate
 from ...serialise import serialisable
-from ..heat.heat_stages import HeatStage
+from ..heat.heat_steps import HeatStep
 from ..model.conditions import InterfaceConditions
-
-_NEWTON_STEPS = 40
 
 
 @serialisable
@@ -27,8 +24,8 @@ class ContactSolution:
     pressure : ndarray, shape (n,) [Pa]
     motion : ndarray, shape (n_drives,)
         Amount of each rigid mode of the holder [m or rad].
-    memory : object
-        Warm start of the solver.
+    warm_start : object
+        Solution to start the solver from.
     apart : ndarray or None, shape (n,)
         Gap of the points with pointwise contact: 0 where they press, NaN at other points; None
         without such points [m].
@@ -36,7 +33,7 @@ class ContactSolution:
 
     pressure: np.ndarray
     motion: np.ndarray
-    memory: Any
+    warm_start: Any
     apart: np.ndarray | None = None
 
 
@@ -57,7 +54,7 @@ class ContactSolver(Protocol):
         slope: Slope,
         guess: ContactSolution | None,
         conditions: InterfaceConditions,
-        heat: HeatStage | None,
+        heat: HeatStep | None,
         pointwise: np.ndarray | None = None,
     ) -> ContactSolution:
         """Solve contact of bodies with friction heat and a local compliance.
@@ -70,7 +67,7 @@ class ContactSolver(Protocol):
             Gap per pressure in addition to the deflection of the bodies [m/Pa].
         guess : ContactSolution or None
         conditions : InterfaceConditions
-        heat : HeatStage or None
+        heat : HeatStep or None
         pointwise : ndarray of bool, shape (n,), optional
             Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
 
@@ -115,7 +112,7 @@ class Slope:
     Attributes
     ----------
     point : ndarray, shape (n,)
-        Derivative by the pressure at the same point [m/Pa].
+        Derivative by the pressure at the same point; of any shape without means [m/Pa].
     rows : ndarray, shape (k, n)
         Derivatives of k means by the pressures at the points [m/Pa].
     reach : ndarray, shape (n, k)
@@ -127,20 +124,18 @@ class Slope:
     reach: np.ndarray
 
     @classmethod
-    def on_the_spot(cls, point: np.ndarray) -> Slope:
+    def diagonal(cls, point: np.ndarray) -> Slope:
         """Diagonal derivative, without means."""
         return cls(point, np.zeros((0, len(point))), np.zeros((len(point), 0)))
 
-    def times(self, step: float) -> Slope:
-        """Derivative scaled by a step size."""
-        return Slope(step * self.point, step * self.rows, self.reach)
-
-    def softer_by(self, point: np.ndarray) -> Slope:
+    def with_compliance(self, point: np.ndarray) -> Slope:
         """Derivative with an additional local compliance (n,) [m/Pa]."""
         return Slope(self.point + point, self.rows, self.reach)
 
-    def opened(self, pressure: np.ndarray) -> np.ndarray:
-        """Gap opened by a pressure (n,) [m]."""
+    def __matmul__(self, pressure: np.ndarray) -> np.ndarray:
+        """Gap opened by a pressure [m]."""
+        if not len(self.rows):
+            return self.point * pressure
         return self.point * pressure + self.reach @ (self.rows @ pressure)
 
 
@@ -155,11 +150,14 @@ class WearRates:
     spreads : list of Distribution
         Distributions of the wear of these bodies.
     conditions : InterfaceConditions
+    step : float
+        Time in which `value` is worn, see `contact.wear.implicit_step` [s].
     """
 
     laws: list[WearRate]
     spreads: list[Distribution]
     conditions: InterfaceConditions
+    step: float = 1.0
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates, shape (n_wearing, n) [m/s]."""
@@ -168,8 +166,12 @@ class WearRates:
             rates[row] = spread.rate(self.conditions.wear_rate(row, law, pressure))
         return rates
 
-    def slope(self, pressure: np.ndarray) -> Slope:
-        """Derivative of the sum of the wear rates by the pressures [m/s/Pa]."""
+    def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
+        """Total depth worn in the time step, shape (n,) [m]."""
+        return self.step * self(pressure).sum(axis=0)
+
+    def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
+        """Derivative of `value` by the pressures [m/Pa]."""
         n = len(pressure)
         point, rows, reach = np.zeros(n), [np.zeros((0, n))], [np.zeros((n, 0))]
         for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
@@ -178,35 +180,4 @@ class WearRates:
             if spread.varying_rows is not None:
                 rows.append(spread.varying_rows * local)
                 reach.append(spread.reach(n))
-        return Slope(point, np.vstack(rows), np.hstack(reach))
-
-
-def newton_with_wear(
-    solve, rates: WearRates, step: float, guess: ContactSolution
-) -> ContactSolution:
-    """Solve contact with pressure-dependent wear in an implicit step by Newton's method.
-
-    Parameters
-    ----------
-    solve : callable
-        Contact for a wear depth at zero pressure (n,), its slope by the pressures, and a guess.
-    rates : WearRates
-    step : float
-        [s]
-    guess : ContactSolution
-
-    Raises
-    ------
-    ComputationError
-    """
-    pressure = guess.pressure
-    for _ in range(_NEWTON_STEPS):
-        rate = step * rates(pressure).sum(axis=0)
-        slope = rates.slope(pressure).times(step)
-        guess = solve(rate - slope.opened(pressure), slope, guess)
-        change = guess.pressure - pressure
-        pressure = guess.pressure
-        exact = step * rates(pressure).sum(axis=0)
-        if np.abs(exact - rate - slope.opened(change)).max() <= 1e-11 * np.abs(exact).max():
-            return guess
-    raise ComputationError("contact: Newton's method for the implicit step of wear failed")
+        return Slope(self.step * point, self.step * np.vstack(rows), np.hstack(reach))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..heat.varying_heat import friction_heat
+from ..heat.friction_heat import friction_heat
 from ..model.system import System
 from .condensed_method import CondensedMethod
 from .contact_solver import ContactSolver

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -20,23 +20,8 @@ _TURNS = 100
 _LEAST_RISE = 1.0  # K
 
 
-class TrialState(Protocol):
-    """State that the interface conditions depend on."""
-
-    @property
-    def pressure(self) -> np.ndarray:
-        """Pressure at the points, shape (n,) [Pa]."""
-
-    @property
-    def faces(self) -> ThermalState | None:
-        """Temperatures and fluxes of the faces; None without heat."""
-
-    @property
-    def worn(self) -> np.ndarray:
-        """Depths worn off the wearing bodies, shape (n_wearing, n) [m]."""
-
-
-Found = TypeVar("Found", bound=TrialState)
+Found = TypeVar("Found", bound=Any)
+"""State with the `pressure`, `faces` and `worn` that interface conditions depend on."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +34,11 @@ class Trial:
 
 
 def self_consistent(
-    surroundings: ConditionModel,
+    model: ConditionModel,
     time: float,
-    start: TrialState,
+    start: Any,
     respond: Callable[[InterfaceConditions], Found],
-    complaint: str,
+    failure: str,
     closed: np.ndarray | None = None,
 ) -> tuple[InterfaceConditions, Found]:
     """Find a state that is consistent with its own conditions.
@@ -64,13 +49,14 @@ def self_consistent(
 
     Parameters
     ----------
-    surroundings : ConditionModel
+    model : ConditionModel
     time : float
         [s]
-    start : TrialState
+    start : Trial
+        Or another state with its attributes.
     respond : callable
         State under given conditions.
-    complaint : str
+    failure : str
         Message of the error if the iteration does not converge.
     closed : ndarray of bool, shape (n,), optional
         Points that exchange heat by contact; by default the points in contact of each state.
@@ -80,16 +66,16 @@ def self_consistent(
     ComputationError
     """
 
-    def conditions_of(state: TrialState) -> InterfaceConditions:
+    def conditions_of(state: Any) -> InterfaceConditions:
         touching = state.pressure > 0 if closed is None else closed
-        return surroundings.at(time, state.pressure, state.faces, touching, state.worn)
+        return model.at(time, state.pressure, state.faces, touching, state.worn)
 
     tried, mixing = start, None
     for _ in range(_TURNS):
         conditions = conditions_of(tried)
         found = respond(conditions)
         if conditions_of(found).settled(conditions):
-            surroundings.require_friction(time, found.pressure, found.faces)
+            model.require_friction(time, found.pressure, found.faces)
             return conditions, found
         before, after = _stacked(tried, found), _stacked(found, found)
         missed = after - before
@@ -97,22 +83,22 @@ def self_consistent(
             mixing = Mixing()
         following = before + _DAMPED * missed if mixing is None else mixing.next(before, missed)
         tried = _unstacked(following, found)
-    raise ComputationError(complaint)
+    raise ComputationError(failure)
 
 
-def _scales(found: TrialState) -> tuple[float, float]:
+def _scales(found: Any) -> tuple[float, float]:
     rise = 0.0 if found.faces is None else float(np.max(np.abs(found.faces.rise)))
     return float(found.pressure.max()) or 1.0, max(rise, _LEAST_RISE)
 
 
-def _stacked(state: TrialState, found: TrialState) -> np.ndarray:
+def _stacked(state: Any, found: Any) -> np.ndarray:
     """Dimensionless vector of a state, scaled by the pressure and rise of the last response."""
     pascal, kelvin = _scales(found)
     rises = () if state.faces is None else state.faces.rise
     return np.concatenate([state.pressure / pascal, *(rise / kelvin for rise in rises)])
 
 
-def _unstacked(vector: np.ndarray, found: TrialState) -> Trial:
+def _unstacked(vector: np.ndarray, found: Any) -> Trial:
     """Inverse of `_stacked`, with the contact set of the last response."""
     pascal, kelvin = _scales(found)
     pressure, *rises = np.split(vector, 1 if found.faces is None else 3)

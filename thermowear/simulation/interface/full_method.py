@@ -17,6 +17,7 @@ from ...contact.operators.traction import normal_traction, thermal_traction
 from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
+from ..model.setup_cache import SetupCache
 from ..model.system import System
 from .anderson import Mixing
 from .contact_solver import ContactSolution, WearRates
@@ -47,12 +48,12 @@ class FullMethod:
         self._dead = still if system.dead_load is None else system.dead_load
         heated = system.thermal is not None
         self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
-        self._last_deflection: tuple[np.ndarray, EdgeDeflection] | None = None
+        self._last = SetupCache()
 
     def solve(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None
     ) -> ContactSolution:
-        start, load = None if guess is None else guess.memory, conditions.load
+        start, load = None if guess is None else guess.warm_start, conditions.load
         slope = slope.point  # means occur for rotating disks in 3D, with condensed contact only
         edge = self._deflection(pointwise)
         if heat is None:
@@ -66,8 +67,8 @@ class FullMethod:
                 return self._result(start)
             pressure = mixing.next(pressure, missed)
         raise ComputationError(
-            f"contact: heat and pressure do not settle in {_PASSES} turns; reduce the speed, "
-            'or use contact.method = "condensed", which solves both at once'
+            f"contact: heat and pressure did not converge in {_PASSES} iterations; reduce the "
+            'speed, or use contact.method = "condensed", which solves both at once'
         )
 
     def yielding(self, points) -> np.ndarray:
@@ -87,7 +88,7 @@ class FullMethod:
     def _opened(self, contact: ContactSolution) -> np.ndarray:
         """Change of the gap by elastic deflection at the points, shape (n,) [m]."""
         system = self._system
-        return sum_over_ranks(system.comm, system.trace.T @ contact.memory.displacement)
+        return sum_over_ranks(system.comm, system.trace.T @ contact.warm_start.displacement)
 
     @cached_property
     def _edge_compliance(self) -> np.ndarray:
@@ -100,11 +101,12 @@ class FullMethod:
         """Unresolved deflection at given points, None without any; the last result is cached."""
         if points is None:
             return None
-        last, system = self._last_deflection, self._system
-        if last is None or not np.array_equal(last[0], points):
-            own = edge_deflection(system.basis, system.weights, points, self._edge_compliance)
-            last = self._last_deflection = points, own
-        return last[1]
+        basis, weights = self._system.basis, self._system.weights
+        return self._last.get(
+            "deflection",
+            points.tobytes(),
+            lambda: edge_deflection(basis, weights, points, self._edge_compliance),
+        )
 
     def _warm(self, gap, slope, start, conditions, heat, pressure, edge) -> FullSolution:
         """Solve contact of bodies distorted by the friction heat of a pressure."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -67,18 +67,22 @@ class InterfaceState:
         )
 
 
-class WearProblem(Protocol):
+class WearProblem(ABC):
     """Contact of wearing bodies: interface to time integration, in place or averaged over a cycle.
 
-    Wear depths have shape (n_rows, n); the gap opens by their sum over the rows.
+    Wear depths have shape (n_rows, n); the gap opens by their sum over the rows. The defaults are
+    those of isothermal contact without pointwise conditions.
     """
 
+    @abstractmethod
     def start(self) -> InterfaceState:
         """State of the unworn faces at time 0."""
 
     def begin(self, state: InterfaceState) -> InterfaceState:
         """Choose the settings of a step, common to all its stages and substeps."""
+        return state
 
+    @abstractmethod
     def stage(
         self, before: InterfaceState, step: float, time: float, guess: InterfaceState
     ) -> InterfaceState:
@@ -112,6 +116,7 @@ class WearProblem(Protocol):
         one, other : InterfaceState
             States at the end of the step.
         """
+        return float(np.abs(one.pressure - other.pressure).max())
 
     def edge_steps(
         self,
@@ -135,19 +140,25 @@ class WearProblem(Protocol):
         following : float
             Upper bound of the next step; may be infinite [s].
         """
+        return 0.0, np.inf
 
     def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
         """Largest temperature difference inside the bodies; 0 without heat beside friction [K]."""
+        return 0.0
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end that steps must hit exactly [s]."""
+        return ()
 
+    @abstractmethod
     def first_step(self, state: InterfaceState) -> float:
         """Initial step [s]; may be infinite."""
 
+    @abstractmethod
     def steady(self, steady) -> np.ndarray:
         """Pressure of the discrete interface in a steady state [Pa]."""
 
+    @abstractmethod
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
         """Relative distance from the steady state; NaN where that is not known."""
 

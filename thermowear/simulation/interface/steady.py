@@ -9,15 +9,15 @@ from scipy.optimize import linprog
 
 from ...contact.operators.heat import ThermalState
 from ...laws import SteadyWear, steady_pressure
-from ..heat.varying_heat import friction_heat
+from ..heat.friction_heat import friction_heat
 from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System
 from .body_state import ContactState
 from .fixed_point import Trial, self_consistent
 
 _NONE = (
-    "no steady state found: each turn of the principle changes friction, wear or conductance, so "
-    "that it leads to another one; reduce the speed or the load, or follow the running-in in time"
+    "no steady state found: the iteration for state-dependent friction, wear or conductance did "
+    "not converge; reduce the speed or the load, or follow the running-in in time"
 )
 
 
@@ -54,11 +54,11 @@ def steady_state(system: System) -> SteadyState:
     area = float(system.weights.sum())
     even = np.full(len(system.weights), (system.model.holder.force or area) / area)
     nothing = np.zeros((len(system.laws), len(even)))
-    start = Trial(even, None if heat is None else heat.steady.unheated, nothing)
+    start = Trial(even, None if heat is None else heat.steps.steady.unheated, nothing)
 
     def respond(conditions: InterfaceConditions) -> _Worn:
         wear = _principle(system, conditions)
-        faces = None if heat is None else heat.steady.faces(conditions, wear.pressure)
+        faces = None if heat is None else heat.steps.steady.faces(conditions, wear.pressure)
         return _Worn(wear, faces, nothing)
 
     conditions, found = self_consistent(ConditionModel(system), 0.0, start, respond, _NONE)

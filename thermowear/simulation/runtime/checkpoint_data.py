@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -14,12 +14,29 @@ from ..model.system import System
 _ROUNDING = 1e-9  # relative to the contact's length
 
 
-class Progress(Protocol):
-    """Restart data of an analysis at a time."""
+@serialisable
+@dataclass(frozen=True)
+class Progress:
+    """Data to restart an analysis from.
+
+    Attributes
+    ----------
+    state : object
+        Accepted state, with its `time` [s].
+    tables : dict of str to list
+        Rows recorded so far, by the name of their kind.
+    own : object
+        Restart data of the analysis, see `AnalysisHistory.restart_data`.
+    """
+
+    state: Any
+    tables: dict[str, list]
+    own: Any
 
     @property
     def time(self) -> float:
         """Time reached [s]."""
+        return self.state.time
 
 
 @serialisable
@@ -47,7 +64,7 @@ class Saved:
     gap: np.ndarray
     nodes: int
     moment: np.ndarray
-    progress: Any
+    progress: Progress
     mesh: str | None = None
 
     @classmethod
@@ -57,7 +74,7 @@ class Saved:
         mesh = mesh_checksum(system)
         return cls(pairing.points, pairing.gap, len(nodes), nodes.sum(axis=0), progress, mesh)
 
-    def of(self, system: System) -> Any:
+    def of(self, system: System) -> Progress:
         """Progress of the checkpoint, checked to belong to a system.
 
         Raises

@@ -119,9 +119,9 @@ def _next(
     last: Moment,
 ) -> Moment:
     """Step towards a target time that must be hit exactly [s]."""
-    way = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
+    size = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
     smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
-    trial, step, following = _accept(problem, last, way, sizes.rounding, smallest, settings)
+    trial, step, following = _accept(problem, last, size, sizes.rounding, smallest, settings)
     hits = ends(step, target - last.time)
     time = target if hits else last.time + step
     return Moment(
@@ -138,7 +138,7 @@ def _next(
 
 
 def _accept(
-    problem, last: Moment, way, rounding: float, smallest: float, settings
+    problem, last: Moment, size, rounding: float, smallest: float, settings
 ) -> tuple[TrialStep, float, float]:
     """Repeat a step with smaller sizes until its error is within the tolerance.
 
@@ -153,7 +153,7 @@ def _accept(
     step, following : float
         Size of the step, and of the next one as proposed by error control [s].
     """
-    trouble, step = "", way(last.wanted)
+    trouble, step = "", size(last.wanted)
     # errors decrease steadily while the transient after a point begins to press decays
     former = None if last.state.pointwise is None else (last.step, last.error)
     tried: list[tuple[float, float]] = []
@@ -161,18 +161,18 @@ def _accept(
         try:
             trial = advance_with_error(problem, last.state, last.time, step)
         except ComputationError as failure:
-            step, trouble = way(step / 4), f" ({failure})"
+            step, trouble = size(step / 4), f" ({failure})"
             continue
         error = trial.error
         proposed = next_step(step, error, settings.tolerance, former)
         if error <= settings.tolerance:
             return trial, step, min(proposed, rounding * trial.following)
-        jumps = any(step <= _FAR_SMALLER * size and error > e / 2 for size, e in tried)
+        jumps = any(step <= _FAR_SMALLER * tried_size and error > e / 2 for tried_size, e in tried)
         if jumps and trial.state.pointwise is not None:
             return trial, step, step / _FAR_SMALLER
         tried.append((step, error))
         located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
-        step = way(min(max(proposed, located), 0.9 * step))
+        step = size(min(max(proposed, located), 0.9 * step))
     raise ComputationError(f"{settings.type}: no step is small enough at {last.time:g} s{trouble}")
 
 

@@ -1,0 +1,173 @@
+"""History of a transient analysis: rows of steps and of heat balances, geometry updates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...balances import require
+from ...errors import ComputationError
+from ...laws.motions import combined
+from ...model.analyses import TransientAnalysis
+from ..geometry_update.outer_loop import OuterLoop
+from ..model.conditions import InterfaceConditions
+from ..results.recording import interface_at
+from ..results.rows import HeatRow, HistoryRow
+from ..runtime.history import AnalysisHistory, Snapshot
+from ..runtime.observer import Observer
+from ..time.time_loop import Moment
+from .static import wear_velocity
+
+_MELTED = 5000.0  # K, above the melting point of any solid
+_STEEPER = 3.0  # heating rate over mean rate so far; linear rise of load and speed gives 2.5
+_UNSTABLE = (
+    "thermal runaway: friction heat distorts the bodies, which concentrates pressure and heat "
+    "(thermoelastic instability); reduce the speed or the friction"
+)
+
+
+class TransientHistory(AnalysisHistory[Moment]):
+    """History of the accepted moments of a running-in.
+
+    Parameters
+    ----------
+    loop : OuterLoop
+        Loop that provides the system and the problem at the last moment.
+    settings : TransientAnalysis
+    observer : Observer
+    """
+
+    def __init__(self, loop: OuterLoop, settings: TransientAnalysis, observer: Observer):
+        super().__init__(loop.system, settings, observer)
+        self._loop = loop
+        self._speed = 0.0
+
+    def restart_data(self) -> tuple:
+        """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
+        return self._speed, self._loop.restart_data(), self._loop.problem.restart_data()
+
+    def restore(self, data: tuple) -> None:
+        self._speed, loop, heat = data
+        self._loop.restore(loop)
+        self._loop.problem.restore(heat)
+
+    def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
+        problem = self._loop.problem
+        conditions = problem.conditions(state.state, state.time)
+        speed = self._mean(conditions.speed)
+        slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
+        self._speed = speed
+        row = self._row(state, slid)
+        if not problem.stores_heat:
+            return [row]
+        heat = self._heat_row(state, conditions)
+        require(heat_balance_relative_error=heat.balance_error)
+        return [row, heat]
+
+    def watched(self, passing: Iterator[Moment]) -> Iterator[Moment]:
+        """Pass the moments on while the faces are below any melting point.
+
+        Raises
+        ------
+        ComputationError
+            If they are hotter; that of a step failing in thermal runaway is extended by the cause.
+        """
+        try:
+            for moment in passing:
+                yield moment
+                hottest = self._loop.problem.hottest(moment.state)
+                if self._loop.problem.stores_heat and hottest > _MELTED:
+                    raise ComputationError(
+                        f"transient: {hottest:.3g} K at {moment.time:g} s, above the melting point "
+                        "of any solid"
+                    )
+        except ComputationError as reason:
+            if self._runs_away():
+                raise ComputationError(f"{reason}; {_UNSTABLE}") from None
+            raise
+
+    def snapshot(self, state: Moment) -> Snapshot:
+        problem, system = self._loop.problem, self._loop.system
+        contact = problem.contact_state(state.state, state.time)
+        motion = combined(system.holder.motions, state.state.contact.motion)
+        worn = self._by_body(state.state.worn)
+        return Snapshot(system, contact, motion, *interface_at(system, contact, motion, worn))
+
+    def summary(self) -> dict:
+        loop, rows, heat = self._loop, self.table(HistoryRow), self.table(HeatRow)
+        steady = loop.steady
+        result = {
+            "steps": len(rows) - 1,
+            "time_s": rows[-1].time,
+            "distance_from_steady": None if steady is None else self.last.distance,
+            **loop.summary(),
+            **wear_velocity(loop.system, None if steady is None else steady.wear.velocity),
+        }
+        if not heat:
+            return result
+        last, peak = heat[-1], max(rows, key=lambda row: row.max_temperature)
+        return result | {
+            "heat_in_J": last.heat_in,
+            "heat_stored_J": last.heat_stored,
+            "heat_lost_J": last.heat_lost,
+            "peak_temperature_K": peak.max_temperature,
+            "peak_temperature_time_s": peak.time,
+        }
+
+    def _runs_away(self) -> bool:
+        """True if the faces heat up much faster than before (thermal runaway)."""
+        rows = self.table(HistoryRow)
+        if not self.table(HeatRow) or len(rows) < 3:
+            return False
+        first, before, last = rows[0], rows[-2], rows[-1]
+        so_far = (before.max_temperature - first.max_temperature) / before.time
+        now = (last.max_temperature - before.max_temperature) / last.step
+        return now > _STEEPER * so_far > 0.0
+
+    def _row(self, moment: Moment, slid: float) -> HistoryRow:
+        system, pressure, rows = self._loop.system, moment.state.pressure, self.table(HistoryRow)
+        volumes = system.worn_volumes(self._by_body(moment.state.worn))
+        return HistoryRow(
+            time=moment.time,
+            sliding_distance=slid + (rows[-1].sliding_distance if rows else 0.0),
+            max_pressure=float(pressure.max()),
+            contact_area=float(system.weights[pressure > 0].sum()),
+            wear_volume_1=float(volumes[0]),
+            wear_volume_2=float(volumes[1]),
+            max_temperature=self._loop.problem.hottest(moment.state),
+            approach=float(system.approaches @ moment.state.contact.motion),
+            step=moment.step,
+            error=moment.error,
+        )
+
+    def _heat_row(self, moment: Moment, conditions: InterfaceConditions) -> HeatRow:
+        system, problem, pressure = self._loop.system, self._loop.problem, moment.state.pressure
+        balance, (T1, T2) = (
+            problem.heat_balance(moment.state),
+            problem.face_temperatures(moment.state),
+        )
+        return HeatRow(
+            time=moment.time,
+            speed=self._speed,
+            normal_force=system.rubbing(conditions.friction).normal_force(pressure),
+            friction_power=float(system.weights @ (conditions.heating * pressure)),
+            heat_in=balance.made,
+            heat_stored=balance.stored,
+            heat_lost=balance.lost,
+            balance_error=balance.error,
+            max_temperature_1=float(T1.max()),
+            max_temperature_2=float(T2.max()),
+            mean_temperature_1=self._mean(T1),
+            mean_temperature_2=self._mean(T2),
+        )
+
+    def _mean(self, values: np.ndarray) -> float:
+        """Area mean over the face."""
+        return float(np.average(values, weights=self._loop.system.weights))
+
+    def _by_body(self, worn: np.ndarray) -> np.ndarray:
+        """Expand rows of the wearing bodies to both bodies, shape (2, n)."""
+        both = np.zeros((2, worn.shape[1]))
+        both[list(self._loop.system.laws)] = worn
+        return both

@@ -1,0 +1,127 @@
+"""Edge of a growing contact in time: points with pointwise contact, error norm, step sizes.
+
+At a distance ξ from an edge that travels at a speed c the pressure rises as ``ξ^θ``,
+``tan πθ = 2 c / (E* k v)``: ``2 p / E*`` is the slope of the elastic deflection, ``k v p / c`` that
+of the wear depth (from ``k v p / c + 2 / (π E*) ∫ p(s) / (s - ξ) ds = const``, a singular integral
+equation; Muskhelishvili, Singular Integral Equations, 1953, ch. 12). Without wear θ is 1/2, and p
+falls to zero smoothly; where wear dominates, θ < 1/4, it is nearly a jump.
+
+A point with pointwise contact begins to press suddenly when the edge of the wear reaches it. The
+maximum norm of the difference of two histories then measures the time of that event and does not
+decrease with the step. The norms that converge are the mean over the contact area and the
+difference of the largest pressures, at any points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ...contact.wear.edge_times import closing_times
+from ...contact.wear.wear_edge import WearEdge
+from ..model.system import System
+from .contact_solver import ContactSolver
+from .sdirk import InterfaceState
+
+_RISE = 0.1
+"""Fraction of the rise of the largest pressure in a step that counts as its error."""
+_BEHIND = 0.03
+"""Delay of the end of a step behind the expected time of reaching a point, relative to the step."""
+_SETTLING = 0.4
+"""Step after reaching a point, relative to the time in which wear takes up its deflection."""
+
+
+class GrowingEdge:
+    """Edge of the wear in a contact that may grow by wear.
+
+    Parameters
+    ----------
+    system : System
+    method : ContactSolver
+    """
+
+    def __init__(self, system: System, method: ContactSolver):
+        self._edge = WearEdge(system.pairing.sides[0].facet, system.basis, system.weights)
+        self._weights = system.weights
+        self._method = method
+
+    def points(self, worn: np.ndarray) -> np.ndarray | None:
+        """Points at the edge of given wear depths (n_wearing, n), shape (n,) of bool."""
+        return self._edge.points(worn)
+
+    def begin(self, state: InterfaceState) -> InterfaceState:
+        """Choose the points with pointwise contact for the next step.
+
+        None until the edge of the contact is the edge of the wear: until the mean slope of the wear
+        depth exceeds that of the deflection, by their ranges over the contact.
+        """
+        pressed = state.worn.any() and state.contact.warm_start is not None
+        if not pressed:
+            return state
+        if state.pointwise is None:
+            depth = state.worn.sum(axis=0)[state.pressure > 0.0]
+            if not depth.size or np.ptp(depth) <= self._method.bending(state.contact):
+                return state
+        edge = self._edge.points(state.worn, state.pressure, state.pointwise)
+        return replace(state, pointwise=edge)
+
+    def difference(
+        self, before: InterfaceState, one: InterfaceState, other: InterfaceState
+    ) -> float:
+        """Difference of two pressures, the maximum norm where they are continuous in time [Pa].
+
+        A step that reaches a point in its last stage wears it too late and loads it too much,
+        possibly alike in both histories: a rise of the largest pressure therefore counts as well.
+        If the edge has passed beyond its points, the largest pressure itself is returned.
+        """
+        change = np.abs(one.pressure - other.pressure)
+        if one.pointwise is None:
+            return float(change.max())
+        if self._edge.has_passed(one.pointwise, before.worn, one.worn):
+            return float(one.pressure.max())
+        pressing = (one.pressure > 0.0) | (other.pressure > 0.0)
+        area = float(pressing @ self._weights)
+        mean = float(change @ self._weights) / area if area > 0.0 else 0.0
+        largest, expected, earlier = (v.pressure.max() for v in (one, other, before))
+        return float(max(mean, abs(largest - expected), _RISE * (largest - earlier)))
+
+    def steps(
+        self,
+        states: tuple[InterfaceState, InterfaceState, InterfaceState],
+        step: float,
+        rate_slope: Callable[[], np.ndarray],
+    ) -> tuple[float, float]:
+        """Step sizes that end right behind a time at which the edge of the wear reaches a point.
+
+        See `WearProblem.edge_steps`. The step after one in which a point has begun to press is
+        short.
+
+        Parameters
+        ----------
+        states : tuple of InterfaceState
+        step : float
+            [s]
+        rate_slope : callable
+            Derivative of the wear rate by the pressure in the last state, shape (n,) [m/s/Pa].
+        """
+        start, middle, end = (state.contact.apart for state in states)
+        if start is None or middle is None or end is None:
+            return 0.0, np.inf
+        times = closing_times(start, middle, end, step)
+        reached = float(times[end == 0.0].min(initial=np.inf))
+        left = float(times[end > 0.0].min(initial=np.inf)) - step
+        following = left + _BEHIND * max(left, step)
+        begun = (end == 0.0) & (states[0].pressure == 0.0)
+        if begun.any():
+            following = min(
+                following, _SETTLING * self._settling(states[2], begun, rate_slope()[begun])
+            )
+        return (1 + _BEHIND) * reached if np.isfinite(reached) else 0.0, following
+
+    def _settling(self, state: InterfaceState, points: np.ndarray, slope: np.ndarray) -> float:
+        """Shortest time in which wear takes up the elastic deflection under single points [s]."""
+        assert state.pointwise is not None
+        yielding = self._method.yielding(state.pointwise)[points]
+        return float((yielding[slope > 0.0] / slope[slope > 0.0]).min(initial=np.inf))

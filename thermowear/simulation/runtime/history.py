@@ -1,0 +1,281 @@
+"""History of an analysis: rows of its tables, outputs, animation frames and checkpoints."""
+
+from __future__ import annotations
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from ...errors import ComputationError, UnwritableError
+from ...laws.motions import RigidMotion
+from ...model.analyses import SteppedAnalysis
+from ..interface.body_state import BodyState, ContactState
+from ..model.system import System
+from ..results.fields import sample
+from ..results.outcome import Outcome
+from ..results.result import (
+    Frame,
+    FrictionHistory,
+    FrictionInterface,
+    InterfaceFields,
+    TrackHistory,
+    WornTrack,
+)
+from ..results.rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from .checkpoint_data import Progress, Saved
+from .frames import spacing
+from .observer import Observer
+from .stop_signal import StopRequest, interrupted
+
+AnyRow = HistoryRow | HeatRow | LoadRow | CycleRow
+Row = TypeVar("Row", bound=AnyRow)
+
+
+State = TypeVar("State", bound=Any)
+"""Accepted state of an analysis, with a `time` [s], and `is_output` true at an output time."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Contact and bodies in one state of an analysis.
+
+    Attributes
+    ----------
+    system : System
+    contact : ContactState
+    motion : RigidMotion
+        Rigid motion of the holder.
+    bodies : BodyState
+    interface : InterfaceFields
+    friction : FrictionInterface or None
+        Stick-slip state of a fretting analysis.
+    track : WornTrack or None
+        Worn track of a reciprocating analysis.
+    """
+
+    system: System
+    contact: ContactState
+    motion: RigidMotion
+    bodies: BodyState
+    interface: InterfaceFields
+    friction: FrictionInterface | None = None
+    track: WornTrack | None = None
+
+
+class AnalysisHistory(ABC, Generic[State]):
+    """Accepted states of an analysis: rows of its tables, outputs, frames and checkpoints.
+
+    An analysis derives from it the rows and the snapshot of a state, and the data to restart from.
+
+    Parameters
+    ----------
+    system : System
+        System that the analysis starts with.
+    settings : SteppedAnalysis
+    observer : Observer
+        Observer notified of each record.
+    """
+
+    def __init__(self, system: System, settings: SteppedAnalysis, observer: Observer):
+        self._system = system
+        self._observer = observer
+        self._settings = settings
+        self._tables: dict[str, list] = {}
+        self._outputs: dict[float, tuple] = {}
+        self._last: State | None = None
+        self._restart: tuple[State, dict[str, int], Any] | None = None
+        self._saved_at = -np.inf  # the first state is saved at once
+
+    @abstractmethod
+    def rows_of(self, state: State) -> Sequence[AnyRow]:
+        """Rows that a state adds to the tables.
+
+        Raises
+        ------
+        ComputationError
+            If its balances do not hold; the state before then remains the last one.
+        """
+
+    @abstractmethod
+    def snapshot(self, state: State) -> Snapshot:
+        """Solve the bodies in a state; every rank calls."""
+
+    @abstractmethod
+    def summary(self) -> dict:
+        """Entries of the analysis in the summary."""
+
+    def frame_number(self, state: State) -> int | None:
+        """Number of a state among those that may be frames, from 0; None for others."""
+        return len(self.table(HistoryRow)) - 1
+
+    def may_restart(self, state: State) -> bool:
+        """Test whether the analysis can restart from a state."""
+        return True
+
+    def restart_data(self) -> Any:
+        """Data to restart from beside the last state and the rows."""
+
+    def restore(self, data: Any) -> None:
+        """Restore the analysis from its `restart_data`."""
+
+    @property
+    def last(self) -> State:
+        """Last recorded state."""
+        assert self._last is not None
+        return self._last
+
+    def table(self, kind: type[Row]) -> list[Row]:
+        """Rows of a kind recorded so far."""
+        return self._tables.setdefault(kind.__name__, [])
+
+    def resume(self, before: Progress | None) -> State | None:
+        """Continue an earlier run, if any; return the state to restart from."""
+        if before is None:
+            return None
+        self._last, self._tables = before.state, before.tables
+        self.restore(before.own)
+        self._mark_restart(before.state)
+        for rows in self._tables.values():
+            self._observer.resumed(rows)
+        return before.state
+
+    def follow(self, phase: str, states: Iterable[State]) -> BaseException | None:
+        """Record and save successive states; the ones before an error or Ctrl-C are kept.
+
+        A stop request ends the loop after the present state. It also counts after the last one: the
+        results of the whole analysis are then written and marked as interrupted.
+
+        Parameters
+        ----------
+        phase : str
+            Name of the phase for timing.
+        states : iterable
+            At least one state, unless the run was resumed.
+
+        Returns
+        -------
+        BaseException or None
+            Reason for stopping before the end.
+
+        Raises
+        ------
+        ComputationError
+            If the first state fails.
+        UnwritableError
+            If results cannot be written.
+        """
+        comm, stopped = self._system.comm, None
+        with self._system.phases(phase), StopRequest() as stop:
+            try:
+                for state in states:
+                    self.keep(state)
+                    if stop.agreed(comm):
+                        break
+                    self.save_if_due()
+            except UnwritableError:
+                raise
+            except ComputationError as reason:
+                if self._last is None:
+                    raise
+                stopped = reason
+            self.save()
+        return interrupted(stopped) if stop.agreed(comm) else stopped
+
+    def keep(self, state: State) -> None:
+        """Record a state: its rows, at an output time its interface, and its animation frame."""
+        rows, shown = self.rows_of(state), None
+        if state.is_output:
+            with self._system.phases("output"):
+                shown = self.snapshot(state)
+                shown.bodies.require_balance()
+        self._last = state
+        for row in rows:
+            self.table(type(row)).append(row)
+            self._tell(row, state)
+        if shown is not None:
+            with self._system.phases("output"):
+                self._outputs[state.time] = shown.interface, shown.friction, shown.track
+                self._observer.output(state.time, *self._outputs[state.time])
+        self._keep_frame(state)
+        if self.may_restart(state):
+            self._mark_restart(state)
+
+    def save_if_due(self) -> None:
+        """Save at output times, and after a wall-clock interval since the last time.
+
+        Every rank calls.
+        """
+        waited = time.monotonic() - self._saved_at >= self._settings.checkpoint_every
+        if self.last.is_output or self._system.comm.bcast(waited):
+            self.save()
+
+    def save(self) -> None:
+        """Save the progress up to the last state to restart from; every rank calls."""
+        if self._restart is None:
+            return
+        state, counts, own = self._restart
+        rows = {kind: self._tables[kind][:count] for kind, count in counts.items()}
+        with self._system.phases("checkpoint"):
+            saved = Saved.now(self._system, Progress(state, rows, own))
+            self._observer.checkpoint(saved)
+        self._saved_at = time.monotonic()
+
+    def outcome(self, stopped: BaseException | None) -> Outcome:
+        """Outcome of the analysis at the last state; every rank calls."""
+        with self._system.phases("bodies"):
+            end = self.snapshot(self.last)
+        interfaces, frictions, tracks = (
+            {time: output[k] for time, output in self._outputs.items()} for k in range(3)
+        )
+        friction = track = None
+        if end.friction is not None:
+            loads, cycles = self.table(LoadRow), self.table(CycleRow)
+            friction = FrictionHistory(loads, cycles, end.friction, frictions)
+        if end.track is not None:
+            track = TrackHistory(end.track, tracks)
+        return Outcome(
+            contact=end.contact,
+            motion=end.motion,
+            state=end.bodies,
+            interface=end.interface,
+            extra=self.summary(),
+            history=self.table(HistoryRow),
+            outputs=interfaces,
+            friction=friction,
+            track=track,
+            heat=self.table(HeatRow),
+            stopped=stopped,
+            system=end.system,
+        )
+
+    def _mark_restart(self, state: State) -> None:
+        counts = {kind: len(rows) for kind, rows in self._tables.items()}
+        self._restart = state, counts, self.restart_data()
+
+    def _tell(self, row: AnyRow, state: Any) -> None:
+        if isinstance(row, HistoryRow):
+            self._observer.step(row, state.distance)
+        elif isinstance(row, HeatRow):
+            self._observer.heat(row)
+        elif isinstance(row, LoadRow):
+            self._observer.load_step(row)
+        else:
+            self._observer.cycle(row)
+
+    def _keep_frame(self, state: State) -> None:
+        """Record an animation frame if the number of the state is selected."""
+        number, most = self.frame_number(state), self._settings.frames
+        if not most or number is None:
+            return
+        every = spacing(number, most)
+        if number % every:
+            return
+        with self._system.phases("frames"):
+            now = self.snapshot(state)
+            fields = sample(now.system, now.bodies, now.motion)
+            frame = Frame(number, every, state.time, now.interface, fields, now.track)
+            self._observer.frame(frame)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from .. import load
 from ..case import Case, as_plain
 from ..errors import CaseError, ComputationError
+from ..interrupts import DeferredSignals
 from ..output.console import Terminal
 from ..output.folder import ResultsFolder
 from ..output.sweep import SweepFolder, draw_sweep, swept
@@ -131,8 +132,9 @@ def run_sweep(chosen) -> int:
 
 def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, report) -> None:
     """Compute groups of variants with shared factorisations, in parallel processes if several."""
-    start_petsc()
-    from ..simulation.analyses.sweep import groups
+    with DeferredSignals():
+        start_petsc()
+        from ..simulation.analyses.sweep import groups
 
     tasks = [[jobs[k] for k in group] for group in groups([variant.case for variant in found])]
     processes = min(processes or len(os.sched_getaffinity(0)), len(tasks))
@@ -146,8 +148,9 @@ def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, r
 
 def compute(jobs: list[Job], tell: Callable[[Ended], None]) -> None:
     """Compute variants that share factorisations, and write their folders."""
-    start_petsc()
-    from ..simulation.analyses.sweep import Series
+    with DeferredSignals():
+        start_petsc()
+        from ..simulation.analyses.sweep import Series
 
     series = Series()
     for job in jobs:

@@ -23,6 +23,16 @@ CELLS = [(False, 1), (True, 1), (False, 2), (True, 2), (False, 3), (True, 3)]
 PLANE = [PlaneStrain(THICKNESS), PlaneStress(THICKNESS)]
 
 
+def test_area_of_the_solid_per_length_of_its_section():
+    """requirement: thickness of a plate; ``2 π r``, and its part in a sector, of a ring."""
+    points = np.array([[0.02, 0.0], [0.05, 0.01]])
+    for plane in PLANE:
+        np.testing.assert_array_equal(plane.area_factor(points), THICKNESS)
+    ring = [2 * np.pi * 0.02, 2 * np.pi * 0.05]
+    np.testing.assert_allclose(Axisymmetric().area_factor(points), ring)
+    np.testing.assert_allclose(Axisymmetric(0.25).area_factor(points), np.array(ring) / 4)
+
+
 def bent(points):
     """Smooth map of all points after which the sides of cells are curved."""
     x, y = points[:, 0], points[:, 1]

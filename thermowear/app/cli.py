@@ -17,6 +17,7 @@ from pathlib import Path
 
 from .. import load
 from ..errors import CaseError, CaseNote, ComputationError
+from ..interrupts import DeferredSignals
 from .arguments import parser
 
 _INTERRUPTED = 130
@@ -229,13 +230,14 @@ def _run(chosen) -> int:
     """
     began = time.perf_counter()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    from .workers import start_petsc
+    with DeferredSignals():  # some libraries print a traceback where their import is interrupted
+        from .workers import start_petsc
 
-    start_petsc()
+        start_petsc()
 
-    from mpi4py import MPI
+        from mpi4py import MPI
 
-    from .session import run_session
+        from .session import run_session
 
     comm = MPI.COMM_WORLD
     try:

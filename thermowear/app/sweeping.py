@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from .. import load
 from ..case import Case, as_plain
 from ..errors import CaseError, ComputationError
+from ..interrupts import DeferredSignals
 from ..output.console import Terminal
 from ..output.folder import ResultsFolder
 from ..output.sweep import SweepFolder, draw_sweep, swept
@@ -133,9 +134,10 @@ def run_sweep(chosen) -> int:
 
 def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, report) -> None:
     """Compute groups of variants with shared factorisations, in parallel processes if several."""
-    start_petsc()
-    from ..simulation.analyses.sweep import groups
-    from ..simulation.from_case import model_of
+    with DeferredSignals():
+        start_petsc()
+        from ..simulation.analyses.sweep import groups
+        from ..simulation.from_case import model_of
 
     models = [model_of(variant.case) for variant in found]
     tasks = [[jobs[k] for k in group] for group in groups(models)]
@@ -150,8 +152,9 @@ def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, r
 
 def compute(jobs: list[Job], tell: Callable[[Ended], None]) -> None:
     """Compute variants that share factorisations, and write their folders."""
-    start_petsc()
-    from ..simulation.analyses.sweep import Series
+    with DeferredSignals():
+        start_petsc()
+        from ..simulation.analyses.sweep import Series
 
     series = Series()
     for job in jobs:

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from ...interrupts import DeferredSignals
 from .tagged import TaggedMesh
 
 _CELL_TYPES = {3: "quadrilateral", 10: "quadrilateral", 36: "quadrilateral"} | {
@@ -19,16 +20,20 @@ _CELL_TYPES = {3: "quadrilateral", 10: "quadrilateral", 36: "quadrilateral"} | {
 
 @contextmanager
 def gmsh_model(name: str) -> Iterator:
-    """Open a silent gmsh session with one empty model and close it afterwards."""
+    """Open a silent gmsh session with one empty model and close it afterwards.
+
+    Ctrl-C and SIGTERM are delivered at its end, as gmsh is called by ctypes.
+    """
     import gmsh
 
-    gmsh.initialize(["-noenv"], interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.add(name)
-        yield gmsh
-    finally:
-        gmsh.finalize()
+    with DeferredSignals():
+        gmsh.initialize(["-noenv"], interruptible=False)
+        try:
+            gmsh.option.setNumber("General.Terminal", 0)
+            gmsh.model.add(name)
+            yield gmsh
+        finally:
+            gmsh.finalize()
 
 
 def tagged_mesh(model, bodies: tuple[str, ...], surfaces: tuple[str, ...]) -> TaggedMesh:

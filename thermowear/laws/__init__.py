@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .by_name import registered_laws
 from .distribution import Distribution, DutyFactor, InPlace, Rings, UniformTrack, rings
 from .from_python import interface_law, wear_rate
-from .interfaces import InterfaceLaw, WearRate
+from .interfaces import ContactState, Law
 from .motions import RigidMotion, rotation, translation
 from .power_wear import PowerWear
 from .registry import parameter, registered
@@ -45,10 +45,11 @@ _PRINCIPLE = {
 
 __all__ = [
     "ContactPatch",
+    "ContactState",
     "Distribution",
     "DutyFactor",
     "InPlace",
-    "InterfaceLaw",
+    "Law",
     "Minimum",
     "NotCarried",
     "PowerFunctional",
@@ -58,7 +59,6 @@ __all__ = [
     "SelfLocking",
     "SteadyWear",
     "UniformTrack",
-    "WearRate",
     "WearVectors",
     "admissible_changes",
     "contact_patch",

@@ -14,7 +14,7 @@ from ...laws.by_name import registered_laws
 from ...laws.coefficients.constant import Constant
 from ...laws.expressions import Expression
 from ...laws.formulas import FormulaLaw, FormulaWear
-from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, InterfaceLaw, WearRate
+from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
 from ...laws.plausible import require_interface_law, require_wear_rate
 from ...laws.registry import Role
 from ..values.expressions import expression
@@ -100,7 +100,7 @@ def _quantity(value: float, unit: str) -> float | str:
     return f"{value!r} {unit}" if unit else value
 
 
-def law_of(value: float | Expression | NamedLaw, name: str, least: float) -> InterfaceLaw:
+def law_of(value: float | Expression | NamedLaw, name: str, least: float) -> Law:
     """The law of a value of a key.
 
     Parameters
@@ -116,7 +116,7 @@ def law_of(value: float | Expression | NamedLaw, name: str, least: float) -> Int
     return value.law if isinstance(value, NamedLaw) else Constant(value)
 
 
-def wear_rate_of(value: Expression | NamedLaw, name: str) -> WearRate:
+def wear_rate_of(value: Expression | NamedLaw, name: str) -> Law:
     """The wear rate of a value of a key; `name` is for its messages."""
     return value.law if isinstance(value, NamedLaw) else FormulaWear(value, name)
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from ...errors import CaseError, quoted
-from ...laws.interfaces import InterfaceLaw
+from ...laws.interfaces import Law
 from ...laws.plausible import typical_value
 from ..values import units
 from ..values.section import Number, Section, Switch
@@ -110,7 +110,7 @@ class ContactTable(Section):
     positioning: Switch = False
 
     @property
-    def friction_law(self) -> InterfaceLaw:
+    def friction_law(self) -> Law:
         """The coefficient of friction as a law, without `friction_factor`."""
         return law_of(self.friction, "contact.friction", -math.inf)
 

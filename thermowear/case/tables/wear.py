@@ -19,7 +19,7 @@ from pydantic import (
 )
 
 from ...errors import quoted
-from ...laws.interfaces import WearRate
+from ...laws.interfaces import Law
 from ..values.section import KeyFault, Number, Section
 from ..values.units import parse, registry
 from .law_values import RateOfWear, wear_rate_of
@@ -103,7 +103,7 @@ class BodyWearTable(Section):
         return {key: value for key, value in written.items() if key not in left_out}
 
     @property
-    def law(self) -> WearRate | None:
+    def law(self) -> Law | None:
         """The law of `rate`; None where there is a coefficient."""
         return None if self.rate is None else wear_rate_of(self.rate, "wear rate")
 

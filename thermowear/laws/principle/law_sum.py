@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...errors import ComputationError
-from ..interfaces import Values, WearRate
+from ..interfaces import ContactState, Law
 
 _MULTIPLES = np.array([0.03, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0])
 """Multiples of the steady pressure between which a rate must not decrease."""
@@ -21,26 +21,21 @@ class BoundLaw:
 
     Attributes
     ----------
-    law : WearRate
-    speed, temperature, friction : ndarray, shape (n,)
-        Sliding speed [m/s], temperature [K], coefficient of friction [-].
+    law : Law
+    state : ContactState
+        State of the points; its pressure is not used.
     """
 
-    law: WearRate
-    speed: Values
-    temperature: Values
-    friction: Values
+    law: Law
+    state: ContactState
 
     def rate(self, pressure: np.ndarray) -> np.ndarray:
         """Local wear rate (n,) [m/s]."""
-        return self._of(self.law.rate, pressure)
+        return self.law.value(self.state._replace(p=pressure))
 
     def slope(self, pressure: np.ndarray) -> np.ndarray:
         """Derivative with respect to the pressure (n,) [m/(s Pa)]."""
-        return self._of(self.law.slope, pressure)
-
-    def _of(self, function: Callable[..., np.ndarray], pressure: np.ndarray) -> np.ndarray:
-        return function(pressure, self.speed, self.temperature, 0.0, self.friction)
+        return self.law.slope(self.state._replace(p=pressure))
 
     def require_growth(self, pressure: np.ndarray) -> None:
         """Reject a law whose rate decreases with pressure, around given pressures.

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..distribution import Distribution, InPlace
-from ..interfaces import Values, WearRate
+from ..interfaces import ContactState, Law, Values
 from ..power_wear import PowerWear
 from .interior_point import solve
 from .law_sum import BoundLaw, LawSum
@@ -59,7 +59,7 @@ def steady_pressure(
     normal_modes: np.ndarray,
     force_modes: np.ndarray,
     load: np.ndarray,
-    laws: Sequence[WearRate],
+    laws: Sequence[Law],
     speed: np.ndarray,
     spread: Sequence[Distribution] | None = None,
     factors: np.ndarray | None = None,
@@ -78,7 +78,7 @@ def steady_pressure(
         T: component along ``n + mu e_1 + mu_d e_2``, for the equilibrium of pressure and friction.
     load : ndarray, shape (k,)
         Force or moment along each free direction [N or N m].
-    laws : sequence of WearRate
+    laws : sequence of Law
         Laws of one or two wearing bodies; rates must increase with the pressure.
     speed : ndarray, shape (n,)
         Sliding speed [m/s].
@@ -117,7 +117,8 @@ def steady_pressure(
         )
     _check_motions(weights, normal_modes)
     warm = np.zeros((len(laws), 1)) if temperature is None else temperature
-    bound = [BoundLaw(law, speed, T, friction) for law, T in zip(laws, warm, strict=True)]
+    states = (ContactState(0.0, speed, T, mu=friction) for T in warm)
+    bound = [BoundLaw(law, state) for law, state in zip(laws, states, strict=True)]
     found = solve(
         weights,
         normal_modes,
@@ -149,12 +150,12 @@ def _rate_sum(laws: Sequence[BoundLaw], factors: np.ndarray, weights: np.ndarray
     powers = [law.law for law in laws if _in_closed_form(law.law)]
     if len(powers) < len(laws):
         return LawSum(laws, weights * factors, np.ones(factors.shape[1]))
-    Z = [law.factor(bound.speed) for law, bound in zip(powers, laws, strict=True)]
+    Z = [law.factor(bound.state.v) for law, bound in zip(powers, laws, strict=True)]
     exponents = np.array([law.pressure_exponent for law in powers])
     return PowerSum(weights * factors * np.reshape(Z, factors.shape), exponents)
 
 
-def _in_closed_form(law: WearRate) -> TypeGuard[PowerWear]:
+def _in_closed_form(law: Law) -> TypeGuard[PowerWear]:
     """True if a law is exactly a power law; a derived class may override its rate."""
     return type(law) is PowerWear
 

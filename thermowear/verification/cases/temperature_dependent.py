@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...case.tables.schema import Case
+from ...laws import ContactState
 from ...simulation import Result
 from ..check import Check, compare
 from ..computed import computed
@@ -167,13 +168,12 @@ def _consistent(case: Case, result: Result, title: str) -> Iterator[Check]:
     arms = i.x if turned is None else np.hypot(i.x - turned[0], i.y - turned[1])
     speed = case.motion.angular_velocity * arms
     mean = (i.temperature_1 + i.temperature_2) / 2
-    friction = case.contact.friction * case.contact.friction_factor.multipliers.value(
-        i.pressure, speed, mean
-    )
+    at = ContactState(i.pressure, speed, mean)
+    friction = case.contact.friction * case.contact.friction_factor.multipliers.value(at)
     heat = i.heat_flux_1 + i.heat_flux_2
     yield _largest(f"friction heat, {title} [W/m²]", heat, friction * i.pressure * speed, LAWS)
     ((_, law),) = case.wear.items()
-    factor = law.factor.multipliers.value(i.pressure, speed, i.temperature_1)
+    factor = law.factor.multipliers.value(at._replace(T=i.temperature_1))
     rate = law.coefficient_si() * factor * friction * i.pressure * speed
     yield _largest(f"wear rate, {title} [m/s]", i.wear_rate_1, rate, LAWS)
     power = result.summary["heat_balance_relative_error"]

@@ -54,8 +54,8 @@ def twice(value: str) -> list[str]:
 
 
 CONDUCTANCES = [
-    Bad("kind of conductance", {LAW: {"type": "cubic"}}, f"{LAW}.type", "'pressure' or 'table'"),
-    Bad("conductance without type", {LAW: {}}, f"{LAW}.type", "missing; must be 'pressure'"),
+    Bad("kind of conductance", {LAW: {"type": "cubic"}}, f"{LAW}.type", "'pressure', 'table'"),
+    Bad("conductance without type", {LAW: {}}, f"{LAW}.type", "missing; must be one of"),
     Bad("type in a list", {LAW: {"type": ["table"]}}, f"{LAW}.type", "found ['table']"),
     Bad("number", {LAW: 1e6}, LAW, "needs a quantity with its unit"),
     Bad("list", {LAW: ["1 W/m^2/K"]}, LAW, "needs a quantity"),

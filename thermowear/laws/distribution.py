@@ -123,7 +123,7 @@ class Rings(Distribution):
     duty: float
 
     @cached_property
-    def rows(self) -> np.ndarray:  # type: ignore[override]
+    def rows(self) -> np.ndarray:
         under = self.hats * self.weights[:, None]
         return self.duty * (under / under.sum(axis=0)).T
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import ComputationError
 from .formulas import UNITS
-from .interfaces import INTERFACE_VARIABLES, ContactState, Law
+from .interfaces import INTERFACE_VARIABLES, ContactState, Law, Values
 
 SAMPLES: Mapping[str, np.ndarray] = {
     "p": np.concatenate([[0.0], np.geomspace(1.0, 1e10, 61)]),
@@ -61,7 +61,7 @@ def require_interface_law(law: Law) -> None:
         _refuse(np.array(True), one, f"the value is {typical:.4g}, must be greater than 0,")
 
 
-def typical_value(law: Law, friction: float = TYPICAL.mu) -> float:
+def typical_value(law: Law, friction: Values = TYPICAL.mu) -> float:
     """Value of a law in the state of `TYPICAL`, at a coefficient of friction."""
     state = ContactState(*(np.array([value]) for value in TYPICAL._replace(mu=friction)))
     return float(law.value(state)[0])

@@ -55,7 +55,7 @@ class BodyWearTable(Section):
     ----------
     coefficient : pint.Quantity or None
         In the unit that fits both exponents.
-    rate : Expression, NamedLaw or None
+    rate : Expression, LawTable or None
         Wear rate as an expression in p, v, T, depth and mu, or a registered law, in place of the
         coefficient, its exponents and `per`.
     per : str
@@ -105,7 +105,7 @@ class BodyWearTable(Section):
     @property
     def law(self) -> Law | None:
         """The law of `rate`; None where there is a coefficient."""
-        return None if self.rate is None else wear_rate_of(self.rate, "wear rate")
+        return None if self.rate is None else wear_rate_of(self.rate)
 
     @property
     def variables(self) -> frozenset[str]:

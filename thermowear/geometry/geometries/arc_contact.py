@@ -36,6 +36,7 @@ class ArcContact(PlaneGeometry):
 
     name: ClassVar[str] = ""
     models = ("plane-strain", "plane-stress")
+    rotation_center = (0.0, 0.0)
     rest: ClassVar[str]
 
     arc_start: Angle
@@ -91,11 +92,7 @@ class ArcContact(PlaneGeometry):
     def arc(self) -> tuple[float, float]:
         return self.arc_start, self.arc_end
 
-    @property
-    def rotation_center(self) -> tuple[float, float]:
-        return (0.0, 0.0)
-
-    @property
+    @keyed
     def track(self) -> float:
         return 2 * math.pi * self.radius
 

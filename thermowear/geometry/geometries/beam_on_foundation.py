@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
+from ...case.tables.geometry import named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
@@ -39,19 +40,13 @@ class BeamOnFoundation(PlaneGeometry):
     models = ("plane-strain", "plane-stress")
     bodies = ("beam", "foundation")
     surfaces = (
-        "beam_face",
-        "beam_clamp",
-        "beam_support",
-        "beam_load",
-        "beam_top",
-        "foundation_face",
-        "foundation_left",
-        "foundation_right",
-        "foundation_bottom",
+        *named("beam", "face", "clamp", "support", "load", "top"),
+        *named("foundation", "face", "left", "right", "bottom"),
     )
     contact = ("beam_face", "foundation_face")
     held = "beam_clamp"
     fixed = "foundation_bottom"
+    rollers = ("beam_support",)
 
     type: Literal["beam-on-foundation"]
     length: Length
@@ -71,10 +66,6 @@ class BeamOnFoundation(PlaneGeometry):
                 f"must be between the ends of the beam, 0 and {self.length:g} m",
             )
         return self
-
-    @property
-    def rollers(self) -> tuple[str, ...]:
-        return ("beam_support",)
 
     @property
     def load_span(self) -> tuple[float, float]:

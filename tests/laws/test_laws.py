@@ -7,7 +7,7 @@ import pytest
 
 from thermowear.case.values.expressions import expression
 from thermowear.errors import CaseError, ComputationError
-from thermowear.laws import ContactState, PowerWear
+from thermowear.laws import LocalState, PowerWear
 from thermowear.laws.by_name import registered_laws
 from thermowear.laws.coefficients.conductance import PressureConductance, harmonic_mean
 from thermowear.laws.coefficients.constant import Constant
@@ -20,7 +20,7 @@ from thermowear.laws.plausible import require_interface_law, require_wear_rate
 P = np.array([1e5, 2e6, 7e6, 3e7])
 V = np.array([0.05, 0.2, 0.5, 1.0])
 T = np.array([300.0, 350.0, 400.0, 500.0])
-STATE = ContactState(P, V, T)
+STATE = LocalState(P, V, T)
 FALLS = Table1D((293.15, 493.15), (1.0, 0.5))
 HARD = Table1D((1e6, 5e6, 9e6), (1.0, 2.0, 1.5))
 
@@ -81,7 +81,7 @@ def test_slopes_of_wear_rates_are_their_derivatives(law):
 def test_laws_by_hand():
     """requirement: energy above a threshold, Stribeck, harmonic means, the factors of tables."""
     law = registered_laws("wear")["energy"](2e-13, 1e4)
-    state = ContactState(np.array([1e5, 1e6]), 0.2, mu=0.25)
+    state = LocalState(np.array([1e5, 1e6]), 0.2, mu=0.25)
     assert law.value(state) == pytest.approx([0.0, 2e-13 * 4e4], rel=1e-9, abs=0.0)
     np.testing.assert_allclose(wear_rate(energy).value(state), [0.0, 2e-13 * 4e4], rtol=1e-9)
     friction = registered_laws("friction")["stribeck"](0.35, 0.1, 0.5)
@@ -89,7 +89,7 @@ def test_laws_by_hand():
     assert harmonic_mean(10.0, 40.0) == pytest.approx(16.0)
     factors = Multipliers(FALLS, HARD, None)
     assert factors.variables == {"T", "p"}
-    state = ContactState(np.array([3e6]), 0.1, np.array([393.15]))
+    state = LocalState(np.array([3e6]), 0.1, np.array([393.15]))
     assert factors.value(state) == pytest.approx([0.75 * 1.5])
 
 

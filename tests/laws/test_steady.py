@@ -8,7 +8,7 @@ from scipy.optimize import fsolve
 
 from thermowear import ComputationError
 from thermowear.laws import (
-    ContactState,
+    LocalState,
     PowerWear,
     admissible_changes,
     contact_patch,
@@ -125,7 +125,7 @@ def test_lifts_off_where_the_rigid_rate_is_negative():
 
 
 def dissipation(pressure, weights, law, speed):
-    return weights @ (pressure * law.value(ContactState(pressure, speed)))
+    return weights @ (pressure * law.value(LocalState(pressure, speed)))
 
 
 @settings(max_examples=examples(80), deadline=None)
@@ -165,7 +165,7 @@ def test_nothing_to_wear_or_to_press():
 def check_all_conditions(patch, load, laws, steady):
     """Wear, parting, equilibrium and power, each from its definition."""
     p, R, T = steady.pressure, patch.normal_modes, patch.force_modes
-    rates = sum(law.value(ContactState(p, patch.speed)) for law in laws)
+    rates = sum(law.value(LocalState(p, patch.speed)) for law in laws)
     approach = R @ steady.velocity
     scale = np.abs(approach).max()
     touching = p > 0

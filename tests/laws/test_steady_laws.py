@@ -13,7 +13,7 @@ from thermowear.laws import InPlace, PowerWear, UniformTrack, steady_pressure
 from thermowear.laws.by_name import registered_laws
 from thermowear.laws.formulas import FormulaWear
 from thermowear.laws.from_python import wear_rate
-from thermowear.laws.interfaces import WEAR_VARIABLES, ContactState
+from thermowear.laws.interfaces import WEAR_VARIABLES, LocalState
 from thermowear.laws.plain_function import PlainFunction
 
 N = 40
@@ -107,7 +107,7 @@ def pressure_at(rate, law):
     low, high = np.full(N, 1.0), np.full(N, 1e10)
     for _ in range(70):
         middle = np.sqrt(low * high)
-        below = law.value(ContactState(middle, SPEED)) < rate
+        below = law.value(LocalState(middle, SPEED)) < rate
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return np.sqrt(low * high)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .by_name import registered_laws
 from .distribution import Distribution, DutyFactor, InPlace, Rings, UniformTrack, rings
 from .from_python import interface_law, wear_rate
-from .interfaces import ContactState, Law
+from .interfaces import Law, LocalState
 from .motions import RigidMotion, rotation, translation
 from .power_wear import PowerWear
 from .registry import parameter, registered
@@ -45,11 +45,11 @@ _PRINCIPLE = {
 
 __all__ = [
     "ContactPatch",
-    "ContactState",
     "Distribution",
     "DutyFactor",
     "InPlace",
     "Law",
+    "LocalState",
     "Minimum",
     "NotCarried",
     "PowerFunctional",

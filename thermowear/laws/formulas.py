@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..errors import ComputationError
-from .interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, ContactState, Formula
+from .interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Formula, LocalState
 from .power_wear import floored
 
 UNITS = {"p": " Pa", "v": " m/s", "T": " K", "depth": " m", "mu": ""}
@@ -40,12 +40,12 @@ class FormulaLaw:
         """Variables of the formula."""
         return self.formula.variables
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Value at points (n,)."""
         arrays = at.arrays(self.NAMES)
         return required(self.name, self.formula.value(arrays), arrays, self.least)
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure."""
         arrays = at._replace(p=floored(at.p)).arrays(self.NAMES)
         return required(f"derivative of the {self.name}", self.formula.slope(arrays, "p"), arrays)
@@ -60,7 +60,7 @@ class FormulaWear(FormulaLaw):
     name: str = "wear rate"
     least: float = 0.0
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Depth worn per time at points (n,) [m/s]."""
         return super().value(at._replace(p=np.maximum(at.p, 0.0)))
 

@@ -16,7 +16,7 @@ WEAR_VARIABLES = ("p", "v", "T", "depth", "mu")
 INTERFACE_VARIABLES = ("p", "v", "T")
 
 
-class ContactState(NamedTuple):
+class LocalState(NamedTuple):
     """State at the contact points: arrays of shape (n,), or numbers equal at all points.
 
     Attributes
@@ -58,11 +58,11 @@ class Law(Protocol):
     @property
     def variables(self) -> frozenset[str]: ...
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Value at points (n,); the wear rate at negative pressures is 0."""
         ...
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure, finite at zero pressure."""
         ...
 

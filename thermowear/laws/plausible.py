@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import ComputationError
 from .formulas import UNITS
-from .interfaces import INTERFACE_VARIABLES, ContactState, Law, Values
+from .interfaces import INTERFACE_VARIABLES, Law, LocalState, Values
 
 SAMPLES: Mapping[str, np.ndarray] = {
     "p": np.concatenate([[0.0], np.geomspace(1.0, 1e10, 61)]),
@@ -18,7 +18,7 @@ SAMPLES: Mapping[str, np.ndarray] = {
     "mu": np.array([0.0, 0.1, 0.3, 1.0]),
 }
 """Sample values for the checks, in SI: up to 10 GPa, 100 m/s, 1500 K and 10 mm."""
-TYPICAL = ContactState(p=1e7, v=0.1, T=293.15, depth=0.0, mu=0.3)
+TYPICAL = LocalState(p=1e7, v=0.1, T=293.15, depth=0.0, mu=0.3)
 """Reference state of a contact, in SI."""
 _ROUNDING = 1e-9  # of the rate
 
@@ -63,13 +63,13 @@ def require_interface_law(law: Law) -> None:
 
 def typical_value(law: Law, friction: Values = TYPICAL.mu) -> float:
     """Value of a law in the state of `TYPICAL`, at a coefficient of friction."""
-    state = ContactState(*(np.array([value]) for value in TYPICAL._replace(mu=friction)))
+    state = LocalState(*(np.array([value]) for value in TYPICAL._replace(mu=friction)))
     return float(law.value(state)[0])
 
 
 def _evaluated(law: Law, at: Mapping[str, np.ndarray]) -> np.ndarray:
     """Values of a law on a grid of some variables, the others as in `TYPICAL`."""
-    state = ContactState(*np.broadcast_arrays(*TYPICAL._replace(**at)))
+    state = LocalState(*np.broadcast_arrays(*TYPICAL._replace(**at)))
     try:
         with np.errstate(all="ignore"):
             return law.value(state)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from .interfaces import ContactState, Values
+from .interfaces import LocalState, Values
 
 _FLOOR = 1e-9  # relative to the largest pressure: avoids the infinite slope of p^b (b < 1) at p = 0
 
@@ -43,11 +43,11 @@ class PowerWear:
         """Factor Z = κ v^a at points, so that the rate is Z p^b."""
         return self.coefficient * np.power(speed, self.velocity_exponent)
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Depth worn per time at points (n,) [m/s]."""
         return self.factor(at.v) * np.power(np.maximum(at.p, 0.0), self.pressure_exponent)
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure [m/(s Pa)]; finite at p = 0 for b < 1, too."""
         b = self.pressure_exponent
         return self.factor(at.v) * b * np.power(floored(at.p), b - 1.0)

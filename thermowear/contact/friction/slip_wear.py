@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...laws.interfaces import ContactState, Law
+from ...laws.interfaces import Law, LocalState
 from ..search.pairing import Pairing
 from .stick_slip_state import StickSlipState
 
@@ -130,7 +130,7 @@ class SlipWear:
         if self.duration == 0.0:
             return np.zeros((len(self.laws), len(pressure)))
         speed, time = slip / self.duration, self.repeats * self.duration
-        state = ContactState(pressure, speed, mu=self.friction)
+        state = LocalState(pressure, speed, mu=self.friction)
         values = [time * of_law(state) for of_law in functions]
         return np.reshape(values, (-1, len(pressure)))
 

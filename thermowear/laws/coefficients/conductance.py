@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import ContactState
+from ..interfaces import LocalState
 
 
 def harmonic_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -37,11 +37,11 @@ class PressureConductance:
     hardness: np.ndarray
     variables: ClassVar[frozenset[str]] = frozenset("p")
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Conductance at points (n,) [W/(m² K)]."""
         return self.coefficient * self.conductivity * np.asarray(at.p) / self.hardness
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure [W/(m² K Pa)]."""
         slope = self.coefficient * self.conductivity / self.hardness
         return np.broadcast_to(slope, np.shape(at.p))

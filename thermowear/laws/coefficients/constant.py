@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import ContactState
+from ..interfaces import LocalState
 
 
 @dataclass(frozen=True)
@@ -17,10 +17,10 @@ class Constant:
     number: float
     variables: ClassVar[frozenset[str]] = frozenset()
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Coefficient at points (n,)."""
         return np.full(np.shape(at.p), self.number)
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure: 0."""
         return np.zeros(np.shape(at.p))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..interfaces import ContactState, Law
+from ..interfaces import Law, LocalState
 from .table1d import Table1D
 
 
@@ -35,14 +35,14 @@ class Multipliers:
         """Variables with a table, named as in `Law`."""
         return frozenset(self.tables)
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Product of the factors at points (n,)."""
         product = np.ones(np.broadcast_shapes(np.shape(at.p), np.shape(at.v)))
         for name, table in self.tables.items():
             product = product * table.value(getattr(at, name))
         return product
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative of the product with respect to the pressure [1/Pa]."""
         others = Multipliers(self.temperature, None, self.speed).value(at)
         return others * (0.0 if self.pressure is None else self.pressure.slope(at.p))
@@ -60,11 +60,11 @@ class Multiplied:
         """Variables of the law and of the factors."""
         return self.law.variables | self.factors.variables
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Coefficient at points (n,)."""
         return self.law.value(at) * self.factors.value(at)
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure."""
         first = self.law.slope(at) * self.factors.value(at)
         return first + self.law.value(at) * self.factors.slope(at)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import ContactState
+from ..interfaces import LocalState
 from ..registry import parameter, registered
 
 
@@ -31,12 +31,12 @@ class EnergyWear:
     threshold: float = parameter("W/m^2", "1e4 W/m^2", default=0.0, ge=0)
     variables: ClassVar[frozenset[str]] = frozenset({"p", "v", "mu"})
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Depth worn per time at points (n,) [m/s]."""
         power = at.mu * np.maximum(at.p, 0.0) * at.v
         return self.coefficient * np.maximum(power - self.threshold, 0.0)
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure [m/(s Pa)]; right-hand at the threshold."""
         wears = at.mu * at.p * at.v >= self.threshold
         return np.where(wears, self.coefficient * at.mu * at.v, 0.0)

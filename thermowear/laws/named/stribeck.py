@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import ContactState
+from ..interfaces import LocalState
 from ..registry import parameter, registered
 
 
@@ -31,11 +31,11 @@ class StribeckFriction:
     speed: float = parameter("m/s", "0.5 m/s", gt=0)
     variables: ClassVar[frozenset[str]] = frozenset("v")
 
-    def value(self, at: ContactState) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Coefficient at points (n,)."""
         fallen = (self.static - self.kinetic) * np.exp(-np.asarray(at.v) / self.speed)
         return np.full(np.shape(at.p), self.kinetic) + fallen
 
-    def slope(self, at: ContactState) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure: 0."""
         return np.zeros(np.shape(at.p))

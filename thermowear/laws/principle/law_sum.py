@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import ComputationError
-from ..interfaces import ContactState, Law
+from ..interfaces import Law, LocalState
 
 _MULTIPLES = np.array([0.03, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0])
 """Multiples of the steady pressure between which a rate must not decrease."""
@@ -22,12 +22,12 @@ class BoundLaw:
     Attributes
     ----------
     law : Law
-    state : ContactState
+    state : LocalState
         State of the points; its pressure is not used.
     """
 
     law: Law
-    state: ContactState
+    state: LocalState
 
     def rate(self, pressure: np.ndarray) -> np.ndarray:
         """Local wear rate (n,) [m/s]."""

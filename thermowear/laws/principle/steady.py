@@ -19,7 +19,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..distribution import Distribution, InPlace
-from ..interfaces import ContactState, Law, Values
+from ..interfaces import Law, LocalState, Values
 from ..power_wear import PowerWear
 from .interior_point import solve
 from .law_sum import BoundLaw, LawSum
@@ -117,7 +117,7 @@ def steady_pressure(
         )
     _check_motions(weights, normal_modes)
     warm = np.zeros((len(laws), 1)) if temperature is None else temperature
-    states = (ContactState(0.0, speed, T, mu=friction) for T in warm)
+    states = (LocalState(0.0, speed, T, mu=friction) for T in warm)
     bound = [BoundLaw(law, state) for law, state in zip(laws, states, strict=True)]
     found = solve(
         weights,

@@ -30,7 +30,7 @@ from ...contact.solvers.signorini import solve_contact
 from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.track import StrokeGrid, track
 from ...errors import ComputationError
-from ...laws.interfaces import ContactState, Law
+from ...laws.interfaces import Law, LocalState
 from ..interface.contact_solver import ContactSolution, Slope
 from ..interface.sdirk import InterfaceState, WearProblem
 from ..model.system import System
@@ -207,7 +207,7 @@ class _LocalWear:
         return Slope.diagonal(self._each(pressure, [law.slope for law in self.laws]))
 
     def _each(self, pressure: np.ndarray, functions) -> np.ndarray:
-        at = ContactState(pressure, self.speeds, mu=self.friction)
+        at = LocalState(pressure, self.speeds, mu=self.friction)
         return np.array([of_law(at) for of_law in functions])
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...contact.operators.heat import ThermalState
 from ...errors import ComputationError
-from ...laws.interfaces import ContactState, Law
+from ...laws.interfaces import Law, LocalState
 from .system import System
 
 _SETTLED = 1e-10
@@ -58,9 +58,9 @@ class InterfaceConditions:
         """Derivative of the wear rate with respect to the pressure [m/(s Pa)]."""
         return self.wear[row] * law.slope(self._state(row, pressure))
 
-    def _state(self, row: int, pressure: np.ndarray) -> ContactState:
+    def _state(self, row: int, pressure: np.ndarray) -> LocalState:
         own = self.temperature[row], self.depth[row]
-        return ContactState(pressure, self.speed, *own, self.friction)
+        return LocalState(pressure, self.speed, *own, self.friction)
 
     @property
     def released(self) -> bool:
@@ -188,7 +188,7 @@ class ConditionModel:
 
     def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
         """Coefficient of friction, at least 0; `require_friction` checks the converged state."""
-        value = self._friction_law.value(ContactState(pressure, speed, self._mean(temperatures)))
+        value = self._friction_law.value(LocalState(pressure, speed, self._mean(temperatures)))
         history = self._interface.friction_history
         return (1.0 if history is None else _part(history.at(time))) * np.maximum(value, 0.0)
 
@@ -205,7 +205,7 @@ class ConditionModel:
             return
         mean = np.broadcast_to(self._mean(self._temperatures(faces)), pressure.shape)
         speed = self._speed(time)
-        value = self._friction_law.value(ContactState(pressure, speed, mean))
+        value = self._friction_law.value(LocalState(pressure, speed, mean))
         lowest = int(np.argmin(np.where(pressure > 0, value, np.inf)))
         if pressure[lowest] > 0 and value[lowest] < 0:
             raise ComputationError(
@@ -219,7 +219,7 @@ class ConditionModel:
         result = np.ones((len(self._wearing), len(pressure)))
         for row, (_, wear) in enumerate(self._wearing):
             own = 0.0 if temperatures is None else temperatures[row]
-            result[row] = wear.factors.value(ContactState(pressure, speed, own))
+            result[row] = wear.factors.value(LocalState(pressure, speed, own))
             if wear.friction_exponent and self._friction_varies:
                 nominal = self._interface.nominal_friction
                 result[row] *= (friction / nominal) ** wear.friction_exponent
@@ -233,6 +233,6 @@ class ConditionModel:
         if self._system.thermal is None:
             return np.zeros(len(pressure))
         law = self._conductance_law
-        at = ContactState(pressure, speed, self._mean(temperatures))
+        at = LocalState(pressure, speed, self._mean(temperatures))
         closed = np.inf if law is None else law.value(at)
         return np.where(touching, closed, self._interface.gap_conductance)

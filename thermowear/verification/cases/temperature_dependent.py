@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...case.tables.schema import Case
-from ...laws import ContactState
+from ...laws import LocalState
 from ...simulation import Result
 from ..check import Check, compare, compare_worst
 from ..computed import computed
@@ -173,7 +173,7 @@ def _consistent(case: Case, result: Result, title: str) -> Iterator[Check]:
     arms = i.x if turned is None else np.hypot(i.x - turned[0], i.y - turned[1])
     speed = case.motion.angular_velocity * arms
     mean = (i.temperature_1 + i.temperature_2) / 2
-    at = ContactState(i.pressure, speed, mean)
+    at = LocalState(i.pressure, speed, mean)
     friction = case.contact.friction * case.contact.friction_factor.multipliers.value(at)
     heat = i.heat_flux_1 + i.heat_flux_2
     yield compare_worst(

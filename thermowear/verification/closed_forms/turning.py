@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...laws import ContactState
+from ...laws import LocalState
 from ...reference import annular_punch as ring
 from ...reference import disk_brake as pad
 from ..check import Check, compare
@@ -48,7 +48,7 @@ def _cones() -> Iterator[Check]:
         steady, name = case.steady(), f", cone, b = {b:.3g}, a = {a:.3g}, mu_d = {mu_d:.3g}"
         exact = ring.conical_pressure(r, force, inner, inner + span, α, mu_d, b, a)
         yield worst(f"pressure{name} [Pa]", steady.pressure, exact)
-        vertical = case.laws[0].value(ContactState(exact, case.patch.speed)) / np.sin(α)
+        vertical = case.laws[0].value(LocalState(exact, case.patch.speed)) / np.sin(α)
         yield worst(f"vertical wear rate{name} [m/s]", steady.velocity[0], vertical)
         yield dissipation(case, name)
 

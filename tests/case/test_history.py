@@ -34,7 +34,7 @@ BAD = [
     Bad("never moves", {SPEED: STOP | {"factor": [0, 0]}}, f"{SPEED}.factor", "greater",
         RUNNING_IN),
     Bad("jumps back", {SPEED: STOP | {"repeat": True}}, f"{SPEED}.repeat",
-        "factor must end with the value that it begins with", RUNNING_IN),
+        "the last value of factor must equal the first one", RUNNING_IN),
     Bad("repeats an instant", {SPEED: {"time": ["0 s"], "factor": [1], "repeat": True}},
         f"{SPEED}.repeat", "at least two instants", RUNNING_IN),
     Bad("repeats, 1", {SPEED: STOP | {"repeat": 1}}, f"{SPEED}.repeat", "true or", RUNNING_IN),

@@ -127,7 +127,7 @@ def test_functions_that_are_no_laws_are_refused(function, text):
 
 BAD_WEAR = [
     ("1e-9 m/s*(1 - p/(1 GPa))", "must be finite and at least 0"),
-    ("1e-13/Pa*v*p*exp(-p/(10 MPa))", "falls as the pressure rises at p ="),
+    ("1e-13/Pa*v*p*exp(-p/(10 MPa))", "decreases with increasing pressure at p ="),
     ("1e-13/Pa*v*p/(1 - depth/(10 mm))", "must be finite"),
     ("1e-13/Pa*p*(v - 1 mm/s)", "must be finite and at least 0"),
     ("1e-13/Pa^2*p^2*v*log(p/(1 Pa))", "must be finite"),

@@ -148,7 +148,7 @@ def test_points_at_rest_have_no_steady_state():
     """requirement: what cannot wear is reported, not divided by zero."""
     r, weights = ring(5)
     down = np.ones((5, 1))
-    with pytest.raises(ComputationError, match="do not slide"):
+    with pytest.raises(ComputationError, match="sliding speed is 0"):
         steady_pressure(weights, down, down, np.ones(1), [PowerWear(1.0)], r * 0)
 
 
@@ -156,9 +156,9 @@ def test_nothing_to_wear_or_to_press():
     """requirement: no wearing body and no load are said."""
     r, weights = ring(5)
     down = np.ones((5, 1))
-    with pytest.raises(ComputationError, match="no body wears"):
+    with pytest.raises(ComputationError, match="no body has a wear law"):
         steady_pressure(weights, down, down, np.ones(1), [], r)
-    with pytest.raises(ComputationError, match="outside of what pressure"):
+    with pytest.raises(ComputationError, match="no contact pressure is in equilibrium"):
         steady_pressure(weights, down, down, np.zeros(1), [PowerWear(1.0)], r)
 
 

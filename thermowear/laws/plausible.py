@@ -34,11 +34,11 @@ def require_wear_rate(law: Law) -> None:
     at = _grid(law.variables | {"p"})
     rates = _evaluated(law, at)
     rates = np.broadcast_to(rates, np.broadcast_shapes(*(v.shape for v in at.values())))
-    _refuse(~np.isfinite(rates), at, "the rate is not finite")
-    _refuse(rates < 0.0, at, "the rate is negative")
-    _refuse(rates[:1] > _ROUNDING * rates[-1:], at, "there is wear without pressure")
-    falls = np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]
-    _refuse(falls, at, "the rate falls as the pressure rises")
+    _reject_where(~np.isfinite(rates), at, "the rate is not finite")
+    _reject_where(rates < 0.0, at, "the rate is negative")
+    _reject_where(rates[:1] > _ROUNDING * rates[-1:], at, "there is wear without pressure")
+    decreases = np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]
+    _reject_where(decreases, at, "the rate decreases with increasing pressure")
     if not rates.any():
         raise ValueError("the rate is 0 at all pressures")
 
@@ -54,11 +54,11 @@ def require_interface_law(law: Law) -> None:
     at = _grid(law.variables)
     values = _evaluated(law, at)
     values = np.broadcast_to(values, np.broadcast_shapes(*(v.shape for v in at.values()), (1,)))
-    _refuse(~np.isfinite(values), at, "the value is not finite")
+    _reject_where(~np.isfinite(values), at, "the value is not finite")
     typical = typical_value(law)
     if not typical > 0.0:
         one = TYPICAL.arrays(INTERFACE_VARIABLES)
-        _refuse(np.array(True), one, f"the value is {typical:.4g}, must be greater than 0,")
+        _reject_where(np.array(True), one, f"the value is {typical:.4g}, must be greater than 0,")
 
 
 def typical_value(law: Law, friction: Values = TYPICAL.mu) -> float:
@@ -87,7 +87,7 @@ def _grid(variables: frozenset[str]) -> dict[str, np.ndarray]:
     }
 
 
-def _refuse(wrong: np.ndarray, at: Mapping[str, np.ndarray], what: str) -> None:
+def _reject_where(wrong: np.ndarray, at: Mapping[str, np.ndarray], what: str) -> None:
     """Raise for the first point of a grid with a violated condition."""
     if not wrong.any():
         return

@@ -18,7 +18,7 @@ from .multipliers import must_increase, must_match
 
 
 class PressureConductanceTable(Section):
-    """Conductance in proportion to the pressure, see `laws.coefficients.conductance`.
+    """Conductance proportional to the pressure, see `laws.coefficients.conductance`.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class PressureConductanceTable(Section):
 
 
 class TabulatedConductanceTable(Section):
-    """Conductance by straight lines between given pressures, constant beyond the ends.
+    """Conductance tabulated over the pressure: piecewise linear, constant beyond the ends.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class TabulatedConductanceTable(Section):
         must_increase("pressure", self.pressure)
         must_match("conductance", self.conductance, self.pressure, "pressures")
         if not any(self.conductance):
-            raise KeyFault("conductance", "one at least must be greater than 0")
+            raise KeyFault("conductance", "at least one value must be greater than 0")
         return self
 
     @property
@@ -87,4 +87,4 @@ Conductance = Annotated[
     PlainValidator(_read),
     PlainSerializer(_written),
 ]
-"""A constant [W/(m² K)], one of the tables, an expression in p, v and T, or a registered law."""
+"""Constant [W/(m² K)], table, expression in p, v and T, or registered law."""

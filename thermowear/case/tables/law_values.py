@@ -38,6 +38,14 @@ class LawTable(Section):
         keys = type(self).model_fields.keys() - {"type"}
         return self.LAW(**{key: getattr(self, key) for key in keys})
 
+    def __reduce__(self):
+        """Pickle the law with its keys, as the class of its table is made when needed."""
+        return _restored, (self.LAW, dict(self))
+
+
+def _restored(law: type, keys: dict[str, Any]) -> LawTable:
+    return _table_of(law).model_construct(**keys)
+
 
 @lru_cache
 def _table_of(law: type) -> type[LawTable]:

@@ -100,7 +100,7 @@ class MeshFile(HalvableGeometry):
         for key, names in roles.items():
             for name in names:
                 if name in seen:
-                    raise KeyFault(key, f"{name!r} is used twice; each surface has one purpose")
+                    raise KeyFault(key, f"{name!r} is used twice; a surface can have one role only")
                 seen.add(name)
         return self
 

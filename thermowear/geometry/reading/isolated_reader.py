@@ -54,16 +54,16 @@ def read(path: Path, ending: str) -> dict[str, np.ndarray]:
         mesh = importlib.import_module(f"meshio{ending}").read(str(path))
         cells = [(block.type, block.data) for block in mesh.cells]
     arrays = {"points": np.asarray(mesh.points, dtype=float)}
-    about = {"kinds": [kind for kind, _ in cells], "sets": [], "node_sets": []}
+    contents = {"kinds": [kind for kind, _ in cells], "sets": [], "node_sets": []}
     for index, (_, nodes) in enumerate(cells):
         arrays[f"nodes_{index}"] = np.asarray(nodes, dtype=np.int64)
         for name, members in _sets_of_block(mesh, index).items():
-            arrays[f"set_{len(about['sets'])}"] = members
-            about["sets"].append([index, name])
+            arrays[f"set_{len(contents['sets'])}"] = members
+            contents["sets"].append([index, name])
     for name, members in _node_sets(mesh).items():
-        arrays[f"node_set_{len(about['node_sets'])}"] = members
-        about["node_sets"].append(name)
-    return arrays | {"about": np.array(json.dumps(about))}
+        arrays[f"node_set_{len(contents['node_sets'])}"] = members
+        contents["node_sets"].append(name)
+    return arrays | {"contents": np.array(json.dumps(contents))}
 
 
 def _sets_of_block(mesh, index: int) -> dict[str, np.ndarray]:

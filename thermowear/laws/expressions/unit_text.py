@@ -37,8 +37,8 @@ class _Extent:
         if self._is(at, "1") and self._is(at + 1, "/"):
             at += 1
         if self._is(at, "/"):
-            behind = self._factor(at + 1)
-            return start if behind is None else self._rest(behind)
+            end_of_factor = self._factor(at + 1)
+            return start if end_of_factor is None else self._rest(end_of_factor)
         first = self._factor(at, parenthesised=False)
         return start if first is None else self._rest(first)
 
@@ -46,10 +46,10 @@ class _Extent:
         """Index after further factors: juxtaposed, or after ``*`` and ``/``."""
         while True:
             signed = self._is(at, "*") or self._is(at, "/")
-            behind = self._factor(at + 1 if signed else at, parenthesised=signed)
-            if behind is None:
+            end_of_factor = self._factor(at + 1 if signed else at, parenthesised=signed)
+            if end_of_factor is None:
                 return at
-            at = behind
+            at = end_of_factor
 
     def _factor(self, at: int, parenthesised: bool = True) -> int | None:
         """Index after one name or parenthesis with its exponent; None if there is none."""
@@ -73,15 +73,15 @@ class _Extent:
             return at
         end = at + 1
         if self._is(end, "("):
-            behind = self._number(end + 1)
-            if behind is not None and self._is(behind, "/"):
-                behind = self._number(behind + 1)
-            if behind is not None and self._is(behind, ")"):
-                return behind + 1
+            end_of_factor = self._number(end + 1)
+            if end_of_factor is not None and self._is(end_of_factor, "/"):
+                end_of_factor = self._number(end_of_factor + 1)
+            if end_of_factor is not None and self._is(end_of_factor, ")"):
+                return end_of_factor + 1
         else:
-            behind = self._number(end)
-            if behind is not None:
-                return behind
+            end_of_factor = self._number(end)
+            if end_of_factor is not None:
+                return end_of_factor
         raise fault(self._tokens[at].start, "the exponent of a unit must be a number")
 
     def _number(self, at: int) -> int | None:

@@ -181,8 +181,8 @@ def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
     unit = float((worn + common).mean())
     if unit == 0.0:
         raise ComputationError(
-            "no steady state: the mean pressure wears nothing, so many pressures last; a larger "
-            "load or speed is needed"
+            "no unique steady state: the wear rate at the mean pressure is 0 (below the threshold "
+            "of the wear law); increase the load or the speed"
         )
     found = _iterate(conditions.scaled(start, unit))
     if found is None:
@@ -230,9 +230,9 @@ def _predicted_and_corrected(newton: _Linearised):
     mean = np.mean(product)
     _, dp, ds = newton.step(-product)
     reach = _reach((pressure, dp), (parting, ds))
-    ahead = np.mean((pressure + reach * dp) * (parting + reach * ds))
+    predicted = np.mean((pressure + reach * dp) * (parting + reach * ds))
     unfit = np.mean(pressure * np.abs(newton.misfit))
-    centre = max((ahead / mean) ** 3 * mean, min(CENTRED * mean, unfit / 10))
+    centre = max((predicted / mean) ** 3 * mean, min(CENTRED * mean, unfit / 10))
     step = newton.step(centre - product - dp * ds)
     if _reach((pressure, step[1]), (parting, step[2])) < SHORT:
         step = newton.step(CENTRED * mean - product)  # the corrector is not useful

@@ -48,8 +48,8 @@ class BoundLaw:
         rates = np.array([self.rate(factor * pressure) for factor in _MULTIPLES])
         if np.any(np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]):
             raise ComputationError(
-                "no steady state: a wear rate falls as the pressure rises; the principle needs "
-                "rates that grow with it"
+                "no steady state: a wear rate decreases with increasing pressure; the steady "
+                "principle requires wear rates that increase with it"
             )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import linprog
 
 from ...contact.operators.heat import ThermalState
-from ...laws import SteadyWear, steady_pressure
+from ...laws.principle.steady import SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
 from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System

@@ -63,8 +63,8 @@ def _starter(result: Result) -> Iterator[Check]:
     made, known = result.summary["heat_in_J"], float(np.trapezoid(power, time))
     yield compare("friction heat, car [J]", made, known, 1e-3, "integral of the friction power")
     slid = result.history[-1].sliding_distance
-    way = SPEED * ARM * STOP / 2
-    yield compare("sliding distance, car [m]", slid, way, 1e-9, "half of v t")
+    distance = SPEED * ARM * STOP / 2
+    yield compare("sliding distance, car [m]", slid, distance, 1e-9, "half of v t")
 
 
 def _insulated_disk() -> Iterator[Check]:

@@ -96,8 +96,8 @@ def _without_motion(
     motions = [_motion(case, name) for name in case.holder.free]
     closing = [(motion.at(points) * normals).sum(axis=1) for motion in motions]
     modes = np.column_stack([np.ones(len(points)), *closing])
-    amounts = np.linalg.lstsq(modes[inner], heights[inner], rcond=None)[0]
-    return heights - modes @ amounts
+    amplitudes = np.linalg.lstsq(modes[inner], heights[inner], rcond=None)[0]
+    return heights - modes @ amplitudes
 
 
 def _motion(case: Case, name: str) -> RigidMotion:

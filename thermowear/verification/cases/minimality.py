@@ -12,17 +12,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...laws import (
-    Minimum,
+from ...laws.power_wear import PowerWear
+from ...laws.principle.functionals import (
     PowerFunctional,
-    PowerWear,
-    admissible_changes,
     friction_dissipation,
-    least_wear_dissipation,
-    minimise,
     wear_dissipation,
     wear_volume_rate,
 )
+from ...laws.principle.minimum import Minimum, least_wear_dissipation, minimise
+from ...laws.principle.perturbation import admissible_changes
 from ..check import Check, compare
 from ..closed_forms import patches
 from ..closed_forms.patches import SpecialCase

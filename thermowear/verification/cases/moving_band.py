@@ -118,5 +118,5 @@ def _smooth(result: Result) -> Iterator[Check]:
     yield compare(f"rise below zero, {where}", coldest, 0.0, 1e-3, JAEGER, scale=peak)
     drop = np.diff(rise[x < -HALF_WIDTH]).min(initial=0.0)
     yield compare(f"rise that falls ahead of the band, {where}", drop, 0.0, 1e-3, JAEGER, peak)
-    behind = np.diff(rise[x > HALF_WIDTH]).max(initial=0.0)
-    yield compare(f"rise that grows behind it, {where}", behind, 0.0, 1e-3, JAEGER, peak)
+    growth = np.diff(rise[x > HALF_WIDTH]).max(initial=0.0)
+    yield compare(f"rise that grows behind it, {where}", growth, 0.0, 1e-3, JAEGER, peak)

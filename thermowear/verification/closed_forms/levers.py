@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...laws import SelfLocking
+from ...laws.principle.solvability import SelfLocking
 from ...reference import brake_block as lever
 from ...reference.drum_brake import DrumBrakeShoe
 from ..check import Check, compare

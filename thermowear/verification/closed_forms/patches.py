@@ -14,7 +14,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...laws import ContactPatch, PowerWear, SteadyWear, contact_patch, rotation, translation
+from ...laws import PowerWear, rotation, translation
+from ...laws.principle.patch import ContactPatch, contact_patch
+from ...laws.principle.steady import SteadyWear
 
 DOWN = (0.0, 0.0, -1.0)
 POINTS = 40

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.search.quadrature import lobatto
+from thermowear.lagrange import lobatto
 
 
 @pytest.mark.parametrize("n", range(2, 14))

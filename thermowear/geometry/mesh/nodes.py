@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...lagrange import matching
+
 CORNERS = {"triangle": 3, "quadrilateral": 4}
 FACETS = {"triangle": "interval", "quadrilateral": "interval", "hexahedron": "quadrilateral"}
 """Facet type of each cell type."""
@@ -66,11 +68,8 @@ def facet_nodes(order: int) -> np.ndarray:
     """
     nodes, corners = reference_nodes("hexahedron", order), _PLACES["hexahedron"]
     s, t = reference_nodes("quadrilateral", order).T[..., None]
-    places = [
-        corners[a] + s * (corners[b] - corners[a]) + t * (corners[d] - corners[a])
-        for a, b, _, d in _HEXAHEDRON_FACETS
-    ]
-    return np.array([[np.abs(nodes - p).sum(axis=1).argmin() for p in facet] for facet in places])
+    a, b, _, d = corners[_HEXAHEDRON_FACETS].swapaxes(0, 1)[:, :, None]
+    return matching(a + s * (b - a) + t * (d - a), nodes)
 
 
 def edge_nodes(cell_type: str, order: int) -> np.ndarray:

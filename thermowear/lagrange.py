@@ -58,7 +58,7 @@ def lattice(order: int, dim: int = 1) -> np.ndarray:
     """Equally spaced parameters on a facet, shape (n,) or (n, 2), the last one running fastest."""
     kind = basix.CellType[_SIDES[dim]]
     points = basix.create_lattice(kind, order, basix.LatticeType.equispaced, exterior=True)
-    return _parameters(points)[0]
+    return _parameters(np.asarray(points))[0]
 
 
 def on_lattice(order: int, t: np.ndarray, derivatives: int = 0) -> np.ndarray:
@@ -99,9 +99,7 @@ def gauss(count: int, dim: int = 1) -> tuple[np.ndarray, np.ndarray]:
         Parameters of a facet, the last one running fastest.
     weights : ndarray, shape (n,)
     """
-    points, weights = basix.make_quadrature(basix.CellType[_SIDES[dim]], 2 * count - 1)
-    t, order = _parameters(points)
-    return t, weights[order]
+    return _rule(dim, 2 * count - 1, basix.QuadratureType.gauss_jacobi)
 
 
 @cache
@@ -112,15 +110,19 @@ def lobatto(count: int, dim: int = 1) -> tuple[np.ndarray, np.ndarray]:
     """
     if count < 2:
         raise ValueError("a Gauss-Lobatto rule has at least two points")
-    points, weights = basix.make_quadrature(
-        basix.CellType[_SIDES[dim]], 2 * count - 3, rule=basix.QuadratureType.gll
-    )
+    return _rule(dim, 2 * count - 3, basix.QuadratureType.gll)
+
+
+def _rule(dim: int, degree: int, kind: basix.QuadratureType) -> tuple[np.ndarray, np.ndarray]:
+    """Quadrature rule of a facet, see `gauss`."""
+    cell = basix.CellType[_SIDES[dim]]
+    points, weights = map(np.asarray, basix.make_quadrature(cell, degree, rule=kind))
     ends = np.rint(points)  # which basix places up to rounding
-    t, order = _parameters(np.where(np.abs(points - ends) < 1e-12, ends, points))
+    t, order = _parameters(np.where(np.abs(points - ends) < _ROUNDING, ends, points))
     return t, weights[order]
 
 
 def _parameters(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Parameters of points of a facet with the last one running fastest, and their order."""
     order = np.lexsort(points.T[::-1])
-    return points[order].squeeze(axis=1) if points.shape[1] == 1 else points[order], order
+    return points[order, 0] if points.shape[1] == 1 else points[order], order

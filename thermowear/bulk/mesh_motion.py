@@ -5,19 +5,17 @@ from __future__ import annotations
 from mpi4py import MPI
 from petsc4py import PETSc
 
-import basix
-import basix.ufl
 import dolfinx
 import numpy as np
 import ufl
 from dolfinx import fem
 from dolfinx.fem.petsc import assemble_matrix
 
-from ..compat import coordinate_element, geometry_dofmap
+from ..compat import geometry_dofmap
 from .bodies import created_mesh, in_dolfinx_order
 from .compiled import compiled
 from .direct_solver import DirectSolver
-from .field import owned
+from .field import geometry_space, owned
 
 
 class HarmonicExtension:
@@ -36,23 +34,19 @@ class HarmonicExtension:
     """
 
     def __init__(self, mesh: dolfinx.mesh.Mesh, known: np.ndarray | None = None):
-        space = _geometry_space(mesh)
+        space = geometry_space(mesh)
         self._comm, count = mesh.comm, owned(space)
         number = _numbers(space)
         fixed = _on_boundary(space) if known is None else known[number]
         self._number, self._free = number[:count], np.flatnonzero(~fixed[:count])
-        self._inner = None
-        if mesh.comm.allreduce(len(self._free)) == 0:
-            return
         matrix = _laplacian(space)
         first, _ = matrix.getOwnershipRange()
-        free = (first + self._free).astype(PETSc.IntType)
-        free, every = (
-            PETSc.IS().createGeneral(free, comm=mesh.comm),
-            PETSc.IS().createStride(count, first, 1, comm=mesh.comm),
-        )
-        self._rows = matrix.createSubMatrix(free, every)
-        self._inner = DirectSolver(matrix.createSubMatrix(free, free), dim=mesh.geometry.dim)
+        numbers = (first + self._free).astype(PETSc.IntType)
+        free = PETSc.IS().createGeneral(numbers, comm=mesh.comm)
+        every = PETSc.IS().createStride(count, first, 1, comm=mesh.comm)
+        self._rows, inner = matrix.createSubMatrix(free, every), matrix.createSubMatrix(free, free)
+        # the ordering of plane meshes, as that of meshes in space aborts on a few unknowns
+        self._solver = DirectSolver(inner, dim=2) if inner.getSize()[0] else None
 
     def __call__(self, given: np.ndarray) -> np.ndarray:
         """Displacement of all points from that of the known ones. Every rank calls.
@@ -68,7 +62,7 @@ class HarmonicExtension:
             The same on all ranks; points that are not nodes of the mesh keep what is given [m].
         """
         result = given.copy()
-        if self._inner is None:
+        if self._solver is None:
             return result
         prescribed = given[self._number]
         prescribed[self._free] = 0.0
@@ -78,7 +72,7 @@ class HarmonicExtension:
             x.setArray(values)
             self._rows.mult(x, load)
             column[:] = -load.getArray()
-        found = self._inner.solve(loads)
+        found = self._solver.solve(loads)
         for points, values in self._comm.allgather((self._number[self._free], found)):
             result[points] = values
         return result
@@ -105,19 +99,8 @@ def serial_extension(
     return HarmonicExtension(mesh, known)
 
 
-def _geometry_space(mesh: dolfinx.mesh.Mesh) -> fem.FunctionSpace:
-    """Scalar space whose nodes are the points of the mesh."""
-    element = basix.ufl.element(
-        "Lagrange",
-        mesh.basix_cell(),
-        coordinate_element(mesh).degree,
-        lagrange_variant=basix.LagrangeVariant.equispaced,
-    )
-    return fem.functionspace(mesh, element)
-
-
 def _numbers(space: fem.FunctionSpace) -> np.ndarray:
-    """Number of the point of each local node of a `_geometry_space`."""
+    """Number of the point of each local node of a `field.geometry_space`."""
     mesh, index_map = space.mesh, space.dofmap.index_map
     points = np.asarray(mesh.geometry.input_global_indices)
     result = np.empty(index_map.size_local + index_map.num_ghosts, dtype=np.int64)

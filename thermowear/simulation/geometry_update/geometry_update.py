@@ -247,7 +247,8 @@ def _remeshed(
 
     The quality is the smallest scaled Jacobian.
     """
-    moved, renewed, geometry = mesh, {}, system.case.geometry
+    renewed: dict[int, NewFace] = {}
+    moved, geometry = mesh, system.case.geometry
     for index in bodies:
         parts, face = geometry.parts_of(geometry.bodies[index]), system.pairing.sides[index].face
         if isinstance(face, Surface):

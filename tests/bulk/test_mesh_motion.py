@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import two_blocks
-from tests.contact.solids import bent, skewed, turned, two_solids
+from tests.contact.solids import MATCHING, bent, skewed, turned, two_solids
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.mesh_motion import HarmonicExtension, serial_extension
 from thermowear.geometry.mesh.orders import boundary
@@ -43,7 +43,9 @@ def test_harmonic_polynomials_of_the_plane(order, triangles):
 
 @pytest.mark.parametrize(("order", "place"), [(1, turned), (2, skewed), (3, skewed)])
 def test_harmonic_polynomials_in_space(order, place):
-    mesh = two_solids(order=order, maps=(place, place))
+    """requirement: likewise, also for bodies with a single node inside."""
+    divisions = ((2, 2, 2), (2, 2, 2)) if order == 1 else MATCHING
+    mesh = two_solids(divisions, order, (place, place))
     x, y, z = 10 * mesh.points.T
     known = np.column_stack([x - 2 * y + z, x**2 + y**2 - 2 * z**2, x * y * z])[:, :order]
     known = np.column_stack([known, x + 1])
@@ -108,7 +110,9 @@ given = np.sin(80 * mesh.points)
 comms = MPI.COMM_SELF, MPI.COMM_WORLD
 serial, parallel = (HarmonicExtension(distribute(mesh, comm).mesh)(given) for comm in comms)
 assert np.abs(serial - given).max() > 1e-3
-print(MPI.COMM_WORLD.size, np.abs(parallel - serial).max() < 1e-12)
+off = MPI.COMM_WORLD.gather(np.abs(parallel - serial).max())
+if MPI.COMM_WORLD.rank == 0:
+    print(len(off), max(off) < 1e-12)
 """
 
 
@@ -125,4 +129,4 @@ def test_on_three_ranks_as_on_one():
         timeout=300,
     )
     assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines() == ["3 True"] * 3
+    assert done.stdout == "3 True\n"

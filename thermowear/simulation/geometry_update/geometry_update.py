@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...balances import relative, require
-from ...bulk.kinematics import section_model
 from ...bulk.mesh_motion import HarmonicExtension
 from ...bulk.transfer import transferred
 from ...contact.search.refinement import Rule
@@ -220,7 +218,6 @@ def _followed(
     Displacements of the faces are scaled slightly so that the meshes lose the worn volumes: the
     volume of a curved layer is not exactly its area times its depth.
     """
-    factor = _area_factor(system)
 
     def outlined() -> tuple[np.ndarray, np.ndarray]:
         lost, moved = np.zeros(2), np.zeros_like(worn.mesh.points)
@@ -228,7 +225,7 @@ def _followed(
             body, part = movable_body(system, worn.mesh, index), 1.0
             for _ in range(_PASSES):
                 outline = body.outlined(part * face.displacement(amounts[index]))
-                lost[index] = body.lost(outline, factor)
+                lost[index] = body.lost(outline, system.elastic.model.area_factor)
                 if abs(lost[index] - volumes[index]) <= _SETTLED * abs(volumes[index]):
                     break
                 part *= volumes[index] / lost[index]
@@ -255,17 +252,10 @@ def _remeshed(
             continue
         places = moved.points[nodes_at(worn.mesh, parts, nodes_of(face))]
         nodes = nodes_at(mesh, parts, places)  # remeshing of another body renumbers them
-        wanted = worn.sizes[index], _area_factor(system), worn.best[index]
+        wanted = worn.sizes[index], system.elastic.model.area_factor, worn.best[index]
         mesh, new = improved(mesh, parts, nodes, *wanted)
         renewed |= {} if new is None else {index: new}
     return mesh, float(scaled_jacobians(mesh).min()), renewed
-
-
-def _area_factor(system: System) -> Callable[[np.ndarray], np.ndarray]:
-    """Factor from area to volume at points of the section."""
-    geometry = system.case.geometry
-    model = section_model(system.case.model, geometry.thickness_factor, geometry.sector)
-    return model.area_factor
 
 
 def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:

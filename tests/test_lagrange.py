@@ -95,3 +95,5 @@ def test_no_points():
         element = equispaced(kind, 2)
         assert tabulated(element, np.empty((0, dim)), 2).shape == (count, 0, element.dim)
         assert tabulated(element, np.full((1, dim), 0.5), 2).shape == (count, 1, element.dim)
+    assert on_lattice(2, np.empty(0)).shape == (1, 0, 3)
+    assert on_lattice(2, np.empty((0, 2))).shape == (1, 0, 9)

@@ -77,7 +77,7 @@ def on_lattice(order: int, t: np.ndarray, derivatives: int = 0) -> np.ndarray:
     ndarray, shape (n_derivatives, n, (order + 1)**dim)
         See `tabulated`; nodes numbered as by `lattice`.
     """
-    places = t.reshape(len(t), -1)
+    places = t[:, None] if t.ndim == 1 else t
     element, numbers = _of_facet(order, places.shape[1])
     return tabulated(element, places, derivatives)[..., numbers]
 

@@ -100,8 +100,8 @@ class BeamOnFoundation(PlaneGeometry):
         """Cells over the whole length, with the number of rows within limits."""
         columns = self._columns(elements)
         wanted = round((top - bottom) / np.diff(columns).max())
-        count = int(np.clip(wanted, *rows))
-        return mesh_body([Sheet(grid(columns, np.linspace(bottom, top, count + 1)), _identity)], 1)
+        ends = np.linspace(bottom, top, int(np.clip(wanted, *rows)) + 1)
+        return mesh_body([Sheet(grid(columns, ends), lambda p: p)], 1)
 
     def _columns(self, elements: int) -> np.ndarray:
         """X of the ends of nearly equal elements that match the ends of the load."""
@@ -115,7 +115,3 @@ class BeamOnFoundation(PlaneGeometry):
             for a, b, n in zip(places[:-1], places[1:], counts, strict=True)
         ]
         return np.concatenate([*parts, [self.length]])
-
-
-def _identity(p: np.ndarray) -> np.ndarray:
-    return p

@@ -12,8 +12,8 @@ from typing import Literal
 import numpy as np
 
 from ...case.tables.geometry import keyed, named
-from ..meshing.blocks import SAME, Interval, graded_face, growing, smallest
-from ..meshing.hexes import Lattice, ends_of, level, mesh_lattice
+from ..meshing.blocks import SAME, Interval, ends_of, graded_face, growing, smallest
+from ..meshing.hexes import Lattice, level, mesh_lattice
 from ..meshing.quads import MeshedBody, tagged_bodies
 from .pads_on_disk import PadsOnDisk
 

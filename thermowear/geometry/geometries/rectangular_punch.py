@@ -14,8 +14,8 @@ from pydantic import model_validator
 from ...case.tables.geometry import Geometry, named
 from ...case.values.section import KeyFault
 from ...case.values.units import Length
-from ..meshing.blocks import Interval, graded_face, growing, smallest
-from ..meshing.hexes import Lattice, ends_of, level, mesh_lattice
+from ..meshing.blocks import Interval, ends_of, graded_face, growing, smallest
+from ..meshing.hexes import Lattice, level, mesh_lattice
 from ..meshing.quads import MeshedBody, tagged_bodies
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..interfaces import Law, LocalState
+from .rate_sums import RateSum
 
 _MULTIPLES = np.array([0.03, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0])
 """Multiples of the steady pressure between which a rate must not decrease."""
@@ -54,7 +55,7 @@ class BoundLaw:
 
 
 @dataclass(frozen=True)
-class LawSum:
+class LawSum(RateSum):
     """Weighted rates of several laws, in units of a pressure at each point and of a value.
 
     Attributes
@@ -73,21 +74,14 @@ class LawSum:
     pressure: np.ndarray
     value: float = 1.0
 
-    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Value and derivative at positive pressures, shape (n,) each."""
-        return self.terms(pressure).sum(axis=0), self.slopes(pressure).sum(axis=0)
-
     def terms(self, pressure: np.ndarray) -> np.ndarray:
-        """Summands, shape (m, n)."""
         rates = [law.rate(self.pressure * pressure) for law in self.laws]
         return self.weights * np.reshape(rates, self.weights.shape) / self.value
 
     def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivatives of the summands, shape (m, n)."""
         slopes = [law.slope(self.pressure * pressure) for law in self.laws]
         scale = self.pressure / self.value
         return self.weights * np.reshape(slopes, self.weights.shape) * scale
 
     def scaled(self, pressure: np.ndarray, value: float) -> LawSum:
-        """Rates in units of a further pressure at each point and of a value."""
         return LawSum(self.laws, self.weights, self.pressure * pressure, self.value * value)

@@ -79,7 +79,7 @@ def case_9() -> Iterator[Check]:
         case = cases.disk_brake(b, a, force, radii, angle, friction=friction)
         steady, name = case.steady(), f", b = {b:.3g}, a = {a:.3g}"
         r = np.hypot(case.patch.points[:, 0], case.patch.points[:, 1])
-        exact = pad.steady_pressure(r, force, *radii, angle, b, a)
+        exact = ring.steady_pressure(r, force, *radii, b, a, angle)
         yield worst(f"pressure{name} [Pa]", steady.pressure, exact)
         yield dissipation(case, name)
         if same:

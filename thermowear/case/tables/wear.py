@@ -7,7 +7,7 @@ or any law of the rate.
 from __future__ import annotations
 
 import math
-from collections.abc import ItemsView, Iterator, KeysView, ValuesView
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import (
@@ -152,7 +152,7 @@ def _update(value: Any) -> Any:
     raise ValueError(f'found {quoted(value)}; must be "auto", "never", or a number up to 1')
 
 
-class WearTable(Section):
+class WearTable(Section, Mapping[str, BodyWearTable]):
     """Wear laws by body, a mapping to `BodyWearTable`, and settings of the geometry updates.
 
     Attributes
@@ -186,23 +186,11 @@ class WearTable(Section):
     def __getitem__(self, body: str) -> BodyWearTable:
         return self._laws[body]
 
-    def __contains__(self, body: object) -> bool:
-        return body in self._laws
-
     def __iter__(self) -> Iterator[str]:  # type: ignore[override]
         return iter(self._laws)
 
     def __len__(self) -> int:
         return len(self._laws)
-
-    def keys(self) -> KeysView[str]:
-        return self._laws.keys()
-
-    def values(self) -> ValuesView[BodyWearTable]:
-        return self._laws.values()
-
-    def items(self) -> ItemsView[str, BodyWearTable]:
-        return self._laws.items()
 
     @property
     def _laws(self) -> dict[str, BodyWearTable]:

@@ -118,7 +118,7 @@ def test_a_track_does_not_shape_what_only_descends():
 def test_wear_of_tracks_only_leaves_the_pressure_open():
     """requirement: what does not determine a pressure is said, not made up."""
     _, patch, track = block_on_strip(tilting=False)
-    with pytest.raises(ComputationError, match="spread over a track"):
+    with pytest.raises(ComputationError, match="spread uniformly along tracks"):
         patch.steady([10.0], [PowerWear(1e-13)], [track])
 
 

@@ -69,7 +69,7 @@ class Geometry(Section):
     surfaces : tuple of str
         All named surfaces.
     contact : tuple of str
-        Contact faces of body 1 and body 2.
+        Contact faces of body 1 and body 2, by default ``body_face``.
     held, fixed : str
         Surface of body 1 on the rigid holder; fixed surface of body 2.
     unmeshed : tuple of str
@@ -109,7 +109,6 @@ class Geometry(Section):
     models: ClassVar[tuple[str, ...]]
     bodies: ClassVar[tuple[str, str]]
     surfaces: ClassVar[tuple[str, ...]]
-    contact: ClassVar[tuple[str, str]]
     held: ClassVar[str]
     fixed: ClassVar[str]
 
@@ -174,6 +173,11 @@ class Geometry(Section):
         a, b = getattr(self, key), getattr(self, other)
         if not a > b:
             raise KeyFault(key, f"{a:g} m must be greater than {other} {b:g} m")
+
+    @keyed
+    def contact(self) -> tuple[str, str]:
+        first, second = self.bodies
+        return f"{first}_face", f"{second}_face"
 
     @property
     def facing(self) -> tuple[str | None, str | None]:

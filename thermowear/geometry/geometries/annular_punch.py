@@ -52,7 +52,6 @@ class AnnularPunch(Stacked):
         *named("punch", "face", "top", "inside", "outside"),
         *named("plate", "face", "bottom", "side"),
     )
-    contact = ("punch_face", "plate_face")
     held = "punch_top"
     fixed = "plate_bottom"
 

@@ -32,12 +32,16 @@ class ArcContact(PlaneGeometry):
         Angles at the edges of the contact, clockwise from 12 o'clock (+y) [rad].
     rest : str
         Surface of body 2 that is the rest of its contact circle.
+    circle, far_circle : str
+        Keys of the radii of the contact circle and of the circle where body 2 is fixed.
     """
 
     name: ClassVar[str] = ""
     models = ("plane-strain", "plane-stress")
     rotation_center = (0.0, 0.0)
     rest: ClassVar[str]
+    circle: ClassVar[str] = "disk_radius"
+    far_circle: ClassVar[str]
 
     arc_start: Angle
     arc_end: Angle
@@ -64,12 +68,12 @@ class ArcContact(PlaneGeometry):
     @property
     def radius(self) -> float:
         """Radius of the contact circle [m]."""
-        raise NotImplementedError
+        return getattr(self, self.circle)
 
     @property
     def far_radius(self) -> float:
         """Radius of the circle where body 2 is fixed [m]."""
-        raise NotImplementedError
+        return getattr(self, self.far_circle)
 
     def upper_sheets(self, division: Division) -> list[Sheet]:
         """Cells of body 1."""
@@ -78,11 +82,6 @@ class ArcContact(PlaneGeometry):
     def on_holder(self, p: np.ndarray) -> np.ndarray:
         """Mask of edges of body 1, given by their nodes, on the holder."""
         raise NotImplementedError
-
-    @keyed
-    def contact(self) -> tuple[str, str]:
-        upper, ring = self.bodies
-        return f"{upper}_face", f"{ring}_face"
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:

@@ -43,7 +43,6 @@ class BeamOnFoundation(PlaneGeometry):
         *named("beam", "face", "clamp", "support", "load", "top"),
         *named("foundation", "face", "left", "right", "bottom"),
     )
-    contact = ("beam_face", "foundation_face")
     held = "beam_clamp"
     fixed = "foundation_bottom"
     rollers = ("beam_support",)

@@ -37,6 +37,7 @@ class BlockOnDisk(ArcContact):
     held = "block_top"
     fixed = "disk_bore"
     rest = "disk_rim"
+    far_circle = "disk_bore"
 
     type: Literal["block-on-disk"]
     disk_radius: Length
@@ -48,14 +49,6 @@ class BlockOnDisk(ArcContact):
         self.check_arc(_STEEPEST)
         self.check_less("disk_bore", "disk_radius")
         return self
-
-    @property
-    def radius(self) -> float:
-        return self.disk_radius
-
-    @property
-    def far_radius(self) -> float:
-        return self.disk_bore
 
     @property
     def top(self) -> float:

@@ -43,6 +43,7 @@ class DrumBrake(InsideRing):
     held = "shoe_inside"
     fixed = "drum_rim"
     rest = "drum_inside"
+    circle = "drum_radius"
     zones = {"lining": "shoe"}
 
     type: Literal["drum-brake"]
@@ -104,10 +105,6 @@ class DrumBrake(InsideRing):
         """Outward direction at the middle of the lining."""
         middle = (self.arc_start + self.arc_end) / 2
         return math.sin(middle), math.cos(middle)
-
-    @property
-    def radius(self) -> float:
-        return self.drum_radius
 
     @property
     def far_radius(self) -> float:

@@ -42,11 +42,6 @@ class OnBlock(Geometry):
     block_height: Length
 
     @keyed
-    def contact(self) -> tuple[str, str]:
-        upper, block = self.bodies
-        return f"{upper}_face", f"{block}_face"
-
-    @keyed
     def held(self) -> str:
         return f"{self.bodies[0]}_top"
 

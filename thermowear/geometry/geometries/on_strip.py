@@ -35,10 +35,6 @@ class OnStrip(Stacked, PlaneGeometry):
     strip_height: Length
 
     @keyed
-    def contact(self) -> tuple[str, str]:
-        return f"{self.bodies[0]}_face", "strip_face"
-
-    @keyed
     def held(self) -> str:
         return f"{self.bodies[0]}_top"
 

@@ -39,7 +39,6 @@ class RectangularPunch(Geometry):
         *named("block", "face", "top", "bottom", "sides"),
     )
     press_direction = (0.0, 0.0, -1.0)
-    contact = ("punch_face", "block_face")
     held = "punch_top"
     fixed = "block_bottom"
 

@@ -32,6 +32,7 @@ class RingSegmentOnDisk(InsideRing):
     held = "segment_inside"
     fixed = "disk_rim"
     rest = "disk_inside"
+    far_circle = "disk_outer_radius"
     press_direction = (0.0, 1.0)
 
     type: Literal["ring-segment-on-disk"]
@@ -45,14 +46,6 @@ class RingSegmentOnDisk(InsideRing):
         self.check_greater("disk_outer_radius", "disk_radius")
         self.check_less("segment_thickness", "disk_radius")
         return self
-
-    @property
-    def radius(self) -> float:
-        return self.disk_radius
-
-    @property
-    def far_radius(self) -> float:
-        return self.disk_outer_radius
 
     @property
     def layers(self) -> tuple[float, ...]:

@@ -39,7 +39,6 @@ class StackedBlocks(PlaneGeometry):
     bodies = ("upper", "lower")
     surfaces = (*named("upper", "face", "top", "side"), *named("lower", "face", "bottom", "side"))
     symmetry = ("upper_side", "lower_side")
-    contact = ("upper_face", "lower_face")
     held = "upper_top"
     fixed = "lower_bottom"
     slides_across: ClassVar[bool] = True

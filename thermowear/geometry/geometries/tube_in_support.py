@@ -47,7 +47,6 @@ class TubeInSupport(PlaneGeometry):
     models = ("plane-strain", "plane-stress")
     bodies = ("tube", "support")
     surfaces = (*named("tube", "face", "outside", "bore"), *named("support", "face", "hole", "rim"))
-    contact = ("tube_face", "support_face")
     held = "tube_bore"
     fixed = "support_rim"
 

@@ -34,7 +34,6 @@ class PatchGeometry(PlaneGeometry):
 
     bodies = ("upper", "lower")
     surfaces = ("upper_face", "upper_end", "lower_face", "lower_end")
-    contact = ("upper_face", "lower_face")
     models = ("plane-strain", "plane-stress")
     held = "upper_end"
     fixed = "lower_end"

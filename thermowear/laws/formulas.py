@@ -8,11 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from ..errors import ComputationError
-from .interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Formula, LocalState
+from .interfaces import INTERFACE_VARIABLES, UNITS, WEAR_VARIABLES, Formula, LocalState
 from .power_wear import floored
-
-UNITS = {"p": " Pa", "v": " m/s", "T": " K", "depth": " m", "mu": ""}
-"""SI units of the variables, for messages."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +77,8 @@ def required(
         return found
     first = int(np.argmax(wrong))
     where = ", ".join(
-        f"{key} = {float(values.flat[first]):.4g}{UNITS[key]}" for key, values in at.items()
+        f"{key} = {float(values.flat[first]):.4g} {UNITS[key]}".rstrip()
+        for key, values in at.items()
     )
     bound = "finite" if least == -np.inf else f"finite and at least {least:g}"
     raise ComputationError(f"{name}: {float(found.flat[first]):.4g} at {where}; must be {bound}")

@@ -12,7 +12,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 Values = np.ndarray | float
-WEAR_VARIABLES = ("p", "v", "T", "depth", "mu")
+UNITS = {"p": "Pa", "v": "m/s", "T": "K", "depth": "m", "mu": ""}
+"""SI units of the variables of laws."""
+WEAR_VARIABLES = tuple(UNITS)
 INTERFACE_VARIABLES = ("p", "v", "T")
 
 

@@ -7,8 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..errors import ComputationError
-from .formulas import UNITS
-from .interfaces import INTERFACE_VARIABLES, Law, LocalState, Values
+from .interfaces import INTERFACE_VARIABLES, UNITS, Law, LocalState, Values
 
 SAMPLES: Mapping[str, np.ndarray] = {
     "p": np.concatenate([[0.0], np.geomspace(1.0, 1e10, 61)]),
@@ -91,10 +90,7 @@ def _reject_where(wrong: np.ndarray, at: Mapping[str, np.ndarray], what: str) ->
     """Raise for the first point of a grid with a violated condition."""
     if not wrong.any():
         return
-    first = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
-    where = ", ".join(
-        f"{name} = {float(values[tuple(np.minimum(first, np.array(values.shape) - 1))]):.3g}"
-        f"{UNITS[name]}"
-        for name, values in at.items()
-    )
+    first = np.array(np.unravel_index(int(np.argmax(wrong)), wrong.shape), dtype=int)
+    values = {name: x[tuple(np.minimum(first, np.array(x.shape) - 1))] for name, x in at.items()}
+    where = ", ".join(f"{name} = {x:.3g} {UNITS[name]}".rstrip() for name, x in values.items())
     raise ValueError(f"{what} at {where}" if where else what)

@@ -6,11 +6,10 @@ import math
 from functools import lru_cache
 
 from ...laws.expressions import Dimension, Expression, parse_expression
+from ...laws.interfaces import UNITS
 from .units import registry, unit_of
 
 _ROUNDING = 1e-9
-VARIABLES = {"p": "Pa", "v": "m/s", "T": "K", "depth": "m", "mu": ""}
-"""Names and SI units of the variables of laws."""
 
 
 def expression(text: str, unit: str, variables: tuple[str, ...]) -> Expression:
@@ -23,14 +22,14 @@ def expression(text: str, unit: str, variables: tuple[str, ...]) -> Expression:
     unit : str
         Unit of the value of the expression.
     variables : tuple of str
-        Variables that may occur, from `VARIABLES`.
+        Variables that may occur, from `UNITS`.
 
     Raises
     ------
     ValueError
         One-line message with the position of the fault.
     """
-    known = {name: _dimension(VARIABLES[name]) for name in variables}
+    known = {name: _dimension(UNITS[name]) for name in variables}
     return parse_expression(text, known, unit, in_si)
 
 

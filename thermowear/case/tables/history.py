@@ -182,7 +182,7 @@ class History(TimeHistory):
             if not self.loads.ends_as(start):
                 raise KeyFault(
                     "cycle_start",
-                    "the loads at the start and at the end of the cycle must be equal",
+                    "the loads at both ends of the cycle must be equal",
                 )
         return self
 

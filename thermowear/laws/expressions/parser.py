@@ -211,19 +211,18 @@ class Parser:
         if not np.isfinite(number):
             raise fault(token.start, "a number must be finite")
         self._at += 1
-        end = unit_end(self._tokens, self._at, self._variables)
-        if end == self._at:
+        start, end = self._next.start, unit_end(self._text, token.end, self._variables)
+        if end <= start:
             return Parsed(number, Dimension(), token.start)
-        start = self._next.start
-        text = self._text[start : self._tokens[end - 1].end]
         try:
-            factor, dimension = self._units(text)
+            factor, dimension = self._units(self._text[start:end])
         except ValueError as error:
             raise fault(start, str(error)) from None
         if not np.isfinite(number * factor):
             raise fault(token.start, "a number must be finite in SI, too")
-        literal = "plain" if end == self._at + 1 else "compound"
-        self._at = end
+        literal = "plain" if self._next.end == end else "compound"
+        while self._next.start < end:
+            self._at += 1
         return Parsed(number * factor, dimension, token.start, literal)
 
     def _named(self) -> Parsed:

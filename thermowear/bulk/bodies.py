@@ -92,14 +92,14 @@ def distribute(tagged, comm) -> Bodies:
         )
     )
     kind, facet_kind, order, gdim, names, surfaces, checksum = head
-    cell_nodes, facet_nodes = _nodes(kind, order), _nodes(facet_kind, order)
     if comm.rank == 0:
-        cells = tagged.cells[:, _matching(cell_nodes, tagged.node_places(kind))]
-        facets = tagged.facets[:, _matching(facet_nodes, tagged.node_places(facet_kind))]
+        cells = tagged.cells[:, node_order(kind, order, tagged.node_places(kind))]
+        facets = tagged.facets[:, node_order(facet_kind, order, tagged.node_places(facet_kind))]
         points, cell_tags, facet_tags = tagged.points, tagged.cell_tags, tagged.facet_tags
     else:
-        cells, points = np.empty((0, len(cell_nodes)), dtype=np.int64), np.empty((0, gdim))
-        facets = np.empty((0, len(facet_nodes)), dtype=np.int64)
+        cells = np.empty((0, len(_nodes(kind, order))), dtype=np.int64)
+        facets = np.empty((0, len(_nodes(facet_kind, order))), dtype=np.int64)
+        points = np.empty((0, gdim))
         cell_tags, facet_tags = np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32)
     element = basix.ufl.element(
         "Lagrange", kind, order, shape=(gdim,), lagrange_variant=basix.LagrangeVariant.equispaced
@@ -116,6 +116,11 @@ def distribute(tagged, comm) -> Bodies:
     )
 
 
+def node_order(kind: str, order: int, listed: np.ndarray) -> np.ndarray:
+    """Index of each node of a cell, in the order of dolfinx, in a list of reference coordinates."""
+    return matching(_nodes(kind, order), listed)
+
+
 def _nodes(kind: str, order: int) -> np.ndarray:
     """Reference coordinates of a cell's nodes in the order of dolfinx, shape (n_nodes, dim)."""
     variant = basix.LagrangeVariant.equispaced
@@ -123,8 +128,8 @@ def _nodes(kind: str, order: int) -> np.ndarray:
     return np.asarray(element.points)
 
 
-def _matching(wanted: np.ndarray, listed: np.ndarray) -> np.ndarray:
-    """Index in `listed` of each of the `wanted` points."""
+def matching(wanted: np.ndarray, listed: np.ndarray) -> np.ndarray:
+    """Index in `listed` of each of the `wanted` points, shape (n_wanted,)."""
     return np.array([np.abs(listed - place).sum(axis=1).argmin() for place in wanted])
 
 

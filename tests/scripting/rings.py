@@ -2,9 +2,10 @@
 
 from dataclasses import fields, replace
 
+from mpi4py import MPI
+
 import dolfinx
 import numpy as np
-from mpi4py import MPI
 
 import thermowear as tw
 from thermowear.bulk.bodies import distribute

@@ -1,17 +1,18 @@
 """Models written in Python: bodies on a user's dolfinx meshes with their own tags."""
 
-from .body import MeshBody, Surface
+from .body import BodySurface, MeshBody
 from .conversion import LoadHistory, TimeHistory
 from .march import MarchState
 from .motion import Rotation, Translation
 from .physics import Heat, Material, PowerWear, PressureConductance
 from .scripted_model import FacePair, ScriptedModel, SurfaceHolder
-from .solution import PointValues, Solution
+from .solution import ModelSolution, PointValues
 
 Body, Interface, Holder, Model = MeshBody, FacePair, SurfaceHolder, ScriptedModel
 
 __all__ = [
     "Body",
+    "BodySurface",
     "Heat",
     "Holder",
     "Interface",
@@ -19,12 +20,11 @@ __all__ = [
     "MarchState",
     "Material",
     "Model",
+    "ModelSolution",
     "PointValues",
     "PowerWear",
     "PressureConductance",
     "Rotation",
-    "Solution",
-    "Surface",
     "TimeHistory",
     "Translation",
 ]

@@ -14,7 +14,7 @@ from ..model.material import Material
 
 
 @dataclass(frozen=True)
-class Surface:
+class BodySurface:
     """Facets of a body with one tag.
 
     Attributes
@@ -69,7 +69,7 @@ class MeshBody:
                 "material an array of cells (cell_tags.find(tag), or None for all)"
             )
 
-    def surface(self, tag: int) -> Surface:
+    def surface(self, tag: int) -> BodySurface:
         """Surface with a facet tag. Every rank calls.
 
         Raises
@@ -82,7 +82,7 @@ class MeshBody:
         if tag not in known:
             tags = ", ".join(map(str, known)) or "none"
             raise CaseError(f"Body {self.name!r}: no facet has the tag {tag!r}; known: {tags}")
-        return Surface(self, int(tag))
+        return BodySurface(self, int(tag))
 
     @property
     def parts(self) -> dict[str, Material]:
@@ -103,7 +103,7 @@ class MeshBody:
             parts[cells[cells < len(parts)]] = part
         return parts
 
-    def in_model(self, surfaces: tuple[str, ...], held: Surface | None) -> Body:
+    def in_model(self, surfaces: tuple[str, ...], held: BodySurface | None) -> Body:
         """Body of a model, with all its surfaces, on a holder or fixed."""
         fixed, rollers = (
             tuple(self.surface(tag).name for tag in np.atleast_1d(np.asarray(tags, dtype=int)))

@@ -12,7 +12,7 @@ from ..laws import power_wear
 from ..laws.coefficients.table1d import Table1D
 from ..laws.time_course import TimeFunction
 from ..model import heat, interface, material
-from .body import Surface
+from .body import BodySurface
 from .conversion import number, optional
 
 
@@ -54,10 +54,10 @@ def Heat(
     initial: Any = None,
     transient: bool = False,
     advection: Literal["none", "resolved", "spread"] = "none",
-    cooling: Mapping[Surface, Any] | None = None,
-    temperature: Mapping[Surface, Any] | None = None,
-    flux: Mapping[Surface, Any] | None = None,
-    power: Mapping[Surface, Any] | None = None,
+    cooling: Mapping[BodySurface, Any] | None = None,
+    temperature: Mapping[BodySurface, Any] | None = None,
+    flux: Mapping[BodySurface, Any] | None = None,
+    power: Mapping[BodySurface, Any] | None = None,
 ) -> heat.Heat:
     """Heat sources and thermal boundary conditions by surface, see `model.heat.Heat`."""
     return heat.Heat(
@@ -73,11 +73,11 @@ def Heat(
     )
 
 
-def by_surface(kind: Any, given: Mapping[Surface, Any] | None, name: str) -> dict[str, Any]:
+def by_surface(kind: Any, given: Mapping[BodySurface, Any] | None, name: str) -> dict[str, Any]:
     """Quantities, or functions of time, by the name of their surface."""
     result = {}
     for surface, value in (given or {}).items():
-        if not isinstance(surface, Surface):
+        if not isinstance(surface, BodySurface):
             raise CaseError(f"{name}: found the key {surface!r}; must be body.surface(tag)")
         constant = not isinstance(value, TimeFunction)
         result[surface.name] = in_python(kind, value, name) if constant else value

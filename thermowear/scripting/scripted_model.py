@@ -36,12 +36,12 @@ from ..simulation.results.fields import sample
 from ..simulation.runtime.history import Snapshot
 from ..simulation.runtime.observer import Observer
 from ..timer import Phases
-from .body import MeshBody, Surface
+from .body import BodySurface, MeshBody
 from .conversion import coefficient_law, number, optional, rate_law
 from .march import MarchState, march
 from .motion import Rotation, Translation
 from .physics import by_surface
-from .solution import Solution
+from .solution import ModelSolution
 from .user_mesh import UserMeshes, user_meshes
 
 
@@ -51,7 +51,7 @@ class FacePair:
 
     Attributes
     ----------
-    one, other : Surface
+    one, other : BodySurface
         Contact faces, in any order.
     friction : float, str, InterfaceLaw or callable
         Coefficient of friction: a number, an expression, a law, or a function of some of p, v, T.
@@ -65,8 +65,8 @@ class FacePair:
         Time-dependent factor of the friction.
     """
 
-    one: Surface
-    other: Surface
+    one: BodySurface
+    other: BodySurface
     friction: Any = 0.0
     conductance: Any = None
     wear: Mapping[MeshBody, Any] = field(default_factory=dict)
@@ -79,7 +79,7 @@ class FacePair:
     method: ContactMethod = field(default_factory=ContactMethod)
 
     @property
-    def faces(self) -> tuple[Surface, Surface]:
+    def faces(self) -> tuple[BodySurface, BodySurface]:
         """Contact faces."""
         return self.one, self.other
 
@@ -127,17 +127,17 @@ class SurfaceHolder:
 
     Attributes
     ----------
-    surface : Surface
+    surface : BodySurface
     free : sequence of str
     force, approach, tangential_force, moments, closing_moment
         Quantities; the moments about x, y and z.
     pivot, point : tuple of float or None
         By default the origin, and the pivot [m].
     history : LoadHistory or None
-    surface_forces, surface_pressures : mapping of Surface to quantity
+    surface_forces, surface_pressures : mapping of BodySurface to quantity
     """
 
-    surface: Surface
+    surface: BodySurface
     free: Sequence[str] = ("z",)
     force: Any = None
     approach: Any = None
@@ -147,8 +147,8 @@ class SurfaceHolder:
     pivot: tuple[Any, ...] | None = None
     point: tuple[Any, ...] | None = None
     history: LoadHistory | None = None
-    surface_forces: Mapping[Surface, Any] = field(default_factory=dict)
-    surface_pressures: Mapping[Surface, Any] = field(default_factory=dict)
+    surface_forces: Mapping[BodySurface, Any] = field(default_factory=dict)
+    surface_pressures: Mapping[BodySurface, Any] = field(default_factory=dict)
 
     def in_model(self, dim: int) -> Holder:
         """Holder of a model in two or three dimensions."""
@@ -210,7 +210,7 @@ class ScriptedModel:
         Thickness of plane models [m].
     degree : int
         Polynomial degree of displacement and temperature.
-    symmetry : sequence of Surface
+    symmetry : sequence of BodySurface
         Surfaces on a plane of symmetry x = const of a half model; forces and thickness are those
         of the whole.
     title : str
@@ -228,7 +228,7 @@ class ScriptedModel:
     kinematics: Literal["axisymmetric", "plane-strain", "plane-stress"] | None = None
     thickness: Any = None
     degree: int = 2
-    symmetry: Sequence[Surface] = ()
+    symmetry: Sequence[BodySurface] = ()
     title: str = ""
     _shared: dict[Any, Any] = field(default_factory=dict, repr=False)
 
@@ -258,19 +258,21 @@ class ScriptedModel:
             self._shared[self.bodies] = user_meshes(self.bodies)
         return self._shared[self.bodies]
 
-    def initial(self, observer: Observer | None = None) -> Solution:
+    def initial(self, observer: Observer | None = None) -> ModelSolution:
         """Contact of the unworn faces."""
         return self._solved(StaticAnalysis("initial"), observer)
 
-    def steady(self, observer: Observer | None = None) -> Solution:
+    def steady(self, observer: Observer | None = None) -> ModelSolution:
         """Steady state of wear."""
         return self._solved(StaticAnalysis("steady"), observer)
 
-    def stability(self, observer: Observer | None = None) -> Solution:
+    def stability(self, observer: Observer | None = None) -> ModelSolution:
         """Thermoelastic stability: critical speeds and modes."""
         return self._solved(StaticAnalysis("stability"), observer)
 
-    def transient(self, until: Any, observer: Observer | None = None, **settings: Any) -> Solution:
+    def transient(
+        self, until: Any, observer: Observer | None = None, **settings: Any
+    ) -> ModelSolution:
         """Whole running-in; arguments as of `march`, with ``output_times`` [s]."""
         return self._solved(_transient(until, settings), observer)
 
@@ -291,13 +293,13 @@ class ScriptedModel:
         analysis = _transient(until, settings)
         yield from march(self.bodies, self.meshes, self._system(analysis), analysis, start)
 
-    def fretting(self, observer: Observer | None = None, **settings: Any) -> Solution:
+    def fretting(self, observer: Observer | None = None, **settings: Any) -> ModelSolution:
         """Stick and slip under the history of the holder, see `model.analyses.FrettingAnalysis`."""
         return self._solved(FrettingAnalysis(**settings), observer)
 
     def reciprocating(
         self, amplitude: Any, frequency: Any, observer: Observer | None = None, **settings: Any
-    ) -> Solution:
+    ) -> ModelSolution:
         """Reciprocating sliding along x, see `model.analyses.ReciprocatingAnalysis`."""
         x = in_python(units.Length, amplitude, "reciprocating.amplitude")
         f = in_python(units.Frequency, frequency, "reciprocating.frequency")
@@ -306,7 +308,7 @@ class ScriptedModel:
         analysis = ReciprocatingAnalysis(**settings, amplitude=x, frequency=f)
         return moving._solved(analysis, observer)
 
-    def _solved(self, analysis: Analysis, observer: Observer | None) -> Solution:
+    def _solved(self, analysis: Analysis, observer: Observer | None) -> ModelSolution:
         """Solution of an analysis. Every rank calls."""
         observer = observer or Observer()
         system = self._system(analysis, observer)
@@ -318,7 +320,7 @@ class ScriptedModel:
         if result.stopped is not None:
             raise result.stopped
         final = Snapshot(last, outcome.contact, outcome.motion, outcome.state, outcome.interface)
-        return Solution(self.bodies, self.meshes, final, result)
+        return ModelSolution(self.bodies, self.meshes, final, result)
 
     def _system(self, analysis: Analysis, observer: Observer | None = None) -> System:
         observer = observer or Observer()

@@ -168,7 +168,7 @@ class ContactResults(ABC):
 
 
 @dataclass(frozen=True)
-class Solution(ContactResults):
+class ModelSolution(ContactResults):
     """Solution of an analysis.
 
     Attributes

@@ -46,7 +46,7 @@ def on_user_mesh(
         If the body has been remeshed.
     """
     body = bodies[index]
-    if system.worn is not None and system.worn.mesh.cells.shape != meshes.tagged.cells.shape:
+    if system.worn is not None and system.worn.meshed_anew:
         raise CaseError(f"{name}: {body.name!r} has been remeshed; its field has no user mesh")
     first = sum(len(mask) for mask in meshes.reversed_cells[:index])
     reversed_cells = meshes.reversed_cells[index]

@@ -51,7 +51,8 @@ class MeshBody:
         Material of all cells, or materials by cell tag; the body consists of the cells with these
         tags.
     fixed, rollers : int or sequence of int
-        Tags of clamped surfaces; of surfaces that cannot move along y, but freely along x.
+        Tags of clamped surfaces; of surfaces that cannot move along y, but freely along x, also of
+        one on a holder.
     """
 
     name: str
@@ -111,5 +112,5 @@ class MeshBody:
         )
         if held is not None and fixed:
             raise CaseError(f"Body {self.name!r}: is on a holder; leave out fixed")
-        clamped = fixed if held is None else (held.name,)
+        clamped = fixed if held is None else tuple({held.name} - set(rollers))
         return Body(self.name, self.parts, clamped, rollers, surfaces)

@@ -91,6 +91,7 @@ def python_model(name, *overrides, apart=False, backwards=False):
         heat,
         kinematics=None if known.kinematics == "3d" else known.kinematics,
         thickness=known.thickness,
+        symmetry=[surface(s) for s in known.symmetry],
         degree=known.discretisation.degree,
     )
     return model, face, case

@@ -207,12 +207,12 @@ class ScriptedModel:
     kinematics : str or None
         ``"axisymmetric"``, ``"plane-strain"`` or ``"plane-stress"``; None in space.
     thickness : float or quantity
-        Thickness of plane models [m].
+        Thickness of plane models; twice that in a half model, as forces are those of the whole
+        [m].
     degree : int
         Polynomial degree of displacement and temperature.
     symmetry : sequence of BodySurface
-        Surfaces on a plane of symmetry x = const of a half model; forces and thickness are those
-        of the whole.
+        Surfaces on planes of symmetry x = const.
     title : str
 
     Raises
@@ -352,7 +352,7 @@ class ScriptedModel:
             discretisation=Discretisation(self.degree),
             motion=self._motion(),
             heat=self.heat,
-            thickness=2 * thickness if thickness and self.symmetry else thickness,
+            thickness=thickness,
             symmetry=tuple(surface.name for surface in self.symmetry),
             title=self.title,
         )

@@ -1,6 +1,7 @@
 """Running-in step by step: looking, changing loads, stopping."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -51,7 +52,7 @@ def test_other_loads_and_speeds_on_the_way(cold):
     volumes = [
         sum(
             step.row.step * (spent(one, face) + spent(step, face)) / 2 * factor
-            for one, step in zip(states, states[1:], strict=False)
+            for one, step in pairwise(states)
         )
         for states, factor in ((first, 1), (then, 3))
     ]

@@ -64,7 +64,9 @@ def test_all_analyses(name, overrides, analysis):
             [row.dissipated for row in known.friction.rows], rel=1e-12
         )
     elif analysis is None:
-        found = model.reciprocating("5 mm", "2 Hz", end_time=100.0, output_times=(10.0, 100.0)).result
+        found = model.reciprocating(
+            "5 mm", "2 Hz", end_time=100.0, output_times=(10.0, 100.0)
+        ).result
     else:
         found = getattr(model, analysis)().result
     same(found, known)

@@ -2,8 +2,8 @@
 # # A wear law of one's own, stepped by hand
 #
 # A carbon block slides on a steel plate. Its wear rate is Archard's at first. A transfer film then
-# forms on the plate and protects the block: the rate falls with the worn depth to a third of its first
-# value. Such a law is a plain function of arrays; its derivatives are computed numerically.
+# forms on the plate and protects the block: the rate falls with the worn depth to a third of its
+# first value. Such a law is a plain function of arrays; its derivatives are computed numerically.
 
 # %%
 from dataclasses import replace

@@ -38,7 +38,10 @@ def test_own_wear_law(example):
 
 
 def test_brake_own_mesh(example, tmp_path):
-    """requirement: moments about the pivot are balanced, and the friction is that of the law."""
+    """requirement: moments about the pivot are balanced, and the friction is that of the law.
+
+    The maximum of the summary is taken at the contact points, too.
+    """
     found = example("brake_own_mesh")
     steady, pressure = found["steady"], found["pressure"]
     force = np.asarray(pressure) * pressure.weights
@@ -52,5 +55,5 @@ def test_brake_own_mesh(example, tmp_path):
     moment = abs(force @ pressure.points[:, 0])
     assert moment == pytest.approx(0.016 * (friction @ force), rel=1e-6)
     hottest = max(np.nanmax(steady.temperature(found[b]).x.array) for b in ("pad", "rail"))
-    assert hottest == pytest.approx(steady.summary["max_temperature_K"], rel=1e-6)
+    assert 0 <= steady.summary["max_temperature_K"] - hottest < 0.05  # at points between nodes
     assert mpimg.imread(tmp_path / "brake_own_mesh.png").shape[:2] == (500, 700)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from dolfinx import fem
 
-from ..bulk.bodies import matching
 from ..bulk.field import as_function, basis_element, lagrange_space
 from ..errors import CaseError
+from ..lagrange import matching
 from ..simulation.model.system import System
 from .body import MeshBody
 from .user_mesh import UserMeshes

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..bulk.bodies import node_order
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
 from ..geometry.mesh.nodes import CORNERS, FACETS, reference_nodes
 from ..geometry.mesh.orders import boundary, compact
 from ..geometry.mesh.tagged import TaggedMesh
 from ..geometry.reading.cell_checks import oriented
+from ..lagrange import equispaced, matching
 from ..parallel import on_root
 from .body import MeshBody
 
@@ -112,7 +112,8 @@ def _gathered(body: MeshBody) -> _Piece | None:
     if not len(cells):
         raise CaseError(f"{name}: has no cells")
     in_gmsh = np.empty_like(cells)
-    in_gmsh[:, node_order(kind, order, reference_nodes(kind, order))] = cells
+    nodes = equispaced(kind, order).points
+    in_gmsh[:, matching(nodes, reference_nodes(kind, order))] = cells
     return _Piece(
         body.name, kind, _in_model(points, kind, name), in_gmsh, parts, corners, tags, order
     )

@@ -115,6 +115,40 @@ def test_what_is_supported(ring):
         replace(model, kinematics="plane-strain")
 
 
+@pytest.mark.parametrize(
+    ("holder", "message"),
+    [
+        ({"free": ["q"]}, r"^Holder\.free: found 'q'; must be some of: x, y, z"),
+        ({"force": None}, r"^Holder: needs one of force"),
+        ({"approach": "1 um"}, r"^Holder: needs one of force"),
+        ({"surface": 42}, r"^Holder: found 42; must be body\.surface"),
+        ({"pivot": (0.0,)}, r"^Holder\.pivot: has 1 coordinates; needs 2"),
+    ],
+)
+def test_faults_of_holders(ring, holder, message):
+    """requirement: a holder without a load, or with an unknown motion, is refused."""
+    model = ring[0]
+    with pytest.raises(tw.CaseError, match=message):
+        replace(model, holders=[replace(model.holders[0], **holder)])
+
+
+def test_supports(ring):
+    """requirement: a body is held by its own facets, and never loose."""
+    model, face, _ = ring
+    punch, plate = model.bodies
+    with pytest.raises(tw.CaseError, match=r"facets with the tag 7 do not bound the body 'plate'"):
+        replace(model, interfaces=[replace(face, other=plate.surface(7))])
+    loose = replace(plate, fixed=())
+    with pytest.raises(tw.CaseError, match=r"^Body 'plate': is neither on a holder nor fixed"):
+        replace(
+            model,
+            interfaces=[tw.Interface(punch.surface(face.one.tag), loose.surface(face.other.tag))],
+            heat=None,
+        )
+    with pytest.raises(tw.CaseError, match=r"^Interface: found MeshBody\(name='plate'"):
+        tw.Interface(face.one, plate)
+
+
 def test_tags(ring):
     """requirement: an unknown tag is answered with the known ones."""
     punch = ring[0].bodies[0]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ..errors import CaseError
+from ..errors import CaseError, quoted
 from ..model.body import Body
 from ..model.material import Material
 
@@ -30,6 +30,12 @@ class BodySurface:
     def name(self) -> str:
         """Name of the surface in the model."""
         return f"{self.body.name}:{self.tag}"
+
+
+def require_surface(given: Any, name: str) -> None:
+    """Raise a `CaseError` if an argument is no surface."""
+    if not isinstance(given, BodySurface):
+        raise CaseError(f"{name}: found {quoted(given)}; must be body.surface(tag)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +62,10 @@ class MeshBody:
     """
 
     name: str
-    mesh: Any
-    cells: Any
-    facets: Any
-    materials: Material | Mapping[int, Material]
+    mesh: Any = field(repr=False)
+    cells: Any = field(repr=False)
+    facets: Any = field(repr=False)
+    materials: Material | Mapping[int, Material] = field(repr=False)
     fixed: int | Sequence[int] = ()
     rollers: int | Sequence[int] = ()
 

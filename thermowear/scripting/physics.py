@@ -12,7 +12,7 @@ from ..laws import power_wear
 from ..laws.coefficients.table1d import Table1D
 from ..laws.time_course import TimeFunction
 from ..model import heat, interface, material
-from .body import BodySurface
+from .body import BodySurface, require_surface
 from .conversion import number, optional
 
 
@@ -77,8 +77,7 @@ def by_surface(kind: Any, given: Mapping[BodySurface, Any] | None, name: str) ->
     """Quantities, or functions of time, by the name of their surface."""
     result = {}
     for surface, value in (given or {}).items():
-        if not isinstance(surface, BodySurface):
-            raise CaseError(f"{name}: found the key {surface!r}; must be body.surface(tag)")
+        require_surface(surface, name)
         constant = not isinstance(value, TimeFunction)
         result[surface.name] = in_python(kind, value, name) if constant else value
     return result

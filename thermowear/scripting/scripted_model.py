@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
+from ..case.tables.driving import FreeMotion
 from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
@@ -36,13 +37,15 @@ from ..simulation.results.fields import sample
 from ..simulation.runtime.history import Snapshot
 from ..simulation.runtime.observer import Observer
 from ..timer import Phases
-from .body import BodySurface, MeshBody
+from .body import BodySurface, MeshBody, require_surface
 from .conversion import coefficient_law, number, optional, rate_law
 from .march import MarchState, march
 from .motion import Rotation, Translation
 from .physics import by_surface
 from .solution import ModelSolution
 from .user_mesh import UserMeshes, user_meshes
+
+_OF_SECTIONS = ("axisymmetric", "plane-strain", "plane-stress")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +80,10 @@ class FacePair:
     friction_history: TimeFunction | None = None
     pressure_degree: int | Literal["lobatto"] | None = None
     method: ContactMethod = field(default_factory=ContactMethod)
+
+    def __post_init__(self):
+        for face in self.faces:
+            require_surface(face, "Interface")
 
     @property
     def faces(self) -> tuple[BodySurface, BodySurface]:
@@ -149,6 +156,17 @@ class SurfaceHolder:
     history: LoadHistory | None = None
     surface_forces: Mapping[BodySurface, Any] = field(default_factory=dict)
     surface_pressures: Mapping[BodySurface, Any] = field(default_factory=dict)
+
+    def __post_init__(self):
+        require_surface(self.surface, "Holder")
+        for name in self.free:
+            if name not in get_args(FreeMotion):
+                known = ", ".join(get_args(FreeMotion))
+                raise CaseError(f"Holder.free: found {name!r}; must be some of: {known}")
+        loads = self._largest("force"), self._largest("approach"), self.closing_moment
+        given = sum(load is not None for load in loads)
+        if given > 1 or not (given or self.surface_forces or self.surface_pressures):
+            raise CaseError("Holder: needs one of force, approach and closing_moment")
 
     def in_model(self, dim: int) -> Holder:
         """Holder of a model in two or three dimensions."""
@@ -330,17 +348,17 @@ class ScriptedModel:
 
     def _model(self, closes_by_wear: bool) -> Model:
         held, meshes = self.holders[0].surface, self.meshes
+        number(self.degree, "Model.degree", 1, 10)
         dim = meshes.tagged.points.shape[1]
-        plane = self.kinematics in ("plane-strain", "plane-stress")
-        thickness = optional(units.Length, self.thickness, "Model.thickness")
-        if plane is (thickness is None):
-            raise CaseError("Model.thickness: needed for a plane model, and for no other")
-        if (dim == 3) is not (self.kinematics is None):
+        if self.kinematics not in (_OF_SECTIONS if dim == 2 else (None,)):
             raise CaseError(
-                "Model.kinematics: a mesh of a section needs 'axisymmetric', 'plane-strain' or "
-                f"'plane-stress', one in space none of them; found {self.kinematics!r}"
+                f"Model.kinematics: a mesh of a section needs one of {', '.join(_OF_SECTIONS)}, one "
+                f"in space none of them; found {self.kinematics!r}"
             )
-        return Model(
+        thickness = optional(units.Length, self.thickness, "Model.thickness")
+        if (self.kinematics in _OF_SECTIONS[1:]) is (thickness is None):
+            raise CaseError("Model.thickness: needed for a plane model, and for no other")
+        model = Model(
             kinematics=self.kinematics or "3d",
             bodies=tuple(
                 body.in_model(meshes.surfaces_of(body), held if body is held.body else None)
@@ -356,6 +374,8 @@ class ScriptedModel:
             symmetry=tuple(surface.name for surface in self.symmetry),
             title=self.title,
         )
+        _check_surfaces(model, meshes.tagged.surfaces)
+        return model
 
     def _motion(self) -> Motion:
         if len(self.motions) > 1:
@@ -363,6 +383,21 @@ class ScriptedModel:
         for body, motion in self.motions.items():
             return motion.relative(body is self.bodies[0], self.kinematics == "axisymmetric")
         return Motion()
+
+
+def _check_surfaces(model: Model, known: Sequence[str]) -> None:
+    """Reject surfaces whose facets do not bound their body."""
+    holder, heat = model.holder, model.heat or Heat()
+    supports = [name for body in model.bodies for name in (*body.fixed, *body.rollers)]
+    loads = *holder.surface_forces, *holder.surface_pressures
+    thermal = *heat.cooling, *heat.temperature, *heat.flux, *heat.power
+    for name in (*model.interface.faces, *supports, *loads, *thermal, *model.symmetry):
+        if name not in known:
+            body, _, tag = name.rpartition(":")
+            raise CaseError(f"Model: facets with the tag {tag} do not bound the body {body!r}")
+    for body in model.bodies:
+        if not (body.fixed or body.rollers):
+            raise CaseError(f"Body {body.name!r}: is neither on a holder nor fixed")
 
 
 def _transient(until: Any, settings: Mapping[str, Any]) -> TransientAnalysis:

@@ -2,11 +2,13 @@
 
 from .body import BodySurface, MeshBody
 from .conversion import LoadHistory, TimeHistory
+from .face_pair import FacePair
 from .march import MarchState
 from .motion import Rotation, Translation
 from .physics import Heat, Material, PowerWear, PressureConductance
-from .scripted_model import FacePair, ScriptedModel, SurfaceHolder
+from .scripted_model import ScriptedModel
 from .solution import ModelSolution, PointValues
+from .surface_holder import SurfaceHolder
 
 Body, Interface, Holder, Model = MeshBody, FacePair, SurfaceHolder, ScriptedModel
 

@@ -5,17 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
-import numpy as np
-
-from ..case.tables.driving import FreeMotion
 from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
-from ..laws.distribution import InPlace
-from ..laws.load_history import LoadHistory
-from ..laws.time_course import TimeFunction
 from ..model.analyses import (
     Analysis,
     FrettingAnalysis,
@@ -24,11 +18,8 @@ from ..model.analyses import (
     TransientAnalysis,
 )
 from ..model.heat import Heat
-from ..model.holder import Holder
-from ..model.interface import ContactMethod, HardnessConductance, Interface
 from ..model.model import Discretisation, Model
 from ..model.motion import Motion
-from ..model.wear import FaceWear
 from ..simulation.analyses.run import analyse, conclude, estimated
 from ..simulation.model.building import build
 from ..simulation.model.setup_cache import SetupCache
@@ -37,175 +28,16 @@ from ..simulation.results.fields import sample
 from ..simulation.runtime.history import Snapshot
 from ..simulation.runtime.observer import Observer
 from ..timer import Phases
-from .body import BodySurface, MeshBody, require_surface
-from .conversion import coefficient_law, number, optional, rate_law
+from .body import BodySurface, MeshBody
+from .conversion import number, optional
+from .face_pair import FacePair
 from .march import MarchState, march
 from .motion import Rotation, Translation
-from .physics import by_surface
 from .solution import ModelSolution
+from .surface_holder import SurfaceHolder
 from .user_mesh import UserMeshes, user_meshes
 
 _OF_SECTIONS = ("axisymmetric", "plane-strain", "plane-stress")
-
-
-@dataclass(frozen=True, eq=False)
-class FacePair:
-    """Interface of two bodies.
-
-    Attributes
-    ----------
-    one, other : BodySurface
-        Contact faces, in any order.
-    friction : float, str, InterfaceLaw or callable
-        Coefficient of friction: a number, an expression, a law, or a function of some of p, v, T.
-    conductance : float, str, InterfaceLaw, callable, HardnessConductance or None
-        Contact conductance likewise; None: perfect contact [W/(m² K)].
-    wear : mapping of MeshBody to (str, WearRate, callable or FaceWear)
-        Wear rates of the bodies, also as functions of some of p, v, T, depth, mu [m/s].
-    gap_conductance, partition, compliance, transverse_friction, pressure_degree, method
-        See `model.interface.Interface`.
-    friction_history : TimeFunction or None
-        Time-dependent factor of the friction.
-    """
-
-    one: BodySurface
-    other: BodySurface
-    friction: Any = 0.0
-    conductance: Any = None
-    wear: Mapping[MeshBody, Any] = field(default_factory=dict)
-    gap_conductance: Any = 0.0
-    partition: float | Literal["effusivity"] = 0.5
-    compliance: Any = 0.0
-    transverse_friction: float = 0.0
-    friction_history: TimeFunction | None = None
-    pressure_degree: int | Literal["lobatto"] | None = None
-    method: ContactMethod = field(default_factory=ContactMethod)
-
-    def __post_init__(self):
-        for face in self.faces:
-            require_surface(face, "Interface")
-
-    @property
-    def faces(self) -> tuple[BodySurface, BodySurface]:
-        """Contact faces."""
-        return self.one, self.other
-
-    def in_model(self, bodies: tuple[MeshBody, ...], closes_by_wear: bool) -> Interface:
-        """Interface of a model, with the face of the held body first."""
-        given = self.conductance
-        if given is not None and not isinstance(given, HardnessConductance):
-            given = coefficient_law(given, "Interface.conductance", "W/(m^2 K)", least=0.0)
-        first, second = sorted(self.faces, key=lambda face: bodies.index(face.body))
-        unknown = [body for body in self.wear if body not in bodies]
-        if unknown:
-            raise CaseError(f"Interface.wear: {unknown[0]!r} is no body of this interface")
-        wear = {bodies.index(body): _face_wear(law, body) for body, law in self.wear.items()}
-        gap = in_python(units.LeastHeatTransfer, self.gap_conductance, "Interface.gap_conductance")
-        soft = self.compliance and in_python(
-            units.Compliance, self.compliance, "Interface.compliance"
-        )
-        return Interface(
-            faces=(first.name, second.name),
-            friction=coefficient_law(self.friction, "Interface.friction", "", least=-np.inf),
-            friction_history=self.friction_history,
-            transverse_friction=number(self.transverse_friction, "Interface.transverse_friction"),
-            conductance=given,
-            gap_conductance=gap,
-            partition=self.partition,
-            wear=dict(sorted(wear.items())),
-            closes_by_wear=closes_by_wear,
-            compliance=soft,
-            pressure_degree=self.pressure_degree,
-            method=self.method,
-        )
-
-
-def _face_wear(given: Any, body: MeshBody) -> FaceWear:
-    if isinstance(given, FaceWear):
-        return given
-    return FaceWear(rate_law(given, f"Interface.wear of {body.name!r}"), track=InPlace())
-
-
-@dataclass(frozen=True, eq=False)
-class SurfaceHolder:
-    """Rigid holder of a surface, see `model.holder.Holder`.
-
-    It presses along -y in a section and along -z in space.
-
-    Attributes
-    ----------
-    surface : BodySurface
-    free : sequence of str
-    force, approach, tangential_force, moments, closing_moment
-        Quantities; the moments about x, y and z.
-    pivot, point : tuple of float or None
-        By default the origin, and the pivot [m].
-    history : LoadHistory or None
-    surface_forces, surface_pressures : mapping of BodySurface to quantity
-    """
-
-    surface: BodySurface
-    free: Sequence[str] = ("z",)
-    force: Any = None
-    approach: Any = None
-    tangential_force: Any = 0.0
-    moments: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
-    closing_moment: Any = None
-    pivot: tuple[Any, ...] | None = None
-    point: tuple[Any, ...] | None = None
-    history: LoadHistory | None = None
-    surface_forces: Mapping[BodySurface, Any] = field(default_factory=dict)
-    surface_pressures: Mapping[BodySurface, Any] = field(default_factory=dict)
-
-    def __post_init__(self):
-        require_surface(self.surface, "Holder")
-        for name in self.free:
-            if name not in get_args(FreeMotion):
-                known = ", ".join(get_args(FreeMotion))
-                raise CaseError(f"Holder.free: found {name!r}; must be some of: {known}")
-        loads = self._largest("force"), self._largest("approach"), self.closing_moment
-        given = sum(load is not None for load in loads)
-        if given > 1 or not (given or self.surface_forces or self.surface_pressures):
-            raise CaseError("Holder: needs one of force, approach and closing_moment")
-
-    def in_model(self, dim: int) -> Holder:
-        """Holder of a model in two or three dimensions."""
-        pivot = (0.0,) * dim if self.pivot is None else self._position(self.pivot, "pivot", dim)
-        point = pivot if self.point is None else self._position(self.point, "point", dim)
-        force, approach = self._largest("force"), self._largest("approach")
-        about_x, about_y, about_z = (
-            in_python(units.SignedMoment, moment, "Holder.moments") for moment in self.moments
-        )
-        return Holder(
-            press=(0.0,) * (dim - 1) + (-1.0,),
-            pivot=pivot,
-            point=point,
-            free=tuple(self.free),
-            force=optional(units.Force, force, "Holder.force"),
-            approach=optional(units.Length, approach, "Holder.approach"),
-            tangential_force=in_python(
-                units.SignedForce, self.tangential_force, "Holder.tangential_force"
-            ),
-            moments=(about_x, about_y, about_z),
-            closing_moment=optional(
-                units.SignedMoment, self.closing_moment, "Holder.closing_moment"
-            ),
-            history=self.history,
-            surface_forces=by_surface(units.Force, self.surface_forces, "Holder.surface_forces"),
-            surface_pressures=by_surface(
-                units.Pressure, self.surface_pressures, "Holder.surface_pressures"
-            ),
-        )
-
-    def _largest(self, name: str) -> Any:
-        """Load of a history at its maximum, or the constant one."""
-        given = None if self.history is None else getattr(self.history, name)
-        return getattr(self, name) if given is None else max(given)
-
-    def _position(self, given: tuple[Any, ...], name: str, dim: int) -> tuple[float, ...]:
-        if len(given) != dim:
-            raise CaseError(f"Holder.{name}: has {len(given)} coordinates; needs {dim}")
-        return tuple(in_python(units.Coordinate, x, f"Holder.{name}") for x in given)
 
 
 @dataclass(frozen=True, eq=False)
@@ -352,8 +184,8 @@ class ScriptedModel:
         dim = meshes.tagged.points.shape[1]
         if self.kinematics not in (_OF_SECTIONS if dim == 2 else (None,)):
             raise CaseError(
-                f"Model.kinematics: a mesh of a section needs one of {', '.join(_OF_SECTIONS)}, one "
-                f"in space none of them; found {self.kinematics!r}"
+                f"Model.kinematics: found {self.kinematics!r}; must be one of "
+                f"{', '.join(_OF_SECTIONS)} for a mesh of a section, and None in space"
             )
         thickness = optional(units.Length, self.thickness, "Model.thickness")
         if (self.kinematics in _OF_SECTIONS[1:]) is (thickness is None):
@@ -395,9 +227,9 @@ def _check_surfaces(model: Model, known: Sequence[str]) -> None:
         if name not in known:
             body, _, tag = name.rpartition(":")
             raise CaseError(f"Model: facets with the tag {tag} do not bound the body {body!r}")
-    for body in model.bodies:
-        if not (body.fixed or body.rollers):
-            raise CaseError(f"Body {body.name!r}: is neither on a holder nor fixed")
+    for held in model.bodies:
+        if not (held.fixed or held.rollers):
+            raise CaseError(f"Body {held.name!r}: is neither on a holder nor fixed")
 
 
 def _transient(until: Any, settings: Mapping[str, Any]) -> TransientAnalysis:

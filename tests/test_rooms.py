@@ -22,6 +22,7 @@ ORDER = [
     "contact",
     "model",
     "simulation",
+    "scripting",
     "verification",
     "output",
     "app",
@@ -182,7 +183,7 @@ def test_public_names_are_there():
     for name in thermowear.__all__:
         assert getattr(thermowear, name) is not None
     assert callable(thermowear.contact.pair)
-    assert callable(thermowear.contact.influence)
+    assert callable(thermowear.contact.condense)
     assert callable(thermowear.laws.steady_pressure)
     with pytest.raises(AttributeError):
         _ = thermowear.nothing_of_the_kind

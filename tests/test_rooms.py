@@ -20,6 +20,7 @@ ORDER = [
     "geometry",
     "bulk",
     "contact",
+    "results",
     "simulation",
     "verification",
     "output",
@@ -31,12 +32,14 @@ NOT_ALLOWED = {
     "laws": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "pydantic", "pint"},
     "reference": {"dolfinx", "gmsh", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
     "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl", "basix"},
+    "results": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "matplotlib"},
     "output": {"dolfinx", "petsc4py", "ufl", "basix", "gmsh"},
     "app": {"dolfinx", "ufl", "basix", "gmsh"},
 }
 BARE = {
     "output": {"simulation", "verification", "contact", "bulk", "laws"},
     "reference": {"case"},
+    "results": {"laws", "case", "reference", "geometry", "bulk", "contact"},
     "bulk": {"case", "geometry"},
     "contact": {"case", "geometry"},
 }

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from thermowear.app.cli import main
-from thermowear.output.frames import FRAMES, frame_files, keep_indexed, remove_frames
-from thermowear.output.quantities import HISTORY, INTERFACE
+from thermowear.output.frames import frame_files, keep_indexed, remove_frames
+from thermowear.output.names import FRAMES
 from thermowear.output.tables import read
 
 from ..conftest import COLD_RUNNING_IN
@@ -33,7 +33,7 @@ def folder(tmp_path_factory):
 def test_index_and_files_agree(folder):
     """requirement: the index lists each frame with its time; no other files remain."""
     frames = frame_files(folder / FRAMES)
-    times = read(folder / "history.csv", HISTORY)["time"]
+    times = read(folder / "history.csv")["time"]
     assert 4 <= len(frames) <= 8
     assert len(set(np.diff([frame.number for frame in frames]))) == 1
     assert len(times) > 8
@@ -44,9 +44,9 @@ def test_index_and_files_agree(folder):
 
 def test_fields_are_those_of_the_step(folder):
     """requirement: the largest pressure equals that of the history; stress in single precision."""
-    largest = read(folder / "history.csv", HISTORY)["max_pressure"]
+    largest = read(folder / "history.csv")["max_pressure"]
     for frame in frame_files(folder / FRAMES):
-        pressure = read(frame.interface, INTERFACE)["pressure"]
+        pressure = read(frame.interface)["pressure"]
         assert pressure.max() == pytest.approx(largest[frame.number], rel=1e-9)
         mesh = meshio.read(frame.fields)
         assert mesh.point_data["von_mises_Pa"].dtype == np.float32

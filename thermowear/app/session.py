@@ -36,21 +36,21 @@ class Recorder(Observer):
 
     def step(self, row: HistoryRow, distance: float) -> None:
         self._steps += 1
-        self._save(lambda: self._folder.step(row))
+        self._save(lambda: self._folder.add(row))
         if self._progress is not None:
             self._progress.step(self._steps, row, distance)
 
     def heat(self, row: HeatRow) -> None:
-        self._save(lambda: self._folder.heat(row))
+        self._save(lambda: self._folder.add(row))
 
     def load_step(self, row: LoadRow) -> None:
         self._steps += 1
-        self._save(lambda: self._folder.load_step(row))
+        self._save(lambda: self._folder.add(row))
         if self._progress is not None:
             self._progress.load_step(self._steps, row)
 
     def cycle(self, row: CycleRow) -> None:
-        self._save(lambda: self._folder.cycle(row))
+        self._save(lambda: self._folder.add(row))
 
     def note(self, text: str) -> None:
         if self._progress is not None:

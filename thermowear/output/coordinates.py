@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import re
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
-from .quantities import Quantity
+from ..results import Quantity
+from .summary import read_summary
 
 _AXISYMMETRIC = {"x": "r", "y": "z"}
 
 
 def model_of(folder: Path) -> str:
-    """Kinematic model of the run in a results folder; empty without a summary."""
-    path = folder / "summary.json"
-    return json.loads(path.read_bytes()).get("model", "") if path.is_file() else ""
+    """Kinematic model of the run in a results folder; empty if it is not known."""
+    case = folder / "case.resolved.toml"
+    if (folder / "summary.json").is_file() or not case.is_file():
+        return read_summary(folder).get("model", "")
+    return tomllib.loads(case.read_text("utf-8")).get("model", "")
 
 
 def in_model(quantity: Quantity, model: str) -> Quantity:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -10,13 +9,12 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from .atomic_write import final_name, replacing
-from .quantities import INTERFACE, TRACK
 from .tables import write_points
 from .vtu import write_fields
 
-FRAMES = "frames"
 _INDEX = "frames.pvd"
-_FRAME = re.compile(r"fields_\d{5,}\.vtu|(interface|track)_\d{5,}\.csv")
+_KINDS = {"fields": ".vtu", "interface": ".csv", "track": ".csv"}
+"""Files of a frame with their endings."""
 
 
 @dataclass(frozen=True)
@@ -38,20 +36,23 @@ class FrameFiles:
 
     @property
     def fields(self) -> Path:
-        return self.place / f"fields_{self.number:05d}.vtu"
+        return self._file("fields")
 
     @property
     def interface(self) -> Path:
-        return self.place / f"interface_{self.number:05d}.csv"
+        return self._file("interface")
 
     @property
     def track(self) -> Path:
         """Table of the worn track, in reciprocating analyses only."""
-        return self.place / f"track_{self.number:05d}.csv"
+        return self._file("track")
 
     @property
     def files(self) -> tuple[Path, ...]:
         return self.fields, self.interface, self.track
+
+    def _file(self, kind: str) -> Path:
+        return self.place / f"{kind}_{self.number:05d}{_KINDS[kind]}"
 
 
 def write_frame(place: Path, frame) -> None:
@@ -68,9 +69,9 @@ def write_frame(place: Path, frame) -> None:
     """
     place.mkdir(exist_ok=True)
     new = FrameFiles(frame.time, frame.number, place)
-    write_points(new.interface, INTERFACE, frame.interface)
+    write_points(new.interface, frame.interface)
     if frame.track is not None:
-        write_points(new.track, TRACK, frame.track)
+        write_points(new.track, frame.track)
     write_fields(new.fields, _single(frame.fields))
     earlier = [old for old in frame_files(place) if old.number != new.number]
     kept = [o for o in earlier if o.number < new.number and o.number % frame.every == 0]
@@ -117,8 +118,14 @@ def _remove_others(place: Path, frames: list[FrameFiles]) -> None:
     """Remove files of frames, complete or partial, that belong to none of the given frames."""
     kept = {path for frame in frames for path in frame.files}
     for path in place.iterdir():
-        if path not in kept and _FRAME.fullmatch(final_name(path)):
+        if path not in kept and _is_of_frame(final_name(path)):
             path.unlink()
+
+
+def _is_of_frame(name: str) -> bool:
+    kind, _, number = name.partition("_")
+    number, ending = number[:-4], number[-4:]
+    return _KINDS.get(kind) == ending and len(number) >= 5 and number.isdecimal()
 
 
 def _write_index(place: Path, frames: list[FrameFiles]) -> None:

@@ -10,6 +10,7 @@ from numpy.linalg import LinAlgError
 from ...balances import judged
 from ...case.tables.schema import Case
 from ...errors import CaseError, ComputationError
+from ...results import Result
 from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import fretting
@@ -19,10 +20,7 @@ from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
 from ..model.system import System
 from ..results.fields import sample
-from ..results.outcome import Outcome
-from ..results.recording import profile
-from ..results.result import BodyFields, Result
-from ..results.summary import summarise
+from ..results.final_state import FinalState
 from ..runtime.checkpoint_data import Saved, mesh_checksum
 from ..runtime.observer import Observer
 from .plausible import too_steep, went_back
@@ -31,7 +29,7 @@ from .small_wear_check import not_small
 from .stability import stability
 from .static import initial, steady, unworn
 from .transient import running_in
-from .untouched_contact import touching
+from .untouched_contact import untouched
 
 _UNPAIRED = 1e-6
 
@@ -74,15 +72,17 @@ def run(
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
     system = prepare(case, comm, phases)
-    outcome = analyse(system, observer, saved)
+    final, result = analyse(system, observer, saved)
     with phases("error estimate"):
-        outcome = estimated(system, outcome, observer)
+        result = _estimated(final, result, observer)
     with phases("fields"):
-        fields = sample(outcome.system or system, outcome.state, outcome.motion)
-    return conclude(system, outcome, fields)
+        fields = sample(final.system, final.bodies, final.motion)
+    return replace(balanced(result), fields=fields)
 
 
-def analyse(system: System, observer: Observer, saved: Saved | None = None) -> Outcome:
+def analyse(
+    system: System, observer: Observer, saved: Saved | None = None
+) -> tuple[FinalState, Result]:
     """Run the analysis of the case of a system, and note implausible results. Every rank calls.
 
     Starts anew, or from the checkpoint of an analysis of the same system.
@@ -94,68 +94,50 @@ def analyse(system: System, observer: Observer, saved: Saved | None = None) -> O
             "stays out of the contact"
         )
     before = () if saved is None else (saved.of(system),)
-    outcome = _ANALYSES[system.case.analysis.type](system, observer, *before)
-    if outgrown(outcome.system or system, outcome.contact.pressure):
+    final, result = _ANALYSES[system.case.analysis.type](system, observer, *before)
+    if outgrown(final.system, final.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
-    outcome, apart = touching(system, outcome)
-    if apart is not None:
-        observer.note(apart)
-    steep = too_steep(outcome.system or system, outcome.contact.pressure)
-    if steep is not None:
-        observer.note(steep)
-    if outcome.stopped is None:
-        outcome = replace(outcome, stopped=went_back(system, outcome))
-    large = not_small(system, outcome.interface)
-    if large is not None:
-        observer.note(large)
+    stopped, apart = result.stopped, None
+    if stopped is None:
+        apart = untouched(system, result.interface)
+    if isinstance(apart, ComputationError):
+        stopped = apart
+    notes = [apart, too_steep(final.system, final.contact.pressure)]
+    if stopped is None:
+        stopped = went_back(system, final)
+    notes.append(not_small(system, result.interface))
+    for note in notes:
+        if isinstance(note, str):
+            observer.note(note)
     mesh = mesh_checksum(system)
-    return (
-        outcome if mesh is None else replace(outcome, extra=outcome.extra | {"mesh_sha256": mesh})
-    )
+    named = {} if mesh is None else {"mesh_sha256": mesh}
+    return final, replace(result, summary=result.summary | named, stopped=stopped)
 
 
-def estimated(system: System, outcome: Outcome, observer: Observer) -> Outcome:
-    """Add discretisation error estimates to the summary of an outcome; note large ones.
-
-    Every rank calls.
-    """
-    if outcome.stopped is not None:
-        return outcome
+def _estimated(final: FinalState, result: Result, observer: Observer) -> Result:
+    """Add discretisation error estimates to the summary; note large ones. Every rank calls."""
+    if result.stopped is not None:
+        return result
     try:
-        estimates = estimate_errors(outcome.system or system, outcome)
+        estimates = estimate_errors(final, result)
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
-        return replace(
-            outcome, extra=outcome.extra | {"error_estimate_missing": {"all": str(error)}}
-        )
+        missing = {"error_estimate_missing": {"all": str(error)}}
+        return replace(result, summary=result.summary | missing)
     warning = estimates.warning()
     if warning is not None:
         observer.note(warning)
-    return replace(outcome, extra=outcome.extra | estimates.summary())
+    return replace(result, summary=result.summary | estimates.summary())
 
 
-def conclude(system: System, outcome: Outcome, fields: BodyFields | None) -> Result:
-    """Result of a run; marked as failed if its balances do not hold."""
-    system = outcome.system or system
-    summary = summarise(system, outcome)
-    return Result(
-        outcome.interface,
-        profile(system, outcome.interface),
-        summary,
-        outcome.history,
-        outcome.outputs,
-        fields,
-        outcome.friction,
-        outcome.track,
-        outcome.stopped or judged(summary),
-        outcome.heat,
-        outcome.modes,
-    )
+def balanced(result: Result) -> Result:
+    """Mark a result as failed if its balances do not hold."""
+    return replace(result, stopped=result.stopped or judged(result.summary))
 
 
-def _stability(system: System, observer: Observer) -> Outcome:
+def _stability(system: System, observer: Observer) -> tuple[FinalState, Result]:
     """Stability of the steady state, or of the cold unworn contact if there is none."""
     free = system.holder.free
     if system.laws and len(free) and free.all():
@@ -164,7 +146,7 @@ def _stability(system: System, observer: Observer) -> Outcome:
     return stability(system, unworn(system, cold), observer)
 
 
-_ANALYSES: dict[str, Callable[..., Outcome]] = {
+_ANALYSES: dict[str, Callable[..., tuple[FinalState, Result]]] = {
     "initial": initial,
     "steady": steady,
     "transient": running_in,

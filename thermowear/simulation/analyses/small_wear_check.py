@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...case.tables.analyses import Fretting, Reciprocating
+from ...results import Interface
 from ..geometry_update.gap_wear import GapWear
 from ..model.system import System
-from ..results.result import Interface
 
 
 def not_small(system: System, interface: Interface) -> str | None:

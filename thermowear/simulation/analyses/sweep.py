@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...case.tables.schema import Case
+from ...results import Result
 from ...timer import Phases
 from ..model.building import build
 from ..model.setup_cache import SetupCache, inputs
 from ..model.system import System
-from ..results.result import Result
 from ..runtime.observer import Observer
 from .positioning import prepare
-from .run import analyse, conclude
+from .run import analyse, balanced
 
 
 class Series:
@@ -46,7 +46,7 @@ class Series:
         """
         observer = observer or Observer()
         system = self._prepared(case, phases or Phases(observer.phase))
-        return conclude(system, analyse(system, observer), None)
+        return balanced(analyse(system, observer)[1])
 
     def _prepared(self, case: Case, phases: Phases) -> System:
         if case.contact.positioning:  # its mesh depends on the contact of this case

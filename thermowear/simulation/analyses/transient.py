@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from ...case.tables.analyses import Transient
 from ...errors import ComputationError
+from ...results import Result
 from ..geometry_update.face_limits import beyond
 from ..geometry_update.outer_loop import OuterLoop
 from ..interface.factory import interface_problem
 from ..interface.steady import SteadyState, steady_state
 from ..model.system import System
-from ..results.outcome import Outcome
+from ..results.conclude import conclude
+from ..results.final_state import FinalState
 from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer
 from ..time.step_sizes import AnySize, FewSizes
@@ -18,7 +20,9 @@ from .static import wear_velocity
 from .transient_record import RunningIn, RunningInRecord
 
 
-def running_in(system: System, observer: Observer, before: RunningIn | None = None) -> Outcome:
+def running_in(
+    system: System, observer: Observer, before: RunningIn | None = None
+) -> tuple[FinalState, Result]:
     """Follow contact in time, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept. The summary includes the wear velocities of
@@ -36,17 +40,14 @@ def running_in(system: System, observer: Observer, before: RunningIn | None = No
     with system.phases("bodies"):
         contact, motion, state, interface = record.bodies(last)
     velocity = None if loop.steady is None else loop.steady.wear.velocity
-    return Outcome(
-        contact=contact,
-        motion=motion,
-        state=state,
-        interface=interface,
-        extra=record.extra() | wear_velocity(system, velocity),
+    return conclude(
+        FinalState(loop.system, contact, motion, state),
+        interface,
+        record.extra() | wear_velocity(system, velocity),
         history=record.rows,
         outputs=record.outputs,
         heat=record.heat,
         stopped=stopped,
-        system=loop.system,
     )
 
 

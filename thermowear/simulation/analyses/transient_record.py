@@ -11,6 +11,7 @@ import numpy as np
 from ...balances import require
 from ...errors import ComputationError
 from ...laws.motions import RigidMotion, combined
+from ...results import HeatRow, HistoryRow, Interface
 from ...serialise import serialisable
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.update_counts import UpdateCounts
@@ -21,8 +22,6 @@ from ..model.rigid_modes import reference_point
 from ..model.system import System
 from ..model.worn_geometry import WornGeometry
 from ..results.recording import interface_at
-from ..results.result import Interface
-from ..results.rows import HeatRow, HistoryRow
 from ..results.summary import normal_force
 from ..runtime.frames import FrameRecorder
 from ..runtime.observer import Observer

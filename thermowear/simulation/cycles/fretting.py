@@ -16,8 +16,10 @@ from ...contact.friction.stick_slip import advance, follow
 from ...contact.friction.stick_slip_state import StickSlipState, unloaded
 from ...contact.operators.tangential import FrictionalContact, condense_tangential
 from ...laws.motions import translation
+from ...results import Result
 from ..model.system import System
-from ..results.outcome import Outcome
+from ..results.conclude import conclude
+from ..results.final_state import FinalState
 from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer
 from .cycle_jump import adaptive_jumps, fixed_jumps
@@ -28,7 +30,9 @@ from .load_path import LoadSegment, by_fixed_jumps, cycle_legs, first_pass, to_s
 _ACROSS = (1.0, 0.0)
 
 
-def fretting(system: System, observer: Observer, before: Fretted | None = None) -> Outcome:
+def fretting(
+    system: System, observer: Observer, before: Fretted | None = None
+) -> tuple[FinalState, Result]:
     """Follow the load history and its cycles, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept.
@@ -43,13 +47,11 @@ def fretting(system: System, observer: Observer, before: Fretted | None = None) 
     _, stopped = go_through(system, "load steps", instants, record, observer, last)
     with system.phases("bodies"):
         contact, bodies, interface = record.interface()
-    return Outcome(
-        contact=contact,
-        motion=translation(record.last.motion @ translations),
-        state=bodies,
-        interface=interface,
-        extra=record.extra(),
-        history=[],
+    motion = translation(record.last.motion @ translations)
+    return conclude(
+        FinalState(system, contact, motion, bodies),
+        interface,
+        record.extra(),
         outputs=record.outputs,
         friction=record.history(),
         stopped=stopped,

@@ -9,12 +9,11 @@ import numpy as np
 from ...contact.friction.slip_wear import WornProfile
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...laws.motions import translation
+from ...results import CycleRow, FrictionHistory, FrictionInterface, Interface, LoadRow
 from ...serialise import serialisable
 from ..interface.body_state import BodyState, ContactState, contact_state
 from ..model.system import System
 from ..results.recording import interface_at
-from ..results.result import FrictionHistory, FrictionInterface, Interface
-from ..results.rows import CycleRow, LoadRow
 from ..runtime.frames import FrameRecorder, Shown
 from ..runtime.observer import Observer
 from .fretting_tables import FrettingTables

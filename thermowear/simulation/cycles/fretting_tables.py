@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...contact.friction.stick_slip_state import StickSlipState
+from ...results import CycleRow, FrictionInterface, LoadRow
 from ..model.system import System
-from ..results.result import FrictionInterface
-from ..results.rows import CycleRow, LoadRow
 from .increments import Increment, Jump
 
 _SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips

@@ -9,15 +9,15 @@ import numpy as np
 from ...case.tables.analyses import Reciprocating
 from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion, combined
+from ...results import HistoryRow, Interface, Result, TrackHistory, WornTrack
 from ...serialise import serialisable
 from ..interface.body_state import BodyState, ContactState, contact_state
 from ..interface.factory import interface_problem
 from ..model.rigid_modes import reference_point
 from ..model.system import System
-from ..results.outcome import Outcome
+from ..results.conclude import conclude
+from ..results.final_state import FinalState
 from ..results.recording import interface_at
-from ..results.result import Interface, TrackHistory, WornTrack
-from ..results.rows import HistoryRow
 from ..runtime.frames import FrameRecorder
 from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer
@@ -48,7 +48,7 @@ class Reciprocated:
 
 def reciprocating(
     system: System, observer: Observer, before: Reciprocated | None = None
-) -> Outcome:
+) -> tuple[FinalState, Result]:
     """Follow the cycle-averaged wear in time, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept.
@@ -60,12 +60,10 @@ def reciprocating(
     _, stopped = go_through(system, "time stepping", run, record, observer, last)
     with system.phases("bodies"):
         contact, motion, state, interface = record.in_the_middle()
-    return Outcome(
-        contact=contact,
-        motion=motion,
-        state=state,
-        interface=interface,
-        extra=record.extra(),
+    return conclude(
+        FinalState(system, contact, motion, state),
+        interface,
+        record.extra(),
         history=record.rows,
         outputs=record.outputs,
         track=TrackHistory(record.worn_track(), record.tracks),

@@ -10,9 +10,9 @@ from ...bulk.field import as_function
 from ...bulk.heat.varying import straining_rise
 from ...compat import evaluate
 from ...laws.motions import RigidMotion
+from ...results import BodyFields
 from ..interface.body_state import BodyState
 from ..model.system import System
-from .result import BodyFields
 
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...laws.motions import RigidMotion
+from ...results import Interface, Profile
 from ..interface.body_state import BodyState, ContactState, body_state
 from ..model.system import System
-from .result import Interface, Profile
 
 _STEEPEST = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""

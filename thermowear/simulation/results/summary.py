@@ -6,11 +6,10 @@ import numpy as np
 
 from ...bulk.field import total
 from ...contact.search.zones import contact_zones
+from ...results import Interface
 from ..model.rigid_modes import applied, guides, reference_point
 from ..model.system import System
-from ..model.thermal_loads import ThermalLoad
-from ..model.thermal_system import ThermalSystem
-from .outcome import Outcome
+from .final_state import FinalState
 
 _GUIDES = {
     "x": "guide_force_N",
@@ -30,10 +29,18 @@ _ROTATIONS = {
 """Keys of the holder rotations, in the order of the components of a rotation vector."""
 
 
-def summarise(system: System, outcome: Outcome) -> dict:
-    """All numbers of ``summary.json`` except timings. Quantities that do not exist are None."""
+def summarise(final: FinalState, interface: Interface, time: float) -> dict:
+    """Numbers of ``summary.json`` of any analysis. Quantities that do not exist are None.
+
+    Parameters
+    ----------
+    final : FinalState
+    interface : Interface
+    time : float
+        Time at the end, or zero [s].
+    """
+    system, contact = final.system, final.contact
     case, w = system.case, system.weights
-    contact, interface = outcome.contact, outcome.interface
     p, sliding = contact.pressure, system.slides is not None
     friction = sliding * contact.conditions.friction * p  # at rest there is none
     system = system.rubbing(contact.conditions.friction)
@@ -59,12 +66,12 @@ def summarise(system: System, outcome: Outcome) -> dict:
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": float(outcome.motion.at(reference_point(case)) @ system.press),
-        "max_temperature_K": _number(outcome.state.hottest),
+        "approach_m": float(final.motion.at(reference_point(case)) @ system.press),
+        "max_temperature_K": _number(final.bodies.hottest),
         "friction_power_W": float(w @ (contact.conditions.heating * p)),
-        **_conducted(system, outcome),
-        "heat_balance_relative_error": _number(outcome.state.heat_error),
-        "equilibrium_relative_error": outcome.state.force_error,
+        **_conducted(final, time),
+        "heat_balance_relative_error": _number(final.bodies.heat_error),
+        "equilibrium_relative_error": final.bodies.force_error,
         "rigid_wear_velocity_m_per_s": None,
         "wear_dissipation_W": float(w @ (p * rates)),
         "wear_volume_1_m3": float(volumes[0]),
@@ -73,16 +80,16 @@ def summarise(system: System, outcome: Outcome) -> dict:
             name: law.per for name, law in case.wear.items() if law.coefficient is not None
         },
     }
-    about = _passing(system, outcome) | _guide_reactions(system, p) | _rotations(system, outcome)
-    return summary | about | _friction(system, outcome) | outcome.extra
+    about = _passing(final, time) | _guide_reactions(system, p) | _rotations(final)
+    return summary | about | _friction(final)
 
 
-def _friction(system: System, outcome: Outcome) -> dict[str, float]:
+def _friction(final: FinalState) -> dict[str, float]:
     """Range of the coefficient of friction in contact and its force-weighted mean, if varying."""
-    pressure = outcome.contact.pressure
+    system, pressure = final.system, final.contact.pressure
     if not system.case.friction_varies or not pressure.any():
         return {}
-    friction, carries = outcome.contact.conditions.friction, pressure > 0
+    friction, carries = final.contact.conditions.friction, pressure > 0
     return {
         "friction_mean": float(np.average(friction, weights=system.weights * pressure)),
         "friction_min": float(friction[carries].min()),
@@ -90,30 +97,27 @@ def _friction(system: System, outcome: Outcome) -> dict[str, float]:
     }
 
 
-def _conducted(system: System, outcome: Outcome) -> dict[str, float]:
+def _conducted(final: FinalState, time: float) -> dict[str, float]:
     """Heat into both bodies: at the contact, and through surfaces with a given flux or power."""
-    thermal, faces = system.thermal, outcome.state.thermal
+    system, faces = final.system, final.bodies.thermal
+    thermal = system.thermal
     if thermal is None or faces is None:
         return {}
     into = (float(system.weights @ flux) for flux in faces.flux)
     found = {f"contact_heat_{body}_W": heat for body, heat in enumerate(into, 1)}
-    load = _thermal_load(thermal, outcome)
+    load = thermal.loads.at(time)
     return found | ({"prescribed_heat_W": load.prescribed} if load.magnitude > 0.0 else {})
 
 
-def _thermal_load(thermal: ThermalSystem, outcome: Outcome) -> ThermalLoad:
-    """Thermal loads at the end of the analysis."""
-    return thermal.loads.at(outcome.history[-1].time if outcome.history else 0.0)
-
-
-def _passing(system: System, outcome: Outcome) -> dict:
+def _passing(final: FinalState, time: float) -> dict:
     """Advection of heat by a body 2 passing under body 1, and heat losses of the bodies."""
-    thermal, rise, heat = system.thermal, outcome.state.rise, system.case.heat
+    system, rise = final.system, final.bodies.rise
+    thermal, heat = system.thermal, system.case.heat
     if thermal is None or rise is None or heat is None or not system.case.geometry.passes:
         return {}
     advection = thermal.conduction.advection
     stabilised = advection is not None and advection.stabilised
-    ambient = _thermal_load(thermal, outcome).ambient
+    ambient = thermal.loads.at(time).ambient
     still = np.zeros(len(rise))
     cooled, _, carried = thermal.conduction.losses(rise, still, ambient=ambient)
     leaves = advection is not None and system.case.geometry.rotation_center is None
@@ -158,10 +162,11 @@ def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
     return reactions
 
 
-def _rotations(system: System, outcome: Outcome) -> dict[str, float]:
+def _rotations(final: FinalState) -> dict[str, float]:
     """Rotation of the holder about each of its free axes [rad]."""
-    turned = zip(_ROTATIONS.items(), outcome.motion.rotation, strict=True)
-    return {key: float(angle) for (name, key), angle in turned if name in system.case.holder.free}
+    turned, free = final.motion.rotation, final.system.case.holder.free
+    pairs = zip(_ROTATIONS.items(), turned, strict=True)
+    return {key: float(angle) for (name, key), angle in pairs if name in free}
 
 
 def _thermal_dofs(system: System) -> int:

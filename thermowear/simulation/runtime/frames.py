@@ -7,10 +7,10 @@ from collections.abc import Callable
 from ...case.tables.analyses import Fretting, Timed
 from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion
+from ...results import Frame, Interface, WornTrack
 from ..interface.body_state import BodyState, ContactState
 from ..model.system import System
 from ..results.fields import sample
-from ..results.result import Frame, Interface, WornTrack
 from .observer import Observer
 
 Shown = tuple[ContactState, RigidMotion, BodyState, Interface]

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...reference.growing_contact import GrowingContact
+from ...results import Interface
 from ...simulation import Result
-from ...simulation.results.result import Interface
 from ..check import Check, compare
 from ..starter import run_starter
 

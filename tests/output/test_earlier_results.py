@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import shutil
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 
 from thermowear.app.cli import main
 
-from .shown import shown
+from .shown import PageText, shown
 
 DATA = Path(__file__).parent / "data" / "0.1.0"
 RUNS = ("steady", "transient", "fretting")
@@ -81,3 +82,44 @@ def test_a_checkpoint_of_another_version(copy, capsys):
     assert (folder / "interface.csv").read_bytes() == (
         DATA / "transient" / "interface.csv"
     ).read_bytes()
+
+
+def without(folder, pattern, header):
+    """Remove a column of some tables, and add one of a later version in front."""
+    for path in folder.rglob(pattern):
+        with path.open(newline="") as file:
+            head, *rows = csv.reader(file)
+        k = head.index(header)
+        with path.open("w", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["film_m", *head[:k], *head[k + 1 :]])
+            writer.writerows([1e-6, *row[:k], *row[k + 1 :]] for row in rows)
+
+
+LACKING = {
+    ("transient", "history.csv", "max_pressure_Pa"): {"history", "heat"},
+    ("transient", "heat.csv", "mean_temperature_1_K"): {"heat"},
+    ("transient", "interface*.csv", "wear_1_m"): {"wear"},
+    ("fretting", "friction.csv", "slip_m"): {"friction"},
+    ("fretting", "interface.csv", "x_m"): {"interface", "wear"},
+    ("sweep", "interface.csv", "shape_m"): {"shapes"},
+}
+
+
+@pytest.mark.usefixtures("bodies_not_drawn")
+@pytest.mark.parametrize(("where", "missing"), LACKING.items(), ids=map(str, LACKING))
+def test_what_needs_a_missing_column_is_left_out(where, missing, copy, capsys):
+    """requirement: all other pictures are drawn, a note names the column, and report works."""
+    name, pattern, header = where
+    folder = copy(name)
+    without(folder, pattern, header)
+    assert main(["plot", str(folder)]) == 0
+    assert {path.stem for path in folder.glob("*.png")} == PICTURES[name] - missing
+    notes = [line for line in capsys.readouterr().err.splitlines() if header in line]
+    assert len(notes) == len(missing)
+    for picture in missing:
+        assert any(f"no {picture}.png, as" in note for note in notes)
+    if name != "sweep":
+        assert main(["report", str(folder)]) == 0
+        page = PageText((folder / "report.html").read_text(encoding="utf-8"))
+        assert "film [µm]" in page.lines

@@ -24,7 +24,7 @@ def draw_friction(folder: Path) -> None:
             upper.plot(place, table.drawn("shear"), color=color, label=name)
             slipping = np.where(table["pressure"] > 0, table.drawn("slip"), np.nan)
             lower.plot(place, slipping, color=color)
-        limit = read_summary(folder)["friction"] * table.drawn("pressure")
+        limit = (read_summary(folder).get("friction") or np.nan) * table.drawn("pressure")
         upper.plot(place, limit, color="0.5", linestyle=":", label="friction · pressure")
         upper.plot(place, -limit, color="0.5", linestyle=":")
         pressed = place[table["pressure"] > 0]

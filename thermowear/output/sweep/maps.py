@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from .. import tables
 from ..pictures.curves import STYLE
 from ..pictures.maps import triangulated
+from .layout import Layout
 from .record import VariantRecord
 
 _MOST = 12
@@ -20,8 +21,9 @@ _ACROSS = 4
 _LEVELS = 12
 
 
-def draw_shape_maps(record: VariantRecord, path: Path) -> None:
+def draw_shape_maps(layout: Layout, path: Path) -> None:
     """Draw maps of up to twelve variants with a common scale; of more, evenly spaced ones."""
+    record = layout.record
     count = min(len(record.folders), _MOST)
     chosen = np.unique(np.linspace(0, len(record.folders) - 1, count).round().astype(int))
     data = [tables.read(record.folders[k] / "interface.csv") for k in chosen]

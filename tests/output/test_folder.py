@@ -15,7 +15,7 @@ from thermowear.case.starters import starter_text
 from thermowear.output.folder import ResultsFolder
 from thermowear.output.names import name_at
 from thermowear.output.tables import read
-from thermowear.simulation import HistoryRow
+from thermowear.results import HistoryRow
 
 TABLES = as_plain(tw.load(tomllib.loads(starter_text("annular-punch-running-in"))))
 

@@ -38,7 +38,7 @@ def test_index_and_files_agree(folder):
     assert len(set(np.diff([frame.number for frame in frames]))) == 1
     assert len(times) > 8
     assert [frame.time for frame in frames] == [times[frame.number] for frame in frames]
-    expected = {f.name for frame in frames for f in (frame.fields, frame.interface)}
+    expected = {f.name for frame in frames for f in map(frame.file, ("fields", "interface"))}
     assert {path.name for path in (folder / FRAMES).iterdir()} == expected | {"frames.pvd"}
 
 
@@ -46,9 +46,9 @@ def test_fields_are_those_of_the_step(folder):
     """requirement: the largest pressure equals that of the history; stress in single precision."""
     largest = read(folder / "history.csv")["max_pressure"]
     for frame in frame_files(folder / FRAMES):
-        pressure = read(frame.interface)["pressure"]
+        pressure = read(frame.file("interface"))["pressure"]
         assert pressure.max() == pytest.approx(largest[frame.number], rel=1e-9)
-        mesh = meshio.read(frame.fields)
+        mesh = meshio.read(frame.file("fields"))
         assert mesh.point_data["von_mises_Pa"].dtype == np.float32
         assert mesh.point_data["von_mises_Pa"].max() > 1e6
 

@@ -9,8 +9,7 @@ import pytest
 
 from thermowear.app.cli import main
 from thermowear.output import tables
-from thermowear.results import table_of
-from thermowear.simulation import HistoryRow
+from thermowear.results import HistoryRow, table_of
 
 from ..conftest import COLD_RUNNING_IN
 

@@ -1,6 +1,6 @@
 """Reference of tables, columns and keys in docs/results.md, made from their declarations.
 
-    scripts/env python3 -m tests.results.test_reference      # writes it anew
+scripts/env python3 -m tests.results.test_reference      # writes it anew
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from thermowear.results import GROUPS, TABLES, from_key
-from thermowear.results.summary_keys import group_of, of_key
+from thermowear.results.summary_keys import OTHER, group_of, of_key
 from thermowear.results.units import key, split_key
 
 ROOT = Path(__file__).parents[2]
@@ -71,11 +71,16 @@ def test_units_of_plots():
     assert columns["heat_flux_2"].drawn(1500.0) == pytest.approx(1.5, rel=1e-12)
 
 
-def test_every_key_of_a_summary_is_declared():
-    """requirement: no number of a run is missing in the reference."""
+def test_a_key_that_is_not_declared_names_itself():
+    """requirement: label and unit of any key of a summary."""
+    shown = of_key("wear_volume_per_cycle_1_m3")
+    assert (shown.label, shown.si, shown.unit) == ("wear volume per cycle 1", "m³", "m³")
+    assert group_of("wear_volume_per_cycle_1_m3") == OTHER
+    assert of_key("growth_rate_per_s").si == "1/s"
     known = {quantity.header for group in GROUPS.values() for quantity in group}
     for path in DATA.rglob("summary.json"):
-        assert set(json.loads(path.read_bytes())) <= known, path
+        others = set(json.loads(path.read_bytes())) - known
+        assert others <= {"title", "cycles", *(f"wear_volume_per_cycle_{k}_m3" for k in (1, 2))}
 
 
 def test_a_declaration_is_in_one_place():
@@ -84,9 +89,9 @@ def test_a_declaration_is_in_one_place():
     assert len(keys) == len(set(keys))
     for table in TABLES.values():
         for name, quantity in table.columns.items():
-            assert re.fullmatch(rf"{name}|{key(name, quantity.si)}|balance_relative_error", (
-                quantity.header
-            ))
+            assert re.fullmatch(
+                rf"{name}|{key(name, quantity.si)}|balance_relative_error", (quantity.header)
+            )
             if quantity.header in keys and group_of(quantity.header) != "Times":
                 assert of_key(quantity.header).label == quantity.label
 

@@ -14,8 +14,9 @@ from ..output.console import ConsoleProgress, Terminal, print_discretisations, p
 from ..output.folder import ResultsFolder
 from ..output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from ..parallel import on_root
+from ..results import CycleRow, Frame, HeatRow, HistoryRow, Interface, LoadRow
 from ..serialise import Checkpoint, pack
-from ..simulation import CycleRow, Frame, HeatRow, HistoryRow, Interface, LoadRow, Observer, run
+from ..simulation import Observer, run
 from ..simulation.runtime.checkpoint_data import Saved
 from ..timer import Phases
 from .discretisations import COMPARED, side_by_side

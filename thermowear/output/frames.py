@@ -19,7 +19,7 @@ _KINDS = {"fields": ".vtu", "interface": ".csv", "track": ".csv"}
 
 @dataclass(frozen=True)
 class FrameFiles:
-    """Files of an intermediate state; see `thermowear.simulation.Frame`.
+    """Files of an intermediate state; see `thermowear.results.Frame`.
 
     Attributes
     ----------
@@ -34,24 +34,8 @@ class FrameFiles:
     number: int
     place: Path
 
-    @property
-    def fields(self) -> Path:
-        return self._file("fields")
-
-    @property
-    def interface(self) -> Path:
-        return self._file("interface")
-
-    @property
-    def track(self) -> Path:
-        """Table of the worn track, in reciprocating analyses only."""
-        return self._file("track")
-
-    @property
-    def files(self) -> tuple[Path, ...]:
-        return self.fields, self.interface, self.track
-
-    def _file(self, kind: str) -> Path:
+    def file(self, kind: str) -> Path:
+        """File of the fields, the interface or, in reciprocating analyses only, the track."""
         return self.place / f"{kind}_{self.number:05d}{_KINDS[kind]}"
 
 
@@ -65,14 +49,14 @@ def write_frame(place: Path, frame) -> None:
     ----------
     place : Path
         Folder, created with the first frame.
-    frame : thermowear.simulation.Frame
+    frame : thermowear.results.Frame
     """
     place.mkdir(exist_ok=True)
     new = FrameFiles(frame.time, frame.number, place)
-    write_points(new.interface, frame.interface)
+    write_points(new.file("interface"), frame.interface)
     if frame.track is not None:
-        write_points(new.track, frame.track)
-    write_fields(new.fields, _single(frame.fields))
+        write_points(new.file("track"), frame.track)
+    write_fields(new.file("fields"), _single(frame.fields))
     earlier = [old for old in frame_files(place) if old.number != new.number]
     kept = [o for o in earlier if o.number < new.number and o.number % frame.every == 0]
     _write_index(place, [*kept, new])
@@ -116,7 +100,7 @@ def remove_frames(place: Path) -> None:
 
 def _remove_others(place: Path, frames: list[FrameFiles]) -> None:
     """Remove files of frames, complete or partial, that belong to none of the given frames."""
-    kept = {path for frame in frames for path in frame.files}
+    kept = {frame.file(kind) for frame in frames for kind in _KINDS}
     for path in place.iterdir():
         if path not in kept and _is_of_frame(final_name(path)):
             path.unlink()
@@ -133,7 +117,9 @@ def _write_index(place: Path, frames: list[FrameFiles]) -> None:
     root = ET.Element("VTKFile", type="Collection", version="0.1")
     collection = ET.SubElement(root, "Collection")
     for frame in frames:
-        ET.SubElement(collection, "DataSet", timestep=f"{frame.time:.15g}", file=frame.fields.name)
+        ET.SubElement(
+            collection, "DataSet", timestep=f"{frame.time:.15g}", file=frame.file("fields").name
+        )
     ET.indent(root)
     with replacing(place / _INDEX) as draft:
         ET.ElementTree(root).write(draft, encoding="utf-8", xml_declaration=True)

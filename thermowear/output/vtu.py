@@ -18,7 +18,7 @@ def write_fields(path: Path, fields) -> None:
     Parameters
     ----------
     path : Path
-    fields : thermowear.simulation.BodyFields
+    fields : thermowear.results.BodyFields
     """
     import meshio
 

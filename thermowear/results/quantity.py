@@ -15,6 +15,7 @@ from typing import Any, TypeVar, dataclass_transform
 
 import numpy as np
 
+from ..serialise import serialisable_row
 from .units import key, multiple, scale_of, split_key
 
 Kind = TypeVar("Kind")
@@ -156,7 +157,7 @@ def table(
         made: Any = dataclass(frozen=True)(kind)
         made.__table__ = Table(stem, caption, content, declared(made), at_times, grows)
         TABLES[stem] = made.__table__
-        return made
+        return serialisable_row(made) if grows else made
 
     return register
 

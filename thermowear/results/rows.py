@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from ..serialise import serialisable_row
 from .quantity import as_in, column, table
 
 
-@serialisable_row
 @table(
     "history", "History, one row per step", "one row per time step of a transient run", grows=True
 )
@@ -29,7 +27,6 @@ class HistoryRow:
     error: float = column("time step error", meaning="relative")
 
 
-@serialisable_row
 @table(
     "heat",
     "Heat, one row per step",
@@ -58,7 +55,6 @@ class HeatRow:
     mean_temperature_2: float = column("mean surface temperature, body 2", "K", "°C")
 
 
-@serialisable_row
 @table(
     "cycles",
     "Cycles, one row per computed cycle",
@@ -85,7 +81,6 @@ class CycleRow:
     error: float = column("cycle-jump error", meaning="relative to the largest wear depth")
 
 
-@serialisable_row
 @table(
     "loads",
     "Load history, one row per increment",

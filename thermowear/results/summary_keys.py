@@ -1,4 +1,4 @@
-"""Keys of the summary, with labels and units, by group."""
+"""Keys of the summary by group, with labels and units."""
 
 from __future__ import annotations
 
@@ -91,31 +91,8 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("steps"),
         Quantity("seconds", "time", "s", "s", "wall time by phase"),
     ),
-    OTHER: tuple(
-        map(
-            from_key,
-            (
-                *("title", "friction_mean", "friction_min", "friction_max"),
-                *("cycles", "sliding_distance_m", "max_pressure_of_cycle_Pa"),
-                *("mean_wear_rate_1_m_per_s", "mean_wear_rate_2_m_per_s"),
-                *("wear_volume_per_cycle_1_m3", "wear_volume_per_cycle_2_m3"),
-                *("geometry_updates", "geometry_largest_kept", "geometry_meshed_anew"),
-                *("geometry_smallest_scaled_jacobian", "geometry_change"),
-                *("geometry_volume_1_m3", "geometry_volume_2_m3", "geometry_volume_error"),
-                *("geometry_temperature_error", "geometry_remeshing_error"),
-                *("critical_speed_factor", "critical_speed_factor_with_wear"),
-                *("critical_speed_m_per_s", "critical_speed_with_wear_m_per_s"),
-                "critical_angular_velocity_rad_per_s",
-                "critical_angular_velocity_with_wear_rad_per_s",
-                *("critical_frequency_rad_per_s", "critical_frequency_with_wear_rad_per_s"),
-                *("growth_rate_per_s", "growth_rate_without_wear_per_s"),
-                *("growth_frequency_rad_per_s", "growth_frequency_without_wear_rad_per_s"),
-                *("static_speed_factors", "not_finite"),
-            ),
-        )
-    ),
 }
-"""All keys by group."""
+"""Keys by group; all others are in `OTHER`, with labels and units from their names."""
 
 _KEYS = {quantity.header: quantity for group in GROUPS.values() for quantity in group}
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...reference.growing_contact import GrowingContact
-from ...results import Interface
-from ...simulation import Result
+from ...results import Interface, Result
 from ..check import Check, compare
 from ..starter import run_starter
 

@@ -77,7 +77,9 @@ def read_film(folder: Path) -> Film:
         If a file does not have the expected columns.
     """
     states = [
-        FrameState(f.time, tables.read(f.interface), _track(f.track), f.fields)
+        FrameState(
+            f.time, tables.read(f.file("interface")), _track(f.file("track")), f.file("fields")
+        )
         for f in frame_files(folder / FRAMES)
     ]
     name = next(name for name in _COURSES if (folder / name).is_file())

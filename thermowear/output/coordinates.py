@@ -1,16 +1,23 @@
-"""Coordinate names in labels: r and z in axisymmetric models, x and y in others."""
+"""Summary of a results folder, and coordinate names in labels: r and z in axisymmetric models."""
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ..results import Quantity
-from .summary import read_summary
 
 _AXISYMMETRIC = {"x": "r", "y": "z"}
+
+
+def read_summary(folder: Path) -> dict[str, Any]:
+    """Summary of the run in a results folder; empty if there is none."""
+    path = folder / "summary.json"
+    return json.loads(path.read_bytes()) if path.is_file() else {}
 
 
 def model_of(folder: Path) -> str:

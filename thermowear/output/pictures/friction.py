@@ -8,8 +8,8 @@ import matplotlib as mpl
 import numpy as np
 
 from .. import tables
+from ..coordinates import read_summary
 from ..names import states
-from ..summary import read_summary
 from .curves import BODIES, abscissa, from_zero, panels
 
 

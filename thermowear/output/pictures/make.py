@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ...balances import violated
 from ...errors import CaseError, ComputationError
-from ..summary import read_summary
+from ..coordinates import read_summary
 from ..tables import MissingColumnError
 from .animation import FPS, check_film, has_frames
 from .curves import draw_history, draw_interface, draw_wear

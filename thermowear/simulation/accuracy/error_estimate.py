@@ -33,7 +33,7 @@ from ...results import Interface, Result
 from ..model.building import sliding_of
 from ..model.conditions import InterfaceConditions
 from ..model.system import System
-from ..results.final_state import FinalState
+from ..results.recording import FinalState
 from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
 
 _FOLLOWING = 1.5

@@ -7,7 +7,7 @@ import numpy as np
 from ...errors import ComputationError
 from ..model.rigid_modes import applied
 from ..model.system import System
-from ..results.final_state import FinalState
+from ..results.recording import FinalState
 
 _ANALYSES = ("initial", "transient", "fretting", "reciprocating")
 """Analyses with a defined holder position; a steady state has no history leading to one."""

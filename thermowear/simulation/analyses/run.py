@@ -20,7 +20,7 @@ from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
 from ..model.system import System
 from ..results.fields import sample
-from ..results.final_state import FinalState
+from ..results.recording import FinalState
 from ..runtime.checkpoint_data import Saved, mesh_checksum
 from ..runtime.observer import Observer
 from .plausible import too_steep, went_back

@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import ComputationError
 from ...results import Modes, Result
 from ..model.system import System
-from ..results.final_state import FinalState
+from ..results.recording import FinalState
 from ..runtime.observer import Observer
 from .perturbation import Disturbance, DisturbedContact
 

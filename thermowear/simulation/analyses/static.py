@@ -11,9 +11,8 @@ from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.steady import least_worn, steady_state
 from ..model.system import System
-from ..results.conclude import conclude
-from ..results.final_state import FinalState
-from ..results.recording import interface_at, record
+from ..results.recording import FinalState, interface_at, record
+from ..results.summary import conclude
 from ..runtime.observer import Observer
 
 _VELOCITIES = {

@@ -10,8 +10,8 @@ from ..geometry_update.outer_loop import OuterLoop
 from ..interface.factory import interface_problem
 from ..interface.steady import SteadyState, steady_state
 from ..model.system import System
-from ..results.conclude import conclude
-from ..results.final_state import FinalState
+from ..results.recording import FinalState
+from ..results.summary import conclude
 from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer
 from ..time.step_sizes import AnySize, FewSizes

@@ -18,8 +18,8 @@ from ...contact.operators.tangential import FrictionalContact, condense_tangenti
 from ...laws.motions import translation
 from ...results import Result
 from ..model.system import System
-from ..results.conclude import conclude
-from ..results.final_state import FinalState
+from ..results.recording import FinalState
+from ..results.summary import conclude
 from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer
 from .cycle_jump import adaptive_jumps, fixed_jumps

@@ -15,9 +15,8 @@ from ..interface.body_state import BodyState, ContactState, contact_state
 from ..interface.factory import interface_problem
 from ..model.rigid_modes import reference_point
 from ..model.system import System
-from ..results.conclude import conclude
-from ..results.final_state import FinalState
-from ..results.recording import interface_at
+from ..results.recording import FinalState, interface_at
+from ..results.summary import conclude
 from ..runtime.frames import FrameRecorder
 from ..runtime.guarded_loop import go_through
 from ..runtime.observer import Observer

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...laws.motions import RigidMotion
@@ -11,6 +13,26 @@ from ..model.system import System
 
 _STEEPEST = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
+
+
+@dataclass(frozen=True)
+class FinalState:
+    """Final state of an analysis on one rank, from which its results are evaluated.
+
+    Attributes
+    ----------
+    system : System
+        Final system, whose meshes may have been moved.
+    contact : ContactState
+    motion : RigidMotion
+        Rigid motion of the holder.
+    bodies : BodyState
+    """
+
+    system: System
+    contact: ContactState
+    motion: RigidMotion
+    bodies: BodyState
 
 
 def interface_at(

@@ -6,10 +6,10 @@ import numpy as np
 
 from ...bulk.field import total
 from ...contact.search.zones import contact_zones
-from ...results import Interface
+from ...results import Interface, Result
 from ..model.rigid_modes import applied, guides, reference_point
 from ..model.system import System
-from .final_state import FinalState
+from .recording import FinalState, profile
 
 _GUIDES = {
     "x": "guide_force_N",
@@ -127,6 +127,26 @@ def _passing(final: FinalState, time: float) -> dict:
         "heat_cooled_W": float(cooled),
         "heat_carried_out_W": float(carried) if leaves else None,
     }
+
+
+def conclude(
+    final: FinalState, interface: Interface, extra: dict, **recorded
+) -> tuple[FinalState, Result]:
+    """Final state and result of an analysis, with profile and summary. Every rank calls.
+
+    Parameters
+    ----------
+    final : FinalState
+    interface : Interface
+        Interface at the end.
+    extra : dict
+        Entries that the analysis adds to the summary.
+    **recorded
+        Further attributes of the result, such as its histories.
+    """
+    history = recorded.get("history")
+    summary = summarise(final, interface, history[-1].time if history else 0.0) | extra
+    return final, Result(interface, profile(final.system, interface), summary, **recorded)
 
 
 def normal_force(system: System, pressure: np.ndarray) -> float:

@@ -10,9 +10,9 @@ import numpy as np
 
 from ....results import FIELDS, Quantity
 from ... import tables
+from ...coordinates import read_summary
 from ...frames import frame_files
 from ...names import FRAMES
-from ...summary import read_summary
 
 _CORNERS = {"triangle": [[0, 1, 2]], "quad": [[0, 1, 2], [0, 2, 3]]}
 _STEADY = 1e-2  # distance from the steady state up to which the final state is called steady

@@ -14,7 +14,8 @@ from thermowear.output.folder import finite
 from thermowear.output.lock import Lock
 from thermowear.output.resuming import read_run
 from thermowear.output.tables import RowWriter, read
-from thermowear.results import HistoryRow, table_of
+from thermowear.results import HistoryRow
+from thermowear.results.quantity import table_of
 from thermowear.serialise import Checkpoint
 
 ABOUT, ARRAYS = {"time": 0.1, "case": {"title": "µ"}}, {"a0": np.arange(3.0), "b@1": np.eye(2)}

@@ -9,7 +9,8 @@ import pytest
 
 from thermowear.app.cli import main
 from thermowear.output import tables
-from thermowear.results import HistoryRow, table_of
+from thermowear.results import HistoryRow
+from thermowear.results.quantity import table_of
 
 from ..conftest import COLD_RUNNING_IN
 

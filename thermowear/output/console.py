@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..balances import BALANCES, holds
-from ..results import PHASES, of_key
+from ..results.summary_keys import PHASES, of_key
 
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..results import Quantity
+from ..results.quantity import Quantity
 
 _AXISYMMETRIC = {"x": "r", "y": "z"}
 

@@ -17,7 +17,8 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from ..results import TABLES, table_of
+from ..results import TABLES
+from ..results.quantity import table_of
 from .atomic_write import final_name, replacing
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .frames import remove_frames, write_frame

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..results import TABLES, Quantity, Table, table_of, unknown
+from ..results import TABLES
+from ..results.quantity import Quantity, Table, table_of, unknown
 from .atomic_write import replacing
 from .coordinates import in_model, model_of
 from .names import stem_and_time

@@ -24,16 +24,11 @@ class Interface:
     y: np.ndarray = column("y", "m", "mm", "z in axisymmetric models")
     z: np.ndarray = column("z", "m", "mm", "0 in plane and axisymmetric models")
     s: np.ndarray = column("position along the contact", "m", "mm", "arc length; nan in 3D models")
-    weight: np.ndarray = column(
-        "area weight", "m²", "mm²", "area of the whole ring or of the given thickness"
-    )
+    weight: np.ndarray = column("area weight", "m²", "mm²", "of the whole ring or thickness")
     pressure: np.ndarray = column("contact pressure", "Pa", "MPa")
     gap: np.ndarray = column("gap", "m", "µm", "distance of the faces, positive if open")
     shape: np.ndarray = column(
-        "shape of the unloaded face",
-        "m",
-        "µm",
-        "height towards the other body after unloading and cooling, zero at the lowest point",
+        "shape of the unloaded face", "m", "µm", "height of the cold face above its lowest point"
     )
     wear_1: np.ndarray = column("wear depth, body 1", "m", "µm")
     wear_2: np.ndarray = column("wear depth, body 2", "m", "µm")

@@ -12,17 +12,13 @@ class HistoryRow:
     """Step of a running-in."""
 
     time: float = column("time", "s")
-    sliding_distance: float = column(
-        "sliding distance", "m", meaning="at the mean sliding speed of the contact"
-    )
+    sliding_distance: float = column("sliding distance", "m", meaning="at the mean speed")
     max_pressure: float = column("largest pressure", "Pa", "MPa")
     contact_area: float = column("contact area", "m²", "mm²", "sum over the points in contact")
     wear_volume_1: float = column("worn volume, body 1", "m³", "mm³")
     wear_volume_2: float = column("worn volume, body 2", "m³", "mm³")
     max_temperature: float = column("highest temperature", "K", "°C")
-    approach: float = column(
-        "approach", "m", "µm", "displacement of the holder along the load direction"
-    )
+    approach: float = column("approach", "m", "µm", "of the holder along the load direction")
     step: float = column("time step", "s")
     error: float = column("time step error", meaning="relative")
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...balances import ALLOWED, BALANCES, holds
-from ...results import GROUPS, OTHER, PHASES, group_of, of_key
+from ...results.summary_keys import GROUPS, OTHER, PHASES, group_of, of_key
 from ...results.units import split_key
 from .engineering import NOTHING, number, quantity
 

@@ -8,7 +8,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from ...results import from_key, of_key
+from ...results.quantity import from_key
+from ...results.summary_keys import of_key
 from .. import tables
 from ..coordinates import in_model, model_of
 from ..pictures.curves import STYLE

@@ -8,7 +8,8 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from ....results import FIELDS, Quantity
+from ....results import FIELDS
+from ....results.quantity import Quantity
 from ... import tables
 from ...coordinates import read_summary
 from ...frames import frame_files

@@ -16,7 +16,7 @@ from thermowear.output.sweep.layout import is_wide, lay_out
 from thermowear.output.sweep.record import read_sweep
 from thermowear.output.sweep.shapes import alike
 from thermowear.output.tables import write_points
-from thermowear.results import TABLES, Interface
+from thermowear.results import TABLES, InterfaceFields
 
 
 def points(height, surface=False):
@@ -27,7 +27,9 @@ def points(height, surface=False):
         x, y = (grid.ravel() for grid in np.meshgrid(np.linspace(0, 0.02, 6), x))
     values = dict.fromkeys(TABLES["interface"].columns, 0 * x)
     values |= {"x": x, "y": y, "s": np.full(len(x), np.nan) if surface else x}
-    return Interface(**values | {"pressure": 1e6 + x * 1e7, "shape": height * (x - 0.01) ** 2})
+    return InterfaceFields(
+        **values | {"pressure": 1e6 + x * 1e7, "shape": height * (x - 0.01) ** 2}
+    )
 
 
 def made(path, over, surface=False, failing=()):

@@ -10,7 +10,7 @@ import pytest
 from thermowear.output.names import is_ours, name_at
 from thermowear.output.report.contents import read_contents
 from thermowear.output.tables import read, write_points
-from thermowear.results import TABLES, HistoryRow, Interface, Profile, Result
+from thermowear.results import TABLES, HistoryRow, InterfaceFields, Profile, Result
 from thermowear.results.quantity import as_in, column, table
 
 INTERFACE = TABLES["interface"].columns
@@ -21,7 +21,7 @@ def result():
     columns = {name: np.linspace(0.0, 1.0, 3) + k for k, name in enumerate(INTERFACE)}
     profile = Profile(*np.arange(33.0).reshape(11, 3))
     rows = [HistoryRow(*np.arange(10.0) + k) for k in range(2)]
-    return Result(Interface(**columns), profile, {}, rows)
+    return Result(InterfaceFields(**columns), profile, {}, rows)
 
 
 def test_columns_as_in_files(result):
@@ -48,7 +48,7 @@ def test_a_new_table_is_written_down_once(tmp_path):
 
         @table("film", "Film at the end", "one row per point", at_times=True)
         class Film:
-            x: np.ndarray = as_in(Interface)
+            x: np.ndarray = as_in(InterfaceFields)
             thickness: np.ndarray = column("film thickness", "m", "µm")
 
         for time in (None, 2.5):

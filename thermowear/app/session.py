@@ -14,7 +14,7 @@ from ..output.console import ConsoleProgress, Terminal, print_discretisations, p
 from ..output.folder import ResultsFolder
 from ..output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from ..parallel import on_root
-from ..results import CycleRow, Frame, HeatRow, HistoryRow, Interface, LoadRow
+from ..results import CycleRow, Frame, HeatRow, HistoryRow, InterfaceFields, LoadRow
 from ..serialise import Checkpoint, pack
 from ..simulation import Observer, run
 from ..simulation.runtime.checkpoint_data import Saved
@@ -57,7 +57,7 @@ class Recorder(Observer):
         if self._progress is not None:
             self._progress.note(text)
 
-    def output(self, time: float, interface: Interface, friction=None, track=None) -> None:
+    def output(self, time: float, interface: InterfaceFields, friction=None, track=None) -> None:
         self._save(lambda: self._folder.output(time, interface, friction, track))
 
     def frame(self, frame: Frame) -> None:

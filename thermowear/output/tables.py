@@ -81,7 +81,7 @@ def read(path: Path) -> TableColumns:
 
 
 def write_points(path: Path, points) -> None:
-    """Write points, such as `thermowear.results.Interface`, one per row."""
+    """Write points, such as `thermowear.results.InterfaceFields`, one per row."""
     table = table_of(points)
     _write(path, table, zip(*table.values(points), strict=True))
 

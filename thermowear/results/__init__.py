@@ -1,6 +1,6 @@
 """Results of a run: tables and summary, and the name, label and unit of each quantity."""
 
-from .points import FrictionInterface, Interface, Modes, Profile, WornTrack
+from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack
 from .quantity import TABLES
 from .result import FIELDS, BodyFields, Frame, FrictionHistory, Result, TrackHistory
 from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
@@ -15,7 +15,7 @@ __all__ = [
     "FrictionInterface",
     "HeatRow",
     "HistoryRow",
-    "Interface",
+    "InterfaceFields",
     "LoadRow",
     "Modes",
     "Profile",

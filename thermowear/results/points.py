@@ -14,7 +14,7 @@ from .quantity import as_in, column, table
     "temperatures, heat fluxes",
     at_times=True,
 )
-class Interface:
+class InterfaceFields:
     """State of the interface, one entry per contact point.
 
     Without ``[heat]`` temperatures and fluxes are NaN. Temperatures are absolute.
@@ -52,14 +52,14 @@ class Profile:
     along the load direction; the wear rates are sums over both bodies along the same directions.
     """
 
-    x: np.ndarray = as_in(Interface)
-    y: np.ndarray = as_in(Interface)
-    z: np.ndarray = as_in(Interface)
-    s: np.ndarray = as_in(Interface)
+    x: np.ndarray = as_in(InterfaceFields)
+    y: np.ndarray = as_in(InterfaceFields)
+    z: np.ndarray = as_in(InterfaceFields)
+    s: np.ndarray = as_in(InterfaceFields)
     normal_x: np.ndarray = column("normal, x")
     normal_y: np.ndarray = column("normal, y")
     normal_z: np.ndarray = column("normal, z")
-    shape: np.ndarray = as_in(Interface)
+    shape: np.ndarray = as_in(InterfaceFields)
     shape_along_press: np.ndarray = column("shape along the load direction", "m", "µm")
     wear_rate: np.ndarray = column("normal wear rate", "m/s", "nm/s", "sum over both bodies")
     wear_rate_along_press: np.ndarray = column(
@@ -79,11 +79,11 @@ class FrictionInterface:
     Signs as in `thermowear.contact.operators.tangential`.
     """
 
-    x: np.ndarray = as_in(Interface)
-    y: np.ndarray = as_in(Interface)
-    s: np.ndarray = as_in(Interface)
-    weight: np.ndarray = as_in(Interface)
-    pressure: np.ndarray = as_in(Interface)
+    x: np.ndarray = as_in(InterfaceFields)
+    y: np.ndarray = as_in(InterfaceFields)
+    s: np.ndarray = as_in(InterfaceFields)
+    weight: np.ndarray = as_in(InterfaceFields)
+    pressure: np.ndarray = as_in(InterfaceFields)
     shear: np.ndarray = column("shear traction on body 1", "Pa", "MPa", "along +x")
     slip: np.ndarray = column("slip of body 1", "m", "µm", "along +x, relative to body 2")
     dissipated: np.ndarray = column("dissipated energy", "J/m²", meaning="since the start")
@@ -96,9 +96,9 @@ class FrictionInterface:
 class WornTrack:
     """Wear of body 2 along its track in reciprocating sliding."""
 
-    x: np.ndarray = as_in(Interface)
-    wear_2: np.ndarray = as_in(Interface)
-    wear_rate_2: np.ndarray = as_in(Interface)
+    x: np.ndarray = as_in(InterfaceFields)
+    wear_2: np.ndarray = as_in(InterfaceFields)
+    wear_rate_2: np.ndarray = as_in(InterfaceFields)
 
 
 @table(
@@ -119,9 +119,9 @@ class Modes:
     speed_factor: np.ndarray = column("speed factor", meaning="speed of the mode, times the given")
     growth_rate: np.ndarray = column("growth rate", "1/s")
     frequency: np.ndarray = column("angular frequency", "rad/s")
-    x: np.ndarray = as_in(Interface)
-    y: np.ndarray = as_in(Interface)
-    z: np.ndarray = as_in(Interface)
-    s: np.ndarray = as_in(Interface)
+    x: np.ndarray = as_in(InterfaceFields)
+    y: np.ndarray = as_in(InterfaceFields)
+    z: np.ndarray = as_in(InterfaceFields)
+    s: np.ndarray = as_in(InterfaceFields)
     pressure: np.ndarray = column("pressure perturbation", meaning="largest value 1")
     pressure_imaginary: np.ndarray = column("perturbation, imaginary part")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .points import FrictionInterface, Interface, Modes, Profile, WornTrack
+from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack
 from .quantity import TABLES, from_key, table_of
 from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
 
@@ -93,7 +93,7 @@ class Frame:
         Earlier frames whose number is no multiple of this are discarded.
     time : float
         [s]
-    interface : Interface
+    interface : InterfaceFields
     fields : BodyFields or None
         Fields of the bodies, on rank 0 only.
     track : WornTrack or None
@@ -103,7 +103,7 @@ class Frame:
     number: int
     every: int
     time: float
-    interface: Interface
+    interface: InterfaceFields
     fields: BodyFields | None
     track: WornTrack | None = None
 
@@ -114,14 +114,14 @@ class Result:
 
     Attributes
     ----------
-    interface : Interface
+    interface : InterfaceFields
         Interface at the end.
     profile : Profile
     summary : dict
         Numbers in SI, the unit in each key.
     history : list of HistoryRow
         Steps of a transient analysis.
-    outputs : dict of float to Interface
+    outputs : dict of float to InterfaceFields
         Interface at the output times, by time [s].
     friction : FrictionHistory or None
         Results of a fretting analysis.
@@ -137,11 +137,11 @@ class Result:
         Fields of the bodies, on rank 0 only.
     """
 
-    interface: Interface
+    interface: InterfaceFields
     profile: Profile
     summary: dict
     history: list[HistoryRow] = field(default_factory=list)
-    outputs: dict[float, Interface] = field(default_factory=dict)
+    outputs: dict[float, InterfaceFields] = field(default_factory=dict)
     friction: FrictionHistory | None = None
     track: TrackHistory | None = None
     heat: list[HeatRow] = field(default_factory=list)

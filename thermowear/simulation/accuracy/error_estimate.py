@@ -29,7 +29,7 @@ from ...contact.search.surface import Surface
 from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
 from ...laws import steady_pressure
-from ...results import Interface, Result
+from ...results import InterfaceFields, Result
 from ..model.building import sliding_of
 from ..model.conditions import InterfaceConditions
 from ..model.system import System
@@ -142,7 +142,7 @@ def _of_temperature(final: FinalState, warmer: WarmerFaces) -> float | None:
     return _FOLLOWING * float(np.abs(warmer.faces).max()) / largest if largest > 0 else None
 
 
-def _of_shape(final: FinalState, interface: Interface, opened: np.ndarray) -> float | None:
+def _of_shape(final: FinalState, interface: InterfaceFields, opened: np.ndarray) -> float | None:
     system = final.system
     worn = np.any([interface.wear_1, interface.wear_2]) or _is_steady(system)
     pressing, scale = interface.pressure > 0, float(np.ptp(interface.shape))
@@ -155,7 +155,7 @@ def _of_shape(final: FinalState, interface: Interface, opened: np.ndarray) -> fl
     return _FOLLOWING * float(np.abs(change - modes @ amounts).max()) / scale
 
 
-def _of_edges(system: System, interface: Interface) -> float:
+def _of_edges(system: System, interface: InterfaceFields) -> float:
     """Mean error of a worn pressure by the position of its ends: half a contact point at each edge.
 
     Enrichment does not detect that error, as the worn gap is the same.
@@ -183,7 +183,7 @@ def _is_steady(system: System) -> bool:
 
 
 def _richer_pressure(
-    final: FinalState, interface: Interface, bodies: EnrichedBodies, opened: np.ndarray
+    final: FinalState, interface: InterfaceFields, bodies: EnrichedBodies, opened: np.ndarray
 ) -> np.ndarray:
     """Pressure of an enriched discretisation at the contact points, shape (n,) [Pa]."""
     system, pressure = final.system, interface.pressure
@@ -204,7 +204,7 @@ def _richer_pressure(
     )
 
 
-def _wear_per_pressure(system: System, interface: Interface) -> np.ndarray:
+def _wear_per_pressure(system: System, interface: InterfaceFields) -> np.ndarray:
     """Least wear depth on the facet of each point per mean pressure, shape (n,) [m/Pa].
 
     Wear acts as a local compliance against a persistent error of the pressure: the gap component

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ...case.tables.analyses import Fretting, Reciprocating
-from ...results import Interface
+from ...results import InterfaceFields
 from ..geometry_update.gap_wear import GapWear
 from ..model.system import System
 
 
-def not_small(system: System, interface: Interface) -> str | None:
+def not_small(system: System, interface: InterfaceFields) -> str | None:
     """Note on an analysis without mesh motion that leaves the small-wear regime; every rank calls.
 
     In reciprocating sliding the depths are those at mid-stroke of body 1.

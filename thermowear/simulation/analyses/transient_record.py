@@ -11,7 +11,7 @@ import numpy as np
 from ...balances import require
 from ...errors import ComputationError
 from ...laws.motions import RigidMotion, combined
-from ...results import HeatRow, HistoryRow, Interface
+from ...results import HeatRow, HistoryRow, InterfaceFields
 from ...serialise import serialisable
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.update_counts import UpdateCounts
@@ -87,7 +87,7 @@ class RunningInRecord:
     def __init__(self, loop: OuterLoop, observer: Observer):
         self.rows: list[HistoryRow] = []
         self.heat: list[HeatRow] = []
-        self.outputs: dict[float, Interface] = {}
+        self.outputs: dict[float, InterfaceFields] = {}
         self._loop = loop
         self._observer = observer
         self._film = FrameRecorder(loop.system.case, observer)
@@ -180,7 +180,9 @@ class RunningInRecord:
                 raise ComputationError(f"{reason}; {_UNSTABLE}") from None
             raise
 
-    def bodies(self, moment: Moment) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
+    def bodies(
+        self, moment: Moment
+    ) -> tuple[ContactState, RigidMotion, BodyState, InterfaceFields]:
         """Contact, motion of the holder, bodies and interface at a moment."""
         contact = self._problem.contact_state(moment.state, moment.time)
         motion = combined(self._system.holder.motions, moment.state.contact.motion)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...errors import ComputationError
-from ...results import Interface
+from ...results import InterfaceFields
 from ..model.system import System
 
 
-def untouched(system: System, interface: Interface) -> ComputationError | str | None:
+def untouched(system: System, interface: InterfaceFields) -> ComputationError | str | None:
     """Error or note for an analysis that ends without contact. Every rank calls.
 
     A constant pressing force must be carried, or the computation has failed. A given approach, a

@@ -9,7 +9,7 @@ import numpy as np
 from ...contact.friction.slip_wear import WornProfile
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...laws.motions import translation
-from ...results import CycleRow, FrictionHistory, FrictionInterface, Interface, LoadRow
+from ...results import CycleRow, FrictionHistory, FrictionInterface, InterfaceFields, LoadRow
 from ...serialise import serialisable
 from ..interface.body_state import BodyState, ContactState, contact_state
 from ..model.system import System
@@ -68,7 +68,7 @@ class FrettingRecord:
         profiles: tuple[WornProfile, ...],
         observer: Observer,
     ):
-        self.outputs: dict[float, Interface] = {}
+        self.outputs: dict[float, InterfaceFields] = {}
         self._system = system
         self._tables = FrettingTables(system)
         self._translations = translations
@@ -134,7 +134,7 @@ class FrettingRecord:
         contact, bodies, interface = self.interface()
         return contact, translation(self.last.motion @ self._translations), bodies, interface
 
-    def interface(self) -> tuple[ContactState, BodyState, Interface]:
+    def interface(self) -> tuple[ContactState, BodyState, InterfaceFields]:
         """Contact, bodies and interface in the last state, wear rates averaged over its cycle."""
         system, state = self._system, self.last
         pressure, shear = system.basis @ state.pressure, system.basis @ state.shear[:, 0]

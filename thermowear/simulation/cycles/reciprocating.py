@@ -9,7 +9,7 @@ import numpy as np
 from ...case.tables.analyses import Reciprocating
 from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion, combined
-from ...results import HistoryRow, Interface, Result, TrackHistory, WornTrack
+from ...results import HistoryRow, InterfaceFields, Result, TrackHistory, WornTrack
 from ...serialise import serialisable
 from ..interface.body_state import BodyState, ContactState, contact_state
 from ..interface.factory import interface_problem
@@ -99,7 +99,7 @@ class _Record:
 
     def __init__(self, system: System, problem: ReciprocatingProblem, observer: Observer):
         self.rows: list[HistoryRow] = []
-        self.outputs: dict[float, Interface] = {}
+        self.outputs: dict[float, InterfaceFields] = {}
         self.tracks: dict[float, WornTrack] = {}
         self._system = system
         self._problem = problem
@@ -130,7 +130,7 @@ class _Record:
         number, shown = len(self.rows) - 1, self.in_the_middle
         self._film.take(self._system, number, moment.time, shown, self.worn_track)
 
-    def in_the_middle(self) -> tuple[ContactState, RigidMotion, BodyState, Interface]:
+    def in_the_middle(self) -> tuple[ContactState, RigidMotion, BodyState, InterfaceFields]:
         """Contact, motion of the holder, bodies and interface at mid-stroke of body 1."""
         system, state = self._system, self.last.state
         worn, rates = (self._seen(v) for v in (state.worn, self._problem.rates(state.pressure)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...laws.motions import RigidMotion
-from ...results import Interface, Profile
+from ...results import InterfaceFields, Profile
 from ..interface.body_state import BodyState, ContactState, body_state
 from ..model.system import System
 
@@ -41,7 +41,7 @@ def interface_at(
     motion: RigidMotion,
     worn: np.ndarray,
     rates: np.ndarray | None = None,
-) -> tuple[BodyState, Interface]:
+) -> tuple[BodyState, InterfaceFields]:
     """Solve the bodies and record the interface. Every rank calls.
 
     Parameters
@@ -69,7 +69,7 @@ def interface_at(
 
 def record(
     system: System, contact: ContactState, state: BodyState, gap, shape, worn, rates=None
-) -> Interface:
+) -> InterfaceFields:
     """Interface record for output from arrays of shape (n,) and `worn` of shape (2, n).
 
     Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
@@ -84,7 +84,7 @@ def record(
         T1, T2 = state.thermal.rise
         temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
         fluxes = state.thermal.flux
-    return Interface(
+    return InterfaceFields(
         x=points[:, 0],
         y=points[:, 1],
         z=points[:, 2] if points.shape[1] == 3 else np.zeros(len(pressure)),
@@ -112,7 +112,7 @@ def _local_rates(system: System, contact: ContactState) -> np.ndarray:
     return rates
 
 
-def profile(system: System, interface: Interface) -> Profile:
+def profile(system: System, interface: InterfaceFields) -> Profile:
     """Worn shape of an interface, along its normals and along the load direction."""
     normals = np.zeros((len(interface.s), 3))
     normals[:, : len(system.press)] = system.pairing.normals

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...bulk.field import total
 from ...contact.search.zones import contact_zones
-from ...results import Interface, Result
+from ...results import InterfaceFields, Result
 from ..model.rigid_modes import applied, guides, reference_point
 from ..model.system import System
 from .recording import FinalState, profile
@@ -29,13 +29,13 @@ _ROTATIONS = {
 """Keys of the holder rotations, in the order of the components of a rotation vector."""
 
 
-def summarise(final: FinalState, interface: Interface, time: float) -> dict:
+def summarise(final: FinalState, interface: InterfaceFields, time: float) -> dict:
     """Numbers of ``summary.json`` of any analysis. Quantities that do not exist are None.
 
     Parameters
     ----------
     final : FinalState
-    interface : Interface
+    interface : InterfaceFields
     time : float
         Time at the end, or zero [s].
     """
@@ -130,14 +130,14 @@ def _passing(final: FinalState, time: float) -> dict:
 
 
 def conclude(
-    final: FinalState, interface: Interface, extra: dict, **recorded
+    final: FinalState, interface: InterfaceFields, extra: dict, **recorded
 ) -> tuple[FinalState, Result]:
     """Final state and result of an analysis, with profile and summary. Every rank calls.
 
     Parameters
     ----------
     final : FinalState
-    interface : Interface
+    interface : InterfaceFields
         Interface at the end.
     extra : dict
         Entries that the analysis adds to the summary.

@@ -7,13 +7,13 @@ from collections.abc import Callable
 from ...case.tables.analyses import Fretting, Timed
 from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion
-from ...results import Frame, Interface, WornTrack
+from ...results import Frame, InterfaceFields, WornTrack
 from ..interface.body_state import BodyState, ContactState
 from ..model.system import System
 from ..results.fields import sample
 from .observer import Observer
 
-Shown = tuple[ContactState, RigidMotion, BodyState, Interface]
+Shown = tuple[ContactState, RigidMotion, BodyState, InterfaceFields]
 
 
 class FrameRecorder:

@@ -10,7 +10,7 @@ from ...results import (
     FrictionInterface,
     HeatRow,
     HistoryRow,
-    Interface,
+    InterfaceFields,
     LoadRow,
     WornTrack,
 )
@@ -41,7 +41,7 @@ class Observer:
     def output(
         self,
         time: float,
-        interface: Interface,
+        interface: InterfaceFields,
         friction: FrictionInterface | None = None,
         track: WornTrack | None = None,
     ) -> None:

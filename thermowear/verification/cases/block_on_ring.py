@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...reference.growing_contact import GrowingContact, growing_line
-from ...results import Interface
+from ...results import InterfaceFields
 from ..check import Check, compare
 from ..starter import run_starter
 from .growing import ARCHARD, RIGID, SPEED, worn_half_width
@@ -38,7 +38,7 @@ def checks() -> Iterator[Check]:
     yield compare(ID, "worst update: volume lost by the mesh [1]", 1 + error, 1.0, 1e-6, known)
 
 
-def _state(law: GrowingContact, distance: float, state: Interface) -> Iterator[Check]:
+def _state(law: GrowingContact, distance: float, state: InterfaceFields) -> Iterator[Check]:
     """State after a sliding distance [m]."""
     place, depth = f"after {distance:g} m", float(state.wear_2[0])
     width, known = worn_half_width(state, 5), float(law.half_width(distance))

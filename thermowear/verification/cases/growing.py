@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...reference.growing_contact import GrowingContact
-from ...results import Interface, Result
+from ...results import InterfaceFields, Result
 from ..check import Check, compare
 from ..starter import run_starter
 
@@ -37,7 +37,7 @@ class Growth:
     moment : int
         ``a²`` over the mean ``x²`` of a parabola that falls to zero at a, weighted by its depth: 5
         over a half-width, 3 over a radius.
-    states : dict of float to Interface
+    states : dict of float to InterfaceFields
         Interfaces by sliding distance [m].
     """
 
@@ -45,7 +45,7 @@ class Growth:
     note: str
     law: GrowingContact
     moment: int
-    states: dict[float, Interface]
+    states: dict[float, InterfaceFields]
 
     def checks(self) -> Iterator[Check]:
         """Half-width and depth of the worn zone against the closed forms."""
@@ -95,7 +95,7 @@ class Growth:
             yield compare(self.id, quantity, volume, rate * distance, 1e-3, ARCHARD)
 
 
-def grown(starter: str, distances, *overrides: str) -> dict[float, Interface]:
+def grown(starter: str, distances, *overrides: str) -> dict[float, InterfaceFields]:
     """Interfaces of a starter case after increasing sliding distances [m]."""
     times = [float(s) / SPEED for s in distances]
     outputs = ", ".join(f'"{t!r} s"' for t in times[:-1])
@@ -105,7 +105,7 @@ def grown(starter: str, distances, *overrides: str) -> dict[float, Interface]:
     return {float(s): state for s, state in zip(distances, states, strict=True)}
 
 
-def worn_half_width(interface: Interface, moment: int) -> float:
+def worn_half_width(interface: InterfaceFields, moment: int) -> float:
     """Half-width of the parabola with the second moment of the wear depth [m].
 
     Unlike the last contact point it does not jump from element to element.

@@ -13,7 +13,7 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-_LAZY = {"run": "simulation", "Result": "simulation", "Case": "case", "sweep": "app.sweeping"}
+_LAZY = {"run": "simulation", "Result": "results", "Case": "case", "sweep": "app.sweeping"}
 _ROOMS = (
     "bulk",
     "case",
@@ -23,6 +23,7 @@ _ROOMS = (
     "model",
     "output",
     "reference",
+    "results",
     "simulation",
     "verification",
 )

@@ -9,8 +9,9 @@ import pytest
 
 import thermowear as tw
 from thermowear.contact.operators.heat import ThermalState
+from thermowear.results import HistoryRow
 from thermowear.serialise import pack
-from thermowear.simulation import HistoryRow, Observer
+from thermowear.simulation import Observer
 from thermowear.simulation.from_case import run
 
 from ..conftest import COLD_RUNNING_IN, DEMOS, HOT

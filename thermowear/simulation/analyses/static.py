@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from ...laws.motions import combined
+from ...results import Result
 from ..interface.body_state import body_state
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.steady import least_worn, steady_state
 from ..model.system import System
-from ..results.outcome import Outcome
-from ..results.recording import interface_at, record
+from ..results.recording import Snapshot, record, snapshot
+from ..results.summary import conclude
 from ..runtime.observer import Observer
 
 _VELOCITIES = {
@@ -24,12 +25,12 @@ _VELOCITIES = {
 }
 
 
-def initial(system: System, observer: Observer) -> Outcome:
+def initial(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     """Contact of the unworn faces."""
     return unworn(system, interface_problem(system, observer.note))
 
 
-def unworn(system: System, problem: InterfaceProblem) -> Outcome:
+def unworn(system: System, problem: InterfaceProblem) -> tuple[Snapshot, Result]:
     """Contact of the unworn faces, from a given interface problem."""
     with system.phases("contact"):
         found = problem.unworn()
@@ -37,11 +38,11 @@ def unworn(system: System, problem: InterfaceProblem) -> Outcome:
         contact = problem.contact_state(found, 0.0)
         motion = combined(system.holder.motions, found.contact.motion)
         still = np.zeros((2, len(contact.pressure)))
-        state, interface = interface_at(system, contact, motion, still)
-    return Outcome(contact, motion, state, interface, {"steps": 0}, [], {})
+        end = snapshot(system, contact, motion, still)
+    return conclude(end, {"steps": 0})
 
 
-def steady(system: System, observer: Observer) -> Outcome:
+def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     """Steady state of wear, with faces worn to conformity."""
     with system.phases("steady principle"):
         found = steady_state(system)
@@ -69,7 +70,7 @@ def steady(system: System, observer: Observer) -> Outcome:
         "wear_dissipation_W": wear.dissipation,
     }
     motion = combined(system.holder.motions, amounts)
-    return Outcome(contact, motion, state, interface, extra, [], {})
+    return conclude(Snapshot(system, contact, motion, state, interface), extra)
 
 
 def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:

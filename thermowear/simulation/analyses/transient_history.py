@@ -10,11 +10,11 @@ from ...balances import require
 from ...errors import ComputationError
 from ...laws.motions import combined
 from ...model.analyses import TransientAnalysis
+from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..model.conditions import InterfaceConditions
-from ..results.recording import interface_at
-from ..results.rows import HeatRow, HistoryRow
-from ..runtime.history import AnalysisHistory, Snapshot
+from ..results.recording import Snapshot, snapshot
+from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..time.time_loop import Moment
 from .static import wear_velocity
@@ -91,8 +91,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         problem, system = self._loop.problem, self._loop.system
         contact = problem.contact_state(state.state, state.time)
         motion = combined(system.holder.motions, state.state.contact.motion)
-        worn = self._by_body(state.state.worn)
-        return Snapshot(system, contact, motion, *interface_at(system, contact, motion, worn))
+        return snapshot(system, contact, motion, self._by_body(state.state.worn))
 
     def summary(self) -> dict:
         loop, rows, heat = self._loop, self.table(HistoryRow), self.table(HeatRow)

@@ -2,24 +2,54 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...laws.motions import RigidMotion
+from ...results import FrictionInterface, InterfaceFields, Profile, WornTrack
 from ..interface.body_state import BodyState, ContactState, body_state
 from ..model.system import System
-from .result import InterfaceFields, Profile
 
 _STEEPEST = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
 
 
-def interface_at(
+@dataclass(frozen=True)
+class Snapshot:
+    """Contact, bodies and interface on one rank, in one state of an analysis.
+
+    Attributes
+    ----------
+    system : System
+        System in this state, whose meshes may have been moved.
+    contact : ContactState
+    motion : RigidMotion
+        Rigid motion of the holder.
+    bodies : BodyState
+    interface : InterfaceFields
+    friction : FrictionInterface or None
+        Stick-slip state of a fretting analysis.
+    track : WornTrack or None
+        Worn track of a reciprocating analysis.
+    """
+
+    system: System
+    contact: ContactState
+    motion: RigidMotion
+    bodies: BodyState
+    interface: InterfaceFields
+    friction: FrictionInterface | None = None
+    track: WornTrack | None = None
+
+
+def snapshot(
     system: System,
     contact: ContactState,
     motion: RigidMotion,
     worn: np.ndarray,
     rates: np.ndarray | None = None,
-) -> tuple[BodyState, InterfaceFields]:
+) -> Snapshot:
     """Solve the bodies and record the interface. Every rank calls.
 
     Parameters
@@ -33,16 +63,18 @@ def interface_at(
     rates : ndarray, shape (2, n), optional
         Wear rates, see `record` [m/s].
     """
-    state = body_state(system, contact)
+    bodies = body_state(system, contact)
     lost = system.pairing.gap + worn.sum(axis=0)
     moved = motion.at(system.pairing.on_body_1)
     gap = (
         lost
         + system.softness * contact.pressure
-        + state.opening
+        + bodies.opening
         - np.einsum("ni,ni->n", system.pairing.normals, moved)
     )
-    return state, record(system, contact, state, gap, lost.max() - lost, worn, rates)
+    shape = lost.max() - lost
+    interface = record(system, contact, bodies, gap, shape, worn, rates)
+    return Snapshot(system, contact, motion, bodies, interface)
 
 
 def record(
@@ -90,8 +122,9 @@ def _local_rates(system: System, contact: ContactState) -> np.ndarray:
     return rates
 
 
-def profile(system: System, interface: InterfaceFields) -> Profile:
+def profile(end: Snapshot) -> Profile:
     """Worn shape of an interface, along its normals and along the load direction."""
+    system, interface = end.system, end.interface
     normals = np.zeros((len(interface.s), 3))
     normals[:, : len(system.press)] = system.pairing.normals
     along = along_press(system)

@@ -16,7 +16,7 @@ from ...case import load
 from ...case.starters import starter_text
 from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion, rotation, translation
-from ...simulation import Result
+from ...results import Result
 from ...simulation.from_case import model_of
 from ..check import Check, compare
 from ..computed import computed

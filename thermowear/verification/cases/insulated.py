@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ... import geometry  # noqa: F401  (makes the geometries known)
 from ...case import load
-from ...simulation import Result
+from ...results import Result
 from ..computed import computed
 
 YOUNG_MODULUS = 2.1e11  # Pa

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...case.tables.schema import Case
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from ..computed import computed
 from ..starter import starter

@@ -8,7 +8,7 @@ from math import inf, sqrt
 import numpy as np
 
 from ...reference.slabs import contact_temperatures
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from ..starter import run_starter
 

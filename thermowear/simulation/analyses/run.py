@@ -112,18 +112,16 @@ def analyse(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
-    stopped, apart = result.stopped, None
-    if stopped is None:
-        apart = untouched(system, result.interface)
-    if isinstance(apart, ComputationError):
-        stopped = apart
-    notes = [apart, too_steep(end.system, end.contact.pressure)]
-    if stopped is None:
-        stopped = went_back(system, analysis, end)
-    notes.append(not_small(system, analysis, result.interface))
-    for note in notes:
-        if isinstance(note, str):
-            observer.note(note)
+    found: list[ComputationError | str | None] = [
+        too_steep(end.system, end.contact.pressure),
+        not_small(system, analysis, end.interface),
+    ]
+    if result.stopped is None:
+        found = [untouched(system, end.interface), went_back(system, analysis, end), *found]
+    for note in (one for one in found if isinstance(one, str)):
+        observer.note(note)
+    errors = (one for one in found if isinstance(one, ComputationError))
+    stopped = result.stopped or next(errors, None)
     mesh = mesh_checksum(system)
     named = {"title": system.model.title, "analysis": analysis.type}
     origin = {} if mesh is None else {"mesh_sha256": mesh}

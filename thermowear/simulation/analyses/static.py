@@ -56,9 +56,10 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     amounts = least_worn(system.holder.modes, opening, system.weights, pressing)
     lost = system.holder.modes @ amounts - opening
     shape = lost[pressing].max() - lost
-    interface = record(
+    end = record(
         system,
         contact,
+        combined(system.holder.motions, amounts),
         state,
         gap=np.where(pressing, 0.0, np.nan),
         shape=shape,
@@ -69,8 +70,7 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
         **wear_velocity(system, wear.velocity),
         "wear_dissipation_W": wear.dissipation,
     }
-    motion = combined(system.holder.motions, amounts)
-    return conclude(Snapshot(system, contact, motion, state, interface), extra)
+    return conclude(end, extra)
 
 
 def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:

@@ -73,14 +73,20 @@ def snapshot(
         - np.einsum("ni,ni->n", system.pairing.normals, moved)
     )
     shape = lost.max() - lost
-    interface = record(system, contact, bodies, gap, shape, worn, rates)
-    return Snapshot(system, contact, motion, bodies, interface)
+    return record(system, contact, motion, bodies, gap, shape, worn, rates)
 
 
 def record(
-    system: System, contact: ContactState, state: BodyState, gap, shape, worn, rates=None
-) -> InterfaceFields:
-    """Interface record for output from arrays of shape (n,) and `worn` of shape (2, n).
+    system: System,
+    contact: ContactState,
+    motion: RigidMotion,
+    bodies: BodyState,
+    gap: np.ndarray,
+    shape: np.ndarray,
+    worn: np.ndarray,
+    rates: np.ndarray | None = None,
+) -> Snapshot:
+    """Record the interface of solved bodies from arrays of shape (n,) and `worn` of shape (2, n).
 
     Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
     """
@@ -90,11 +96,11 @@ def record(
     rates = _local_rates(system, contact) if rates is None else rates
     temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
     fluxes = temperatures
-    if state.thermal is not None and system.thermal is not None:
-        T1, T2 = state.thermal.rise
+    if bodies.thermal is not None and system.thermal is not None:
+        T1, T2 = bodies.thermal.rise
         temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
-        fluxes = state.thermal.flux
-    return InterfaceFields(
+        fluxes = bodies.thermal.flux
+    interface = InterfaceFields(
         x=points[:, 0],
         y=points[:, 1],
         z=points[:, 2] if points.shape[1] == 3 else np.zeros(len(pressure)),
@@ -112,6 +118,7 @@ def record(
         heat_flux_1=fluxes[0],
         heat_flux_2=fluxes[1],
     )
+    return Snapshot(system, contact, motion, bodies, interface)
 
 
 def _local_rates(system: System, contact: ContactState) -> np.ndarray:

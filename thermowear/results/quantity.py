@@ -9,6 +9,7 @@ writes ``film.csv`` with the column ``thickness_m``, drawn in µm.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar, dataclass_transform
@@ -54,6 +55,11 @@ class Quantity:
     def wrapped(self) -> str:
         """Axis label in two lines."""
         return f"{self.label}\n[{self.unit}]"
+
+    @property
+    def of_both(self) -> Quantity:
+        """Quantity of both bodies in one plot: the label without the number of the body."""
+        return replace(self, label=re.sub(", body [12]$", "", self.label))
 
     def drawn(self, values):
         """Convert SI values to the unit of plots."""

@@ -25,6 +25,8 @@ STYLE = {key: value for key, value in mpl.rcParamsDefault.items() if key != "bac
 }
 """Complete settings, so that none is taken from a ``matplotlibrc`` in the current folder."""
 BODIES = ("tab:blue", "tab:orange")
+_FLAT = 1e-12
+"""Range of shapes below which they are rounding errors of flat unworn faces [m]."""
 _SINGULAR, _MOST = 3.0, 0.9
 """Peaks are clipped if they exceed the first factor times the quantile of the second."""
 
@@ -56,23 +58,28 @@ def from_zero(axis: Axes) -> None:
 def draw_interface(folder: Path) -> None:
     """Draw ``interface.png``: pressure, temperatures and shape along the contact."""
     data = tables.read(folder / "interface.csv")
-    hot = np.isfinite(data["temperature_1"]).all()
-    shown = [["pressure"], *([["temperature_1", "temperature_2"]] if hot else [])]
-    if np.ptp(data["shape"]) > 1e-12:  # smaller ranges are rounding errors of flat unworn faces
-        shown.append(["shape"])
+    shown = interface_panels(data)
     size = (6.4, 2.3 * len(shown))
     with panels(folder / "interface.png", len(shown), size, sharex=True) as axes:
         label, place = abscissa(data)
         for axis, names in zip(axes, shown, strict=True):
             for name, color, line in zip(names, BODIES, ("-", "--"), strict=False):
                 axis.plot(place, data.drawn(name), line, color=color, label=f"body {name[-1]}")
+            axis.set_ylabel(data.quantities[names[0]].of_both.wrapped)
             if len(names) > 1:
-                axis.set_ylabel(f"temperature\n[{data.quantities[name].unit}]")
                 axis.legend()
-            else:
-                axis.set_ylabel(data.quantities[name].wrapped)
         from_zero(axes[0])
         axes[-1].set_xlabel(label)
+
+
+def interface_panels(data: tables.TableColumns) -> list[list[str]]:
+    """Columns of ``interface.csv`` to draw, by panel: pressure, temperatures, shape if worn."""
+    shown = [["pressure"]]
+    if np.isfinite(data["temperature_1"]).all():
+        shown.append(["temperature_1", "temperature_2"])
+    if np.ptp(data["shape"]) > _FLAT:
+        shown.append(["shape"])
+    return shown
 
 
 def draw_wear(folder: Path) -> None:
@@ -126,7 +133,7 @@ def draw_history(folder: Path) -> None:
                 volume = data.drawn(f"wear_volume_{body}")
                 axis.plot(time, volume, color=BODIES[body - 1], label=f"body {body}")
             axis.legend()
-            axis.set_ylabel(f"worn volume [{shown['wear_volume_1'].unit}]")
+            axis.set_ylabel(shown["wear_volume_1"].of_both.axis)
             axis.set_xlabel(shown["time"].axis)
 
 

@@ -57,13 +57,12 @@ def draw_cycles(folder: Path) -> None:
     worn = [body for body in (1, 2) if data[f"wear_volume_{body}"].max(initial=0.0) > 0]
     if not worn or len(data["cycle"]) < 2:
         return
-    shown = {"max_wear": "largest wear depth", "wear_volume": "worn volume"}
     with panels(folder / "cycles.png", 2, (6.4, 5.0), sharex=True) as axes:
-        for axis, (name, label) in zip(axes, shown.items(), strict=True):
+        for axis, name in zip(axes, ("max_wear", "wear_volume"), strict=True):
             for body in worn:
                 drawn = data.drawn(f"{name}_{body}")
                 axis.plot(data["cycle"], drawn, color=BODIES[body - 1], label=f"body {body}")
             from_zero(axis)
-            axis.set_ylabel(f"{label} [{data.quantities[f'{name}_1'].unit}]")
+            axis.set_ylabel(data.quantities[f"{name}_1"].of_both.axis)
         axes[0].legend()
         axes[1].set_xlabel("cycles")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from pathlib import Path
 
 import matplotlib as mpl
@@ -11,12 +12,11 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.tri import Triangulation
 
 from .. import tables
-from .curves import STYLE, final_time
+from .curves import STYLE, final_time, interface_panels
 
 COLORS = {"pressure": "viridis", "temperature": "inferno", "shape": "cividis", "wear": "magma_r"}
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
-_FLAT = 1e-12  # m
 _LARGEST_ANGLE = (
     100.0  # largest angle of a boundary triangle [degrees]; larger ones lie outside the face
 )
@@ -31,12 +31,7 @@ def is_surface(folder: Path) -> bool:
 def draw_interface_maps(folder: Path) -> None:
     """Draw ``interface.png``: pressure, temperatures and shape over the face."""
     data = tables.read(folder / "interface.csv")
-    names = ["pressure"]
-    if np.isfinite(data["temperature_1"]).all():
-        names += ["temperature_1", "temperature_2"]
-    if np.ptp(data["shape"]) > _FLAT:  # not for flat unworn faces
-        names.append("shape")
-    _draw(folder / "interface.png", data, names)
+    _draw(folder / "interface.png", data, list(chain.from_iterable(interface_panels(data))))
 
 
 def draw_wear_maps(folder: Path) -> None:

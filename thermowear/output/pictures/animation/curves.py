@@ -78,7 +78,7 @@ class WearCurves:
         axis.set_ylim(_AXIS_END * deepest, (1 - _AXIS_END) * deepest)
         axis.set_xlim(_span(places))
         last = states[-1].interface
-        axis.set_ylabel(f"wear depth\n[{last.quantities['wear_1'].unit}]")
+        axis.set_ylabel(last.quantities["wear_1"].of_both.wrapped)
         axis.set_xlabel(abscissa(last)[0])
         _legend(axis)
 

@@ -21,10 +21,10 @@ from ..model.heat import Heat
 from ..model.model import Discretisation, Model
 from ..model.motion import Motion
 from ..simulation.analyses.run import solve
-from ..simulation.model.building import build
-from ..simulation.model.setup_cache import SetupCache
-from ..simulation.model.system import System
 from ..simulation.runtime.observer import Observer
+from ..simulation.system.building import build
+from ..simulation.system.setup_cache import SetupCache
+from ..simulation.system.system import System
 from ..timer import Phases
 from .body import BodySurface, MeshBody
 from .conversion import number, optional

@@ -7,7 +7,7 @@ import numpy as np
 from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
 from ...results import InterfaceFields
 from ..geometry_update.gap_wear import GapWear
-from ..model.system import System
+from ..system.system import System
 
 
 def not_small(system: System, analysis: Analysis, interface: InterfaceFields) -> str | None:

@@ -8,9 +8,9 @@ import numpy as np
 
 from ...errors import ComputationError
 from ...results import Modes, Result
-from ..model.system import System
 from ..results.recording import Snapshot
 from ..runtime.observer import Observer
+from ..system.system import System
 from .perturbation import Disturbance, DisturbedContact
 
 _SHOWN = 4

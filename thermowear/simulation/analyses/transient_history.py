@@ -13,11 +13,11 @@ from ...model.analyses import TransientAnalysis
 from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..interface.interface_problem import InterfaceProblem
-from ..model.conditions import InterfaceConditions
-from ..model.system import System
 from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
 from ..time.time_loop import Moment
 from .static import wear_velocity
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ...results import InterfaceFields
-from ..model.system import System
+from ..system.system import System
 
 
 def untouched(system: System, interface: InterfaceFields) -> ComputationError | str | None:

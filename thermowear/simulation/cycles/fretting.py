@@ -18,10 +18,10 @@ from ...laws.load_history import LoadHistory
 from ...model.analyses import FrettingAnalysis
 from ...model.holder import Holder
 from ...results import Result
-from ..model.system import System
 from ..results.recording import Snapshot
 from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
+from ..system.system import System
 from .cycle_jump import adaptive_jumps, fixed_jumps
 from .fretting_history import FrettingHistory
 from .increments import Increment, RestartPoint

@@ -12,10 +12,10 @@ from ...laws.motions import translation
 from ...model.analyses import FrettingAnalysis
 from ...results import CycleRow, FrictionInterface, LoadRow
 from ..interface.body_state import contact_state
-from ..model.system import System
 from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
+from ..system.system import System
 from .increments import Increment, Jump
 
 _SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips

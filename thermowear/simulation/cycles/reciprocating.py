@@ -12,11 +12,11 @@ from ...results import HistoryRow, Result, WornTrack
 from ..interface.body_state import contact_state
 from ..interface.factory import interface_problem
 from ..interface.sdirk import InterfaceState
-from ..model.system import System
 from ..results.recording import Snapshot, snapshot
 from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
+from ..system.system import System
 from ..time.step_sizes import AnySize
 from ..time.time_loop import Moment, moments
 from .reciprocating_problem import ReciprocatingProblem

@@ -9,7 +9,7 @@ import numpy as np
 from ...laws.motions import RigidMotion
 from ...results import FrictionInterface, InterfaceFields, Profile, WornTrack
 from ..interface.body_state import BodyState, ContactState, body_state
-from ..model.system import System
+from ..system.system import System
 
 _STEEPEST = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""

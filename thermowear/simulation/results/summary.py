@@ -8,8 +8,8 @@ from ...bulk.field import total
 from ...contact.search.zones import contact_zones
 from ...laws.coefficients.constant import Constant
 from ...results import Result
-from ..model.rigid_modes import applied, guides
-from ..model.system import System
+from ..system.rigid_modes import applied, guides
+from ..system.system import System
 from .recording import Snapshot, profile
 
 _GUIDES = {

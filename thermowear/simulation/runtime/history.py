@@ -21,10 +21,10 @@ from ...results import (
     Result,
     TrackHistory,
 )
-from ..model.system import System
 from ..results.fields import sample
 from ..results.recording import Snapshot
 from ..results.summary import conclude
+from ..system.system import System
 from .checkpoint_data import Progress, Saved
 from .frames import spacing
 from .observer import Observer

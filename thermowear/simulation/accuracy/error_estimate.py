@@ -30,10 +30,10 @@ from ...errors import CaseError, ComputationError
 from ...laws import steady_pressure
 from ...model.analyses import Analysis
 from ..interface.body_state import ContactState
-from ..model.building import sliding_of
-from ..model.conditions import InterfaceConditions
-from ..model.system import System
 from ..results.outcome import Outcome
+from ..system.building import sliding_of
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
 from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
 
 _FOLLOWING = 1.5

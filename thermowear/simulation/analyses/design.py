@@ -8,8 +8,8 @@ from ...contact.search.face import Face
 from ...geometry.cad.design import Design
 from ..interface.body_state import body_state
 from ..interface.steady import least_worn, steady_state
-from ..model.system import System
 from ..results.recording import along_press
+from ..system.system import System
 
 _SAME = 1e-9  # relative to the size of the face: closer points coincide
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from ...errors import ComputationError
 from ...model.analyses import Analysis
-from ..model.rigid_modes import applied
-from ..model.system import System
 from ..results.outcome import Outcome
+from ..system.rigid_modes import applied
+from ..system.system import System
 
 _ANALYSES = ("initial", "transient", "fretting", "reciprocating")
 """Analyses with a defined holder position; a steady state has no history leading to one."""

@@ -24,7 +24,6 @@ from ..cycles.reciprocating import reciprocating
 from ..geometry_update.face_limits import outgrown
 from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
-from ..model.system import System
 from ..results.fields import sample
 from ..results.outcome import Outcome
 from ..results.recording import profile
@@ -32,6 +31,7 @@ from ..results.result import BodyFields, Result
 from ..results.summary import summarise
 from ..runtime.checkpoint_data import Saved, mesh_checksum
 from ..runtime.observer import Observer
+from ..system.system import System
 from .plausible import too_steep, went_back
 from .positioning import prepare
 from .small_wear_check import not_small

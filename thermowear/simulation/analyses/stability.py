@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import ComputationError
-from ..model.system import System
 from ..results.outcome import Outcome
 from ..results.result import Modes
 from ..runtime.observer import Observer
+from ..system.system import System
 from .perturbation import Disturbance, DisturbedContact
 
 _SHOWN = 4

@@ -9,10 +9,10 @@ from ..interface.body_state import body_state
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.steady import least_worn, steady_state
-from ..model.system import System
 from ..results.outcome import Outcome
 from ..results.recording import interface_at, record
 from ..runtime.observer import Observer
+from ..system.system import System
 
 _VELOCITIES = {
     "z": "rigid_wear_velocity_m_per_s",

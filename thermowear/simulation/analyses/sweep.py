@@ -8,11 +8,11 @@ from typing import Any
 from ...model.analyses import Analysis
 from ...model.model import Model
 from ...timer import Phases
-from ..model.building import build
-from ..model.setup_cache import SetupCache, inputs
-from ..model.system import System
 from ..results.result import Result
 from ..runtime.observer import Observer
+from ..system.building import build
+from ..system.setup_cache import SetupCache, inputs
+from ..system.system import System
 from .positioning import prepare
 from .run import analyse, conclude
 

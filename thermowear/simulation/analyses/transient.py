@@ -10,10 +10,10 @@ from ..geometry_update.face_limits import beyond
 from ..geometry_update.outer_loop import OuterLoop
 from ..interface.factory import interface_problem
 from ..interface.steady import SteadyState, steady_state
-from ..model.system import System
 from ..results.outcome import Outcome
 from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
+from ..system.system import System
 from ..time.step_sizes import AnySize, FewSizes
 from ..time.time_loop import times_to_hit
 from .transient_history import TransientHistory

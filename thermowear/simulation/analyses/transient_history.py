@@ -11,11 +11,11 @@ from ...errors import ComputationError
 from ...laws.motions import combined
 from ...model.analyses import TransientAnalysis
 from ..geometry_update.outer_loop import OuterLoop
-from ..model.conditions import InterfaceConditions
 from ..results.recording import interface_at
 from ..results.rows import HeatRow, HistoryRow
 from ..runtime.history import AnalysisHistory, Snapshot
 from ..runtime.observer import Observer
+from ..system.conditions import InterfaceConditions
 from ..time.time_loop import Moment
 from .static import wear_velocity
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import ComputationError
-from ..model.system import System
 from ..results.outcome import Outcome
+from ..system.system import System
 
 
 def touching(system: System, outcome: Outcome) -> tuple[Outcome, str | None]:

@@ -17,10 +17,10 @@ from ...errors import CaseError
 from ...laws.load_history import LoadHistory
 from ...model.analyses import FrettingAnalysis
 from ...model.holder import Holder
-from ..model.system import System
 from ..results.outcome import Outcome
 from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
+from ..system.system import System
 from .cycle_jump import adaptive_jumps, fixed_jumps
 from .fretting_history import FrettingHistory
 from .increments import Increment, RestartPoint

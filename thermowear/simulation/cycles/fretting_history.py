@@ -11,12 +11,12 @@ from ...contact.friction.stick_slip_state import StickSlipState
 from ...laws.motions import translation
 from ...model.analyses import FrettingAnalysis
 from ..interface.body_state import contact_state
-from ..model.system import System
 from ..results.recording import interface_at
 from ..results.result import FrictionInterface
 from ..results.rows import CycleRow, LoadRow
 from ..runtime.history import AnalysisHistory, Snapshot
 from ..runtime.observer import Observer
+from ..system.system import System
 from .increments import Increment, Jump
 
 _SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips

@@ -9,7 +9,6 @@ from ...model.analyses import ReciprocatingAnalysis
 from ..interface.body_state import contact_state
 from ..interface.factory import interface_problem
 from ..interface.sdirk import InterfaceState
-from ..model.system import System
 from ..results.outcome import Outcome
 from ..results.recording import interface_at
 from ..results.result import WornTrack
@@ -17,6 +16,7 @@ from ..results.rows import HistoryRow
 from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory, Snapshot
 from ..runtime.observer import Observer
+from ..system.system import System
 from ..time.step_sizes import AnySize
 from ..time.time_loop import Moment, moments
 from .reciprocating_problem import ReciprocatingProblem

@@ -9,8 +9,8 @@ from ...laws.distribution import InPlace
 from ...laws.motions import combined
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
-from ..model.system import System
 from ..results.recording import interface_at
+from ..system.system import System
 
 
 def worn_in(

@@ -9,8 +9,8 @@ import numpy as np
 from ..heat.friction_heat import FrictionHeat
 from ..heat.heat_states import HeatBalance
 from ..heat.heat_steps import ConductingStep, InitialHeat
-from ..model.conditions import ConditionModel, InterfaceConditions
-from ..model.system import System
+from ..system.conditions import ConditionModel, InterfaceConditions
+from ..system.system import System
 from .body_state import ContactState
 from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent
@@ -40,7 +40,7 @@ class InterfaceProblem(WearProblem):
         self._system = system
         self._method = method
         self._heat = heat
-        self._model = ConditionModel(system)
+        self._condition_model = ConditionModel(system)
         self._edge = GrowingEdge(system, method)
         self._contact = ImplicitContact(system, method)
         given = system.model.heat
@@ -81,7 +81,7 @@ class InterfaceProblem(WearProblem):
 
         faces = None if heat is None else heat.unheated
         start = Trial(self._contact.guess.pressure, faces, worn)
-        return self_consistent(self._model, time, start, respond, _UNWORN)[1]
+        return self_consistent(self._condition_model, time, start, respond, _UNWORN)[1]
 
     def worn(self, depth: np.ndarray, guess: ContactSolution | None = None) -> ContactSolution:
         """Contact of faces with a total wear depth (n,) [m], without heat."""
@@ -165,7 +165,7 @@ class InterfaceProblem(WearProblem):
             return InterfaceState(worn, last, before.peak, faces, pointwise=edge)
 
         conditions, found = self_consistent(
-            self._model, time, guess, respond, _STEP, closed=guess.pressure > 0
+            self._condition_model, time, guess, respond, _STEP, closed=guess.pressure > 0
         )
         if self._heat is None or heat is None or before.stored is None or found.faces is None:
             return found
@@ -176,7 +176,7 @@ class InterfaceProblem(WearProblem):
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
         """Interface conditions in a state at a time [s]."""
         touching = state.pressure > 0
-        return self._model.at(time, state.pressure, state.faces, touching, state.worn)
+        return self._condition_model.at(time, state.pressure, state.faces, touching, state.worn)
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
         """Contact loads of a state on the bodies; every rank calls."""
@@ -241,7 +241,7 @@ class InterfaceProblem(WearProblem):
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end at which a history has a corner [s]."""
-        return self._model.corners(end)
+        return self._condition_model.corners(end)
 
     def first_step(self, state: InterfaceState) -> float:
         """Initial step: wear small against elastic deflection, small penetration of heat [s].

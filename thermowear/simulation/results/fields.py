@@ -11,7 +11,7 @@ from ...bulk.heat.varying import straining_rise
 from ...compat import evaluate
 from ...laws.motions import RigidMotion
 from ..interface.body_state import BodyState
-from ..model.system import System
+from ..system.system import System
 from .result import BodyFields
 
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0

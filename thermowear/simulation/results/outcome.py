@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from ...laws.motions import RigidMotion
 from ..interface.body_state import BodyState, ContactState
-from ..model.system import System
+from ..system.system import System
 from .result import FrictionHistory, InterfaceFields, Modes, TrackHistory
 from .rows import HeatRow, HistoryRow
 

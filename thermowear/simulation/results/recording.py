@@ -6,7 +6,7 @@ import numpy as np
 
 from ...laws.motions import RigidMotion
 from ..interface.body_state import BodyState, ContactState, body_state
-from ..model.system import System
+from ..system.system import System
 from .result import InterfaceFields, Profile
 
 _STEEPEST = 0.05

@@ -8,10 +8,10 @@ from ...bulk.field import total
 from ...contact.search.zones import contact_zones
 from ...laws.coefficients.constant import Constant
 from ...model.analyses import Analysis
-from ..model.rigid_modes import applied, guides
-from ..model.system import System
-from ..model.thermal_loads import ThermalLoad
-from ..model.thermal_system import ThermalSystem
+from ..system.rigid_modes import applied, guides
+from ..system.system import System
+from ..system.thermal_loads import ThermalLoad
+from ..system.thermal_system import ThermalSystem
 from .outcome import Outcome
 
 _GUIDES = {

@@ -14,7 +14,6 @@ from ...errors import ComputationError, UnwritableError
 from ...laws.motions import RigidMotion
 from ...model.analyses import SteppedAnalysis
 from ..interface.body_state import BodyState, ContactState
-from ..model.system import System
 from ..results.fields import sample
 from ..results.outcome import Outcome
 from ..results.result import (
@@ -26,6 +25,7 @@ from ..results.result import (
     WornTrack,
 )
 from ..results.rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from ..system.system import System
 from .checkpoint_data import Progress, Saved
 from .frames import spacing
 from .observer import Observer

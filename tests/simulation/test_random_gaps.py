@@ -5,8 +5,8 @@ import pytest
 
 import thermowear as tw
 from thermowear.case.starters import starter_text
+from thermowear.contact.wear.implicit_step import Slope
 from thermowear.parallel import sum_over_ranks
-from thermowear.simulation.interface.contact_solver import Slope
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.system.conditions import ConditionModel
 
@@ -44,7 +44,7 @@ def test_no_wrong_pressure_is_returned(tables, method):
         object.__setattr__(system.holder.drives[0], "load", force)
         conditions = ConditionModel(system).at(0.0, nothing, None, everywhere)
         found = interface_problem(system)._method.solve(
-            gap, Slope.on_the_spot(nothing), None, conditions, None
+            gap, Slope.diagonal(nothing), None, conditions, None
         )
         p, w = found.pressure, system.weights
         assert p.min() >= 0

@@ -51,12 +51,8 @@ class Distribution(Protocol):
         """Weights of the k means at the n points, shape (n, k)."""
         ...
 
-    def rate(self, local: np.ndarray) -> np.ndarray:
-        """Wear rate at the points from the local one, shape (n,) [m/s]."""
-        ...
-
     def operator(self, n: int) -> np.ndarray:
-        """Matrix of `rate`, shape (n, n)."""
+        """Matrix of the map, shape (n, n)."""
         ...
 
 
@@ -80,9 +76,6 @@ class DutyFactor:
 
     def reach(self, n: int) -> np.ndarray:
         return np.zeros((n, 0))
-
-    def rate(self, local: np.ndarray) -> np.ndarray:
-        return self.share * local
 
     def operator(self, n: int) -> np.ndarray:
         return self.share * np.eye(n)
@@ -121,9 +114,6 @@ class UniformTrack:
 
     def reach(self, n: int) -> np.ndarray:
         return np.ones((n, 1))
-
-    def rate(self, local: np.ndarray) -> np.ndarray:
-        return np.full(len(local), self.row @ local)
 
     def operator(self, n: int) -> np.ndarray:
         return np.tile(self.row, (n, 1))
@@ -166,9 +156,6 @@ class Rings:
 
     def reach(self, n: int) -> np.ndarray:
         return self.hats
-
-    def rate(self, local: np.ndarray) -> np.ndarray:
-        return self.hats @ (self.rows @ local)
 
     def operator(self, n: int) -> np.ndarray:
         return self.hats @ self.rows

@@ -132,7 +132,7 @@ def steady_pressure(
         if not _in_closed_form(law.law):
             law.require_growth(found.pressure)
     rates = tuple(
-        way.rate(factor * law.rate(found.pressure))
+        way.operator(len(weights)) @ (factor * law.rate(found.pressure))
         for law, way, factor in zip(bound, spread, factors, strict=True)
     )
     return SteadyWear(

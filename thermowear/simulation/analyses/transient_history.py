@@ -11,6 +11,8 @@ from ...errors import ComputationError
 from ...laws.motions import combined
 from ...model.analyses import TransientAnalysis
 from ..geometry_update.outer_loop import OuterLoop
+from ..heat.friction_heat import FrictionHeat
+from ..interface.sdirk import InterfaceState
 from ..results.recording import interface_at
 from ..results.rows import HeatRow, HistoryRow
 from ..runtime.history import AnalysisHistory, Snapshot
@@ -45,12 +47,15 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def restart_data(self) -> tuple:
         """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
-        return self._speed, self._loop.restart_data(), self._loop.problem.restart_data()
+        heat = self._loop.problem.heat
+        own = None if heat is None else heat.steps.restart_data()
+        return self._speed, self._loop.restart_data(), own
 
     def restore(self, data: tuple) -> None:
-        self._speed, loop, heat = data
+        self._speed, loop, own = data
         self._loop.restore(loop)
-        self._loop.problem.restore(heat)
+        if self._loop.problem.heat is not None:
+            self._loop.problem.heat.steps.restore(own)
 
     def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
         problem = self._loop.problem
@@ -59,9 +64,9 @@ class TransientHistory(AnalysisHistory[Moment]):
         slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
         self._speed = speed
         row = self._row(state, slid)
-        if not problem.stores_heat:
+        if problem.heat is None or not problem.stores_heat:
             return [row]
-        heat = self._heat_row(state, conditions)
+        heat = self._heat_row(state, conditions, problem.heat)
         require(heat_balance_relative_error=heat.balance_error)
         return [row, heat]
 
@@ -76,7 +81,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         try:
             for moment in passing:
                 yield moment
-                hottest = self._loop.problem.hottest(moment.state)
+                hottest = self._hottest(moment.state)
                 if self._loop.problem.stores_heat and hottest > _MELTED:
                     raise ComputationError(
                         f"transient: {hottest:.3g} K at {moment.time:g} s, above the melting point "
@@ -135,18 +140,27 @@ class TransientHistory(AnalysisHistory[Moment]):
             contact_area=float(system.weights[pressure > 0].sum()),
             wear_volume_1=float(volumes[0]),
             wear_volume_2=float(volumes[1]),
-            max_temperature=self._loop.problem.hottest(moment.state),
+            max_temperature=self._hottest(moment.state),
             approach=float(system.approaches @ moment.state.contact.motion),
             step=moment.step,
             error=moment.error,
         )
 
-    def _heat_row(self, moment: Moment, conditions: InterfaceConditions) -> HeatRow:
-        system, problem, pressure = self._loop.system, self._loop.problem, moment.state.pressure
-        balance, (T1, T2) = (
-            problem.heat_balance(moment.state),
-            problem.face_temperatures(moment.state),
-        )
+    def _hottest(self, state: InterfaceState) -> float:
+        """Highest temperature of both faces [K]; NaN without heat."""
+        heat = self._loop.problem.heat
+        if heat is None or state.faces is None:
+            return float("nan")
+        return float(np.max(state.faces.rise)) + heat.ambient
+
+    def _heat_row(
+        self, moment: Moment, conditions: InterfaceConditions, heat: FrictionHeat
+    ) -> HeatRow:
+        system, state = self._loop.system, moment.state
+        assert state.stored is not None
+        assert state.faces is not None
+        balance, pressure = heat.balance(state.stored), state.pressure
+        T1, T2 = (rise + heat.ambient for rise in state.faces.rise)
         return HeatRow(
             time=moment.time,
             speed=self._speed,

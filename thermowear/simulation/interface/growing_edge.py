@@ -14,13 +14,12 @@ difference of the largest pressures, at any points.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from ...contact.wear.edge_times import closing_times
-from ...contact.wear.wear_edge import WearEdge
+from ...contact.wear.implicit_step import WearRates
+from ...contact.wear.wear_edge import WearEdge, closing_times
 from ..system.system import System
 from .contact_solver import ContactSolver
 from .sdirk import InterfaceState
@@ -91,7 +90,7 @@ class GrowingEdge:
         self,
         states: tuple[InterfaceState, InterfaceState, InterfaceState],
         step: float,
-        rate_slope: Callable[[], np.ndarray],
+        rates: WearRates,
     ) -> tuple[float, float]:
         """Step sizes that end right behind a time at which the edge of the wear reaches a point.
 
@@ -103,8 +102,8 @@ class GrowingEdge:
         states : tuple of InterfaceState
         step : float
             [s]
-        rate_slope : callable
-            Derivative of the wear rate by the pressure in the last state, shape (n,) [m/s/Pa].
+        rates : WearRates
+            Wear rates under the conditions of the last state.
         """
         start, middle, end = (state.contact.apart for state in states)
         if start is None or middle is None or end is None:
@@ -115,9 +114,8 @@ class GrowingEdge:
         following = left + _BEHIND * max(left, step)
         begun = (end == 0.0) & (states[0].pressure == 0.0)
         if begun.any():
-            following = min(
-                following, _SETTLING * self._settling(states[2], begun, rate_slope()[begun])
-            )
+            slope = rates.slope(states[2].pressure).point[begun]
+            following = min(following, _SETTLING * self._settling(states[2], begun, slope))
         return (1 + _BEHIND) * reached if np.isfinite(reached) else 0.0, following
 
     def _settling(self, state: InterfaceState, points: np.ndarray, slope: np.ndarray) -> float:

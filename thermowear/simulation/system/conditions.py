@@ -45,23 +45,26 @@ class InterfaceConditions:
     temperature: np.ndarray
     depth: np.ndarray
 
-    @property
+    @cached_property
     def heating(self) -> np.ndarray:
         """Friction heat per pressure, ``mu v`` [m/s]."""
         return self.friction * self.speed
 
     def wear_rate(self, row: int, law: WearRate, pressure: np.ndarray) -> np.ndarray:
         """Local wear rate of a wearing body at pressures (n,) [m/s]."""
-        return self.wear[row] * law.rate(pressure, *self._state(row))
+        return self.wear[row] * law.rate(pressure, *self.states[row])
 
     def wear_slope(self, row: int, law: WearRate, pressure: np.ndarray) -> np.ndarray:
         """Derivative of the wear rate with respect to the pressure [m/(s Pa)]."""
-        return self.wear[row] * law.slope(pressure, *self._state(row))
+        return self.wear[row] * law.slope(pressure, *self.states[row])
 
-    def _state(self, row: int) -> tuple[np.ndarray, ...]:
-        return self.speed, self.temperature[row], self.depth[row], self.friction
+    @cached_property
+    def states(self) -> list[tuple[np.ndarray, ...]]:
+        """Speed, temperature, depth and friction of each wearing body, as in `WearRate.rate`."""
+        bodies = zip(self.temperature, self.depth, strict=True)
+        return [(self.speed, own, depth, self.friction) for own, depth in bodies]
 
-    @property
+    @cached_property
     def released(self) -> bool:
         """True if the load has dropped to zero."""
         return self.load.size > 0 and not self.load.any()
@@ -96,6 +99,13 @@ class ConditionModel:
     Parameters
     ----------
     system : System
+
+    Attributes
+    ----------
+    depends_on_state : bool
+        True if conditions depend on pressures, temperatures or wear depths.
+    lasting : bool
+        True if they depend on nothing but the points that exchange heat.
     """
 
     def __init__(self, system: System):
@@ -104,10 +114,10 @@ class ConditionModel:
         self._interface = interface
         self._wearing = list(interface.wear.items())
         self._friction_law = interface.friction_law
-        self._varies, self._friction_varies = interface.varies, interface.friction_varies
+        self.depends_on_state, self._friction_varies = interface.varies, interface.friction_varies
         self._load, self._motion = model.holder.history, model.motion.history
         self._courses = model.histories
-        self._lasting: tuple[bytes, InterfaceConditions] | None = None
+        self.lasting = not self.depends_on_state and not self._courses
 
     def at(
         self,
@@ -131,14 +141,6 @@ class ConditionModel:
         depth : ndarray, shape (n_wearing, n), optional
             Wear depths of the wearing bodies, by default 0 [m].
         """
-        if self._varies or self._courses:
-            return self._present(time, pressure, faces, closed, depth)
-        key = closed.tobytes()  # nothing else matters here: most cases repeat the same call
-        if self._lasting is None or self._lasting[0] != key:
-            self._lasting = (key, self._present(time, pressure, faces, closed, None))
-        return self._lasting[1]
-
-    def _present(self, time, pressure, faces, closed, depth) -> InterfaceConditions:
         system = self._system
         pressed = 1.0 if self._load is None else _part(self._load.factor_at(time))
         speed = self._speed(time)

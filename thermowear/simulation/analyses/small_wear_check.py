@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
-from ..geometry_update.gap_wear import GapWear
+from ..geometry_update.outer_loop import GapWear
 from ..results.result import InterfaceFields
 from ..system.system import System
 

@@ -14,8 +14,7 @@ from ..results.outcome import Outcome
 from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
 from ..system.system import System
-from ..time.step_sizes import AnySize, FewSizes
-from ..time.time_loop import times_to_hit
+from ..time.time_loop import AnySize, FewSizes, times_to_hit
 from .transient_history import TransientHistory
 
 

@@ -48,13 +48,13 @@ class TransientHistory(AnalysisHistory[Moment]):
     def restart_data(self) -> tuple:
         """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
         heat = self._loop.problem.heat
-        own = None if heat is None else heat.steps.restart_data()
+        own = None if heat is None or not heat.steps.nonlinear else heat.steps.restart_data()
         return self._speed, self._loop.restart_data(), own
 
     def restore(self, data: tuple) -> None:
         self._speed, loop, own = data
         self._loop.restore(loop)
-        if self._loop.problem.heat is not None:
+        if self._loop.problem.heat is not None and own is not None:
             self._loop.problem.heat.steps.restore(own)
 
     def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
@@ -132,7 +132,8 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
         system, pressure, rows = self._loop.system, moment.state.pressure, self.table(HistoryRow)
-        volumes = system.worn_volumes(self._by_body(moment.state.worn))
+        kept = self._by_body(moment.state.worn) - system.moved
+        volumes = (kept @ system.weights + system.lost) / system.coverage
         return HistoryRow(
             time=moment.time,
             sliding_distance=slid + (rows[-1].sliding_distance if rows else 0.0),

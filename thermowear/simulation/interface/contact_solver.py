@@ -9,7 +9,7 @@ import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates
 from ...serialise import serialisable
-from ..heat.heat_steps import HeatStep
+from ..heat.linearisation import HeatStep
 from ..system.conditions import InterfaceConditions
 
 

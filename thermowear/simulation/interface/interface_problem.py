@@ -8,7 +8,8 @@ import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ..heat.friction_heat import FrictionHeat
-from ..heat.heat_steps import ConductingStep, HeatStep, InitialHeat
+from ..heat.heat_steps import InitialHeat
+from ..heat.linearisation import ConductingStep, HeatStep
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState

@@ -41,7 +41,8 @@ def summarise(system: System, analysis: Analysis, outcome: Outcome) -> dict:
     system = system.rubbing(contact.conditions.friction)
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
-    volumes = system.worn_volumes(np.array([interface.wear_1, interface.wear_2]))
+    depths = np.array([interface.wear_1, interface.wear_2])
+    volumes = ((depths - system.moved) @ w + system.lost) / system.coverage
     summary = {
         "title": model.title,
         "analysis": analysis.type,

@@ -141,54 +141,6 @@ def closing_times(start: np.ndarray, middle: np.ndarray, end: np.ndarray, step: 
 
 
 @dataclass(frozen=True)
-class WearEdge:
-    """Selection of the contact points at the edge of the worn zone of a face.
-
-    Attributes
-    ----------
-    facet : ndarray of int, shape (n,)
-        Facets of the points.
-    basis : ndarray, shape (n, m)
-        Basis Ψ.
-    weights : ndarray, shape (n,) [m²]
-    """
-
-    facet: np.ndarray
-    basis: np.ndarray
-    weights: np.ndarray
-
-    def points(
-        self,
-        worn: np.ndarray,
-        pressure: np.ndarray | None = None,
-        before: np.ndarray | None = None,
-    ) -> np.ndarray | None:
-        """Points with pointwise contact conditions, shape (n,), None without any.
-
-        Parameters
-        ----------
-        worn : ndarray, shape (n_wearing, n) [m]
-        pressure : ndarray, shape (n,), optional
-            Pressure [Pa].
-        before : ndarray of bool, shape (n,), optional
-            Points used for that pressure: kept until it is smooth there.
-        """
-        reached = np.any(worn > 0.0, axis=0)
-        if before is None and (reached.all() or not reached.any()):
-            return None
-        points = edge_points(self.facet, self.basis, reached)
-        if before is not None:
-            assert pressure is not None
-            points |= before & rough_points(self.facet, self.basis, self.weights, pressure)
-        return points if points.any() else None
-
-    def has_passed(self, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
-        """Test whether the edge passed its points in a step, from depths before and after."""
-        reached = (np.any(worn > 0.0, axis=0) for worn in (before, after))
-        return has_passed(self.basis, points, *reached)
-
-
-@dataclass(frozen=True)
 class EdgeSpace:
     """Pressure space with pointwise pressures at given points.
 

@@ -215,6 +215,8 @@ class HeatSteps:
         traces, comm, distortion = self._thermal.face.traces, self._system.comm, self._distortion
         if not self._distorts:
             return at_rest(rise, traces, comm)
+        if not self.nonlinear:
+            return at_rest(rise, traces, comm, distortion.per_rise)
         if operators is None or about is None:
             return at_rest(rise, traces, comm, distortion.per_rise, distortion.excess(rise))
         excess = distortion.excess(about, operators.reference)

@@ -81,7 +81,7 @@ class ContactSolver(Protocol):
         Parameters
         ----------
         points : ndarray of bool, shape (n,)
-            From `WearEdge.points`.
+            From `InterfaceProblem.begin`.
         """
 
     def steady(

@@ -37,7 +37,6 @@ class InterfaceProblem(WearProblem):
 
     Attributes
     ----------
-    heat : FrictionHeat or None
     stores_heat : bool
         True if conduction is transient.
     """
@@ -55,8 +54,7 @@ class InterfaceProblem(WearProblem):
         self._unworn = np.zeros((len(self._laws), n))
         uniform = np.full(n, (system.model.holder.force or area) / area)
         self._guess = ContactSolution(uniform, np.zeros(0), None)
-        given = system.model.heat
-        self.stores_heat = given is not None and given.transient
+        self.stores_heat = system.model.heat is not None and system.model.heat.transient
 
     def unworn(self) -> InterfaceState:
         """Contact of the unworn faces with the steady temperatures of its own friction heat."""
@@ -143,9 +141,17 @@ class InterfaceProblem(WearProblem):
 
     def begin(self, state: InterfaceState) -> InterfaceState:
         reached = np.any(state.worn > 0.0, axis=0)
-        if state.pointwise is None and (reached.all() or not reached.any()):
-            return state  # the wear has no edge
-        return self._edge.begin(state)
+        if not reached.any() or state.contact.warm_start is None:
+            return state
+        if state.pointwise is None:
+            depth = state.worn.sum(axis=0)[state.pressure > 0.0]
+            # pointwise contact once the edge of the contact is that of the wear: once the wear
+            # depth is steeper than the deflection, in the mean over the contact
+            even = reached.all() or not depth.size
+            if even or np.ptp(depth) <= self._method.bending(state.contact):
+                return state
+        edge = self._edge.points(state.worn, state.pressure, state.pointwise)
+        return replace(state, pointwise=edge)
 
     def stage(
         self, before: InterfaceState, step: float, time: float, guess: InterfaceState
@@ -164,13 +170,12 @@ class InterfaceProblem(WearProblem):
             worn = before.worn + step * self._rates(conditions)(last.pressure)
             return InterfaceState(worn, last, before.peak, faces, pointwise=edge)
 
-        closed = guess.pressure > 0
-        if self._condition_model.depends_on_state:
-            conditions, found = self_consistent(
-                self._condition_model, time, guess, respond, _STEP, closed
-            )
+        model = self._condition_model
+        if model.depends_on_state:
+            closed = guess.pressure > 0
+            conditions, found = self_consistent(model, time, guess, respond, _STEP, closed)
         else:
-            conditions = self._conditions(guess, time, closed)
+            conditions = self.conditions(guess, time)
             found = respond(conditions)
         if self.heat is None or heat is None or before.stored is None or found.faces is None:
             return found
@@ -179,15 +184,9 @@ class InterfaceProblem(WearProblem):
         return replace(found, stored=stored)
 
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
-        """Interface conditions in a state at a time [s]."""
-        return self._conditions(state, time, state.pressure > 0)
-
-    def _conditions(
-        self, state: InterfaceState, time: float, closed: np.ndarray
-    ) -> InterfaceConditions:
-        """Conditions in a state; lasting ones are kept for the last set of closed points (n,)."""
-        model, key = self._condition_model, closed.tobytes()
-        kept = self._lasting_conditions
+        """Interface conditions in a state at a time [s]; lasting ones are kept."""
+        model, closed = self._condition_model, state.pressure > 0
+        kept, key = self._lasting_conditions, closed.tobytes()
         if kept is not None and kept[0] == key and model.lasting:
             return kept[1]
         found = model.at(time, state.pressure, state.faces, closed, state.worn)
@@ -281,7 +280,7 @@ class InterfaceProblem(WearProblem):
 
     def steady(self, steady: SteadyState) -> np.ndarray:
         """Steady pressure of the discrete interface, the limit of its running-in [Pa]."""
-        conditions = steady.conditions
+        conditions = steady.contact.conditions
         return self._method.steady(steady.wear.pressure, self._rates(conditions), conditions)
 
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:

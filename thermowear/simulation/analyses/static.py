@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...laws.motions import combined
+from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
-from ..interface.steady import least_worn, steady_state
+from ..interface.steady import steady_state
 from ..results.outcome import Outcome
 from ..results.recording import interface_at, record
 from ..runtime.observer import Observer

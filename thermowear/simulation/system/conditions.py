@@ -179,7 +179,9 @@ class ConditionModel:
         """Mean temperature of both faces; 0 and unused without heat [K]."""
         return 0.0 if temperatures is None else (temperatures[0] + temperatures[1]) / 2
 
-    def _of_wear(self, name: str, values: Sequence[np.ndarray] | None, pressure) -> np.ndarray:
+    def _of_wear(
+        self, name: str, values: Sequence[np.ndarray] | np.ndarray | None, pressure: np.ndarray
+    ) -> np.ndarray:
         """Values of a state variable for the wear laws that depend on it; 0 for the others."""
         result = np.zeros((len(self._wearing), len(pressure)))
         for row, (_, wear) in enumerate(self._wearing):

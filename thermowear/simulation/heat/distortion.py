@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.varying import VaryingExpansion
 from ...contact.operators.heat import InterfaceHeat, ThermalDistortion
-from ...contact.operators.heat_condensation import condense_distortion, gap_per_rise
+from ...contact.operators.heat_condensation import condense_distortion
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem
 
@@ -52,14 +51,10 @@ class CondensedDistortion:
                 return condensed()
             return self.system.parts.get("distortion", self.system.inputs.conduction, condensed)
 
-    @cached_property
+    @property
     def per_rise(self) -> np.ndarray:
         """Weak gap per nodal rise at constant expansion, shape (n_owned, m) [m³/K]."""
-        return self.system.parts.get(
-            "gap per rise",
-            self.system.inputs.elasticity,
-            lambda: gap_per_rise(self.thermal.load, self.system.contact),
-        )
+        return self.system.influence.per_rise[0]
 
     def slope(self, rise: np.ndarray) -> np.ndarray:
         """Derivative of the weak gap by a nodal rise, shape (n_owned, m) [m³/K]."""
@@ -79,8 +74,8 @@ class CondensedDistortion:
             total = total + per_rise.T @ (part.excess(rise) - linear)
         return total
 
-    @cached_property
+    @property
     def _per_excess(self) -> list[tuple[VaryingExpansion, np.ndarray]]:
         """Varying expansions and the weak gap per excess rise of their parts, (n_owned, m)."""
-        contact = self.system.contact
-        return [(part, gap_per_rise(part.matrix, contact)) for part in self.thermal.expansions]
+        per_excess = self.system.influence.per_rise[1:]
+        return list(zip(self.thermal.expansions, per_excess, strict=True))

@@ -216,7 +216,7 @@ class HeatSteps:
         if not self._distorts:
             return at_rest(rise, traces, comm)
         if not self.nonlinear:
-            return at_rest(rise, traces, comm, distortion.per_rise)
+            return at_rest(rise, traces, comm, (operators or distortion).per_rise)
         if operators is None or about is None:
             return at_rest(rise, traces, comm, distortion.per_rise, distortion.excess(rise))
         excess = distortion.excess(about, operators.reference)

@@ -168,9 +168,9 @@ class System:
     def influence(self) -> Influence:
         """Responses of the bodies to the pressure basis functions. Every rank calls."""
         bodies = self.elastic, self.pairing, self.trace, self.basis
-        hot = self.thermal is not None
+        thermal_loads = () if self.thermal is None else self.thermal.load_matrices
         return self.parts.get(
-            "influence", self.inputs.elasticity, lambda: influence(*bodies, keep_whole=hot)
+            "influence", self.inputs.elasticity, lambda: influence(*bodies, thermal_loads)
         )
 
     @cached_property

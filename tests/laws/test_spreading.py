@@ -31,7 +31,6 @@ LENGTHS = np.array([0.1, 0.2, 0.2, 0.1])
 )
 def test_rates(way, expected):
     """requirement: in place, a share of the time, or the mean over the length of the track."""
-    np.testing.assert_allclose(way.rate(LOCAL), expected, rtol=1e-14)
     np.testing.assert_allclose(way.operator(4) @ LOCAL, expected, rtol=1e-14)
     assert way.operator(4).shape == (4, 4)
 
@@ -39,7 +38,7 @@ def test_rates(way, expected):
 def test_volume_is_kept():
     """requirement: what a strip loses over its whole track is what the contact takes off it."""
     track = 3.0
-    rate = UniformTrack(LENGTHS / track).rate(LOCAL)
+    rate = UniformTrack(LENGTHS / track).operator(4) @ LOCAL
     assert track * rate[0] == pytest.approx(LENGTHS @ LOCAL, rel=1e-14)
 
 
@@ -48,8 +47,7 @@ def test_share_and_rows_say_the_same():
     turning = rings(np.array([1.0, 2.0, 2.0, 3.0]), np.array([1.0, 2.0, 1.0, 2.0]), 0.2)
     for way in (InPlace(), DutyFactor(0.3), UniformTrack(LENGTHS), turning):
         common = 0.0 if way.rows is None else way.reach(4) @ (way.rows @ LOCAL)
-        np.testing.assert_allclose(way.rate(LOCAL), way.share * LOCAL + common)
-        np.testing.assert_allclose(way.operator(4) @ LOCAL, way.rate(LOCAL))
+        np.testing.assert_allclose(way.operator(4) @ LOCAL, way.share * LOCAL + common)
 
 
 def test_a_share_of_the_wear():
@@ -136,7 +134,7 @@ def test_a_disk_wears_at_each_radius_by_the_mean_along_its_circle():
     """requirement: the mean of the local rate round the axis, by quadrature; no volume is lost."""
     r, angle, w = disk_under_a_pad()
     local = r * (1 + 0.5 * angle + angle**2)
-    found = rings(r, w, 1 / 6).rate(local)
+    found = rings(r, w, 1 / 6).operator(len(r)) @ local
     mean = r * (1 + (np.pi / 6) ** 2 / 3) / 6
     np.testing.assert_allclose(found, mean, rtol=1e-12)
     assert w @ found == pytest.approx(w @ local / 6, rel=1e-13)
@@ -147,9 +145,9 @@ def test_rings_of_scattered_points():
     rng = np.random.default_rng(1)
     r, angle = np.sqrt(rng.uniform(0.08**2, 0.12**2, 4000)), rng.uniform(-0.5, 0.5, 4000)
     way = rings(r, np.ones(4000), 0.2)
-    np.testing.assert_allclose(way.rate(np.full(4000, 3.0)), 0.6, rtol=1e-12)
+    np.testing.assert_allclose(way.reach(4000) @ (way.rows @ np.full(4000, 3.0)), 0.6, rtol=1e-12)
     local = r * (1 + angle)
-    found = way.rate(local)
+    found = way.reach(4000) @ (way.rows @ local)
     assert found.min() > 0
     assert found.sum() == pytest.approx(0.2 * local.sum(), rel=1e-12)
     np.testing.assert_allclose(found, 0.2 * r, rtol=0.1)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.mesh_motion import HarmonicExtension
-from thermowear.simulation.geometry_update.gap_wear import GapWear, movable_body
+from thermowear.simulation.geometry_update.moving_faces import MovingFaces, movable_body
 from thermowear.simulation.system.building import build
 from thermowear.simulation.system.setup_cache import SetupCache
 from thermowear.simulation.system.worn_geometry import along
@@ -34,7 +34,7 @@ CYLINDER = (
 def grooved(depth):
     """The system whose block has lost a depth at the abscissae of the contact points."""
     system = built(starter(*CYLINDER), MPI.COMM_SELF)
-    kept = GapWear(system)
+    kept = MovingFaces(system)
     face, body = kept.faces[1], movable_body(system, kept.geometry.mesh, 1)
     amounts = face.amounts(depth(system.pairing.points[:, 0]))
     outlined = body.outlined(face.displacement(amounts))

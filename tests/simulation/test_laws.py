@@ -13,7 +13,7 @@ from thermowear.contact.wear.implicit_step import newton_with_wear
 from thermowear.errors import ComputationError
 from thermowear.laws import parameter, registered, registered_laws
 from thermowear.laws.registry import REGISTERED
-from thermowear.simulation.interface import implicit_contact
+from thermowear.simulation.interface import interface_problem
 
 from ..case.starter import FRETTING, GONE, RECIPROCATING, RUNNING_IN, solved, tables
 
@@ -275,7 +275,7 @@ def test_stribeck_friction_takes_no_more_iterations_than_constant_friction(monke
 
         return newton_with_wear(counting, *others)
 
-    monkeypatch.setattr(implicit_contact, "newton_with_wear", counted)
+    monkeypatch.setattr(interface_problem, "newton_with_wear", counted)
     per_step = []
     for friction in (0.25, STRIBECK):
         solutions.clear()

@@ -5,8 +5,8 @@ import pytest
 
 import thermowear as tw
 from thermowear.case.starters import starter_text
+from thermowear.contact.wear.implicit_step import Slope
 from thermowear.parallel import sum_over_ranks
-from thermowear.simulation.interface.contact_solver import Slope
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.system.conditions import ConditionModel
 

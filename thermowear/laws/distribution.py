@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -70,6 +71,8 @@ class DutyFactor(Distribution):
     """
 
     share: float
+    rows: ClassVar[None] = None
+    varying_rows: ClassVar[None] = None
 
 
 @dataclass(frozen=True)

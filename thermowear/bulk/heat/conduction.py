@@ -86,8 +86,10 @@ class Conduction:
         """Rise [K] due to nodal heat [W] and prescribed temperatures."""
         return self.given + self.respond(heat + self.lifted)
 
-    def holding(self, given: np.ndarray) -> Conduction:
-        """Copy with other prescribed rises (n_owned,), zero in the free values [K]."""
+    def holding(self, given: np.ndarray | None) -> Conduction:
+        """Copy with other prescribed rises (n_owned,), zero in the free values; None: as is [K]."""
+        if given is None:
+            return self
         return replace(self, given=given, lifted=-multiply(self.conductivity, given))
 
     def per_ambient(self) -> np.ndarray:

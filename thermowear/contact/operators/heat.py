@@ -199,6 +199,30 @@ class HeatExchange:
         return np.vstack([f * Θ1, (1 - f) * Θ2])
 
 
+@dataclass(frozen=True)
+class ThermalDistortion:
+    """Thermal distortion: weak gap opened by heat (negative: closed).
+
+    Attributes
+    ----------
+    per_flux : tuple of ndarray, shape (m, n)
+        Weak gap per heat flux into each body at the points, bath included [m³ per W/m²].
+    """
+
+    per_flux: tuple[np.ndarray, np.ndarray]
+
+    def per_friction_heat(self, exchange: HeatExchange) -> np.ndarray:
+        """Weak gap of coupled faces per friction heat, H, shape (m, n)."""
+        first, second = exchange.per_friction_heat
+        return self.per_flux[0] @ first + self.per_flux[1] @ second
+
+    def at_rest(self, exchange: HeatExchange, resting: BaselineResponse) -> np.ndarray:
+        """Weak gap of coupled faces without friction heat, shape (m,)."""
+        assert resting.opening is not None
+        first, second = exchange.into_bath(np.concatenate(resting.rise))
+        return self.per_flux[0] @ first + self.per_flux[1] @ second + resting.opening
+
+
 def _parts(own: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Fractions ``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
     inverse = np.full(len(conductance), np.inf)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from petsc4py import PETSc
 
 import numpy as np
@@ -12,32 +10,8 @@ import scipy.sparse as sp
 from ...bulk.heat.conduction import Conduction
 from ...parallel import sum_over_ranks
 from .condensation import blocks
-from .heat import BaselineResponse, HeatExchange, InterfaceHeat
+from .heat import InterfaceHeat, ThermalDistortion
 from .traces import distributed
-
-
-@dataclass(frozen=True)
-class ThermalDistortion:
-    """Thermal distortion: weak gap opened by heat (negative: closed).
-
-    Attributes
-    ----------
-    per_flux : tuple of ndarray, shape (m, n)
-        Weak gap per heat flux into each body at the points, bath included [m³ per W/m²].
-    """
-
-    per_flux: tuple[np.ndarray, np.ndarray]
-
-    def per_friction_heat(self, exchange: HeatExchange) -> np.ndarray:
-        """Weak gap of coupled faces per friction heat, H, shape (m, n)."""
-        first, second = exchange.per_friction_heat
-        return self.per_flux[0] @ first + self.per_flux[1] @ second
-
-    def at_rest(self, exchange: HeatExchange, resting: BaselineResponse) -> np.ndarray:
-        """Weak gap of coupled faces without friction heat, shape (m,)."""
-        assert resting.opening is not None
-        first, second = exchange.into_bath(np.concatenate(resting.rise))
-        return self.per_flux[0] @ first + self.per_flux[1] @ second + resting.opening
 
 
 def condense_heat(

@@ -8,11 +8,14 @@ if the error of its linearisation has not decreased.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from ...errors import ComputationError
+from ...laws.distribution import Distribution
+from ...laws.interfaces import Law, LocalState
 
 _STEPS = 40
 _TOLERANCE = 1e-11
@@ -34,6 +37,91 @@ class PressureDependentWear(Protocol):
 
     def slope(self, pressure: np.ndarray, last: Any) -> Any:
         """Derivative of the value, a linear map ``slope @ pressure``."""
+
+
+@dataclass(frozen=True)
+class Slope:
+    """Derivative of a gap by the pressures, ``diag(point) + reach rows``.
+
+    Attributes
+    ----------
+    point : ndarray, shape (n,)
+        Derivative by the pressure at the same point; of any shape without means [m/Pa].
+    rows : ndarray, shape (k, n)
+        Derivatives of k means by the pressures at the points [m/Pa].
+    reach : ndarray, shape (n, k)
+        Weight of each mean at each point.
+    """
+
+    point: np.ndarray
+    rows: np.ndarray
+    reach: np.ndarray
+
+    @classmethod
+    def diagonal(cls, point: np.ndarray) -> Slope:
+        """Diagonal derivative, without means."""
+        return cls(point, np.zeros((0, len(point))), np.zeros((len(point), 0)))
+
+    def with_compliance(self, point: np.ndarray) -> Slope:
+        """Derivative with an additional local compliance (n,) [m/Pa]."""
+        return Slope(self.point + point, self.rows, self.reach)
+
+    def __matmul__(self, pressure: np.ndarray) -> np.ndarray:
+        """Gap opened by a pressure [m]."""
+        if not len(self.rows):
+            return self.point * pressure
+        return self.point * pressure + self.reach @ (self.rows @ pressure)
+
+
+@dataclass(frozen=True)
+class WearRates:
+    """Wear rates at the contact points by the wear laws, as functions of the pressure alone.
+
+    Attributes
+    ----------
+    laws : list of Law
+        Wear laws of the wearing bodies.
+    spreads : list of Distribution
+        Distributions of the wear of these bodies.
+    factors : ndarray, shape (n_wearing, n)
+        Factors of the rates.
+    states : list of tuple of ndarray, shape (n,)
+        Speed, temperature, depth and friction, as in `LocalState`, by wearing body.
+    step : float
+        Time in which `value` is worn [s].
+    """
+
+    laws: list[Law]
+    spreads: list[Distribution]
+    factors: np.ndarray
+    states: list[tuple[np.ndarray, ...]]
+    step: float = 1.0
+
+    def __call__(self, pressure: np.ndarray) -> np.ndarray:
+        """Wear rates, shape (n_wearing, n) [m/s]."""
+        rates = np.zeros_like(self.factors)
+        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
+            local = self.factors[row] * law.value(LocalState(pressure, *self.states[row]))
+            rates[row] = spread.share * local
+            if spread.rows is not None:
+                rates[row] += spread.reach(len(pressure)) @ (spread.rows @ local)
+        return rates
+
+    def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
+        """Total depth worn in the time step, shape (n,) [m]."""
+        return self.step * self(pressure).sum(axis=0)
+
+    def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
+        """Derivative of `value` by the pressures [m/Pa]."""
+        n = len(pressure)
+        point, rows, reach = np.zeros(n), [np.zeros((0, n))], [np.zeros((n, 0))]
+        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
+            local = self.factors[row] * law.slope(LocalState(pressure, *self.states[row]))
+            point += spread.share * local
+            if spread.varying_rows is not None:
+                rows.append(spread.varying_rows * local)
+                reach.append(spread.reach(n))
+        return Slope(self.step * point, self.step * np.vstack(rows), np.hstack(reach))
 
 
 def newton_with_wear(

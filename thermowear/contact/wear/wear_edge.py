@@ -108,52 +108,36 @@ def rough_points(
     return rough[facet]
 
 
-@dataclass(frozen=True)
-class WearEdge:
-    """Selection of the contact points at the edge of the worn zone of a face.
+def closing_times(start: np.ndarray, middle: np.ndarray, end: np.ndarray, step: float):
+    """Times at which the edge of the worn zone reaches contact points, from the start of a step.
 
-    Attributes
+    A point with pointwise contact takes up pressure within about the time in which wear equals the
+    deflection under it. Steps that end just after this time are the largest ones that resolve it;
+    the time is extrapolated from the gaps of the points.
+
+    Gaps open at the end of the step close at the zero of the parabola through all three values, or
+    at its vertex if it has none; gaps open until the middle, at the zero of the line.
+
+    Parameters
     ----------
-    facet : ndarray of int, shape (n,)
-        Facets of the points.
-    basis : ndarray, shape (n, m)
-        Basis Ψ.
-    weights : ndarray, shape (n,) [m²]
+    start, middle, end : ndarray, shape (n,)
+        Gaps, 0 at closed points, NaN if unknown [m].
+    step : float
+        Step length [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Closing times, infinite for gaps that open, are unknown or were closed until the middle [s].
     """
-
-    facet: np.ndarray
-    basis: np.ndarray
-    weights: np.ndarray
-
-    def points(
-        self,
-        worn: np.ndarray,
-        pressure: np.ndarray | None = None,
-        before: np.ndarray | None = None,
-    ) -> np.ndarray | None:
-        """Points with pointwise contact conditions, shape (n,), None without any.
-
-        Parameters
-        ----------
-        worn : ndarray, shape (n_wearing, n) [m]
-        pressure : ndarray, shape (n,), optional
-            Pressure [Pa].
-        before : ndarray of bool, shape (n,), optional
-            Points used for that pressure: kept until it is smooth there.
-        """
-        reached = np.any(worn > 0.0, axis=0)
-        if before is None and (reached.all() or not reached.any()):
-            return None
-        points = edge_points(self.facet, self.basis, reached)
-        if before is not None:
-            assert pressure is not None
-            points |= before & rough_points(self.facet, self.basis, self.weights, pressure)
-        return points if points.any() else None
-
-    def has_passed(self, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
-        """Test whether the edge passed its points in a step, from depths before and after."""
-        reached = (np.any(worn > 0.0, axis=0) for worn in (before, after))
-        return has_passed(self.basis, points, *reached)
+    slope = (start - 4 * middle + 3 * end) / step
+    bend = 4 * (start - 2 * middle + end) / step**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        fall = np.sqrt(np.maximum(slope**2 - 2 * bend * end, 0.0)) - slope
+        later = np.where(fall > 0.0, step + 2 * end / fall, np.inf)
+        within = np.where((middle > 0.0) & (start > middle), start / (start - middle), np.inf)
+    times = np.where(end > 0.0, later, step / 2 * within)
+    return np.where(np.isnan(times), np.inf, times)
 
 
 @dataclass(frozen=True)

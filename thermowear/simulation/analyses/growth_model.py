@@ -19,7 +19,7 @@ from ...contact.operators.heat import InterfaceHeat, at_rest
 from ...contact.operators.heat_condensation import condense_heat
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
-from ..heat.heat_operators import CondensedDistortion
+from ..heat.distortion import CondensedDistortion
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 

@@ -19,7 +19,7 @@ from ...laws.stability import (
     load_free,
     static_modes,
 )
-from ..heat.heat_operators import CondensedDistortion
+from ..heat.distortion import CondensedDistortion
 from ..system.building import build
 from ..system.conditions import InterfaceConditions
 from ..system.system import System

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
 from ...results import InterfaceFields
-from ..geometry_update.gap_wear import GapWear
+from ..geometry_update.outer_loop import GapWear
 from ..system.system import System
 
 

@@ -16,8 +16,7 @@ from ..results.recording import Snapshot
 from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
 from ..system.system import System
-from ..time.step_sizes import AnySize, FewSizes
-from ..time.time_loop import Moment, times_to_hit
+from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit
 from .transient_history import TransientHistory
 
 

@@ -12,7 +12,9 @@ from ...laws.motions import combined
 from ...model.analyses import TransientAnalysis
 from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
+from ..heat.friction_heat import FrictionHeat
 from ..interface.interface_problem import InterfaceProblem
+from ..interface.sdirk import InterfaceState
 from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
@@ -47,12 +49,15 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def restart_data(self) -> tuple:
         """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
-        return self._speed, self.loop.restart_data(), self.loop.problem.restart_data()
+        heat = self.loop.problem.heat
+        own = None if heat is None or not heat.steps.nonlinear else heat.steps.restart_data()
+        return self._speed, self.loop.restart_data(), own
 
     def restore(self, data: tuple) -> None:
-        self._speed, loop, heat = data
+        self._speed, loop, own = data
         self.loop.restore(loop)
-        self.loop.problem.restore(heat)
+        if self.loop.problem.heat is not None and own is not None:
+            self.loop.problem.heat.steps.restore(own)
 
     def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
         problem = self.loop.problem
@@ -61,9 +66,9 @@ class TransientHistory(AnalysisHistory[Moment]):
         slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
         self._speed = speed
         row = self._row(state, slid)
-        if not problem.stores_heat:
+        if problem.heat is None or not problem.stores_heat:
             return [row]
-        heat = self._heat_row(state, conditions)
+        heat = self._heat_row(state, conditions, problem.heat)
         require(heat_balance_relative_error=heat.balance_error)
         return [row, heat]
 
@@ -78,7 +83,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         try:
             for moment in passing:
                 yield moment
-                hottest = self.loop.problem.hottest(moment.state)
+                hottest = self._hottest(moment.state)
                 if self.loop.problem.stores_heat and hottest > _MELTED:
                     raise ComputationError(
                         f"transient: {hottest:.3g} K at {moment.time:g} s, above the melting point "
@@ -125,7 +130,8 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
         system, pressure, rows = self.loop.system, moment.state.pressure, self.table(HistoryRow)
-        volumes = system.worn_volumes(_by_body(system, moment.state.worn))
+        kept = _by_body(system, moment.state.worn) - system.moved
+        volumes = (kept @ system.weights + system.lost) / system.coverage
         return HistoryRow(
             time=moment.time,
             sliding_distance=slid + (rows[-1].sliding_distance if rows else 0.0),
@@ -133,18 +139,27 @@ class TransientHistory(AnalysisHistory[Moment]):
             contact_area=float(system.weights[pressure > 0].sum()),
             wear_volume_1=float(volumes[0]),
             wear_volume_2=float(volumes[1]),
-            max_temperature=self.loop.problem.hottest(moment.state),
+            max_temperature=self._hottest(moment.state),
             approach=float(system.approaches @ moment.state.contact.motion),
             step=moment.step,
             error=moment.error,
         )
 
-    def _heat_row(self, moment: Moment, conditions: InterfaceConditions) -> HeatRow:
-        system, problem, pressure = self.loop.system, self.loop.problem, moment.state.pressure
-        balance, (T1, T2) = (
-            problem.heat_balance(moment.state),
-            problem.face_temperatures(moment.state),
-        )
+    def _hottest(self, state: InterfaceState) -> float:
+        """Highest temperature of both faces [K]; NaN without heat."""
+        heat = self.loop.problem.heat
+        if heat is None or state.faces is None:
+            return float("nan")
+        return float(np.max(state.faces.rise)) + heat.ambient
+
+    def _heat_row(
+        self, moment: Moment, conditions: InterfaceConditions, heat: FrictionHeat
+    ) -> HeatRow:
+        system, state = self.loop.system, moment.state
+        assert state.stored is not None
+        assert state.faces is not None
+        balance, pressure = heat.balance(state.stored), state.pressure
+        T1, T2 = (rise + heat.ambient for rise in state.faces.rise)
         return HeatRow(
             time=moment.time,
             speed=self._speed,

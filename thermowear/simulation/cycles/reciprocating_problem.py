@@ -27,11 +27,11 @@ import numpy as np
 
 from ...contact.solvers.coupled_positions import CoupledSolution, solve_coupled
 from ...contact.solvers.signorini import solve_contact
-from ...contact.wear.implicit_step import newton_with_wear
+from ...contact.wear.implicit_step import Slope, newton_with_wear
 from ...contact.wear.track import StrokeGrid, track
 from ...errors import ComputationError
 from ...laws.interfaces import Law, LocalState
-from ..interface.contact_solver import ContactSolution, Slope
+from ..interface.contact_solver import ContactSolution
 from ..interface.sdirk import InterfaceState, WearProblem
 from ..system.system import System
 from .stroke import Position, condensed, spreading

@@ -19,6 +19,7 @@ from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.new_face import NewFace
 from ...laws.motions import combined
 from ...parallel import on_root
+from ...serialise import serialisable
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
@@ -26,9 +27,13 @@ from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
-from .gap_wear import GapWear, lacking_in_shape, movable_body
+from .moving_faces import MovingFaces, lacking_in_shape, movable_body
 from .remesh import FLOOR, carrying_error, improved, on_new_faces
-from .smooth_wear import worn_in
+
+serialisable(WornGeometry)
+serialisable(TaggedMesh)
+serialisable(NewFace)
+serialisable(Rule)
 
 _SETTLED = 1e-10
 """Relative tolerance of the volume removed by the mesh motion."""
@@ -57,9 +62,14 @@ class Updated:
 
 
 def updated(
-    system: System, problem: InterfaceProblem, kept: GapWear, state: InterfaceState, time: float
+    system: System,
+    problem: InterfaceProblem,
+    faces: MovingFaces,
+    depth: np.ndarray,
+    state: InterfaceState,
+    time: float,
 ) -> Updated:
-    """Move the meshes of a system by the wear kept in the gap. Every rank calls.
+    """Move the meshes of a system by depths (2, n) kept in the gap [m]. Every rank calls.
 
     Raises
     ------
@@ -67,8 +77,7 @@ def updated(
         If cells would become too thin or too distorted, or the faces cannot be paired.
     """
     with system.phases("move meshes"):
-        state = replace(state, worn=worn_in(system, problem, state, time))
-        worn, renewed = _moved(system, kept, state)
+        worn, renewed = _moved(system, faces, faces.due(depth), state)
     try:
         following = build(system.model, system.comm, system.phases, system.zone, SetupCache(), worn)
     except CaseError as fault:  # blames the input; here the bodies are computed
@@ -133,9 +142,11 @@ def _carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.n
     return rows, error
 
 
-def _moved(system: System, kept: GapWear, state: InterfaceState) -> tuple[WornGeometry, bool]:
-    """Geometry with the meshes moved by the wear, and True if a body has been remeshed."""
-    before, faces, depth = kept.geometry, kept.faces, kept.due(kept.depth(state.worn))
+def _moved(
+    system: System, moving: MovingFaces, depth: np.ndarray, state: InterfaceState
+) -> tuple[WornGeometry, bool]:
+    """Geometry with the meshes moved by depths (2, n), and True if a body has been remeshed."""
+    before, faces = moving.geometry, moving.faces
     amounts = {index: face.amounts(depth[index]) for index, face in faces.items()}
     mesh, lost = _followed(system, before, faces, amounts, depth @ system.weights)
     mesh, quality, renewed = on_root(

@@ -12,12 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...contact.search.refinement import Rule
+from ...compat import geometry_dofmap
+from ...contact.wear.worn_face import curvatures, lengths
 from ...errors import ComputationError
-from ...geometry.mesh.tagged import TaggedMesh
-from ...geometry.moving.new_face import NewFace
 from ...model.analyses import TransientAnalysis
-from ...serialise import serialisable
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import advance_with_error
@@ -26,11 +24,10 @@ from ..runtime.observer import Observer
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from ..system.worn_geometry import WornGeometry
-from ..time.step_sizes import StepSizes
-from ..time.time_loop import Moment, is_over, moments
-from .gap_wear import GapWear
+from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
+from .moving_faces import MovingFaces
+from .smooth_wear import worn_in
 from .update_counts import UpdateCounts
 from .wider_zone import meshed_wider, wider_zone
 
@@ -40,14 +37,53 @@ _OVER = 0.1
 """Overshoot of the allowed fraction that a step may cause, relative to it."""
 _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
+_TILT = 0.1
+"""Weight of the element tilt: depth difference of its ends relative to its size."""
 
 Principle = Callable[[System], SteadyState | None]
 """Steady state that a system approaches; None if there is none."""
 
-serialisable(WornGeometry)
-serialisable(TaggedMesh)
-serialisable(NewFace)
-serialisable(Rule)
+
+class GapWear:
+    """Wear kept in the gap of a system, relative to the dimensions of the bodies.
+
+    Dimensions are the thickness behind the face and the radius of curvature of either face; a tenth
+    of the element tilt (depth difference of its ends over its size) counts, too.
+
+    Parameters
+    ----------
+    system : System
+        System with contact faces of a section or of a solid.
+
+    Attributes
+    ----------
+    faces : MovingFaces
+        Faces that may follow the wear.
+    """
+
+    def __init__(self, system: System):
+        self._system, side = system, system.pairing.sides[0]
+        facets, self._first = np.unique(side.facet, return_index=True)
+        self._lengths = lengths(side.face)[facets]
+        self._curvature = max(float(curvatures(s.face).max()) for s in system.pairing.sides)
+        self.faces = MovingFaces(system)
+        self._thickness = {index: _thickness(system, index) for index in self.faces.bodies}
+
+    def depth(self, worn: np.ndarray) -> np.ndarray:
+        """Depths kept in the gap (2, n) from the total depths of the wearing bodies [m]."""
+        both = np.zeros((2, worn.shape[1]))
+        both[list(self._system.laws)] = worn
+        return both - self._system.moved
+
+    def fraction(self, depth: np.ndarray) -> float:
+        """Largest ratio of a depth (2, n) of both bodies to their dimensions."""
+        ratios = [0.0]
+        for index, thickness in self._thickness.items():
+            largest = float(np.abs(depth[index]).max())
+            low, high = (f.reduceat(depth[index], self._first) for f in (np.minimum, np.maximum))
+            tilt = float(((high - low) / self._lengths).max())
+            ratios += [largest / thickness, largest * self._curvature, _TILT * tilt]
+        return max(ratios)
 
 
 class OuterLoop:
@@ -133,7 +169,7 @@ class OuterLoop:
                 if kept is not None:
                     before, fraction = fraction, kept.fraction(kept.depth(moment.state.worn))
                     self._look_ahead(fraction, fraction - before, moment.step)
-                    if system.worn is not None and is_over(settings, problem, moment):
+                    if system.worn is not None and is_over(settings, moment):
                         assert last is not None
                         system, problem, moment = self._end(system, problem, kept, last, moment)
                         steady = self._principle(system)
@@ -150,22 +186,8 @@ class OuterLoop:
     def summary(self) -> dict[str, float | int]:
         """Summary entries of the geometry updates; empty without updates."""
         worn = self.system.worn
-        counts = self.earlier.counting(worn)
-        if counts.updates == 0:
-            return {}
         lost = np.zeros(2) if worn is None else worn.lost
-        return {
-            "geometry_updates": counts.updates,
-            "geometry_largest_kept": self.largest_kept,
-            "geometry_smallest_scaled_jacobian": counts.quality,
-            "geometry_volume_1_m3": float(lost[0]),
-            "geometry_volume_2_m3": float(lost[1]),
-            "geometry_volume_error": counts.volume_error,
-            "geometry_change": counts.change,
-            "geometry_temperature_error": counts.heat_error,
-            "geometry_meshed_anew": counts.meshed_anew,
-            "geometry_remeshing_error": counts.carrying_error,
-        }
+        return self.earlier.counting(worn).summary(self.largest_kept, lost)
 
     def _told(self, passing: Iterator[Moment]) -> Iterator[Moment]:
         """Pass the moments on; add to an error that the contact has outgrown the meshed zone."""
@@ -188,8 +210,9 @@ class OuterLoop:
 
     def _widens(self, system: System, moment: Moment) -> bool:
         """True if a wearing contact has outgrown its zone before the end of the run."""
-        settings = self._settings
-        if self._narrow or not moment.state.worn.any() or is_over(settings, self.problem, moment):
+        if self._narrow or system.zone is None or not moment.state.worn.any():
+            return False
+        if is_over(self._settings, moment):
             return False
         return wider_zone(system, moment.state.pressure) is not None
 
@@ -219,9 +242,9 @@ class OuterLoop:
 
         Always False at the end of the run.
         """
-        if fraction <= self.allowed or is_over(self._settings, self.problem, moment):
+        if fraction <= self.allowed or is_over(self._settings, moment):
             return False
-        return kept.fraction(kept.movable(kept.depth(moment.state.worn))) > self.allowed
+        return kept.fraction(kept.faces.movable(kept.depth(moment.state.worn))) > self.allowed
 
     def _look_ahead(self, fraction: float, grown: float, step: float) -> None:
         """Limit the next step so that the kept wear hardly exceeds the allowed fraction."""
@@ -251,10 +274,23 @@ class OuterLoop:
 
     def _update(self, system, problem, kept, last: Moment):
         """System, problem and moment after moving the meshes; adapts the allowed fraction."""
-        new = updated(system, problem, kept, last.state, last.time)
+        state = replace(last.state, worn=worn_in(system, problem, last.state, last.time))
+        new = updated(system, problem, kept.faces, kept.depth(state.worn), state, last.time)
         change = new.change
         automatic = self._settings.largest_kept
         if self._settings.adapts and change > 0.0:
             wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
             self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
         return new.system, new.problem, replace(last, state=new.state)
+
+
+def _thickness(system: System, index: int) -> float:
+    """Thickness of a body behind the middle of its contact face [m]; every rank calls."""
+    pairing, bodies = system.pairing, system.bodies
+    out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
+    out = out / np.linalg.norm(out)
+    middle = np.average(pairing.points, axis=0, weights=pairing.weights)
+    parts = system.model.bodies[index].parts
+    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
+    nodes = bodies.mesh.geometry.x[geometry_dofmap(bodies.mesh)[cells].ravel(), : len(middle)]
+    return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

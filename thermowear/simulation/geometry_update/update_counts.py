@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ...serialise import serialisable
 from ..system.worn_geometry import WornGeometry
 
@@ -37,3 +39,28 @@ class UpdateCounts:
             meshed_anew=self.meshed_anew + worn.meshed_anew,
             carrying_error=max(self.carrying_error, worn.carrying_error),
         )
+
+    def summary(self, largest_kept: float, lost: np.ndarray) -> dict[str, float | int]:
+        """Summary entries; empty without updates.
+
+        Parameters
+        ----------
+        largest_kept : float
+            Largest wear kept in the gap, relative to the dimensions of the bodies.
+        lost : ndarray, shape (2,)
+            Volumes that the meshes have lost [m³].
+        """
+        if self.updates == 0:
+            return {}
+        return {
+            "geometry_updates": self.updates,
+            "geometry_largest_kept": largest_kept,
+            "geometry_smallest_scaled_jacobian": self.quality,
+            "geometry_volume_1_m3": float(lost[0]),
+            "geometry_volume_2_m3": float(lost[1]),
+            "geometry_volume_error": self.volume_error,
+            "geometry_change": self.change,
+            "geometry_temperature_error": self.heat_error,
+            "geometry_meshed_anew": self.meshed_anew,
+            "geometry_remeshing_error": self.carrying_error,
+        }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,9 +13,8 @@ from ...parallel import sum_over_ranks
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem
-from .heat_states import HeatBalance, StoredHeat, TemperatureField
-from .heat_steps import ConductingStep, InitialHeat
-from .linearisation import HeatSteps
+from .heat_steps import InitialHeat, StoredHeat
+from .linearisation import ConductingStep, HeatSteps
 
 _ROUNDING = 1e-3
 """Least scale of the heat balance, relative to the initial heat content (rounding)."""
@@ -23,6 +22,49 @@ _SHALLOW = 1e-3
 """Penetration depth of heat in the first step, relative to the length of the contact."""
 _HARDLY = 0.1
 """Surface temperature rise allowed in the first step [K]."""
+
+
+@dataclass(frozen=True)
+class TemperatureField:
+    """Temperatures of bodies and faces.
+
+    Attributes
+    ----------
+    faces : ThermalState
+    rise : ndarray, shape (n_owned,)
+        Nodal temperature rise over the ambient [K].
+    error : float
+        Relative error of the heat balance.
+    """
+
+    faces: ThermalState
+    rise: np.ndarray
+    error: float
+
+
+@dataclass(frozen=True)
+class HeatBalance:
+    """Heat balance since the start.
+
+    Attributes
+    ----------
+    made, stored, lost : float
+        Heat input by friction and through surfaces with a given flux or power, heat stored in the
+        bodies, and heat lost to the surroundings [J].
+    moved : float
+        Magnitude of all heat put in, lost, or moved inside the bodies [J].
+    """
+
+    made: float
+    stored: float
+    lost: float
+    moved: float
+
+    @property
+    def error(self) -> float:
+        """Imbalance relative to the largest term."""
+        scale = max(abs(self.made), abs(self.stored), abs(self.lost), self.moved)
+        return relative(self.made - self.stored - self.lost, scale)
 
 
 def friction_heat(system: System) -> FrictionHeat | None:

@@ -1,25 +1,122 @@
-"""Heat at one time, coupled to the contact solver: linear, nonlinear, or given temperatures."""
+"""Heat at one time, coupled to the contact solver: linear conduction, or given temperatures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from ...contact.operators.heat import BaselineResponse, ThermalState
-from ...errors import ComputationError
+from ...bulk.heat.conduction import Conduction
+from ...contact.operators.heat import (
+    BaselineResponse,
+    HeatExchange,
+    InterfaceHeat,
+    ThermalDistortion,
+    ThermalState,
+)
+from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
 from ..system.thermal_loads import ThermalLoad
-from .heat_operators import HeatOperators
-from .heat_states import StoredHeat
+from .distortion import CondensedDistortion
 
-_TURNS = 60
-_SETTLED = 1e-11
-"""Tolerance of the change of the temperatures, relative to the largest rise."""
-_SLOW = 0.3
-"""Convergence rate of Newton's method above which the tangents are renewed."""
-_LEAST_RISE = 1.0  # K
+
+@serialisable
+@dataclass(frozen=True)
+class StoredHeat:
+    """Heat stored in the bodies in transient conduction.
+
+    Attributes
+    ----------
+    rise : ndarray, shape (n_owned,)
+        Nodal temperature rise over the ambient [K].
+    content : ndarray, shape (n_owned,)
+        Nodal heat content over the ambient [J].
+    turnover : ndarray, shape (3,)
+        Cumulated heat input by friction and through surfaces, heat lost, and sum of the magnitudes
+        of all heat in and out [J].
+    largest : float
+        Largest magnitude so far of the rise of the faces; also inside the bodies where friction is
+        not the only heat source [K].
+    """
+
+    rise: np.ndarray
+    content: np.ndarray
+    turnover: np.ndarray
+    largest: float
+
+    def towards(self, other: StoredHeat, part: float) -> StoredHeat:
+        """Interpolate linearly (or extrapolate) to another state by a fraction of the way."""
+        return StoredHeat(
+            self.rise + part * (other.rise - self.rise),
+            self.content + part * (other.content - self.content),
+            self.turnover + part * (other.turnover - self.turnover),
+            other.largest,
+        )
+
+
+class HeatOperators:
+    """Linear conduction condensed to the interface: steady, or over a time step of one size.
+
+    The last exchange and couplings are kept, as conditions seldom change.
+
+    Parameters
+    ----------
+    conduction : Conduction
+    face : InterfaceHeat
+    condensed : CondensedDistortion
+    reference : ndarray, shape (n_owned,)
+        Rise at which conduction and distortion are linearised [K].
+    """
+
+    def __init__(
+        self,
+        conduction: Conduction,
+        face: InterfaceHeat,
+        condensed: CondensedDistortion,
+        reference: np.ndarray,
+    ):
+        self.conduction = conduction
+        self.face = face
+        self.reference = reference
+        self._condensed = condensed
+        self._exchange: tuple[bytes, HeatExchange] | None = None
+        self._compliance: tuple[HeatExchange, bytes, np.ndarray] | None = None
+        self._opening: tuple[HeatExchange, BaselineResponse, np.ndarray] | None = None
+
+    @cached_property
+    def distortion(self) -> ThermalDistortion:
+        """Weak gap per heat at the faces. Every rank calls."""
+        return self._condensed(self.conduction, self.face, lambda: self.per_rise)
+
+    @cached_property
+    def per_rise(self) -> np.ndarray:
+        """Derivative of the weak gap by the nodal rise, shape (n_owned, m) [m³/K]."""
+        return self._condensed.slope(self.reference)
+
+    def exchange(self, conductance: np.ndarray) -> HeatExchange:
+        """Heat exchange of the faces for conductances at the points, shape (n,)."""
+        key = conductance.tobytes()
+        if self._exchange is None or self._exchange[0] != key:
+            self._exchange = None  # frees its memory
+            self._exchange = key, self.face.exchange(conductance)
+        return self._exchange[1]
+
+    def compliance(self, exchange: HeatExchange, heating: np.ndarray, basis: np.ndarray):
+        """Thermal compliance ``H diag(mu v) Ψ`` for a heating ``mu v`` (n,) [m/s], (m, m)."""
+        key, last = heating.tobytes(), self._compliance
+        if last is None or last[0] is not exchange or last[1] != key:
+            per_heat = self.distortion.per_friction_heat(exchange)
+            last = self._compliance = exchange, key, per_heat @ (heating[:, None] * basis)
+        return last[2]
+
+    def opening(self, exchange: HeatExchange, resting: BaselineResponse) -> np.ndarray:
+        """Weak gap by heat other than friction heat, shape (m,) [m³]."""
+        last = self._opening
+        if last is None or last[0] is not exchange or last[1] is not resting:
+            found = self.distortion.at_rest(exchange, resting)
+            last = self._opening = exchange, resting, found
+        return last[2]
 
 
 @dataclass(frozen=True)
@@ -56,7 +153,7 @@ class LinearHeatStep:
     def rise(self, faces: ThermalState) -> np.ndarray:
         """Temperature rise of the bodies, shape (n_owned,) [K]."""
         heat = self.operators.face.nodal_heat(faces, bath=True) + self.supplied
-        return self.load.on(self.operators.conduction).solve(heat)
+        return self.operators.conduction.holding(self.load.given).solve(heat)
 
     def coupling(
         self, conditions: InterfaceConditions, basis: np.ndarray
@@ -70,95 +167,13 @@ class LinearHeatStep:
         opening : ndarray, shape (m,)
             Weak gap by heat other than friction heat [m³].
         """
-        operators = self.operators
-        exchange = operators.exchange(conditions.conductance)
-        opening = operators.distortion.at_rest(exchange, self.resting)
-        return operators.compliance(conditions, basis), opening
+        exchange = self.operators.exchange(conditions.conductance)
+        compliance = self.operators.compliance(exchange, conditions.heating, basis)
+        return compliance, self.operators.opening(exchange, self.resting)
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Test whether the last coupling has converged at a pressure: linear heat always has."""
         return True
-
-
-class NonlinearHeatStep:
-    """Conduction with temperature-dependent properties at one time, by Newton's method.
-
-    Parameters
-    ----------
-    linearise : callable
-        `LinearHeatStep` about a rise (n_owned,), with new tangents on request. Every rank calls.
-    comm : mpi4py.MPI.Comm
-    rise : ndarray, shape (n_owned,)
-        Initial guess, then the last temperatures [K].
-    change : float, optional
-        Last change of the rise, relative to its largest value.
-    """
-
-    def __init__(
-        self,
-        linearise: Callable[[np.ndarray, bool], LinearHeatStep],
-        comm,
-        rise: np.ndarray,
-        change: float = np.inf,
-    ):
-        self.last_rise, self.last_change = rise, change
-        self._linearise = linearise
-        self._comm = comm
-        self._linear = linearise(rise, False)
-        self.load = self._linear.load
-
-    @property
-    def unheated(self) -> ThermalState:
-        """Linearised state of the faces without any heat at the contact."""
-        return self._linear.unheated
-
-    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
-        """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
-        return self._newton(lambda: self._linear.faces(conditions, pressure))
-
-    def rise(self, faces: ThermalState) -> np.ndarray:
-        """Temperature rise of the bodies, shape (n_owned,) [K]."""
-        self._newton(lambda: faces)
-        return self.last_rise
-
-    def coupling(
-        self, conditions: InterfaceConditions, basis: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Thermal contribution to the condensed interface, about the last temperatures."""
-        return self._linear.coupling(conditions, basis)
-
-    def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
-        """Test whether the last coupling has converged at a pressure; relinearise if not."""
-        return self._moved(self._linear.faces(conditions, pressure)) <= _SETTLED
-
-    def _newton(self, respond: Callable[[], ThermalState]) -> ThermalState:
-        """Iterate the temperatures by Newton's method on the response of the faces."""
-        for _ in range(_TURNS):
-            faces = respond()
-            if self._moved(faces) <= _SETTLED:
-                return faces
-        raise ComputationError(
-            "heat: Newton's method for temperature-dependent conductivity or expansion did not "
-            "converge; give smoother tables, or reduce the speed"
-        )
-
-    def _moved(self, faces: ThermalState) -> float:
-        """Relative change of the temperatures for a state of the faces; relinearise there."""
-        rise = self._linear.rise(faces)
-        change = self._change(rise)
-        if change <= _SETTLED:
-            self.last_change = np.inf
-            return change
-        slow = change > _SLOW * self.last_change
-        self._linear = self._linearise(rise, slow)
-        self.last_rise, self.last_change = rise, np.inf if slow else change
-        return change
-
-    def _change(self, rise: np.ndarray) -> float:
-        """Difference from the last rise, relative to the largest value; every rank calls."""
-        sizes = [float(np.abs(values).max(initial=0.0)) for values in (rise - self.last_rise, rise)]
-        change, largest = np.max(self._comm.allgather(sizes), axis=0)
-        return change / max(largest, _LEAST_RISE)
 
 
 class InitialHeat:
@@ -189,7 +204,3 @@ class InitialHeat:
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         return True
-
-
-ConductingStep = LinearHeatStep | NonlinearHeatStep
-HeatStep = ConductingStep | InitialHeat

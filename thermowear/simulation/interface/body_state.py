@@ -15,8 +15,7 @@ from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import PairedFace
 from ...laws.motions import translation
 from ...parallel import sum_over_ranks
-from ..heat.friction_heat import friction_heat
-from ..heat.heat_states import TemperatureField
+from ..heat.friction_heat import TemperatureField, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from ...contact.operators.condensation import CondensedContact
 from ...contact.solvers.signorini import NoEquilibrium, SignoriniSolution, solve_contact
-from ...contact.wear.implicit_step import newton_with_wear
+from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
 from ..system.system import System
-from .contact_solver import ContactSolution, Slope, WearRates
+from .contact_solver import ContactSolution
 
 _ITERATIONS = 60
 _HOT = (
@@ -45,6 +45,8 @@ class CondensedMethod:
         nominal = np.full(len(system.weights), system.friction)
         self._rubbing = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
+        self._free = system.holder.free
+        self._given = system.holder.amounts(np.zeros(int(self._free.sum())))
         self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
         self._last_opening: tuple[CondensedContact | EdgeSpace, np.ndarray, np.ndarray] | None = (
             None
@@ -175,6 +177,6 @@ class CondensedMethod:
             apart = (pressure == 0.0) * edge.at_points(left)
             seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
             solution = replace(solution, coefficients=seen, active=active)
-        return ContactSolution(
-            pressure, self._system.holder.amounts(solution.motion), solution, apart
-        )
+        motion = self._given.copy()
+        motion[self._free] = solution.motion
+        return ContactSolution(pressure, motion, solution, apart)

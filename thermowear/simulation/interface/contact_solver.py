@@ -1,4 +1,4 @@
-"""Interface of contact solvers, and wear rates with their derivative."""
+"""Interface of contact solvers: a contact problem under given loads, and its solution."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...laws.distribution import Distribution
-from ...laws.interfaces import Law
+from ...contact.wear.implicit_step import Slope, WearRates
 from ...serialise import serialisable
-from ..heat.heat_steps import HeatStep
+from ..heat.linearisation import HeatStep
 from ..system.conditions import InterfaceConditions
 
 
@@ -82,7 +81,7 @@ class ContactSolver(Protocol):
         Parameters
         ----------
         points : ndarray of bool, shape (n,)
-            From `WearEdge.points`.
+            From `InterfaceProblem.begin`.
         """
 
     def steady(
@@ -103,81 +102,3 @@ class ContactSolver(Protocol):
 
     def bending(self, contact: ContactSolution) -> float:
         """Range of the elastic deflection over the contact area [m]."""
-
-
-@dataclass(frozen=True)
-class Slope:
-    """Derivative of a gap by the pressures, ``diag(point) + reach rows``.
-
-    Attributes
-    ----------
-    point : ndarray, shape (n,)
-        Derivative by the pressure at the same point; of any shape without means [m/Pa].
-    rows : ndarray, shape (k, n)
-        Derivatives of k means by the pressures at the points [m/Pa].
-    reach : ndarray, shape (n, k)
-        Weight of each mean at each point.
-    """
-
-    point: np.ndarray
-    rows: np.ndarray
-    reach: np.ndarray
-
-    @classmethod
-    def diagonal(cls, point: np.ndarray) -> Slope:
-        """Diagonal derivative, without means."""
-        return cls(point, np.zeros((0, len(point))), np.zeros((len(point), 0)))
-
-    def with_compliance(self, point: np.ndarray) -> Slope:
-        """Derivative with an additional local compliance (n,) [m/Pa]."""
-        return Slope(self.point + point, self.rows, self.reach)
-
-    def __matmul__(self, pressure: np.ndarray) -> np.ndarray:
-        """Gap opened by a pressure [m]."""
-        if not len(self.rows):
-            return self.point * pressure
-        return self.point * pressure + self.reach @ (self.rows @ pressure)
-
-
-@dataclass(frozen=True)
-class WearRates:
-    """Wear rates at the contact points under given conditions.
-
-    Attributes
-    ----------
-    laws : list of Law
-        Wear laws of the wearing bodies.
-    spreads : list of Distribution
-        Distributions of the wear of these bodies.
-    conditions : InterfaceConditions
-    step : float
-        Time in which `value` is worn, see `contact.wear.implicit_step` [s].
-    """
-
-    laws: list[Law]
-    spreads: list[Distribution]
-    conditions: InterfaceConditions
-    step: float = 1.0
-
-    def __call__(self, pressure: np.ndarray) -> np.ndarray:
-        """Wear rates, shape (n_wearing, n) [m/s]."""
-        rates = np.zeros_like(self.conditions.wear)
-        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
-            rates[row] = spread.rate(self.conditions.wear_rate(row, law, pressure))
-        return rates
-
-    def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
-        """Total depth worn in the time step, shape (n,) [m]."""
-        return self.step * self(pressure).sum(axis=0)
-
-    def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
-        """Derivative of `value` by the pressures [m/Pa]."""
-        n = len(pressure)
-        point, rows, reach = np.zeros(n), [np.zeros((0, n))], [np.zeros((n, 0))]
-        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
-            local = self.conditions.wear_slope(row, law, pressure)
-            point += spread.share * local
-            if spread.varying_rows is not None:
-                rows.append(spread.varying_rows * local)
-                reach.append(spread.reach(n))
-        return Slope(self.step * point, self.step * np.vstack(rows), np.hstack(reach))

@@ -23,11 +23,10 @@ def interface_problem(
     note : callable, optional
         Called with a warning about settings that may impair the solution.
     """
-    heat = friction_heat(system)
-    problem = InterfaceProblem(system, _solver(system), heat)
-    if note is not None and problem.note is not None:
-        note(problem.note)
-    return problem
+    method = _solver(system)
+    if note is not None and method.note is not None:
+        note(method.note)
+    return InterfaceProblem(system, method, friction_heat(system))
 
 
 def _solver(system: System) -> ContactSolver:

@@ -15,12 +15,13 @@ from ...contact.full.stabilisation import (
 )
 from ...contact.operators.traction import normal_traction, thermal_traction
 from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
+from ...contact.wear.implicit_step import WearRates
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from .anderson import Mixing
-from .contact_solver import ContactSolution, WearRates
+from .contact_solver import ContactSolution
 
 _PASSES = 60
 _SETTLED = 1e-9  # of the largest pressure

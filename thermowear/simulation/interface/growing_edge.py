@@ -14,13 +14,10 @@ difference of the largest pressures, at any points.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-
 import numpy as np
 
-from ...contact.wear.edge_times import closing_times
-from ...contact.wear.wear_edge import WearEdge
+from ...contact.wear.implicit_step import WearRates
+from ...contact.wear.wear_edge import closing_times, edge_points, has_passed, rough_points
 from ..system.system import System
 from .contact_solver import ContactSolver
 from .sdirk import InterfaceState
@@ -43,29 +40,34 @@ class GrowingEdge:
     """
 
     def __init__(self, system: System, method: ContactSolver):
-        self._edge = WearEdge(system.pairing.sides[0].facet, system.basis, system.weights)
+        self._facet, self._basis = system.pairing.sides[0].facet, system.basis
         self._weights = system.weights
         self._method = method
 
-    def points(self, worn: np.ndarray) -> np.ndarray | None:
-        """Points at the edge of given wear depths (n_wearing, n), shape (n,) of bool."""
-        return self._edge.points(worn)
+    def points(
+        self,
+        worn: np.ndarray,
+        pressure: np.ndarray | None = None,
+        before: np.ndarray | None = None,
+    ) -> np.ndarray | None:
+        """Points with pointwise contact conditions, shape (n,), None without any.
 
-    def begin(self, state: InterfaceState) -> InterfaceState:
-        """Choose the points with pointwise contact for the next step.
-
-        None until the edge of the contact is the edge of the wear: until the mean slope of the wear
-        depth exceeds that of the deflection, by their ranges over the contact.
+        Parameters
+        ----------
+        worn : ndarray, shape (n_wearing, n) [m]
+        pressure : ndarray, shape (n,), optional
+            Pressure [Pa].
+        before : ndarray of bool, shape (n,), optional
+            Points used for that pressure: kept until it is smooth there.
         """
-        pressed = state.worn.any() and state.contact.warm_start is not None
-        if not pressed:
-            return state
-        if state.pointwise is None:
-            depth = state.worn.sum(axis=0)[state.pressure > 0.0]
-            if not depth.size or np.ptp(depth) <= self._method.bending(state.contact):
-                return state
-        edge = self._edge.points(state.worn, state.pressure, state.pointwise)
-        return replace(state, pointwise=edge)
+        reached = np.any(worn > 0.0, axis=0)
+        if before is None and (reached.all() or not reached.any()):
+            return None
+        points = edge_points(self._facet, self._basis, reached)
+        if before is not None:
+            assert pressure is not None
+            points |= before & rough_points(self._facet, self._basis, self._weights, pressure)
+        return points if points.any() else None
 
     def difference(
         self, before: InterfaceState, one: InterfaceState, other: InterfaceState
@@ -77,21 +79,21 @@ class GrowingEdge:
         If the edge has passed beyond its points, the largest pressure itself is returned.
         """
         change = np.abs(one.pressure - other.pressure)
-        if one.pointwise is None:
-            return float(change.max())
-        if self._edge.has_passed(one.pointwise, before.worn, one.worn):
+        assert one.pointwise is not None
+        earlier, now = (np.any(state.worn > 0.0, axis=0) for state in (before, one))
+        if has_passed(self._basis, one.pointwise, earlier, now):
             return float(one.pressure.max())
         pressing = (one.pressure > 0.0) | (other.pressure > 0.0)
         area = float(pressing @ self._weights)
         mean = float(change @ self._weights) / area if area > 0.0 else 0.0
-        largest, expected, earlier = (v.pressure.max() for v in (one, other, before))
-        return float(max(mean, abs(largest - expected), _RISE * (largest - earlier)))
+        largest, expected, former = (v.pressure.max() for v in (one, other, before))
+        return float(max(mean, abs(largest - expected), _RISE * (largest - former)))
 
     def steps(
         self,
         states: tuple[InterfaceState, InterfaceState, InterfaceState],
         step: float,
-        rate_slope: Callable[[], np.ndarray],
+        rates: WearRates,
     ) -> tuple[float, float]:
         """Step sizes that end right behind a time at which the edge of the wear reaches a point.
 
@@ -103,8 +105,8 @@ class GrowingEdge:
         states : tuple of InterfaceState
         step : float
             [s]
-        rate_slope : callable
-            Derivative of the wear rate by the pressure in the last state, shape (n,) [m/s/Pa].
+        rates : WearRates
+            Wear rates under the conditions of the last state.
         """
         start, middle, end = (state.contact.apart for state in states)
         if start is None or middle is None or end is None:
@@ -115,9 +117,8 @@ class GrowingEdge:
         following = left + _BEHIND * max(left, step)
         begun = (end == 0.0) & (states[0].pressure == 0.0)
         if begun.any():
-            following = min(
-                following, _SETTLING * self._settling(states[2], begun, rate_slope()[begun])
-            )
+            slope = rates.slope(states[2].pressure).point[begun]
+            following = min(following, _SETTLING * self._settling(states[2], begun, slope))
         return (1 + _BEHIND) * reached if np.isfinite(reached) else 0.0, following
 
     def _settling(self, state: InterfaceState, points: np.ndarray, slope: np.ndarray) -> float:

@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ..heat.friction_heat import FrictionHeat
-from ..heat.heat_states import HeatBalance
-from ..heat.heat_steps import ConductingStep, InitialHeat
+from ..heat.heat_steps import InitialHeat
+from ..heat.linearisation import ConductingStep, HeatStep
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
 from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent
 from .growing_edge import GrowingEdge
-from .implicit_contact import ImplicitContact
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
 
@@ -34,66 +34,61 @@ class InterfaceProblem(WearProblem):
     system : System
     method : ContactSolver
     heat : FrictionHeat or None
+
+    Attributes
+    ----------
+    stores_heat : bool
+        True if conduction is transient.
     """
 
     def __init__(self, system: System, method: ContactSolver, heat: FrictionHeat | None):
-        self._system = system
-        self._method = method
-        self._heat = heat
-        self._model = ConditionModel(system)
+        self._system, self._method, self.heat = system, method, heat
+        self._condition_model = ConditionModel(system)
+        self._lasting_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._edge = GrowingEdge(system, method)
-        self._contact = ImplicitContact(system, method)
-        given = system.model.heat
-        self._transient = given is not None and given.transient
-
-    @property
-    def stores_heat(self) -> bool:
-        """True if conduction is transient."""
-        return self._transient
-
-    @property
-    def note(self) -> str | None:
-        """Warning about the settings of the contact solver; None without one."""
-        return self._method.note
+        self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
+        self._gap = system.pairing.gap - system.holder.imposed
+        n, area = len(self._gap), float(system.weights.sum())
+        self._softness = np.full(n, system.softness)
+        self._rigid = Slope.diagonal(np.zeros(n))
+        self._unworn = np.zeros((len(self._laws), n))
+        uniform = np.full(n, (system.model.holder.force or area) / area)
+        self._guess = ContactSolution(uniform, np.zeros(0), None)
+        self.stores_heat = system.model.heat is not None and system.model.heat.transient
 
     def unworn(self) -> InterfaceState:
-        """Contact of the unworn faces with the steady temperatures of its own friction heat.
-
-        The points that exchange heat are found by fixed-point iteration.
-
-        Raises
-        ------
-        ComputationError
-            If the contact set or the state-dependent properties do not converge.
-        """
-        return self._lasting(self._contact.unworn, 0.0)
+        """Contact of the unworn faces with the steady temperatures of its own friction heat."""
+        return self._lasting(self._unworn, 0.0)
 
     def _lasting(
         self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
     ) -> InterfaceState:
-        """Contact of faces with given wear and the steady temperatures of its friction heat."""
-        heat = None if self._heat is None else self._heat.steps.steady
+        """Contact of faces with given wear and the steady temperatures of its friction heat.
+
+        The points that exchange heat are found by fixed-point iteration.
+        """
+        heat = None if self.heat is None else self.heat.steps.steady
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
-            contact = self._contact.solve(worn, conditions, heat, pointwise)
+            contact = self._solve(worn, conditions, heat, pointwise)
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return InterfaceState(worn, contact, faces=faces)
 
         faces = None if heat is None else heat.unheated
-        start = Trial(self._contact.guess.pressure, faces, worn)
-        return self_consistent(self._model, time, start, respond, _UNWORN)[1]
+        start = Trial(self._guess.pressure, faces, worn)
+        return self_consistent(self._condition_model, time, start, respond, _UNWORN)[1]
 
     def worn(self, depth: np.ndarray, guess: ContactSolution | None = None) -> ContactSolution:
         """Contact of faces with a total wear depth (n,) [m], without heat."""
-        conditions = self.conditions(InterfaceState(self._contact.unworn, self._contact.guess), 0.0)
-        return self._contact.solve(depth[None], conditions, None, guess=guess)
+        conditions = self.conditions(InterfaceState(self._unworn, self._guess), 0.0)
+        return self._solve(depth[None], conditions, None, guess=guess)
 
     def start(self) -> InterfaceState:
         """State of the unworn faces at time 0."""
-        if not self._transient:
+        if not self.stores_heat:
             return self.unworn()
-        assert self._heat is not None
-        return self._frozen(self._contact.unworn, self._heat.frozen, 0.0)
+        assert self.heat is not None
+        return self._frozen(self._unworn, self.heat.frozen, 0.0)
 
     def take_over(
         self,
@@ -124,11 +119,11 @@ class InterfaceProblem(WearProblem):
         if state.stored is None:
             found = self._lasting(worn, time, edge)
         else:
-            assert self._heat is not None
-            assert former._heat is not None
+            assert self.heat is not None
+            assert former.heat is not None
             assert rise is not None
-            stored = self._heat.take_over(former._heat, state.stored, rise)
-            found = self._frozen(worn, self._heat.at_moment(stored), time, edge)
+            stored = self.heat.take_over(former.heat, state.stored, rise)
+            found = self._frozen(worn, self.heat.at_moment(stored), time, edge)
         return replace(found, peak=state.largest, pointwise=edge)
 
     def _frozen(
@@ -139,13 +134,24 @@ class InterfaceProblem(WearProblem):
         pointwise: np.ndarray | None = None,
     ) -> InterfaceState:
         """Contact at given temperatures."""
-        guess = InterfaceState(worn, self._contact.guess, faces=heat.initial)
+        guess = InterfaceState(worn, self._guess, faces=heat.initial)
         conditions = self.conditions(guess, time)
-        contact = self._contact.solve(worn, conditions, heat, pointwise)
+        contact = self._solve(worn, conditions, heat, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
 
     def begin(self, state: InterfaceState) -> InterfaceState:
-        return self._edge.begin(state)
+        reached = np.any(state.worn > 0.0, axis=0)
+        if not reached.any() or state.contact.warm_start is None:
+            return state
+        if state.pointwise is None:
+            depth = state.worn.sum(axis=0)[state.pressure > 0.0]
+            # pointwise contact once the edge of the contact is that of the wear: once the wear
+            # depth is steeper than the deflection, in the mean over the contact
+            even = reached.all() or not depth.size
+            if even or np.ptp(depth) <= self._method.bending(state.contact):
+                return state
+        edge = self._edge.points(state.worn, state.pressure, state.pointwise)
+        return replace(state, pointwise=edge)
 
     def stage(
         self, before: InterfaceState, step: float, time: float, guess: InterfaceState
@@ -159,56 +165,81 @@ class InterfaceProblem(WearProblem):
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
             nonlocal last
-            last = self._contact.solve(before.worn, conditions, heat, edge, last, step)
+            last = self._solve(before.worn, conditions, heat, edge, last, step)
             faces = None if heat is None else heat.faces(conditions, last.pressure)
-            worn = before.worn + step * self._contact.rates(conditions)(last.pressure)
+            worn = before.worn + step * self._rates(conditions)(last.pressure)
             return InterfaceState(worn, last, before.peak, faces, pointwise=edge)
 
-        conditions, found = self_consistent(
-            self._model, time, guess, respond, _STEP, closed=guess.pressure > 0
-        )
-        if self._heat is None or heat is None or before.stored is None or found.faces is None:
+        model = self._condition_model
+        if model.depends_on_state:
+            closed = guess.pressure > 0
+            conditions, found = self_consistent(model, time, guess, respond, _STEP, closed)
+        else:
+            conditions = self.conditions(guess, time)
+            found = respond(conditions)
+        if self.heat is None or heat is None or before.stored is None or found.faces is None:
             return found
         made = conditions.heating * found.pressure
-        stored = self._heat.stored(before.stored, step, heat, found.faces, made)
+        stored = self.heat.stored(before.stored, step, heat, found.faces, made)
         return replace(found, stored=stored)
 
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
-        """Interface conditions in a state at a time [s]."""
-        touching = state.pressure > 0
-        return self._model.at(time, state.pressure, state.faces, touching, state.worn)
+        """Interface conditions in a state at a time [s]; lasting ones are kept."""
+        model, closed = self._condition_model, state.pressure > 0
+        kept, key = self._lasting_conditions, closed.tobytes()
+        if kept is not None and kept[0] == key and model.lasting:
+            return kept[1]
+        found = model.at(time, state.pressure, state.faces, closed, state.worn)
+        self._lasting_conditions = key, found
+        return found
+
+    def _rates(self, conditions: InterfaceConditions, step: float = 1.0) -> WearRates:
+        """Wear rates under given conditions, for wear in a time step [s]."""
+        return WearRates(self._laws, self._spreads, conditions.wear, conditions.states, step)
+
+    def _solve(
+        self,
+        worn: np.ndarray,
+        conditions: InterfaceConditions,
+        heat: HeatStep | None,
+        pointwise: np.ndarray | None = None,
+        guess: ContactSolution | None = None,
+        step: float = 0.0,
+    ) -> ContactSolution:
+        """Solve contact of faces with given wear, or at the end of an implicit step of wear [s].
+
+        In a step by Newton's method: each iteration is a contact problem, in which wear adds
+        ``step · ∂rate/∂p`` to the compliance of each point.
+        """
+        gap = self._gap + worn.sum(axis=0)
+        if conditions.released:  # the holder stays where it is
+            motion = np.zeros(len(self._system.holder.drives)) if guess is None else guess.motion
+            return ContactSolution(np.zeros(len(gap)), motion, None)
+
+        def solve(opened, slope, last):
+            softened = slope.with_compliance(self._softness)
+            return self._method.solve(gap + opened, softened, last, conditions, heat, pointwise)
+
+        start = None if guess is None or guess.warm_start is None else guess
+        if step == 0.0 or not self._laws:
+            return solve(self._rigid.point, self._rigid, start)
+        start = start or solve(self._rigid.point, self._rigid, None)
+        return newton_with_wear(solve, self._rates(conditions, step), start)
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
         """Contact loads of a state on the bodies; every rank calls."""
         conditions, warmth = self.conditions(state, time), None
-        if self._heat is not None and state.stored is not None and state.faces is not None:
-            warmth = self._heat.momentary(state.stored, state.faces)
-        elif self._heat is not None:
-            warmth = self._heat.lasting(conditions, state.pressure)
+        if self.heat is not None and state.stored is not None and state.faces is not None:
+            warmth = self.heat.momentary(state.stored, state.faces)
+        elif self.heat is not None:
+            warmth = self.heat.lasting(conditions, state.pressure)
         return ContactState(state.pressure, conditions, warmth)
-
-    def hottest(self, state: InterfaceState) -> float:
-        """Highest temperature of both faces [K]; NaN without heat."""
-        if self._heat is None or state.faces is None:
-            return float("nan")
-        return float(np.max(state.faces.rise)) + self._heat.ambient
-
-    def face_temperatures(self, state: InterfaceState) -> tuple[np.ndarray, np.ndarray]:
-        """Temperatures of both faces at the points, two arrays of shape (n,) [K]; needs heat."""
-        assert self._heat is not None
-        assert state.faces is not None
-        T1, T2 = state.faces.rise
-        return T1 + self._heat.ambient, T2 + self._heat.ambient
-
-    def heat_balance(self, state: InterfaceState) -> HeatBalance:
-        """Heat balance since the start in transient conduction; every rank calls."""
-        assert self._heat is not None
-        assert state.stored is not None
-        return self._heat.balance(state.stored)
 
     def difference(
         self, before: InterfaceState, one: InterfaceState, other: InterfaceState
     ) -> float:
+        if one.pointwise is None:
+            return super().difference(before, one, other)
         return self._edge.difference(before, one, other)
 
     def edge_steps(
@@ -218,30 +249,19 @@ class InterfaceProblem(WearProblem):
         time: float,
     ) -> tuple[float, float]:
         last = states[2]
-
-        def rate_slope() -> np.ndarray:
-            return self._contact.rates(self.conditions(last, time)).slope(last.pressure).point
-
-        return self._edge.steps(states, step, rate_slope)
+        if last.pointwise is None:
+            return super().edge_steps(states, step, time)
+        return self._edge.steps(states, step, self._rates(self.conditions(last, time)))
 
     def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""
-        if self._heat is None or one.stored is None or other.stored is None:
+        if self.heat is None or one.stored is None or other.stored is None:
             return 0.0
-        return self._heat.difference(one.stored, other.stored)
-
-    def restart_data(self) -> tuple | None:
-        """Internal state to restart from beside the last interface state; see `restore`."""
-        return None if self._heat is None else self._heat.steps.restart_data()
-
-    def restore(self, data: tuple | None) -> None:
-        """Restore the internal state from `restart_data`."""
-        if self._heat is not None:
-            self._heat.steps.restore(data)
+        return self.heat.difference(one.stored, other.stored)
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end at which a history has a corner [s]."""
-        return self._model.corners(end)
+        return self._condition_model.corners(end)
 
     def first_step(self, state: InterfaceState) -> float:
         """Initial step: wear small against elastic deflection, small penetration of heat [s].
@@ -249,23 +269,19 @@ class InterfaceProblem(WearProblem):
         May be infinite.
         """
         conditions = self.conditions(state, 0.0)
-        fastest = float(
-            self._contact.rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0)
-        )
+        fastest = float(self._rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0))
         step = np.inf
         if fastest > 0.0:
             step = 1e-3 * self._method.opening(state.contact) / fastest
-        if self._heat is not None and self._transient:
+        if self.heat is not None and self.stores_heat:
             made = conditions.heating * state.pressure
-            step = min(step, self._heat.first_step(float(made.max())))
+            step = min(step, self.heat.first_step(float(made.max())))
         return step
 
     def steady(self, steady: SteadyState) -> np.ndarray:
         """Steady pressure of the discrete interface, the limit of its running-in [Pa]."""
-        conditions = steady.conditions
-        return self._method.steady(
-            steady.wear.pressure, self._contact.rates(conditions), conditions
-        )
+        conditions = steady.contact.conditions
+        return self._method.steady(steady.wear.pressure, self._rates(conditions), conditions)
 
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
         """Largest difference to a steady pressure, relative to its maximum; NaN without one."""
@@ -276,8 +292,8 @@ class InterfaceProblem(WearProblem):
     def _heat_at_end(
         self, before: InterfaceState, step: float, time: float
     ) -> ConductingStep | None:
-        if self._heat is None:
+        if self.heat is None:
             return None
         if before.stored is None:
-            return self._heat.steps.steady
-        return self._heat.steps.after(before.stored, step, time)
+            return self.heat.steps.steady
+        return self.heat.steps.after(before.stored, step, time)

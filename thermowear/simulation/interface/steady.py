@@ -33,11 +33,6 @@ class SteadyState:
     wear: SteadyWear
     contact: ContactState
 
-    @property
-    def conditions(self) -> InterfaceConditions:
-        """Interface conditions in the steady state."""
-        return self.contact.conditions
-
 
 def steady_state(system: System) -> SteadyState:
     """Steady pressure, wear rates and rigid-body wear velocity of a system. Every rank calls.

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...contact.wear.implicit_step import WearRates
 from ...laws.motions import RigidMotion
 from ...results import FrictionInterface, InterfaceFields, Profile, WornTrack
 from ..interface.body_state import BodyState, ContactState, body_state
@@ -122,10 +123,9 @@ def record(
 
 
 def _local_rates(system: System, contact: ContactState) -> np.ndarray:
-    rates = np.zeros((2, len(contact.pressure)))
-    for row, (index, law) in enumerate(system.laws.items()):
-        local = contact.conditions.wear_rate(row, law, contact.pressure)
-        rates[index] = system.spreads[index].rate(local)
+    at, rates = contact.conditions, np.zeros((2, len(contact.pressure)))
+    laws, spreads = list(system.laws.values()), list(system.spreads.values())
+    rates[list(system.laws)] = WearRates(laws, spreads, at.wear, at.states)(contact.pressure)
     return rates
 
 

@@ -46,7 +46,8 @@ def summarise(end: Snapshot, time: float) -> dict:
     system = system.rubbing(contact.conditions.friction)
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
-    volumes = system.worn_volumes(np.array([interface.wear_1, interface.wear_2]))
+    depths = np.array([interface.wear_1, interface.wear_2])
+    volumes = ((depths - system.moved) @ w + system.lost) / system.coverage
     summary = {
         "model": model.kinematics,
         "method": model.interface.method.name,

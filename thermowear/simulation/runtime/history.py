@@ -145,7 +145,7 @@ class AnalysisHistory(ABC, Generic[State]):
             try:
                 for state in states:
                     self.keep(state)
-                    if stop.agreed(comm):
+                    if any(comm.allgather(stop.recorded)):
                         break
                     self.save_if_due()
             except UnwritableError:
@@ -155,7 +155,7 @@ class AnalysisHistory(ABC, Generic[State]):
                     raise
                 stopped = reason
             self.save()
-        return interrupted(stopped) if stop.agreed(comm) else stopped
+        return interrupted(stopped) if any(comm.allgather(stop.recorded)) else stopped
 
     def keep(self, state: State) -> None:
         """Record a state: its rows, at an output time its interface, and its animation frame."""

@@ -8,7 +8,7 @@ from ...interrupts import RecordedSignals
 class StopRequest(RecordedSignals):
     """Context manager that records Ctrl-C or SIGTERM; a second one interrupts at once.
 
-    A recorded request outlives the block: the caller checks `agreed` once more after it, when
+    A recorded request outlives the block: the caller checks `recorded` once more after it, when
     signals interrupt at once again, so that none is lost in between. If an error leaves the
     block, a recorded request turns it into an interrupt that reports the error.
     """
@@ -17,11 +17,6 @@ class StopRequest(RecordedSignals):
         super().__exit__(kind, error, traceback)
         if self.recorded is not None and isinstance(error, Exception):
             raise interrupted(error)
-
-    def agreed(self, comm) -> bool:
-        """True if any rank was asked to stop; every rank calls."""
-        requested = self.recorded is not None
-        return requested if comm.size == 1 else any(comm.allgather(requested))
 
 
 def interrupted(reason: BaseException | None = None) -> KeyboardInterrupt:

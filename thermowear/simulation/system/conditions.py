@@ -45,24 +45,26 @@ class InterfaceConditions:
     temperature: np.ndarray
     depth: np.ndarray
 
-    @property
+    @cached_property
     def heating(self) -> np.ndarray:
         """Friction heat per pressure, ``mu v`` [m/s]."""
         return self.friction * self.speed
 
     def wear_rate(self, row: int, law: Law, pressure: np.ndarray) -> np.ndarray:
         """Local wear rate of a wearing body at pressures (n,) [m/s]."""
-        return self.wear[row] * law.value(self._state(row, pressure))
+        return self.wear[row] * law.value(LocalState(pressure, *self.states[row]))
 
     def wear_slope(self, row: int, law: Law, pressure: np.ndarray) -> np.ndarray:
         """Derivative of the wear rate with respect to the pressure [m/(s Pa)]."""
-        return self.wear[row] * law.slope(self._state(row, pressure))
+        return self.wear[row] * law.slope(LocalState(pressure, *self.states[row]))
 
-    def _state(self, row: int, pressure: np.ndarray) -> LocalState:
-        own = self.temperature[row], self.depth[row]
-        return LocalState(pressure, self.speed, *own, self.friction)
+    @cached_property
+    def states(self) -> list[tuple[np.ndarray, ...]]:
+        """Speed, temperature, depth and friction of each wearing body, as in `LocalState`."""
+        bodies = zip(self.temperature, self.depth, strict=True)
+        return [(self.speed, own, depth, self.friction) for own, depth in bodies]
 
-    @property
+    @cached_property
     def released(self) -> bool:
         """True if the load has dropped to zero."""
         return self.load.size > 0 and not self.load.any()
@@ -97,6 +99,13 @@ class ConditionModel:
     Parameters
     ----------
     system : System
+
+    Attributes
+    ----------
+    depends_on_state : bool
+        True if conditions depend on pressures, temperatures or wear depths.
+    lasting : bool
+        True if they depend on nothing but the points that exchange heat.
     """
 
     def __init__(self, system: System):
@@ -105,10 +114,10 @@ class ConditionModel:
         self._interface = interface
         self._wearing = list(interface.wear.items())
         self._friction_law = interface.friction_law
-        self._varies, self._friction_varies = interface.varies, interface.friction_varies
+        self.depends_on_state, self._friction_varies = interface.varies, interface.friction_varies
         self._load, self._motion = model.holder.history, model.motion.history
         self._courses = model.histories
-        self._lasting: tuple[bytes, InterfaceConditions] | None = None
+        self.lasting = not self.depends_on_state and not self._courses
 
     def at(
         self,
@@ -132,14 +141,6 @@ class ConditionModel:
         depth : ndarray, shape (n_wearing, n), optional
             Wear depths of the wearing bodies, by default 0 [m].
         """
-        if self._varies or self._courses:
-            return self._present(time, pressure, faces, closed, depth)
-        key = closed.tobytes()  # nothing else matters here: most cases repeat the same call
-        if self._lasting is None or self._lasting[0] != key:
-            self._lasting = (key, self._present(time, pressure, faces, closed, None))
-        return self._lasting[1]
-
-    def _present(self, time, pressure, faces, closed, depth) -> InterfaceConditions:
         system = self._system
         pressed = 1.0 if self._load is None else _part(self._load.factor_at(time))
         speed = self._speed(time)
@@ -178,7 +179,9 @@ class ConditionModel:
         """Mean temperature of both faces; 0 and unused without heat [K]."""
         return 0.0 if temperatures is None else (temperatures[0] + temperatures[1]) / 2
 
-    def _of_wear(self, name: str, values: Sequence[np.ndarray] | None, pressure) -> np.ndarray:
+    def _of_wear(
+        self, name: str, values: Sequence[np.ndarray] | np.ndarray | None, pressure: np.ndarray
+    ) -> np.ndarray:
         """Values of a state variable for the wear laws that depend on it; 0 for the others."""
         result = np.zeros((len(self._wearing), len(pressure)))
         for row, (_, wear) in enumerate(self._wearing):

@@ -84,11 +84,11 @@ class System:
     zone: Zone | None
     worn: WornGeometry | None = None
 
-    @property
+    @cached_property
     def comm(self):
         return self.bodies.mesh.comm
 
-    @property
+    @cached_property
     def weights(self) -> np.ndarray:
         return self.pairing.weights
 
@@ -124,12 +124,12 @@ class System:
         """Resultant of a pressure (n,) and its friction along the load direction [N]."""
         return float(self.weights @ (pressure * (self.pull @ self.press)))
 
-    @property
+    @cached_property
     def softness(self) -> float:
         """Compliance of the layer between the faces [m/Pa]."""
         return self.model.interface.compliance
 
-    @property
+    @cached_property
     def friction(self) -> float:
         return self.model.interface.nominal_friction
 
@@ -144,14 +144,18 @@ class System:
         at = self.pairing.points, self.weights, self.model.thickness or 1.0
         return {index: wear.distribution(*at) for index, wear in self.model.interface.wear.items()}
 
-    def worn_volumes(self, worn: np.ndarray) -> np.ndarray:
-        """Wear volumes of both bodies, whole tracks, from depths (2, n), shape (2,) [m³]."""
-        volumes = (worn - self.moved) @ self.weights
-        if self.worn is not None:
-            volumes = volumes + self.worn.lost
+    @cached_property
+    def coverage(self) -> np.ndarray:
+        """Fraction of the worn area of each body that is in contact at a time, shape (2,)."""
+        result = np.ones(2)
         for index, spread in self.spreads.items():
-            volumes[index] /= spread.coverage
-        return volumes
+            result[index] = spread.coverage
+        return result
+
+    @cached_property
+    def lost(self) -> np.ndarray:
+        """Volumes already removed from the meshes of both bodies, shape (2,) [m³]."""
+        return np.zeros(2) if self.worn is None else self.worn.lost
 
     @cached_property
     def moved(self) -> np.ndarray:

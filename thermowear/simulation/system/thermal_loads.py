@@ -43,10 +43,6 @@ class ThermalLoad:
     ambient: float = 0.0
     given: np.ndarray | None = None
 
-    def on(self, conduction: Conduction) -> Conduction:
-        """Conduction with the temperatures prescribed at this time."""
-        return conduction if self.given is None else conduction.holding(self.given)
-
 
 class ThermalLoads:
     """Thermal loads as functions of time.
@@ -62,6 +58,11 @@ class ThermalLoads:
         empty if all are constant.
     surroundings : tuple or None
         Temperature history of the surroundings, and nodal heat (n_owned,) per rise of it [W/K].
+
+    Attributes
+    ----------
+    constant : ThermalLoad or None
+        Loads at all times; None if they change.
     """
 
     def __init__(
@@ -71,6 +72,7 @@ class ThermalLoads:
         given: Mapping[str, tuple[TimeFunction | float, np.ndarray]],
         surroundings: tuple[TimeFunction, np.ndarray] | None,
     ):
+        self.constant = constant if not given and surroundings is None else None
         self._constant = constant
         self._ambient = ambient
         self._given = given
@@ -78,8 +80,8 @@ class ThermalLoads:
 
     def at(self, time: float) -> ThermalLoad:
         """Thermal loads at a time [s]."""
-        if not self._given and self._surroundings is None:
-            return self._constant
+        if self.constant is not None:
+            return self.constant
         constant, heat, above, given = self._constant, self._constant.heat, 0.0, None
         if self._surroundings is not None:
             history, per_rise = self._surroundings

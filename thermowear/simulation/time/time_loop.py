@@ -1,10 +1,12 @@
-"""Time loop of contact, heat and wear, to an end time or to the steady state."""
+"""Time loop of contact, heat and wear, to an end time or to the steady state, with step control."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import partial, reduce
 
 import numpy as np
 
@@ -12,11 +14,15 @@ from ...errors import ComputationError
 from ...model.analyses import TimedAnalysis
 from ...serialise import serialisable
 from ..interface.sdirk import InterfaceState, TrialStep, WearProblem, advance_with_error, next_step
-from .step_sizes import AnySize, StepSizes, ends
 
 _FAR_SMALLER = 1e-3
 """Size ratio of trial steps for detecting jumps: time errors fall at least by its square root."""
 _SMALLEST = 1e-12  # relative to the elapsed time; at the start to 1e-12 s
+
+_HIT = 1e-9
+"""Distance to a target time, relative to the time left, at which a step is taken to end there."""
+_FEW = 5
+"""Largest number of powers of two that make up an interval; bounds the number of small steps."""
 
 
 @serialisable
@@ -54,6 +60,85 @@ class Moment:
     wanted: float
 
 
+class StepSizes(ABC):
+    """Choice of step sizes between two consecutive times that must be hit exactly.
+
+    Parameters
+    ----------
+    largest : float, optional
+        Upper bound, which may change from step to step [s].
+
+    Attributes
+    ----------
+    rounding : float
+        Largest ratio of a wanted step size to the one chosen.
+    """
+
+    rounding = 1.0
+
+    def __init__(self, largest: float = math.inf):
+        self.largest = largest
+
+    @abstractmethod
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        """Step from a time between begin and end, not larger than the wanted one [s]."""
+
+
+class AnySize(StepSizes):
+    """Largest admissible steps that do not leave a tiny last one."""
+
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        left, wanted = end - time, min(wanted, self.largest)
+        return left if ends(wanted, left) else min(wanted, max(left / 2, 0.1 * wanted))
+
+
+class FewSizes(StepSizes):
+    """Power-of-two multiples of one step size, so that few operators serve all steps.
+
+    Each step begins at a multiple of its size (dyadic grid): the time left to the next target is
+    always a sum of few such steps.
+
+    Parameters
+    ----------
+    times : iterable of float
+        All times that must be hit exactly [s].
+    """
+
+    rounding = 2.0
+
+    def __init__(self, times: Iterable[float]):
+        super().__init__()
+        self._measure = reduce(_common_measure, (t for t in times if t < math.inf), 0.0)
+
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        unit, passed = self._unit(end - begin), time - begin
+        wanted = min(wanted, self.largest, end - time)
+        size = unit * 2.0 ** math.floor(math.log2(wanted / unit) + _HIT)
+        while abs(math.remainder(passed, size)) > 1e-3 * size:
+            size /= 2
+        return size
+
+    def _unit(self, interval: float) -> float:
+        """Unit of the step sizes: common measure of all times, or the interval if too fine [s]."""
+        measure = self._measure or 1.0
+        if interval == math.inf or round(interval / measure).bit_count() <= _FEW:
+            return measure
+        return interval
+
+
+def ends(step: float, left: float) -> bool:
+    """Test whether a step covers the time left, up to rounding [s]."""
+    return step >= left * (1 - _HIT)
+
+
+def _common_measure(a: float, b: float) -> float:
+    """Greatest common divisor of two real numbers by Euclid's algorithm, up to rounding."""
+    rounding = _HIT * max(a, b)
+    while b > rounding:
+        a, b = b, abs(math.remainder(a, b))
+    return a
+
+
 def moments(
     problem: WearProblem,
     settings: TimedAnalysis,
@@ -85,7 +170,7 @@ def moments(
         last = _first(problem, steady)
         yield last
     targets = [time for time in times_to_hit(settings, problem) if time > last.time]
-    while not is_over(settings, problem, last):
+    while not is_over(settings, last):
         if last.number == settings.max_steps:
             raise ComputationError(
                 f"{settings.type}: {settings.max_steps} steps were not enough "
@@ -97,10 +182,10 @@ def moments(
         yield last
 
 
-def is_over(settings: TimedAnalysis, problem: WearProblem, last: Moment) -> bool:
+def is_over(settings: TimedAnalysis, last: Moment) -> bool:
     """Test whether the running-in ends with this state."""
-    end = times_to_hit(settings, problem)[-1]
-    return last.time >= end or _is_steady(settings, last.distance)
+    steady = settings.until == "steady" and last.distance <= settings.steady_tolerance
+    return steady or last.time >= max((settings.end_time, *settings.output_times))
 
 
 def _first(problem: WearProblem, steady: np.ndarray | None) -> Moment:
@@ -181,7 +266,3 @@ def times_to_hit(settings: TimedAnalysis, problem: WearProblem) -> list[float]:
     end = settings.end_time
     corners = () if end == np.inf else problem.corners(end)
     return sorted({*settings.output_times, *corners, end})
-
-
-def _is_steady(settings: TimedAnalysis, distance: float) -> bool:
-    return settings.until == "steady" and distance <= settings.steady_tolerance

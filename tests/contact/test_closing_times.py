@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.wear.edge_times import closing_times
+from thermowear.contact.wear.wear_edge import closing_times
 
 
 def gap(time, closing, bend):

@@ -1,4 +1,4 @@
-"""Wear kept in the gap, relative to the dimensions of the bodies."""
+"""Motion of the faces worn in place: the wear that nodes can follow, along which paths."""
 
 from __future__ import annotations
 
@@ -9,15 +9,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...bulk.mesh_motion import serial_extension
-from ...compat import geometry_dofmap
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ahead
 from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,
-    curvatures,
-    lengths,
     node_normals,
     nodes_of,
     ways_between,
@@ -33,12 +30,10 @@ from ..system.worn_geometry import WornGeometry, along
 
 _STEEPEST = 0.2
 """Largest slope of groove walls in a mesh."""
-_TILT = 0.1
-"""Weight of the element tilt: depth difference of its ends relative to its size."""
 
 
-class GapWear:
-    """Wear kept in the gap of a system, and its part that the nodes of the faces can follow.
+class MovingFaces:
+    """Faces of the bodies worn in place, and the part of the wear that their nodes can follow.
 
     Parameters
     ----------
@@ -49,14 +44,6 @@ class GapWear:
     def __init__(self, system: System):
         self._system = system
         self.bodies = [i for i, spread in system.spreads.items() if isinstance(spread, InPlace)]
-        self._curvature = [_curvature(side.face) for side in system.pairing.sides]
-        self._thickness = {index: _thickness(system, index) for index in self.bodies}
-
-    def depth(self, worn: np.ndarray) -> np.ndarray:
-        """Depths kept in the gap (2, n) from the total depths of the wearing bodies [m]."""
-        both = np.zeros((2, worn.shape[1]))
-        both[list(self._system.laws)] = worn
-        return both - self._system.moved
 
     @cached_property
     def geometry(self) -> WornGeometry:
@@ -92,14 +79,6 @@ class GapWear:
             result[index] = np.minimum(depth[index], room)
         return result
 
-    def fraction(self, depth: np.ndarray) -> float:
-        """Largest ratio of a depth (2, n) of both bodies to their dimensions.
-
-        Dimensions are the thickness behind the face and the radius of curvature of either face; a
-        tenth of the element tilt (depth difference of its ends over its size) counts, too.
-        """
-        return max((self._of_body(index, depth[index]) for index in self.bodies), default=0.0)
-
     def _from_held_end(self, index: int) -> np.ndarray:
         """Distances of the points from the held ends of the face, shape (n,) [m]."""
         side, held = self._system.pairing.sides[index], self.geometry.held[index]
@@ -110,15 +89,6 @@ class GapWear:
         ways = before, side.face.sizes.sum() - before
         far = [np.where(stays, way, np.inf) for stays, way in zip(held[[0, -1]], ways, strict=True)]
         return np.minimum(*far)
-
-    def _of_body(self, index: int, depth: np.ndarray) -> float:
-        side = self._system.pairing.sides[0]
-        largest = float(np.abs(depth).max())
-        facets, first = np.unique(side.facet, return_index=True)
-        low, high = (f.reduceat(depth, first) for f in (np.minimum, np.maximum))
-        tilt = float(((high - low) / lengths(side.face)[facets]).max())
-        curved = largest * max(self._curvature)
-        return max(largest / self._thickness[index], curved, _TILT * tilt)
 
 
 def _unworn(system: System, bodies: list[int]) -> WornGeometry:
@@ -186,20 +156,3 @@ def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody | 
     if isinstance(face, Surface):
         return MovableSolid(mesh, parts, nodes_of(face), serial_extension)
     return MovableBody(mesh, parts, nodes_of(face))
-
-
-def _curvature(face) -> float:
-    """Largest curvature of a face [1/m]."""
-    return float(curvatures(face).max())
-
-
-def _thickness(system: System, index: int) -> float:
-    """Thickness of a body behind the middle of its contact face [m]; every rank calls."""
-    pairing, bodies = system.pairing, system.bodies
-    out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
-    out = out / np.linalg.norm(out)
-    middle = np.average(pairing.points, axis=0, weights=pairing.weights)
-    parts = system.model.bodies[index].parts
-    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
-    nodes = bodies.mesh.geometry.x[geometry_dofmap(bodies.mesh)[cells].ravel(), : len(middle)]
-    return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

@@ -1,0 +1,12 @@
+"""Files of the program that one accepted step of wear visits."""
+
+import pytest
+
+from ..benchmarks.step_walk import CASES, of_a_step
+
+
+@pytest.mark.parametrize(("name", "most"), [("cold", 10), ("hot", 12)])
+def test_a_step_of_wear_visits_few_files(name, most):
+    """requirement: a reader follows one accepted step through at most 10 (12 with heat) files."""
+    visited = of_a_step(*CASES[name])
+    assert len({file for file, _ in visited}) <= most

@@ -18,7 +18,7 @@ from ..bodies import Bodies
 from ..field import geometry_space, reference_element
 from ..kinematics import Kinematics, section_measure
 
-_RESOLVED_PECLET = 1.0
+_MAX_RESOLVED_PECLET = 1.0
 """Largest cell Péclet number at which no stabilisation is needed."""
 
 
@@ -81,7 +81,7 @@ class Advection:
     @property
     def stabilised(self) -> bool:
         """True if some cells exceed the Péclet number that needs no stabilisation."""
-        return self.peclet > _RESOLVED_PECLET
+        return self.peclet > _MAX_RESOLVED_PECLET
 
 
 def advection(
@@ -121,7 +121,7 @@ def advection(
 
     upwind = 0 * δT
     flow = ρc * ufl.dot(v, ufl.grad(T))
-    if peclet > _RESOLVED_PECLET:  # the stabilisation vanishes with the cell Péclet number
+    if peclet > _MAX_RESOLVED_PECLET:  # the stabilisation vanishes with the cell Péclet number
         delay = crossing / (2 * degree) * ufl.min_value(1, number / 3)
         upwind = delay * ufl.dot(v, ufl.grad(δT))
         flow = flow * δT + (flow - k * ufl.div(ufl.grad(T))) * upwind

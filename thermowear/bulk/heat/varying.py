@@ -28,7 +28,7 @@ from ..mechanics.elasticity import Elasticity
 from .conduction import Conduction
 from .heat_equation import ThermalMaterial
 
-_SAME = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+_SAME_PATTERN = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
 
 
 class PropertyMultiplier(Protocol):
@@ -111,10 +111,10 @@ class VaryingConduction(Conduction):
         change = self.conductivity.duplicate()
         change.zeroEntries()
         for part in self.parts:
-            change.axpy(1.0, _columns(part.matrix, part.slope(rise)), _SAME)
+            change.axpy(1.0, _columns(part.matrix, part.slope(rise)), _SAME_PATTERN)
         if step is not None:
             assert self.capacity is not None
-            change.axpy(1 / step, self.capacity, _SAME)
+            change.axpy(1 / step, self.capacity, _SAME_PATTERN)
         return self.plus(change, 1.0, symmetric=not self.parts and self.symmetric)
 
     def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ import numpy as np
 from dolfinx import fem
 
 _LEGENDRE = basix.PolynomialType.legendre
-_ZERO = 1e-10
+_RANK_TOLERANCE = 1e-10
 
 
 def surplus_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
@@ -79,7 +79,7 @@ def _vanishing(cell: basix.CellType, degree: int, inside: bool) -> np.ndarray:
         nodes = np.vstack([nodes, np.asarray(high.points)[boundary]])
     values = np.asarray(basix.tabulate_polynomials(_LEGENDRE, cell, degree + 1, nodes))
     left, sizes, _ = np.linalg.svd(values)
-    return left[:, np.count_nonzero(sizes > _ZERO * sizes[0]) :].T
+    return left[:, np.count_nonzero(sizes > _RANK_TOLERANCE * sizes[0]) :].T
 
 
 @cache

@@ -23,9 +23,9 @@ from .loads import Loads
 from .slip_wear import IncrementWear, SlipWear
 from .stick_slip_state import Status, StickSlipState, unloaded
 
-_HALVINGS = 6
-_SETTLED = 1e-6  # of the depth worn in the increment
-_UNSETTLED = (
+_MAX_HALVINGS = 6
+_WEAR_TOLERANCE = 1e-6  # of the depth worn in the increment
+_NOT_CONVERGED = (
     "contact: the iteration for slip and wear of an increment did not converge; take smaller "
     "increments, or let each computed cycle stand for fewer (analysis.jump)"
 )
@@ -80,7 +80,7 @@ def advance(
         return after
     by_slip = IncrementWear.at(wear, state, mean.sum(axis=1), slid)
     if by_slip.value(after.pressure, after).any():
-        after = newton_with_wear(solve, by_slip, after, _SETTLED, _UNSETTLED)
+        after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
     depths = by_slip.profiles(after)
     lost = wear.repeats * (after.dissipated - state.dissipated)
     return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
@@ -189,7 +189,7 @@ def follow(
         origin = state
         for step in range(1, increments + 1):
             loads = corner.after(origin.force, origin.motion, step / increments)
-            state = _halving(contact, friction, state, loads, wear, _HALVINGS)
+            state = _halving(contact, friction, state, loads, wear, _MAX_HALVINGS)
             yield state
 
 

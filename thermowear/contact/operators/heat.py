@@ -19,10 +19,10 @@ from ...serialise import serialisable
 _REGULARITY = 1e-12
 """Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux
 functions independent that differ only where no heat crosses."""
-_DIRECT = 10.0
+_MAX_DIRECT_RATIO = 10.0
 """Largest conductance treated point by point, relative to that of a layer of the bodies as thick as
 the support of a basis function."""
-_NO_WAY_OUT = (
+_NO_HEAT_SINK = (
     "heat: a body is heated that nothing cools and that touches nothing, so that it has no steady "
     "temperature; give it heat.cooling, heat.temperature, or heat.gap_conductance"
 )
@@ -113,7 +113,7 @@ class InterfaceHeat:
             If a heated body has no heat sink.
         """
         n, s, (Θ1, Θ2) = len(self.weights), self.shift, self.response
-        own = _DIRECT * s * self.basis.shape[1]
+        own = _MAX_DIRECT_RATIO * s * self.basis.shape[1]
         direct = np.minimum(conductance, own)
         passing, held_back = _parts(own, conductance - direct)
         resisting = held_back * (passing + _REGULARITY * held_back) / own
@@ -133,7 +133,7 @@ class InterfaceHeat:
         try:
             rise = np.linalg.solve(matrix, np.eye(2 * n + count, 2 * n))
         except np.linalg.LinAlgError:
-            raise ComputationError(_NO_WAY_OUT) from None
+            raise ComputationError(_NO_HEAT_SINK) from None
         across = direct[:, None] * (rise[n : 2 * n] - rise[:n]) + crossing @ rise[2 * n :]
         return HeatExchange(self, rise[: 2 * n], across)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_LEVEL = 1e-9
+_ZERO_LENGTH = 1e-9
 """Relative length, by the largest vector, below which a vector is rounding noise."""
 
 
@@ -83,5 +83,5 @@ def _tangential(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
 def _unit(vectors: np.ndarray, largest: float) -> np.ndarray:
     """Unit vectors; zero for those negligible against the largest one."""
     sizes = np.linalg.norm(vectors, axis=1, keepdims=True)
-    counts = sizes > _LEVEL * largest
+    counts = sizes > _ZERO_LENGTH * largest
     return np.divide(vectors, sizes, out=np.zeros_like(vectors), where=counts)

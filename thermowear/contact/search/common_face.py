@@ -31,16 +31,16 @@ from .face import Face
 from .projection import beside, project
 from .surface import Surface
 
-FACING = -0.5
+MAX_FACING_COSINE = -0.5
 """Largest cosine between the outward normals of points that can meet."""
-_FLATTEST = 0.3
+_MIN_COSINE = 0.3
 """Smallest magnitude of the cosine between a line and the normal of the face that it meets."""
-_BEHIND = 0.25
+_MAX_PENETRATION = 0.25
 """Largest overlap of points, relative to the face; beyond it they are on far sides of bodies."""
-_PASSES = 40
-_SETTLED = 1e-13
+_MAX_ITERATIONS = 40
+_TOLERANCE = 1e-13
 """Convergence tolerance of points, relative to the size of the face."""
-_NONE = 0.1
+_MIN_SUM_LENGTH = 0.1
 """Smallest length of a sum of unit normals that defines a direction."""
 
 
@@ -89,8 +89,8 @@ class Opposite:
         allowed : float
             Largest tangential distance from the other face, relative to the size.
         """
-        inside = (self.beside <= allowed * size) & (self.gap >= -_BEHIND * size)
-        return (self.cosine <= FACING) & inside
+        inside = (self.beside <= allowed * size) & (self.gap >= -_MAX_PENETRATION * size)
+        return (self.cosine <= MAX_FACING_COSINE) & inside
 
 
 @dataclass(frozen=True)
@@ -166,13 +166,13 @@ def met(
     facet, t = facet.copy(), t.copy()
     found = other.points(facet, t)
     moving = np.arange(len(points))
-    for _ in range(_PASSES):
+    for _ in range(_MAX_ITERATIONS):
         now = slice(None) if len(moving) == len(points) else moving
         line = _line(points[now], out[now], soft[now], other, facet[now], t[now])
         facet[now], t[now] = locate(points[now] + line.offset, moving)
         before, found[now] = found[now].copy(), other.points(facet[now], t[now])
         missed = np.linalg.norm(found[now] - before, axis=1)
-        moving = moving[missed > _SETTLED * other.extent]
+        moving = moving[missed > _TOLERANCE * other.extent]
         if not len(moving):
             break
     return facet, t, _line(points, out, soft, other, facet, t)
@@ -212,7 +212,7 @@ def _line(points, out, soft, other, facet, t) -> NormalLines:
     normals, _ = _direction((1 - share)[:, None] * out - share[:, None] * against, out)
     a_1, a_2 = _parts(share, other)
     along, _ = _direction(a_1 * out - a_2 * against, out)
-    steep = np.minimum(np.einsum("ni,ni->n", along, against), -_FLATTEST)
+    steep = np.minimum(np.einsum("ni,ni->n", along, against), -_MIN_COSINE)
     to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
     cosine = np.einsum("ni,ni->n", out, against)
     return NormalLines(normals, to_plane[:, None] * along, share, cosine)
@@ -227,8 +227,10 @@ def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndar
 def _direction(vectors: np.ndarray, otherwise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Unit vectors (n, gdim), substitutes for near-zero vectors, and lengths (n,)."""
     length = np.linalg.norm(vectors, axis=1)
-    unit = vectors / np.maximum(length, _NONE)[:, None]
-    return np.where(length[:, None] > _NONE, unit, otherwise), np.maximum(length, _NONE)
+    unit = vectors / np.maximum(length, _MIN_SUM_LENGTH)[:, None]
+    return np.where(length[:, None] > _MIN_SUM_LENGTH, unit, otherwise), np.maximum(
+        length, _MIN_SUM_LENGTH
+    )
 
 
 def _across(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:

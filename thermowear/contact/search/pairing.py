@@ -31,9 +31,9 @@ from .face import Face
 from .refinement import BESIDE, SLIVER, Rule, folded, rule
 from .surface import Surface
 
-_SAME = 1e-10
+_COINCIDENCE_TOLERANCE = 1e-10
 """Largest distance of coincident points, relative to the size of the face."""
-_TWICE = 1e-3
+_MAX_OVERLAP = 1e-3
 """Fraction of a facet that may be covered twice, by rounding and curved edges."""
 
 
@@ -164,13 +164,13 @@ def paired(
     on_common = on_face + pairs.share[:, None] * pairs.offset
     weights *= np.maximum(kinematics.area_factor(on_common), 0.0)  # rounding on the axis
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
-    if covered.max() > 1.0 + _TWICE:
+    if covered.max() > 1.0 + _MAX_OVERLAP:
         raise CaseError(folded(face_1, face_2))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
     position = face_1.position(facet, t)
     # on a curve by arc length: both ends of a closed one coincide in space
     places = on_face if isinstance(face_1, Surface) else position[:, None]
-    group, first = _groups(places, _SAME * face_1.extent)
+    group, first = _groups(places, _COINCIDENCE_TOLERANCE * face_1.extent)
     summed = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
     normals = summed / np.linalg.norm(summed, axis=1, keepdims=True)
     sides = (

@@ -7,16 +7,16 @@ import numpy as np
 from .face import Face
 from .surface import Surface
 
-_STEPS = 30
-_SETTLED = 1e-13
+_MAX_NEWTON_STEPS = 30
+_TOLERANCE = 1e-13
 _ROUNDING = 1e-15
 """Convergence tolerance of a parameter."""
-_TRIALS = 4
+_CANDIDATES = 4
 """Number of candidate facets per point in space: the nearest ones in flat approximation."""
-_AT_ONCE = 1_000_000
+_BLOCK_SIZE = 1_000_000
 """Number of point-facet pairs processed at once."""
-_PASSES = 10
-_FLATTEST = 0.3
+_MAX_ITERATIONS = 10
+_MIN_COSINE = 0.3
 """Smallest magnitude of the cosine between a ray and the normal of the face that it meets."""
 
 
@@ -61,13 +61,13 @@ def ahead(
         Signed distance along the directions, negative backward [m].
     """
     way = np.zeros(len(points))
-    for _ in range(_PASSES):
+    for _ in range(_MAX_ITERATIONS):
         facet, t, offset = project(face, points + way[:, None] * directions)
         normals = face.normals(facet, t)
-        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_FLATTEST)
+        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_MIN_COSINE)
         missed = np.einsum("ni,ni->n", offset, normals) / against
         way += missed
-        if np.abs(missed).max() <= _SETTLED * face.extent:
+        if np.abs(missed).max() <= _TOLERANCE * face.extent:
             break
     return facet, t, way
 
@@ -120,7 +120,7 @@ def _along(face: Face, points: np.ndarray, facet: np.ndarray) -> np.ndarray:
 
 
 def _on_surface(face: Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    chunk = max(1, _AT_ONCE // len(face.nodes))
+    chunk = max(1, _BLOCK_SIZE // len(face.nodes))
     parts = [_in_chunk(face, points[i : i + chunk]) for i in range(0, len(points), chunk)]
     facet, t = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     return facet, t
@@ -130,7 +130,7 @@ def _in_chunk(face: Surface, points: np.ndarray):
     flat = face.flattened
     t = np.clip(flat.parameters(points), 0.0, 1.0)
     distance = np.linalg.norm(flat.points(t) - points[:, None], axis=2)
-    count = min(_TRIALS, distance.shape[1])
+    count = min(_CANDIDATES, distance.shape[1])
     facets = np.argpartition(distance, count - 1, axis=1)[:, :count]
     facets = np.sort(facets, axis=1)
     starts = np.take_along_axis(t, facets[:, :, None], axis=1)
@@ -161,7 +161,7 @@ def within(
         Bounds of both parameters; a parameter is fixed at a bound that a step would cross.
     """
     t, moving = start.copy(), np.arange(len(start))
-    for _ in range(_STEPS):
+    for _ in range(_MAX_NEWTON_STEPS):
         now, on = t[moving], facet[moving]
         offset, tangents = face.points(on, now) - points[moving], face.tangents(on, now)
         slope = np.einsum("nki,ni->nk", tangents, offset)
@@ -170,7 +170,7 @@ def within(
         matrix = np.einsum("nki,nli->nkl", tangents, tangents) + held[:, :, None] * np.eye(2)
         step = np.linalg.solve(matrix, np.where(held, 0.0, slope)[:, :, None])[:, :, 0]
         t[moving] = np.clip(now - step, *bounds)
-        moving = moving[np.abs(t[moving] - now).max(axis=1) > _SETTLED]
+        moving = moving[np.abs(t[moving] - now).max(axis=1) > _TOLERANCE]
         if not len(moving):
             break
     return t

@@ -13,7 +13,7 @@ import numpy as np
 from ...errors import CaseError
 from ...lagrange import gauss, lobatto, on_lattice
 from .clipping import parts_opposite
-from .common_face import FACING, Opposite, opposite
+from .common_face import MAX_FACING_COSINE, Opposite, opposite
 from .face import Face
 from .surface import Surface
 
@@ -22,9 +22,9 @@ BESIDE = 1e-9
 
 SLIVER = 1e-9
 """Smallest distance of a cut from the ends of a facet, relative to the facet."""
-_BACK = 2.0
+_MAX_BACKWARD_RATIO = 2.0
 """Largest backward step of consecutive opposite points, relative to their gap."""
-_SAME = 1e-6
+_BACKWARD_TOLERANCE = 1e-6
 """Largest backward step by rounding, relative to the length of the face."""
 
 
@@ -135,7 +135,7 @@ def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed
     whole = meeting.all(axis=1)
     kept = np.repeat(whole, count)
     if isinstance(face_1, Face):
-        facing = (pairs.cosine <= FACING).reshape(-1, count)[:, inner].all(axis=1)
+        facing = (pairs.cosine <= MAX_FACING_COSINE).reshape(-1, count)[:, inner].all(axis=1)
         _check_order(face_1, face_2, pairs, whole, facing & ~whole)
     return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])
 
@@ -156,7 +156,7 @@ def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, 
     if face_2.closed:
         step = (step + length / 2) % length - length / 2
     step = step * np.sign(np.median(step))
-    allowed = _BACK * np.maximum(apart[1:], apart[:-1]) + _SAME * length
+    allowed = _MAX_BACKWARD_RATIO * np.maximum(apart[1:], apart[:-1]) + _BACKWARD_TOLERANCE * length
     if np.any(step < -allowed):
         raise CaseError(folded(face_1, face_2))
 

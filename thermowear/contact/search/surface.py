@@ -20,7 +20,7 @@ from ...lagrange import equispaced, gauss, lattice, matching, on_lattice
 from .facets import owned_facets, softness_behind
 from .smooth_normals import corner_corrections, smooth_normals
 
-_FLAT = 1e-9
+_FLATNESS_TOLERANCE = 1e-9
 """Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
 
 
@@ -146,7 +146,7 @@ class Surface:
         """True for facets that are parallelograms, shape (n_facets,)."""
         as_flat = self.flattened.points(lattice(self._order, dim=2)[:, None])
         off = np.abs(as_flat.swapaxes(0, 1) - self._listed).max(axis=(1, 2))
-        return off < _FLAT * np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
+        return off < _FLATNESS_TOLERANCE * np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
 
     @cached_property
     def middle_normals(self) -> np.ndarray:

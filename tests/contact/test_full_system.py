@@ -68,8 +68,8 @@ def method(case, kind, factor=1.0, friction=0.0, modes=None):
     modes = case.modes if modes is None else modes
     traction, force_modes = case.trace, modes
     if friction:
-        pull = pairing.normals + friction * np.array([1.0, 0.0])
-        traction = vector_trace(elastic.space, pairing, pull)
+        traction_direction = pairing.normals + friction * np.array([1.0, 0.0])
+        traction = vector_trace(elastic.space, pairing, traction_direction)
     operators = elastic, pairing, case.trace, traction, modes, force_modes
     if kind == "penalty":
         return FullContact(*operators, factor * default_penalty(elastic, pairing))
@@ -186,8 +186,8 @@ def test_given_approach(kind):
 def test_friction_in_the_section(kind):
     """requirement: a sliding contact is the condensed one, unsymmetric; friction shifts it."""
     case = build(3, (14, 14), (3, 3))
-    pull = case.pairing.normals + 0.4 * np.array([1.0, 0.0])
-    trace = vector_trace(case.elastic.space, case.pairing, pull)
+    traction_direction = case.pairing.normals + 0.4 * np.array([1.0, 0.0])
+    trace = vector_trace(case.elastic.space, case.pairing, traction_direction)
     closed = np.zeros(len(case.bump))
     expected, motion = condensed(case, 2, closed, np.array([1e5]), trace)
     solution = method(case, kind, 10.0, friction=0.4).solve(closed, np.array([1e5]))

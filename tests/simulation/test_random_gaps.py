@@ -41,7 +41,7 @@ def test_no_wrong_pressure_is_returned(tables, method):
     nothing, everywhere = np.zeros(len(system.weights)), np.ones(len(system.weights), dtype=bool)
     for _ in range(TRIES):
         gap, force = random_problem(system, rng)
-        object.__setattr__(system.holder.drives[0], "load", force)
+        object.__setattr__(system.holder.rigid_modes[0], "load", force)
         conditions = ConditionModel(system).at(0.0, nothing, None, everywhere)
         found = interface_problem(system)._method.solve(
             gap, Slope.on_the_spot(nothing), None, conditions, None

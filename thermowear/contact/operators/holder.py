@@ -41,26 +41,26 @@ class RigidHolder:
 
     Attributes
     ----------
-    drives : tuple of RigidMode
+    rigid_modes : tuple of RigidMode
         Its rigid modes: k free ones, and those with given motion.
-    closing : ndarray, shape (n, n_drives)
+    closing : ndarray, shape (n, n_modes)
         Matrix R: gap closure at the points per unit of each mode.
-    carrying : ndarray, shape (n, n_drives)
+    carrying : ndarray, shape (n, n_modes)
         Matrix T: generalised force on each mode per pressure and area.
     """
 
-    drives: tuple[RigidMode, ...]
+    rigid_modes: tuple[RigidMode, ...]
     closing: np.ndarray
     carrying: np.ndarray
 
     @property
     def motions(self) -> tuple[RigidMotion, ...]:
-        return tuple(drive.motion for drive in self.drives)
+        return tuple(mode.motion for mode in self.rigid_modes)
 
     @property
     def free(self) -> np.ndarray:
-        """True for modes under a given load, whose motion is free, shape (n_drives,)."""
-        return np.array([drive.amount is None for drive in self.drives], dtype=bool)
+        """True for modes under a given load, whose motion is free, shape (n_modes,)."""
+        return np.array([mode.amount is None for mode in self.rigid_modes], dtype=bool)
 
     @property
     def modes(self) -> np.ndarray:
@@ -75,13 +75,13 @@ class RigidHolder:
     @property
     def load(self) -> np.ndarray:
         """Generalised force of the holder on the free motions, shape (k,) [N or N m]."""
-        given = [drive.load for drive in self.drives if drive.load is not None]
+        given = [mode.load for mode in self.rigid_modes if mode.load is not None]
         return np.array(given, dtype=float)
 
     @property
     def dead(self) -> np.ndarray:
         """Constant forces on the free motions that the holder does not exert, (k,) [N or N m]."""
-        return np.array([drive.dead for drive in self.drives if drive.load is not None], float)
+        return np.array([mode.dead for mode in self.rigid_modes if mode.load is not None], float)
 
     @property
     def imposed(self) -> np.ndarray:
@@ -89,30 +89,32 @@ class RigidHolder:
         return self.closing @ self.amounts(np.zeros(int(self.free.sum())))
 
     def amounts(self, free: np.ndarray) -> np.ndarray:
-        """Amplitudes of all modes from those of the free ones, shape (n_drives,) [m or rad]."""
-        result = np.array([drive.amount or 0.0 for drive in self.drives], dtype=float)
+        """Amplitudes of all modes from those of the free ones, shape (n_modes,) [m or rad]."""
+        result = np.array([mode.amount or 0.0 for mode in self.rigid_modes], dtype=float)
         result[self.free] = free
         return result
 
     def carried(self, pressure: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """Generalised force of a pressure on each motion, shape (n_drives,) [N or N m]."""
+        """Generalised force of a pressure on each motion, shape (n_modes,) [N or N m]."""
         return self.carrying.T @ (weights * pressure)
 
 
 def hold(
-    pairing: Pairing, pull: np.ndarray, drives: list[RigidMode] | tuple[RigidMode, ...]
+    pairing: Pairing,
+    traction_direction: np.ndarray,
+    rigid_modes: list[RigidMode] | tuple[RigidMode, ...],
 ) -> RigidHolder:
     """Build the holder from its rigid modes.
 
     Parameters
     ----------
     pairing : Pairing
-    pull : ndarray, shape (n, gdim)
+    traction_direction : ndarray, shape (n, gdim)
         ``n + mu e``, see `pairing`.
-    drives : sequence of RigidMode
+    rigid_modes : sequence of RigidMode
     """
     points = pairing.on_body_1
-    moved = np.array([drive.motion.at(points) for drive in drives]).reshape(-1, *points.shape)
+    moved = np.array([mode.motion.at(points) for mode in rigid_modes]).reshape(-1, *points.shape)
     closing = np.einsum("kni,ni->nk", moved, pairing.normals)
-    carrying = np.einsum("kni,ni->nk", moved, pull)
-    return RigidHolder(tuple(drives), closing, carrying)
+    carrying = np.einsum("kni,ni->nk", moved, traction_direction)
+    return RigidHolder(tuple(rigid_modes), closing, carrying)

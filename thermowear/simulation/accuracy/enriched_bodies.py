@@ -104,8 +104,8 @@ class EnrichedBodies:
         """Nodal loads of the contact and of the surface loads in the enriched space."""
         system, problem = self._system, self._problem
         pairing = system.pairing
-        pull = system.rubbing(contact.conditions.friction).pull
-        traction = contact.pressure[:, None] * pull
+        traction_direction = system.rubbing(contact.conditions.friction).traction_direction
+        traction = contact.pressure[:, None] * traction_direction
         if contact.shear is not None:
             traction = traction - contact.shear[:, None] * tangents(pairing.normals)[0]
         loads = np.concatenate(
@@ -114,9 +114,11 @@ class EnrichedBodies:
                 for space in (problem.space, problem.surplus)
             ]
         )
-        holder, press = system.model.holder, system.press
+        holder, load_direction = system.model.holder, system.load_direction
         for surface, force in holder.surface_forces.items():
-            loads = loads + problem.loads(surface_work(system.elastic, surface, force * press))
+            loads = loads + problem.loads(
+                surface_work(system.elastic, surface, force * load_direction)
+            )
         for given in holder.surface_pressures.items():
             loads = loads + problem.loads(pressure_work(system.elastic, *given))
         return loads

@@ -15,7 +15,7 @@ from ...contact.wear.track import StrokeGrid
 from ...errors import CaseError
 from ...model.analyses import ReciprocatingAnalysis
 from ..model.contact_points import contact_points
-from ..model.rigid_modes import drives
+from ..model.rigid_modes import rigid_modes
 from ..model.setup_cache import SetupCache
 from ..model.system import System
 
@@ -89,9 +89,9 @@ def moved(system: System, offset: float, direction: int) -> System:
             "body 2 is needed (geometry.stroke)"
         )
     velocity = direction * kinematics.sliding(pairing.points, model.motion)
-    slides = sliding(velocity, pairing.normals, model.holder.press)
+    slides = sliding(velocity, pairing.normals, model.holder.load_direction)
     friction = system.friction, model.interface.transverse_friction
-    pull = slides.pull(pairing.normals, *friction)
+    traction_direction = slides.traction_direction(pairing.normals, *friction)
     on_1, on_2 = pairing.sides
     in_place = replace(pairing, sides=(replace(on_1, face=system.pairing.sides[0].face), on_2))
     return replace(
@@ -101,11 +101,11 @@ def moved(system: System, offset: float, direction: int) -> System:
         basis=basis,
         holder=hold(
             in_place,
-            pull,
-            drives(model.holder, in_place, lambda motion: system.dead_resultant(motion)[0]),
+            traction_direction,
+            rigid_modes(model.holder, in_place, lambda motion: system.dead_resultant(motion)[0]),
         ),
         slides=slides,
-        pull=pull,
+        traction_direction=traction_direction,
         speed=slides.speed,
         parts=SetupCache(),  # other contact points: no cached condensation applies
     )

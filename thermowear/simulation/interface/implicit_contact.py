@@ -71,7 +71,9 @@ class ImplicitContact:
         """
         gap = self._gap + worn.sum(axis=0)
         if conditions.released:  # the holder stays where it is
-            motion = np.zeros(len(self._system.holder.drives)) if guess is None else guess.motion
+            motion = (
+                np.zeros(len(self._system.holder.rigid_modes)) if guess is None else guess.motion
+            )
             return ContactSolution(np.zeros(len(gap)), motion, None)
 
         def solve(opened, slope, last):

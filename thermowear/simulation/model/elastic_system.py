@@ -47,9 +47,9 @@ def supports(model: Model) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]
 
 def dead_load(holder: Holder, elastic: Elasticity) -> np.ndarray | None:
     """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without surface loads."""
-    press = np.array(holder.press)
+    load_direction = np.array(holder.load_direction)
     loads = [
-        surface_load(elastic, surface, force * press)
+        surface_load(elastic, surface, force * load_direction)
         for surface, force in holder.surface_forces.items()
     ]
     loads += [surface_pressure(elastic, *given) for given in holder.surface_pressures.items()]

@@ -93,7 +93,7 @@ def _local_rates(system: System, contact: ContactState) -> np.ndarray:
 def profile(system: System, interface: InterfaceFields) -> Profile:
     """Worn shape of an interface, along its normals and along the load direction."""
     normals = np.zeros((len(interface.s), 3))
-    normals[:, : len(system.press)] = system.pairing.normals
+    normals[:, : len(system.load_direction)] = system.pairing.normals
     along = along_press(system)
     lost = system.pairing.gap + interface.wear_1 + interface.wear_2
     lost = (interface.shape.max() - interface.shape + lost.min()) / along
@@ -115,5 +115,5 @@ def profile(system: System, interface: InterfaceFields) -> Profile:
 
 def along_press(system: System) -> np.ndarray:
     """Cosines between normals and load direction, shape (n,); NaN where the face is too steep."""
-    along = system.pairing.normals @ system.press
+    along = system.pairing.normals @ system.load_direction
     return np.where(along > _STEEPEST, along, np.nan)

@@ -19,7 +19,7 @@ class RigidMode:
     motion : RigidMotion
     load : float or None
         Generalised force: force along a translation [N], moment of a rotation [N m].
-    amount : float or None
+    amplitude : float or None
         Given motion [m or rad].
     dead : float
         Constant generalised force on body 1 that does not come from the holder [N or N m].
@@ -27,11 +27,11 @@ class RigidMode:
 
     motion: RigidMotion
     load: float | None = None
-    amount: float | None = None
+    amplitude: float | None = None
     dead: float = 0.0
 
     def __post_init__(self):
-        if (self.load is None) == (self.amount is None):
+        if (self.load is None) == (self.amplitude is None):
             raise ValueError("holder: give either the load or the motion")
 
 
@@ -60,7 +60,7 @@ class RigidHolder:
     @property
     def free(self) -> np.ndarray:
         """True for modes under a given load, whose motion is free, shape (n_modes,)."""
-        return np.array([mode.amount is None for mode in self.rigid_modes], dtype=bool)
+        return np.array([mode.amplitude is None for mode in self.rigid_modes], dtype=bool)
 
     @property
     def modes(self) -> np.ndarray:
@@ -86,11 +86,11 @@ class RigidHolder:
     @property
     def imposed(self) -> np.ndarray:
         """Gap closure by the given motions, shape (n,) [m]."""
-        return self.closing @ self.amounts(np.zeros(int(self.free.sum())))
+        return self.closing @ self.amplitudes(np.zeros(int(self.free.sum())))
 
-    def amounts(self, free: np.ndarray) -> np.ndarray:
+    def amplitudes(self, free: np.ndarray) -> np.ndarray:
         """Amplitudes of all modes from those of the free ones, shape (n_modes,) [m or rad]."""
-        result = np.array([mode.amount or 0.0 for mode in self.rigid_modes], dtype=float)
+        result = np.array([mode.amplitude or 0.0 for mode in self.rigid_modes], dtype=float)
         result[self.free] = free
         return result
 

@@ -178,7 +178,7 @@ class ReciprocatingProblem(WearProblem):
         return newton_with_wear(solve, self._local, guess)
 
     def _contact(self, solution: CoupledSolution) -> ContactSolution:
-        motion = np.array([self._holder.amounts(d) for d in solution.motion])
+        motion = np.array([self._holder.amplitudes(d) for d in solution.motion])
         return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
 
 

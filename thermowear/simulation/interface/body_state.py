@@ -180,7 +180,7 @@ def _across(system: System) -> list[RigidMode]:
     """Translations along the axes without a load, balanced independently of the holder."""
     gdim = system.pairing.points.shape[1]
     axes = [system.load_direction] if system.model.kinematics == "axisymmetric" else np.eye(gdim)
-    return [RigidMode(translation(axis), amount=0.0) for axis in axes]
+    return [RigidMode(translation(axis), amplitude=0.0) for axis in axes]
 
 
 def _part(load: np.ndarray, largest: np.ndarray) -> float:

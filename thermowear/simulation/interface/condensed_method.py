@@ -176,5 +176,5 @@ class CondensedMethod:
             seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
             solution = replace(solution, coefficients=seen, active=active)
         return ContactSolution(
-            pressure, self._system.holder.amounts(solution.motion), solution, apart
+            pressure, self._system.holder.amplitudes(solution.motion), solution, apart
         )

@@ -33,7 +33,7 @@ def rigid_modes(
     """
     approach = holder.approach
     return tuple(
-        RigidMode(m, amount=approach, dead=float(dead(m)))
+        RigidMode(m, amplitude=approach, dead=float(dead(m)))
         if approach is not None and name == "z"
         else RigidMode(m, load=_load(holder, m), dead=float(dead(m)))
         for name, m in ((name, _motion(holder, name, pairing)) for name in holder.free)

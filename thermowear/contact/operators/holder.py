@@ -43,15 +43,15 @@ class RigidHolder:
     ----------
     rigid_modes : tuple of RigidMode
         Its rigid modes: k free ones, and those with given motion.
-    closing : ndarray, shape (n, n_modes)
+    closure : ndarray, shape (n, n_modes)
         Matrix R: gap closure at the points per unit of each mode.
-    carrying : ndarray, shape (n, n_modes)
+    force_response : ndarray, shape (n, n_modes)
         Matrix T: generalised force on each mode per pressure and area.
     """
 
     rigid_modes: tuple[RigidMode, ...]
-    closing: np.ndarray
-    carrying: np.ndarray
+    closure: np.ndarray
+    force_response: np.ndarray
 
     @property
     def motions(self) -> tuple[RigidMotion, ...]:
@@ -65,12 +65,12 @@ class RigidHolder:
     @property
     def modes(self) -> np.ndarray:
         """Columns of R of the free motions, shape (n, k)."""
-        return self.closing[:, self.free]
+        return self.closure[:, self.free]
 
     @property
     def force_modes(self) -> np.ndarray:
         """Columns of T of the free motions, shape (n, k)."""
-        return self.carrying[:, self.free]
+        return self.force_response[:, self.free]
 
     @property
     def load(self) -> np.ndarray:
@@ -86,17 +86,13 @@ class RigidHolder:
     @property
     def imposed(self) -> np.ndarray:
         """Gap closure by the given motions, shape (n,) [m]."""
-        return self.closing @ self.amplitudes(np.zeros(int(self.free.sum())))
+        return self.closure @ self.amplitudes(np.zeros(int(self.free.sum())))
 
     def amplitudes(self, free: np.ndarray) -> np.ndarray:
         """Amplitudes of all modes from those of the free ones, shape (n_modes,) [m or rad]."""
         result = np.array([mode.amplitude or 0.0 for mode in self.rigid_modes], dtype=float)
         result[self.free] = free
         return result
-
-    def carried(self, pressure: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """Generalised force of a pressure on each motion, shape (n_modes,) [N or N m]."""
-        return self.carrying.T @ (weights * pressure)
 
 
 def hold(
@@ -115,6 +111,6 @@ def hold(
     """
     points = pairing.on_body_1
     moved = np.array([mode.motion.at(points) for mode in rigid_modes]).reshape(-1, *points.shape)
-    closing = np.einsum("kni,ni->nk", moved, pairing.normals)
-    carrying = np.einsum("kni,ni->nk", moved, traction_direction)
-    return RigidHolder(tuple(rigid_modes), closing, carrying)
+    closure = np.einsum("kni,ni->nk", moved, pairing.normals)
+    force_response = np.einsum("kni,ni->nk", moved, traction_direction)
+    return RigidHolder(tuple(rigid_modes), closure, force_response)

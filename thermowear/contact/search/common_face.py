@@ -28,7 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .face import Face
-from .projection import beside, project
+from .projection import overhang, project
 from .surface import Surface
 
 MAX_FACING_COSINE = -0.5
@@ -61,7 +61,7 @@ class Opposite:
         Share s of the first body.
     cosine : ndarray, shape (n,)
         Cosine between the outward normals of both faces.
-    beside : ndarray, shape (n,)
+    overhang : ndarray, shape (n,)
         Tangential distance of the points from their closest ones, positive beyond the edge of the
         other face, which is extrapolated linearly beyond its edges [m].
     """
@@ -72,24 +72,24 @@ class Opposite:
     offset: np.ndarray
     share: np.ndarray
     cosine: np.ndarray
-    beside: np.ndarray
+    overhang: np.ndarray
 
     @property
     def gap(self) -> np.ndarray:
         """Normal component of the offsets, shape (n,) [m]."""
         return np.einsum("ni,ni->n", self.offset, self.normals)
 
-    def meets(self, size: float, allowed: float) -> np.ndarray:
+    def meets(self, size: float, max_overhang: float) -> np.ndarray:
         """True for points that can meet those opposite.
 
         Parameters
         ----------
         size : float
             Size of the face [m].
-        allowed : float
+        max_overhang : float
             Largest tangential distance from the other face, relative to the size.
         """
-        inside = (self.beside <= allowed * size) & (self.gap >= -_MAX_PENETRATION * size)
+        inside = (self.overhang <= max_overhang * size) & (self.gap >= -_MAX_PENETRATION * size)
         return (self.cosine <= MAX_FACING_COSINE) & inside
 
 
@@ -131,9 +131,9 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
 
     points, out = face.points(facet, t), face.smooth_normals(facet, t)[0]
     closest, at, offset = project(other, points)
-    off = beside(other, closest, at, offset)
+    overhangs = overhang(other, closest, at, offset)
     facet, t, line = met(points, out, face.soft(facet), other, closest, at, locate)
-    return Opposite(facet, t, line.normals, line.offset, line.share, line.cosine, off)
+    return Opposite(facet, t, line.normals, line.offset, line.share, line.cosine, overhangs)
 
 
 def met(

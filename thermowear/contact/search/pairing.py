@@ -28,7 +28,7 @@ from ...bulk.kinematics import Kinematics
 from ...errors import CaseError
 from .common_face import opposite, stretch
 from .face import Face
-from .refinement import BESIDE, SLIVER, Rule, folded, rule
+from .refinement import OVERHANG_TOLERANCE, SLIVER, Rule, folded, rule
 from .surface import Surface
 
 _COINCIDENCE_TOLERANCE = 1e-10
@@ -118,7 +118,7 @@ def pair(
     order: int,
     refine: bool = True,
     sliver: float = SLIVER,
-    beside: float = BESIDE,
+    max_overhang: float = OVERHANG_TOLERANCE,
 ) -> Pairing:
     """Pair two faces on their common refinement.
 
@@ -136,7 +136,7 @@ def pair(
         False: no cuts, one rule per facet of body 1.
     sliver : float
         Smallest distance of a cut from the ends of a facet, relative to it; plane models only.
-    beside : float
+    max_overhang : float
         Linear extrapolation of body 2 beyond its ends, relative to the face; plane models only.
 
     Raises
@@ -144,7 +144,7 @@ def pair(
     CaseError
         If no point of body 1 faces body 2, or it is not clear which points meet.
     """
-    pieces = rule(face_1, face_2, order, refine, sliver, beside)
+    pieces = rule(face_1, face_2, order, refine, sliver, max_overhang)
     if len(pieces.facet) == 0:
         raise CaseError(
             f"geometry.contact: {face_1.name} and {face_2.name} do not lie opposite each other; "

@@ -39,7 +39,7 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
     return facet, t, face.points(facet, t) - points
 
 
-def ahead(
+def ray_intersections(
     face: Face | Surface, points: np.ndarray, directions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intersections of a face with lines through given points, forward or backward.
@@ -57,22 +57,22 @@ def ahead(
     -------
     facet : ndarray, shape (n,)
     t : ndarray, shape (n,) or (n, 2)
-    way : ndarray, shape (n,)
+    distance : ndarray, shape (n,)
         Signed distance along the directions, negative backward [m].
     """
-    way = np.zeros(len(points))
+    distance = np.zeros(len(points))
     for _ in range(_MAX_ITERATIONS):
-        facet, t, offset = project(face, points + way[:, None] * directions)
+        facet, t, offset = project(face, points + distance[:, None] * directions)
         normals = face.normals(facet, t)
         against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_MIN_COSINE)
         missed = np.einsum("ni,ni->n", offset, normals) / against
-        way += missed
+        distance += missed
         if np.abs(missed).max() <= _TOLERANCE * face.extent:
             break
-    return facet, t, way
+    return facet, t, distance
 
 
-def beside(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
+def overhang(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
     """Tangential distance of points from their projections, positive beyond the edge [m]."""
     tangents = face.tangents(facet, t).reshape(len(facet), -1, offset.shape[1])
     across = np.linalg.qr(np.moveaxis(tangents, 1, 2))[0]

@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .common_face import MAX_FACING_COSINE, met
+from .common_face import MAX_FACING_COSINE, opposite_parameters
 from .projection import within
 from .surface import Surface
 
@@ -46,7 +46,7 @@ def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.nda
     facets, parts, outlines = [], [], _outlines(face_2)
     for facet in range(len(face_1.nodes)):
         facing = face_2.middle_normals @ face_1.middle_normals[facet] <= MAX_FACING_COSINE
-        for ring in _drawn(face_1, facet, outlines.only(facing)):
+        for ring in _nearby_outlines(face_1, facet, outlines.only(facing)):
             pieces = _quadrilaterals(_clipped(ring))
             facets += [facet] * len(pieces)
             parts += pieces
@@ -60,16 +60,16 @@ class _Outlines:
     Attributes
     ----------
     points, normals : ndarray, shape (n, 4, steps + 1, 3)
-    soft : ndarray, shape (n, 4, steps + 1)
+    softness : ndarray, shape (n, 4, steps + 1)
         Softness of the body at the points [1/Pa].
     """
 
     points: np.ndarray
     normals: np.ndarray
-    soft: np.ndarray
+    softness: np.ndarray
 
     def only(self, chosen: np.ndarray) -> _Outlines:
-        return _Outlines(self.points[chosen], self.normals[chosen], self.soft[chosen])
+        return _Outlines(self.points[chosen], self.normals[chosen], self.softness[chosen])
 
 
 def _outlines(face: Surface) -> _Outlines:
@@ -80,14 +80,16 @@ def _outlines(face: Surface) -> _Outlines:
     facet, at = np.repeat(np.arange(shape[0]), len(places)), np.tile(places, (shape[0], 1))
     points, normals = face.points(facet, at), face.smooth_normals(facet, at)[0]
     return _Outlines(
-        points.reshape(*shape, 3), normals.reshape(*shape, 3), face.soft(facet).reshape(shape)
+        points.reshape(*shape, 3),
+        normals.reshape(*shape, 3),
+        face.softness_at(facet).reshape(shape),
     )
 
 
-def _drawn(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]:
+def _nearby_outlines(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]:
     """Outlines near a facet of body 1 in its parameters, without redundant points, each (n, 2)."""
     flat = face_1.flattened.only(facet)
-    t = flat.parameters(outlines.points.reshape(-1, 3)).reshape(outlines.soft.shape + (2,))
+    t = flat.parameters(outlines.points.reshape(-1, 3)).reshape(outlines.softness.shape + (2,))
     parallel = face_1.flat[facet] and _level(outlines.normals, face_1.middle_normals[facet])
     margin = 0.0 if parallel else 0.5
     near = (t.min(axis=(1, 2)) < 1 + margin) & (t.max(axis=(1, 2)) > -margin)
@@ -98,7 +100,7 @@ def _drawn(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]
         t[close] = _opposite_within(face_1, facet, outlines, close)
     for side in (0.0, 1.0):
         t[np.abs(t - side) < _TOLERANCE] = side
-    kept = _needed(t)
+    kept = _necessary_points(t)
     rings = [edges[:, :-1][chosen] for edges, chosen in zip(t, kept, strict=True)]
     # seen from body 1 the facets of body 2 have either orientation
     return [ring if _area(ring) > 0 else ring[::-1] for ring in rings]
@@ -119,11 +121,11 @@ def _opposite_within(
         start = face_1.flattened.only(facet).parameters(points)[:, 0]
         return on[which], within(face_1, points, on[which], start, bounds=(-np.inf, np.inf))
 
-    columns = outlines.points[chosen], outlines.normals[chosen], outlines.soft[chosen]
-    return met(*columns, face_1, *locate(columns[0], np.arange(len(on))), locate)[1]
+    columns = outlines.points[chosen], outlines.normals[chosen], outlines.softness[chosen]
+    return opposite_parameters(*columns, face_1, *locate(columns[0], np.arange(len(on))), locate)[1]
 
 
-def _needed(edges: np.ndarray) -> np.ndarray:
+def _necessary_points(edges: np.ndarray) -> np.ndarray:
     """Mask of the outline points (n, 4, steps + 1, 2) to keep, shape (n, 4, steps).
 
     For each edge: its first corner, the points next to its intersections with the unit square, and

@@ -129,17 +129,19 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     def locate(points: np.ndarray, _) -> tuple[np.ndarray, np.ndarray]:
         return project(other, points)[:2]
 
-    points, out = face.points(facet, t), face.smooth_normals(facet, t)[0]
+    points, outward = face.points(facet, t), face.smooth_normals(facet, t)[0]
     closest, at, offset = project(other, points)
     overhangs = overhang(other, closest, at, offset)
-    facet, t, line = met(points, out, face.soft(facet), other, closest, at, locate)
+    facet, t, line = opposite_parameters(
+        points, outward, face.softness_at(facet), other, closest, at, locate
+    )
     return Opposite(facet, t, line.normals, line.offset, line.share, line.cosine, overhangs)
 
 
-def met(
+def opposite_parameters(
     points: np.ndarray,
-    out: np.ndarray,
-    soft: np.ndarray,
+    outward: np.ndarray,
+    softness: np.ndarray,
     other: Face | Surface,
     facet: np.ndarray,
     t: np.ndarray,
@@ -152,9 +154,9 @@ def met(
 
     Parameters
     ----------
-    points, out : ndarray, shape (n, gdim)
+    points, outward : ndarray, shape (n, gdim)
         Points [m] and outward normals of the body.
-    soft : ndarray, shape (n,)
+    softness : ndarray, shape (n,)
         Softness c of the body at the points [1/Pa].
     other : Face or Surface
     facet, t : ndarray
@@ -164,18 +166,18 @@ def met(
         the points.
     """
     facet, t = facet.copy(), t.copy()
-    found = other.points(facet, t)
+    opposite_points = other.points(facet, t)
     moving = np.arange(len(points))
     for _ in range(_MAX_ITERATIONS):
         now = slice(None) if len(moving) == len(points) else moving
-        line = _line(points[now], out[now], soft[now], other, facet[now], t[now])
+        line = _line(points[now], outward[now], softness[now], other, facet[now], t[now])
         facet[now], t[now] = locate(points[now] + line.offset, moving)
-        before, found[now] = found[now].copy(), other.points(facet[now], t[now])
-        missed = np.linalg.norm(found[now] - before, axis=1)
-        moving = moving[missed > _TOLERANCE * other.extent]
+        before, opposite_points[now] = opposite_points[now].copy(), other.points(facet[now], t[now])
+        change = np.linalg.norm(opposite_points[now] - before, axis=1)
+        moving = moving[change > _TOLERANCE * other.extent]
         if not len(moving):
             break
-    return facet, t, _line(points, out, soft, other, facet, t)
+    return facet, t, _line(points, outward, softness, other, facet, t)
 
 
 def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs: Opposite):
@@ -206,15 +208,15 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     return np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
 
 
-def _line(points, out, soft, other, facet, t) -> NormalLines:
-    against, softer = other.smooth_normals(facet, t)[0], other.soft(facet)
-    share = soft / (soft + softer)
-    normals, _ = _direction((1 - share)[:, None] * out - share[:, None] * against, out)
+def _line(points, outward, softness, other, facet, t) -> NormalLines:
+    against, other_softness = other.smooth_normals(facet, t)[0], other.softness_at(facet)
+    share = softness / (softness + other_softness)
+    normals, _ = _direction((1 - share)[:, None] * outward - share[:, None] * against, outward)
     a_1, a_2 = _parts(share, other)
-    along, _ = _direction(a_1 * out - a_2 * against, out)
+    along, _ = _direction(a_1 * outward - a_2 * against, outward)
     steep = np.minimum(np.einsum("ni,ni->n", along, against), -_MIN_COSINE)
     to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
-    cosine = np.einsum("ni,ni->n", out, against)
+    cosine = np.einsum("ni,ni->n", outward, against)
     return NormalLines(normals, to_plane[:, None] * along, share, cosine)
 
 

@@ -16,7 +16,7 @@ from ...bulk.bodies import Bodies
 from ...compat import entities_to_geometry_layout, geometry_dofmap
 from ...errors import CaseError
 from ...lagrange import lobatto, on_lattice
-from .facets import owned_facets, softness_behind
+from .facets import cell_softness, owned_facets
 from .smooth_normals import corner_corrections, smooth_normals
 from .surface import Surface, gather_surface
 
@@ -79,7 +79,7 @@ class Face:
         """
         return smooth_normals(self.nodes, self.outward, self._corrections, facet, t[:, None])
 
-    def soft(self, facet: np.ndarray) -> np.ndarray:
+    def softness_at(self, facet: np.ndarray) -> np.ndarray:
         """Softness at facets, shape (n,) [1/Pa]."""
         return np.broadcast_to(self.softness, len(self.nodes))[facet]
 
@@ -153,8 +153,8 @@ def gather_face(
 def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -> Face:
     mesh = bodies.mesh
     local = _local_facets(bodies, surface)
-    parts = mesh.comm.allgather((*local, softness_behind(local[4], softness)))
-    nodes, ends, inside, rank, cell, local_facet, soft = (
+    parts = mesh.comm.allgather((*local, cell_softness(local[4], softness)))
+    nodes, ends, inside, rank, cell, local_facet, facet_softness = (
         np.concatenate([part[k] for part in parts]) for k in range(7)
     )
     if len(nodes) == 0:
@@ -166,7 +166,7 @@ def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -
     inward = inside[order] - nodes.mean(axis=1)
     turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
     owner = rank[order], cell[order], local_facet[order]
-    return Face(nodes, -np.sign(turned), *owner, flip, soft[order], surface)
+    return Face(nodes, -np.sign(turned), *owner, flip, facet_softness[order], surface)
 
 
 def _local_facets(bodies: Bodies, surface: str):
@@ -199,7 +199,7 @@ def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarra
             at[vertex].append(facet)
     loose = [v for v, facets in enumerate(at) if len(facets) == 1]
     if len(loose) not in (0, 2) or max(len(facets) for facets in at) > 2:
-        raise CaseError(_not_one(surface))
+        raise CaseError(_disconnected_message(surface))
     where = {v: nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1] for v in loose or (0,)}
     vertex = min(where, key=lambda v: float(where[v] @ ONWARD))
     order, flip, facet = [], np.zeros(len(ends), dtype=bool), at[vertex][0]
@@ -212,11 +212,11 @@ def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarra
             break
         facet = following[0]
     if len(order) < len(ends):
-        raise CaseError(_not_one(surface))
+        raise CaseError(_disconnected_message(surface))
     return np.array(order), flip
 
 
-def _not_one(surface: str) -> str:
+def _disconnected_message(surface: str) -> str:
     return (
         f"geometry: the contact face {surface} is not one connected curve, open or closed; give "
         "each part that touches a run of its own, or name one part only"

@@ -30,7 +30,7 @@ def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
     return cells, local
 
 
-def softness_behind(cells: np.ndarray, softness: fem.Function | None) -> np.ndarray:
+def cell_softness(cells: np.ndarray, softness: fem.Function | None) -> np.ndarray:
     """Softness of cells of this rank, by default 1, shape (n,) [1/Pa]."""
     if softness is None:
         return np.ones(len(cells))

@@ -28,7 +28,7 @@ from ...bulk.kinematics import Kinematics
 from ...errors import CaseError
 from .common_face import opposite, stretch
 from .face import Face
-from .refinement import OVERHANG_TOLERANCE, SLIVER, Rule, folded, rule
+from .refinement import OVERHANG_TOLERANCE, SLIVER, Rule, ambiguity_message, rule
 from .surface import Surface
 
 _COINCIDENCE_TOLERANCE = 1e-10
@@ -165,7 +165,7 @@ def paired(
     weights *= np.maximum(kinematics.area_factor(on_common), 0.0)  # rounding on the axis
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
     if covered.max() > 1.0 + _MAX_OVERLAP:
-        raise CaseError(folded(face_1, face_2))
+        raise CaseError(ambiguity_message(face_1, face_2))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
     position = face_1.position(facet, t)
     # on a curve by arc length: both ends of a closed one coincide in space

@@ -65,9 +65,9 @@ def ray_intersections(
         facet, t, offset = project(face, points + distance[:, None] * directions)
         normals = face.normals(facet, t)
         against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_MIN_COSINE)
-        missed = np.einsum("ni,ni->n", offset, normals) / against
-        distance += missed
-        if np.abs(missed).max() <= _TOLERANCE * face.extent:
+        change = np.einsum("ni,ni->n", offset, normals) / against
+        distance += change
+        if np.abs(change).max() <= _TOLERANCE * face.extent:
             break
     return facet, t, distance
 
@@ -98,8 +98,8 @@ def _on_chain(face: Face, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _best(face, points: np.ndarray, trials: list[tuple[np.ndarray, np.ndarray]]):
     """Candidate with the smallest distance, point by point."""
-    far = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
-    best, every = np.argmin(far, axis=0), np.arange(len(points))
+    distances = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
+    best, every = np.argmin(distances, axis=0), np.arange(len(points))
     facet, t = (np.array([trial[k] for trial in trials])[best, every] for k in (0, 1))
     return facet, t
 
@@ -113,8 +113,8 @@ def _along(face: Face, points: np.ndarray, facet: np.ndarray) -> np.ndarray:
     for _ in range(0 if face.nodes.shape[1] == 2 else 20):
         offset, tangent = face.points(facet, t) - points, face.tangents(facet, t)
         step = (offset * tangent).sum(axis=1) / (tangent**2).sum(axis=1)
-        before, t = t, np.clip(t - step, 0.0, 1.0)
-        if np.abs(t - before).max(initial=0.0) <= _ROUNDING:
+        last, t = t, np.clip(t - step, 0.0, 1.0)
+        if np.abs(t - last).max(initial=0.0) <= _ROUNDING:
             break
     return t
 

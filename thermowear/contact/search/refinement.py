@@ -151,7 +151,7 @@ def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, 
     if len(between) == 0:
         return
     if lost[between[0] : between[-1]].any():
-        raise CaseError(folded(face_1, face_2))
+        raise CaseError(ambiguity_message(face_1, face_2))
     chosen = np.repeat(kept, len(pairs.gap) // len(kept))
     s, apart = face_2.position(pairs.facet, pairs.t)[chosen], np.abs(pairs.gap[chosen])
     step, length = np.diff(s), face_2.sizes.sum()
@@ -162,10 +162,10 @@ def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, 
         _MAX_BACKWARD_RATIO * np.maximum(apart[1:], apart[:-1]) + _BACKWARD_TOLERANCE * length
     )
     if np.any(step < -max_overhang):
-        raise CaseError(folded(face_1, face_2))
+        raise CaseError(ambiguity_message(face_1, face_2))
 
 
-def folded(face_1: Face | Surface, face_2: Face | Surface) -> str:
+def ambiguity_message(face_1: Face | Surface, face_2: Face | Surface) -> str:
     """Message for faces with ambiguous pairs of opposite points."""
     return (
         f"geometry.contact: it is not clear which points of {face_1.name} and {face_2.name} meet, "

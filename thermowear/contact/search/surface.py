@@ -17,7 +17,7 @@ from ...bulk.field import reference_element
 from ...compat import coordinate_element, geometry_dofmap
 from ...errors import CaseError
 from ...lagrange import equispaced, gauss, lattice, matching, on_lattice
-from .facets import owned_facets, softness_behind
+from .facets import cell_softness, owned_facets
 from .smooth_normals import corner_corrections, smooth_normals
 
 _FLATNESS_TOLERANCE = 1e-9
@@ -109,7 +109,7 @@ class Surface:
         """
         return smooth_normals(self.nodes, self.outward, self._corrections, facet, t)
 
-    def soft(self, facet: np.ndarray) -> np.ndarray:
+    def softness_at(self, facet: np.ndarray) -> np.ndarray:
         """Softness at facets, shape (n,) [1/Pa]."""
         return np.broadcast_to(self.softness, len(self.nodes))[facet]
 
@@ -216,10 +216,10 @@ def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None =
         np.full(len(cells), mesh.comm.rank),
         cells,
         local,
-        softness_behind(cells, softness),
+        cell_softness(cells, softness),
     )
     parts = mesh.comm.allgather(part)
-    original, nodes, numbers, inside, rank, cells, local, soft = (
+    original, nodes, numbers, inside, rank, cells, local, facet_softness = (
         np.concatenate([part[k] for part in parts]) for k in range(len(part))
     )
     if len(nodes) == 0:
@@ -232,7 +232,7 @@ def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None =
     from_inside = nodes.mean(axis=(1, 2)) - inside[order]
     outward = np.sign(np.einsum("fi,fi->f", np.cross(first, second), from_inside))
     owner = rank[order], cells[order], local[order]
-    return Surface(nodes, corners, outward, *owner, soft[order], surface)
+    return Surface(nodes, corners, outward, *owner, facet_softness[order], surface)
 
 
 def _grids(mesh) -> np.ndarray:

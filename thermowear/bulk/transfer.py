@@ -167,7 +167,7 @@ class _Field:
 
 def _cells_of(bodies: Bodies, parts: tuple[str, ...]) -> np.ndarray:
     """Cells of a body owned by this rank."""
-    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
+    cells = bodies.cells(*parts)
     return cells[cells < bodies.mesh.topology.index_map(bodies.mesh.topology.dim).size_local]
 
 

@@ -43,10 +43,6 @@ class Passage:
     speed: float
     spread: bool
 
-    def cells(self, bodies: Bodies) -> np.ndarray:
-        """Local cells of the body, ghosts included."""
-        return np.concatenate([bodies.cell_tags.find(bodies.body_tag(p)) for p in self.parts])
-
     def stream(self, mesh) -> fem.Function:
         """Stream function ψ with ``v = (∂ψ/∂y, -∂ψ/∂x)``, at unit speed."""
         ψ = fem.Function(geometry_space(mesh))
@@ -149,7 +145,7 @@ def _transit_time(mesh, v):
 
 def _largest(bodies: Bodies, passage: Passage, number) -> float:
     """Largest value of an expression at the midpoints of the moving cells."""
-    mesh, cells = bodies.mesh, passage.cells(bodies)
+    mesh, cells = bodies.mesh, bodies.cells(*passage.parts)
     middle = reference_element(mesh, 1).points.mean(axis=0, keepdims=True)
     expression = fem.Expression(number, middle)
     values = evaluate(expression, mesh, cells) if len(cells) else np.zeros(1)

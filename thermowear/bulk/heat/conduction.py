@@ -16,7 +16,9 @@ from dolfinx import fem
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
+from ..compiled import multiply
 from ..direct_solver import DirectSolver
+from ..field import without_fixed
 from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 
@@ -210,11 +212,7 @@ class Conduction:
 
     def _free(self, heat):
         """Nodal heat with zeros in the values with a prescribed temperature."""
-        if sp.issparse(heat):
-            return (sp.diags(~self.fixed, dtype=float) @ heat).tocsr()
-        free = np.array(heat, dtype=float)
-        free[self.fixed] = 0.0
-        return free
+        return without_fixed(heat, self.fixed)
 
 
 def factorised(
@@ -242,10 +240,3 @@ def _column_sums(matrix: PETSc.Mat) -> np.ndarray:
     ones.set(1.0)
     matrix.multTranspose(ones, sums)
     return sums.getArray().copy()
-
-
-def multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:
-    x, y = matrix.createVecs()
-    x.setArray(values)
-    matrix.mult(x, y)
-    return y.getArray().copy()

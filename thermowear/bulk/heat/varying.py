@@ -18,10 +18,9 @@ from petsc4py import PETSc
 import numpy as np
 import ufl
 from dolfinx import fem
-from dolfinx.fem.petsc import assemble_matrix
 
 from ..bodies import Bodies
-from ..compiled import compiled
+from ..compiled import assembled_matrix, multiply
 from ..field import as_function
 from ..kinematics import Kinematics, section_measure
 from ..mechanics.elasticity import Elasticity
@@ -42,21 +41,28 @@ class PropertyMultiplier(Protocol):
 
 
 @dataclass(frozen=True)
-class VaryingConductivity:
-    """Temperature-dependent conductivity of one part of a body.
+class VaryingProperty:
+    """Temperature-dependent property of one part of a body.
 
     Attributes
     ----------
+    part : str
     matrix : petsc4py.PETSc.Mat
-        Conductivity matrix of the part at its constant conductivity [W/K].
+        Matrix of the part at its constant property: conductivity [W/K], or nodal forces of thermal
+        expansion [N/K].
     factor : PropertyMultiplier
     ambient : float
         Ambient temperature [K].
     """
 
+    part: str
     matrix: PETSc.Mat
     factor: PropertyMultiplier
     ambient: float
+
+
+class VaryingConductivity(VaryingProperty):
+    """Temperature-dependent conductivity of one part of a body."""
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
         """``Θ - T`` at the nodes, for their rise (n_owned,) [K]."""
@@ -67,24 +73,8 @@ class VaryingConductivity:
         return self.factor.value(self.ambient + rise) - 1
 
 
-@dataclass(frozen=True)
-class VaryingExpansion:
-    """Temperature-dependent thermal expansion of one part of a body.
-
-    Attributes
-    ----------
-    part : str
-    matrix : petsc4py.PETSc.Mat
-        Matrix of nodal forces of the part at its constant expansion [N/K].
-    factor : PropertyMultiplier
-    ambient : float
-        Ambient temperature [K].
-    """
-
-    part: str
-    matrix: PETSc.Mat
-    factor: PropertyMultiplier
-    ambient: float
+class VaryingExpansion(VaryingProperty):
+    """Temperature-dependent thermal expansion of one part of a body."""
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
         """Additional rise at the nodes that causes the same strain at constant expansion [K]."""
@@ -148,9 +138,8 @@ def varying_conduction(
     for name, factor in factors.items():
         alone = {part: (part == name) * m.conductivity for part, m in materials.items()}
         flow = bodies.per_body(alone) * ufl.inner(ufl.grad(T), ufl.grad(δT))
-        matrix = assemble_matrix(compiled(kinematics.integral(mesh, flow, measure)))
-        matrix.assemble()
-        parts.append(VaryingConductivity(matrix, factor, ambient))
+        matrix = assembled_matrix(kinematics.integral(mesh, flow, measure))
+        parts.append(VaryingConductivity(name, matrix, factor, ambient))
     constant = {field.name: getattr(conducting, field.name) for field in fields(Conduction)}
     return VaryingConduction(**constant, parts=tuple(parts))
 
@@ -202,8 +191,5 @@ def _products(rows: int, pairs: Iterable[tuple[PETSc.Mat, np.ndarray]]) -> np.nd
     """Sum of matrix-vector products, owned rows."""
     result = np.zeros(rows)
     for matrix, values in pairs:
-        x, y = matrix.createVecs()
-        x.setArray(values)
-        matrix.mult(x, y)
-        result += y.getArray()
+        result += multiply(matrix, values)
     return result

@@ -17,14 +17,15 @@ import basix.ufl
 import numpy as np
 from dolfinx import fem
 
+from ..field import reference_element
+
 _LEGENDRE = basix.PolynomialType.legendre
 _RANK_TOLERANCE = 1e-10
 
 
 def surplus_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
     """Surplus space over `field.lagrange_space` of a degree, scalar or vector-valued."""
-    cell = mesh.basix_cell()
-    element = _element(basix.CellType[cell] if isinstance(cell, str) else cell, degree)
+    element = _element(reference_element(mesh, 1).cell_type, degree)
     if components:
         element = basix.ufl.blocked_element(element, shape=(components,))
     return fem.functionspace(mesh, element)

@@ -23,6 +23,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import block_diag
 
+from ...bulk.compiled import multiply
+from ...bulk.field import without_fixed
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
@@ -151,7 +153,7 @@ class ContactEquations:
         contact = self._work @ (self._scale * pressure)
         contact += self.theta * (self._stress @ (self._scale * stress))
         elastic = self.elastic_forces(displacement)
-        loads = np.where(self.elastic.fixed, 0.0, loading.nodal_loads)
+        loads = without_fixed(loading.nodal_loads, self.elastic.fixed)
         forces = elastic - contact - loads
         balance = moving.carried.T @ pressure + moving.springs @ motion - moving.load
         size = self._largest(elastic, contact, loads)
@@ -161,22 +163,6 @@ class ContactEquations:
         relative = self._largest(forces) / size if size != 0.0 else 0.0
         off = np.divide(np.abs(balance), carried, out=np.zeros(len(balance)), where=carried > 0)
         return Residual(trial, forces, balance, float(np.max([relative, *off])))
-
-    def jacobian(
-        self,
-        loading: Loading,
-        active: np.ndarray,
-        displacement: np.ndarray,
-        motion: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Directional derivative of both residuals, for given active points."""
-        at, moving = self._at_points(displacement), self._motions(loading)
-        change = self.stiffness * (moving.modes @ motion) - at.closing
-        pressure = active * self._softening(loading) * change
-        contact = self._work @ (self._scale * pressure)
-        contact += self.theta * (self._stress @ (self._scale * at.stress))
-        balance = moving.carried.T @ pressure + moving.springs @ motion
-        return self.elastic_forces(displacement) - contact, balance
 
     def newton_step(
         self, loading: Loading, residual: Residual, active: np.ndarray
@@ -233,10 +219,7 @@ class ContactEquations:
 
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Elastic nodal forces K u, zero at supported degrees of freedom."""
-        x, y = self.elastic.stiffness.createVecs()
-        x.setArray(displacement)
-        self.elastic.stiffness.mult(x, y)
-        return np.where(self.elastic.fixed, 0.0, y.getArray())
+        return without_fixed(multiply(self.elastic.stiffness, displacement), self.elastic.fixed)
 
     def _motions(self, loading: Loading) -> _Motions:
         own, k = loading.deflection, len(loading.load)
@@ -266,7 +249,7 @@ class ContactEquations:
 
 def _held(elastic: Elasticity, matrix: sp.csr_matrix) -> sp.csr_matrix:
     """Transposed trace without supported rows and without rounding noise."""
-    held = sp.csr_matrix(sp.diags((~elastic.fixed).astype(float)) @ matrix)
+    held = without_fixed(matrix, elastic.fixed)
     held.data[np.abs(held.data) < 1e-14 * np.abs(held.data).max(initial=0.0)] = 0.0
     held.eliminate_zeros()
     return held

@@ -15,7 +15,6 @@ from ...bulk.field import owned
 from ...bulk.heat.heat_equation import conducting, transferring
 from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
-from ...bulk.mechanics.surface_load import pressure_work, surface_work
 from ...bulk.mechanics.surplus import surplus_space
 from ...contact.operators.heat import BaselineResponse, InterfaceHeat
 from ...contact.operators.tangential import tangents
@@ -23,7 +22,7 @@ from ...contact.operators.traces import gap_trace, value_trace, vector_trace
 from ...model.heat import Heat
 from ...parallel import sum_over_ranks
 from ..interface.body_state import BodyState, ContactState
-from ..model.elastic_system import supports
+from ..model.elastic_system import supports, surface_loads
 from ..model.system import System
 from ..model.thermal_system import ThermalSystem, conducting_parts, cooling
 
@@ -114,13 +113,8 @@ class EnrichedBodies:
                 for space in (problem.space, problem.surplus)
             ]
         )
-        holder, load_direction = system.model.holder, system.load_direction
-        for surface, force in holder.surface_forces.items():
-            loads = loads + problem.loads(
-                surface_work(system.elastic, surface, force * load_direction)
-            )
-        for given in holder.surface_pressures.items():
-            loads = loads + problem.loads(pressure_work(system.elastic, *given))
+        for work in surface_loads(system.model.holder, system.elastic):
+            loads = loads + problem.loads(work)
         return loads
 
 

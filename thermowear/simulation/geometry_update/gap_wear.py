@@ -200,6 +200,6 @@ def _thickness(system: System, index: int) -> float:
     out = out / np.linalg.norm(out)
     middle = np.average(pairing.points, axis=0, weights=pairing.weights)
     parts = system.model.bodies[index].parts
-    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
+    cells = bodies.cells(*parts)
     nodes = bodies.mesh.geometry.x[geometry_dofmap(bodies.mesh)[cells].ravel(), : len(middle)]
     return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

@@ -92,7 +92,7 @@ def test_given_end_temperatures():
         face.nodal_heat(state, bath=False),
     )
     cooled, held, carried = conducting.losses(rise, heat)
-    turnover = conducting.turnover(rise, heat)
+    turnover = conducting.exchanged_heat(rise, heat)
     assert abs(held) < 1e-10 * turnover
     assert cooled == carried == 0.0
     through = abs(fluxes[0]) * pairing.weights.sum()

@@ -39,7 +39,7 @@ class Conduction:
         Conduction, cooling and advection, without given temperatures and without `bath` [W/K].
     cooling : petsc4py.PETSc.Mat
         Cooling term alone: its row sums times the rise give the heat removed [W/K].
-    carried : petsc4py.PETSc.Mat or None
+    advective : petsc4py.PETSc.Mat or None
         Advection term alone, likewise [W/K].
     capacity : petsc4py.PETSc.Mat or None
         Heat capacity matrix, if given by the materials [J/K].
@@ -47,11 +47,11 @@ class Conduction:
         See `conduction`.
     fixed : ndarray of bool, shape (n_owned,)
         Mask of prescribed temperatures.
-    given : ndarray, shape (n_owned,)
+    prescribed : ndarray, shape (n_owned,)
         Prescribed rise in the fixed values, zero elsewhere [K].
     factor : DirectSolver or EvenFactor
         Factorisation of conductivity plus bath, with prescribed temperatures eliminated.
-    lifted : ndarray, shape (n_owned,)
+    prescribed_load : ndarray, shape (n_owned,)
         Nodal heat on the free values equivalent to the prescribed temperatures [W].
     advection : Advection or None
     even : EvenPaths or None
@@ -63,13 +63,13 @@ class Conduction:
     space: fem.FunctionSpace
     conductivity: PETSc.Mat
     cooling: PETSc.Mat
-    carried: PETSc.Mat | None
+    advective: PETSc.Mat | None
     capacity: PETSc.Mat | None
     bath: PETSc.Mat
     fixed: np.ndarray
-    given: np.ndarray
+    prescribed: np.ndarray
     factor: DirectSolver | EvenFactor
-    lifted: np.ndarray
+    prescribed_load: np.ndarray
     advection: Advection | None
     even: EvenPaths | None
     symmetric: bool
@@ -78,7 +78,7 @@ class Conduction:
         """Rise [K] due to nodal heat [W] alone, homogeneous in prescribed values; by columns."""
         return self.factor.solve(self._free(heat))
 
-    def sense(self, weights: np.ndarray) -> np.ndarray:
+    def adjoint_response(self, weights: np.ndarray) -> np.ndarray:
         """Adjoint of `respond` by columns: ``sense(w)·q = w·respond(q)`` for any heat q."""
         if self.symmetric:
             return self.respond(weights)
@@ -86,22 +86,24 @@ class Conduction:
 
     def solve(self, heat: np.ndarray) -> np.ndarray:
         """Rise [K] due to nodal heat [W] and prescribed temperatures."""
-        return self.given + self.respond(heat + self.lifted)
+        return self.prescribed + self.respond(heat + self.prescribed_load)
 
-    def holding(self, given: np.ndarray) -> Conduction:
+    def with_prescribed(self, prescribed: np.ndarray) -> Conduction:
         """Copy with other prescribed rises (n_owned,), zero in the free values [K]."""
-        return replace(self, given=given, lifted=-multiply(self.conductivity, given))
+        return replace(
+            self, prescribed=prescribed, prescribed_load=-multiply(self.conductivity, prescribed)
+        )
 
     def per_ambient(self) -> np.ndarray:
         """Nodal heat per rise of ambient and of entering material, (n_owned,) [W/K]."""
         ones = np.ones(len(self.fixed))
         heat = multiply(self.cooling, ones)
-        return heat if self.carried is None else heat + multiply(self.carried, ones)
+        return heat if self.advective is None else heat + multiply(self.advective, ones)
 
-    def storing(self, step: float) -> Conduction:
+    def implicit_euler(self, step: float) -> Conduction:
         """Conduction at the end of an implicit Euler step of time [s].
 
-        Its nodal heat is that of the bodies plus `stored` of the previous state divided by the
+        Its nodal heat is that of the bodies plus `stored_heat` of the previous state divided by the
         step.
 
         Raises
@@ -111,34 +113,34 @@ class Conduction:
         """
         if self.capacity is None:
             raise ComputationError("heat: density and specific heat of the bodies are not given")
-        return self.plus(self.capacity, 1 / step, self.symmetric)
+        return self.with_added(self.capacity, 1 / step, self.symmetric)
 
     def tangent(self, rise: np.ndarray, step: float | None = None) -> Conduction:
         """Linearised conduction at a rise (n_owned,), within a time step [s] if one is given."""
-        return self if step is None else self.storing(step)
+        return self if step is None else self.implicit_euler(step)
 
-    def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray | float:
+    def linearisation_error(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray | float:
         """Difference of tangent (at a reference) and nonlinear conduction of a rise [W]."""
         return 0.0
 
-    def plus(self, matrix: PETSc.Mat, times: float, symmetric: bool) -> Conduction:
+    def with_added(self, matrix: PETSc.Mat, times: float, symmetric: bool) -> Conduction:
         """Add a multiple of a matrix of the same pattern to the conductivity, and factorise."""
-        sum_ = self.conductivity.copy()
-        sum_.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+        total = self.conductivity.copy()
+        total.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         return replace(
             self,
-            conductivity=sum_,
-            factor=factorised(self.space, sum_, self.bath, self.fixed, symmetric, self.even),
-            lifted=-multiply(sum_, self.given),
+            conductivity=total,
+            factor=factorised(self.space, total, self.bath, self.fixed, symmetric, self.even),
+            prescribed_load=-multiply(total, self.prescribed),
             symmetric=symmetric,
         )
 
-    def stored(self, rise: np.ndarray) -> np.ndarray:
+    def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None
         return multiply(self.capacity, rise)
 
-    def rounding(self, rise: np.ndarray) -> float:
+    def balance_scale(self, rise: np.ndarray) -> float:
         """Smallest meaningful scale of the heat balance of a rise (n_owned,) [W].
 
         In bodies of uniform temperature all heat flows are rounding errors.
@@ -160,7 +162,7 @@ class Conduction:
         rise, heat : ndarray, shape (n_owned,)
             A state and its nodal heat, from the contact and from `per_ambient`.
         storage : ndarray, shape (n_owned,), optional
-            Rate of the nodal stored heat, see `stored` [W].
+            Rate of the nodal stored heat, see `stored_heat` [W].
         ambient : float, optional
             Rise of the ambient temperature [K].
 
@@ -169,13 +171,13 @@ class Conduction:
         tuple of float
             Sums over all ranks.
         """
-        cooled, carried = self._per_rise
-        left = self._into_given(rise, heat if storage is None else heat - storage)
-        above = rise - ambient
-        parts = np.array([cooled @ above, left.sum(), carried @ above])
+        cooling_per_rise, advective = self._per_rise
+        into_prescribed = self._into_prescribed(rise, heat if storage is None else heat - storage)
+        excess = rise - ambient
+        parts = np.array([cooling_per_rise @ excess, into_prescribed.sum(), advective @ excess])
         return tuple(sum_over_ranks(self.space.mesh.comm, parts))
 
-    def turnover(
+    def exchanged_heat(
         self,
         rise: np.ndarray,
         heat: np.ndarray,
@@ -187,17 +189,19 @@ class Conduction:
         Parameters as in `losses`.
         """
         size = np.abs(multiply(self.cooling, rise - ambient)).sum()
-        size += np.abs(self._into_given(rise, heat if storage is None else heat - storage)).sum()
+        size += np.abs(
+            self._into_prescribed(rise, heat if storage is None else heat - storage)
+        ).sum()
         return float(sum_over_ranks(self.space.mesh.comm, size))
 
-    def _into_given(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
+    def _into_prescribed(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
         """Heat into the values with a prescribed temperature [W]."""
-        if not self._holds:
+        if not self._has_prescribed:
             return np.zeros(0)
         return (heat - multiply(self.conductivity, rise))[self.fixed]
 
     @cached_property
-    def _holds(self) -> bool:
+    def _has_prescribed(self) -> bool:
         """True if any rank has a prescribed temperature. Every rank calls."""
         return any(self.space.mesh.comm.allgather(bool(self.fixed.any())))
 
@@ -207,7 +211,7 @@ class Conduction:
         nothing = np.zeros(len(self.fixed))
         return (
             _column_sums(self.cooling),
-            nothing if self.carried is None else _column_sums(self.carried),
+            nothing if self.advective is None else _column_sums(self.advective),
         )
 
     def _free(self, heat):

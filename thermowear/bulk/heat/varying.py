@@ -105,17 +105,17 @@ class VaryingConduction(Conduction):
         if step is not None:
             assert self.capacity is not None
             change.axpy(1 / step, self.capacity, _SAME_PATTERN)
-        return self.plus(change, 1.0, symmetric=not self.parts and self.symmetric)
+        return self.with_added(change, 1.0, symmetric=not self.parts and self.symmetric)
 
-    def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    def linearisation_error(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:
         tangents = ((p.matrix, p.slope(reference) * rise - p.excess(rise)) for p in self.parts)
         return _products(len(rise), tangents)
 
     def losses(self, rise, heat, storage=None, ambient=0.0):
         return super().losses(rise, heat + self._excess_flow(rise), storage, ambient)
 
-    def turnover(self, rise, heat, storage=None, ambient=0.0):
-        return super().turnover(rise, heat + self._excess_flow(rise), storage, ambient)
+    def exchanged_heat(self, rise, heat, storage=None, ambient=0.0):
+        return super().exchanged_heat(rise, heat + self._excess_flow(rise), storage, ambient)
 
     def _excess_flow(self, rise: np.ndarray) -> np.ndarray:
         """Negative of the nodal heat flow in excess of that at constant conductivity [W]."""

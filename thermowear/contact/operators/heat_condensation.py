@@ -75,7 +75,7 @@ def condense_distortion(
     face : InterfaceHeat
     """
     comm = conduction.space.mesh.comm
-    adjoint = conduction.sense(per_rise)
+    adjoint = conduction.adjoint_response(per_rise)
     first, second = (
         sum_over_ranks(comm, (trace.T @ adjoint).T * face.weights) for trace in face.traces
     )

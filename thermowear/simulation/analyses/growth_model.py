@@ -131,7 +131,7 @@ class GrowthModel:
         if rate == 0.0:
             return steady, face
         with self._system.phases("condense conduction"):
-            growing = steady.storing(1 / rate)
+            growing = steady.implicit_euler(1 / rate)
             basis, traces = face.basis, face.traces
             alike = condense_heat(growing, face.weights, basis, traces, face.shift, face.partition)
         return growing, alike
@@ -148,8 +148,8 @@ class GrowthModel:
         f = np.reshape(thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # each field satisfies the interface heat law
         carried = np.zeros((X.shape[1],) * 2)
-        if conduction.carried is not None:
-            carried = self._product(conduction.carried, X)
+        if conduction.advective is not None:
+            carried = self._product(conduction.advective, X)
         return Disturbances(
             elastic=space(self._elastic),
             opening=space.gaps.T @ at.opening,

@@ -69,7 +69,7 @@ class HeatSteps:
     def steady(self) -> ConductingStep:
         """Steady conduction."""
         if self._steady is None:
-            self._steady = self._steady_about(Tangents(None), self._thermal.conduction.given)
+            self._steady = self._steady_about(Tangents(None), self._thermal.conduction.prescribed)
         return self._steady[1]
 
     def after(self, before: StoredHeat, step: float, time: float) -> ConductingStep:
@@ -157,7 +157,7 @@ class HeatSteps:
     ) -> LinearHeatStep:
         """Heat linearised about a rise, with tangents of a nearby rise; every rank calls."""
         conduction = self._thermal.conduction
-        heat = supplied + conduction.remainder(rise, operators.reference)
+        heat = supplied + conduction.linearisation_error(rise, operators.reference)
 
         def alone() -> BaselineResponse:
             return self.at_rest(load.on(operators.conduction).solve(heat), operators, rise)

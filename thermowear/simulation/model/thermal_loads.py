@@ -45,7 +45,7 @@ class ThermalLoad:
 
     def on(self, conduction: Conduction) -> Conduction:
         """Conduction with the temperatures prescribed at this time."""
-        return conduction if self.given is None else conduction.holding(self.given)
+        return conduction if self.given is None else conduction.with_prescribed(self.given)
 
 
 class ThermalLoads:

@@ -111,9 +111,9 @@ class FullContact(ContactEquations):
         if self._sum(wrong):
             raise ComputationError("contact: gap, loads or temperatures are not finite")
         if np.any(loading.load != 0.0):
-            scale = np.abs(self.carried).sum(axis=0)
+            scale = np.abs(self.weighted_force_modes).sum(axis=0)
             scale[scale == 0.0] = 1.0
-            forces, target = self.carried / scale, loading.load / scale
+            forces, target = self.weighted_force_modes / scale, loading.load / scale
             # nnls treats small columns as zero: only their directions matter
             size = np.linalg.norm(forces, axis=1, keepdims=True)
             directions = forces[size[:, 0] > 0] / size[size[:, 0] > 0]
@@ -151,7 +151,7 @@ class FullContact(ContactEquations):
                 weighted.T @ self.gap(loading, own),
                 weighted.T @ self.modes,
                 loading.load,
-                force_modes=hats.T @ self.carried,
+                force_modes=hats.T @ self.weighted_force_modes,
             )
         except ComputationError:  # Newton's method reports the cause, if any
             return FullSolution(own, np.zeros(len(loading.load)), everywhere, 0)
@@ -167,7 +167,10 @@ class FullContact(ContactEquations):
         Newton's method from all springs closed: with one motion each step ends at or beyond the
         solution, so convergence is monotonic.
         """
-        gap, springs = self.gap(loading, displacement), self.carried * self.stiffness[:, None]
+        gap, springs = (
+            self.gap(loading, displacement),
+            self.weighted_force_modes * self.stiffness[:, None],
+        )
         closed: np.ndarray = np.ones(len(gap), dtype=bool)
         motion = np.zeros(len(loading.load))
         for _ in range(_MAX_ITERATIONS):

@@ -9,7 +9,7 @@ from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators.condensation import condense
-from thermowear.contact.operators.heat import at_rest
+from thermowear.contact.operators.heat import baseline_response
 from thermowear.contact.operators.heat_condensation import bath_matrix, condense_heat
 from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
@@ -181,7 +181,7 @@ def test_two_slabs_with_friction_heat(h, divisions, place):
     conducting = conduction(bodies, Spatial(), space, materials, {}, cold, bath)
     basis = pressure_basis(pairing, 1)
     face = condense_heat(conducting, pairing.weights, basis, traces, shift, 0.3)
-    resting = at_rest(np.zeros(len(conducting.fixed)), traces, bodies.mesh.comm)
+    resting = baseline_response(np.zeros(len(conducting.fixed)), traces, bodies.mesh.comm)
     made = np.full(len(pairing.weights), 1e5)
     state = face.exchange(np.full(len(made), h)).state(made, resting)
     slab = HEIGHTS, (50.0, 15.0), (0.0, 0.0)

@@ -113,13 +113,13 @@ class InterfaceHeat:
             If a heated body has no heat sink.
         """
         n, s, (Θ1, Θ2) = len(self.weights), self.shift, self.response
-        own = _MAX_DIRECT_RATIO * s * self.basis.shape[1]
-        direct = np.minimum(conductance, own)
-        passing, held_back = _parts(own, conductance - direct)
-        resisting = held_back * (passing + _REGULARITY * held_back) / own
-        crossing = passing[:, None] * self.basis
+        limit = _MAX_DIRECT_RATIO * s * self.basis.shape[1]
+        direct = np.minimum(conductance, limit)
+        passing_fraction, blocked_fraction = _parts(limit, conductance - direct)
+        resistance = blocked_fraction * (passing_fraction + _REGULARITY * blocked_fraction) / limit
+        crossing = passing_fraction[:, None] * self.basis
         jump = crossing.T * self.weights
-        resisted = (self.basis.T * (self.weights * resisting)) @ self.basis
+        resisted = (self.basis.T * (self.weights * resistance)) @ self.basis
         sizes = np.sqrt(np.diag(resisted) + np.einsum("in,nm,mi->i", jump, Θ1 + Θ2, crossing))
         crossing, jump = crossing / sizes, jump / sizes[:, None]
         identity, count = np.eye(n), len(sizes)
@@ -164,49 +164,49 @@ class HeatExchange:
     rise: np.ndarray
     crossing: np.ndarray
 
-    def state(self, friction_heat: np.ndarray, resting: BaselineResponse) -> ThermalState:
+    def state(self, friction_heat: np.ndarray, baseline: BaselineResponse) -> ThermalState:
         """Temperatures and fluxes due to friction heat [W/m²] at the points, shape (n,)."""
-        alone = self._alone @ friction_heat + np.concatenate(resting.rise)
-        T1, T2 = np.split(self.rise @ alone, 2)
-        crossing = self.crossing @ alone
+        uncoupled_rise = self._uncoupled_per_heat @ friction_heat + np.concatenate(baseline.rise)
+        T1, T2 = np.split(self.rise @ uncoupled_rise, 2)
+        crossing = self.crossing @ uncoupled_rise
         f = self.interface.partition
         return ThermalState(
             (T1, T2), (f * friction_heat + crossing, (1 - f) * friction_heat - crossing)
         )
 
-    def into_bath(self, alone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def into_bath(self, uncoupled_rise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Exchanged heat and heat of the bath, into both bodies, from rises without exchange."""
-        T1, T2 = np.split(self.rise @ alone, 2)
-        crossing, s = self.crossing @ alone, self.interface.shift
+        T1, T2 = np.split(self.rise @ uncoupled_rise, 2)
+        crossing, s = self.crossing @ uncoupled_rise, self.interface.shift
         return crossing + s * T1, s * T2 - crossing
 
     @cached_property
     def crossing_per_friction_heat(self) -> np.ndarray:
         """Heat from body 2 to body 1 per friction heat, shape (n, n)."""
-        return self.crossing @ self._alone
+        return self.crossing @ self._uncoupled_per_heat
 
     @cached_property
     def per_friction_heat(self) -> tuple[np.ndarray, np.ndarray]:
         """Heat into both bodies per friction heat, bath included, shape (n, n)."""
-        first, second = self.into_bath(self._alone)
+        first, second = self.into_bath(self._uncoupled_per_heat)
         f, identity = self.interface.partition, np.eye(len(self.interface.weights))
         return f * identity + first, (1 - f) * identity + second
 
     @cached_property
-    def _alone(self) -> np.ndarray:
+    def _uncoupled_per_heat(self) -> np.ndarray:
         """Rises of both faces without exchange per friction heat, shape (2 n, n)."""
         f, (Θ1, Θ2) = self.interface.partition, self.interface.response
         return np.vstack([f * Θ1, (1 - f) * Θ2])
 
 
-def _parts(own: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _parts(limit: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Fractions ``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
     inverse = np.full(len(conductance), np.inf)
-    np.divide(own, conductance, out=inverse, where=conductance > 0)
-    return 1 / (1 + inverse), own / (own + conductance)
+    np.divide(limit, conductance, out=inverse, where=conductance > 0)
+    return 1 / (1 + inverse), limit / (limit + conductance)
 
 
-def at_rest(
+def baseline_response(
     rise: np.ndarray,
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     comm,

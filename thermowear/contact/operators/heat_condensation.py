@@ -33,11 +33,11 @@ class ThermalDistortion:
         first, second = exchange.per_friction_heat
         return self.per_flux[0] @ first + self.per_flux[1] @ second
 
-    def at_rest(self, exchange: HeatExchange, resting: BaselineResponse) -> np.ndarray:
+    def baseline_gap(self, exchange: HeatExchange, baseline: BaselineResponse) -> np.ndarray:
         """Weak gap of coupled faces without friction heat, shape (m,)."""
-        assert resting.opening is not None
-        first, second = exchange.into_bath(np.concatenate(resting.rise))
-        return self.per_flux[0] @ first + self.per_flux[1] @ second + resting.opening
+        assert baseline.opening is not None
+        first, second = exchange.into_bath(np.concatenate(baseline.rise))
+        return self.per_flux[0] @ first + self.per_flux[1] @ second + baseline.opening
 
 
 def condense_heat(

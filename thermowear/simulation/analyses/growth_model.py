@@ -15,7 +15,7 @@ from petsc4py import PETSc
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
-from ...contact.operators.heat import InterfaceHeat, at_rest
+from ...contact.operators.heat import InterfaceHeat, baseline_response
 from ...contact.operators.heat_condensation import condense_heat
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
@@ -142,7 +142,7 @@ class GrowthModel:
         conduction, X = thermal.conduction, self._fields
         assert X is not None
         assert conduction.capacity is not None
-        at = at_rest(X, thermal.face.traces, system.comm, self._distortion.per_rise)
+        at = baseline_response(X, thermal.face.traces, system.comm, self._distortion.per_rise)
         T1, T2 = at.rise
         weights = system.weights[:, None]
         f = np.reshape(thermal.face.partition, (-1, 1))

@@ -72,7 +72,7 @@ class LinearHeatStep:
         """
         operators = self.operators
         exchange = operators.exchange(conditions.conductance)
-        opening = operators.distortion.at_rest(exchange, self.resting)
+        opening = operators.distortion.baseline_gap(exchange, self.resting)
         return operators.compliance(conditions, basis), opening
 
     def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:

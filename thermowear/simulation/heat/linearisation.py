@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...contact.operators.heat import BaselineResponse, at_rest
+from ...contact.operators.heat import BaselineResponse, baseline_response
 from ...contact.operators.heat_condensation import condense_heat
 from ..model.system import System
 from ..model.thermal_loads import ThermalLoad
@@ -119,11 +119,13 @@ class HeatSteps:
         """
         traces, comm, distortion = self._thermal.face.traces, self._system.comm, self._distortion
         if not self._distorts:
-            return at_rest(rise, traces, comm)
+            return baseline_response(rise, traces, comm)
         if operators is None or about is None:
-            return at_rest(rise, traces, comm, distortion.per_rise, distortion.excess(rise))
+            return baseline_response(
+                rise, traces, comm, distortion.per_rise, distortion.excess(rise)
+            )
         excess = distortion.excess(about, operators.reference)
-        return at_rest(rise, traces, comm, operators.per_rise, excess)
+        return baseline_response(rise, traces, comm, operators.per_rise, excess)
 
     def _steady_about(
         self, tangents: Tangents, rise: np.ndarray, change: float = np.inf

@@ -125,7 +125,7 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
     return CoupledContacts(
         compliance=np.array(compliances),
         gap=np.array(gaps),
-        seen=np.array(seen),
+        gap_per_depth=np.array(seen),
         modes=np.array([contact.modes for contact in contacts]),
         force_modes=np.array([contact.force_modes for contact in contacts]),
         load=systems[0].holder.load + systems[0].holder.dead,
@@ -134,8 +134,8 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
 
 def spreading(contacts: CoupledContacts, grid: StrokeGrid, shares: np.ndarray) -> np.ndarray:
     """Operators from local wear rates to cycle-averaged rates of depths, shape (2, J, N, m)."""
-    count, m, total = contacts.seen.shape
+    count, m, total = contacts.gap_per_depth.shape
     result = np.zeros((2, count, total, m))
     result[0, :, :m] = np.eye(m)
-    result[1, :, m:] = contacts.seen[:, :, m:].mT / grid.areas[:, None]
+    result[1, :, m:] = contacts.gap_per_depth[:, :, m:].mT / grid.areas[:, None]
     return shares[:, None, None] * result

@@ -64,8 +64,10 @@ def advance(
         raise ValueError(f"loads: the holder has {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
     mean = contact.weighted.T @ contact.basis  # mass matrix: weak values from coefficients
-    slid = _slid(state, loads)
-    worn = state.worn.sum(axis=0) if wear is None else wear.seen(state.worn, slid)
+    displacement = _tangential_displacement(state, loads)
+    worn = (
+        state.worn.sum(axis=0) if wear is None else wear.depth_at_contact(state.worn, displacement)
+    )
 
     def solve(lost: np.ndarray, slope: np.ndarray, guess: StickSlipState) -> StickSlipState:
         """Solve contact with the worn depths ``lost + slope λ``."""
@@ -74,11 +76,11 @@ def advance(
         compliance[: len(slope), : len(slope)] += mean @ slope
         return _solved(contact, friction, state, guess, loads, compliance, gap)
 
-    nothing = np.zeros_like(mean)
-    after = solve(nothing[0], nothing, state)
+    no_slope = np.zeros_like(mean)
+    after = solve(no_slope[0], no_slope, state)
     if wear is None:
         return after
-    by_slip = IncrementWear.at(wear, state, mean.sum(axis=1), slid)
+    by_slip = IncrementWear.at(wear, state, mean.sum(axis=1), displacement)
     if by_slip.value(after.pressure, after).any():
         after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
     depths = by_slip.profiles(after)
@@ -86,7 +88,7 @@ def advance(
     return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
 
 
-def _slid(state: StickSlipState, loads: Loads) -> float:
+def _tangential_displacement(state: StickSlipState, loads: Loads) -> float:
     """Tangential displacement of the holder: given at the end, or the current one if free [m]."""
     if len(state.motion) < 2:
         return 0.0

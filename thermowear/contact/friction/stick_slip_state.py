@@ -60,7 +60,7 @@ class StickSlipState:
     iterations: int = 0
 
     @property
-    def moves(self) -> np.ndarray:
+    def not_sticking(self) -> np.ndarray:
         """True for coefficients that slipped or were open in the last increment, shape (m,)."""
         return self.status != Status.STICK
 

@@ -62,10 +62,8 @@ def as_function(space: fem.FunctionSpace, values: np.ndarray, name: str) -> fem.
     return function
 
 
-def without_fixed(
-    loads: np.ndarray | sp.csr_matrix, fixed: np.ndarray
-) -> np.ndarray | sp.csr_matrix:
-    """Copy of loads (n_owned,) or (n_owned, m) with zeros in the fixed rows."""
+def without_fixed(loads, fixed: np.ndarray):
+    """Copy of dense or sparse loads, (n_owned,) or (n_owned, m), with zeros in the fixed rows."""
     if sp.issparse(loads):
         return (sp.diags(~fixed, dtype=float) @ loads).tocsr()
     result = np.array(loads, dtype=float)

@@ -149,20 +149,15 @@ class Conduction:
         return _BALANCE_FLOOR * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
 
     def losses(
-        self,
-        rise: np.ndarray,
-        heat: np.ndarray,
-        storage: np.ndarray | None = None,
-        ambient: float = 0.0,
+        self, rise: np.ndarray, heat: np.ndarray, ambient: float = 0.0
     ) -> tuple[float, float, float]:
         """Heat removed by cooling, by prescribed temperatures, and by advection [W].
 
         Parameters
         ----------
         rise, heat : ndarray, shape (n_owned,)
-            A state and its nodal heat, from the contact and from `per_ambient`.
-        storage : ndarray, shape (n_owned,), optional
-            Rate of the nodal stored heat, see `stored_heat` [W].
+            A state and its nodal heat, from the contact and from `per_ambient`, less the rate of
+            the nodal stored heat.
         ambient : float, optional
             Rise of the ambient temperature [K].
 
@@ -172,26 +167,18 @@ class Conduction:
             Sums over all ranks.
         """
         cooling_per_rise, advective = self._per_rise
-        into_prescribed = self._into_prescribed(rise, heat if storage is None else heat - storage)
         excess = rise - ambient
-        parts = np.array([cooling_per_rise @ excess, into_prescribed.sum(), advective @ excess])
+        into_prescribed = self._into_prescribed(rise, heat).sum()
+        parts = np.array([cooling_per_rise @ excess, into_prescribed, advective @ excess])
         return tuple(sum_over_ranks(self.space.mesh.comm, parts))
 
-    def exchanged_heat(
-        self,
-        rise: np.ndarray,
-        heat: np.ndarray,
-        storage: np.ndarray | None = None,
-        ambient: float = 0.0,
-    ) -> float:
+    def exchanged_heat(self, rise: np.ndarray, heat: np.ndarray, ambient: float = 0.0) -> float:
         """Sum of the magnitudes of heat through cooled and prescribed-temperature surfaces [W].
 
         Parameters as in `losses`.
         """
         size = np.abs(multiply(self.cooling, rise - ambient)).sum()
-        size += np.abs(
-            self._into_prescribed(rise, heat if storage is None else heat - storage)
-        ).sum()
+        size += np.abs(self._into_prescribed(rise, heat)).sum()
         return float(sum_over_ranks(self.space.mesh.comm, size))
 
     def _into_prescribed(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:

@@ -111,11 +111,11 @@ class VaryingConduction(Conduction):
         tangents = ((p.matrix, p.slope(reference) * rise - p.excess(rise)) for p in self.parts)
         return _products(len(rise), tangents)
 
-    def losses(self, rise, heat, storage=None, ambient=0.0):
-        return super().losses(rise, heat + self._excess_flow(rise), storage, ambient)
+    def losses(self, rise, heat, ambient=0.0):
+        return super().losses(rise, heat + self._excess_flow(rise), ambient)
 
-    def exchanged_heat(self, rise, heat, storage=None, ambient=0.0):
-        return super().exchanged_heat(rise, heat + self._excess_flow(rise), storage, ambient)
+    def exchanged_heat(self, rise, heat, ambient=0.0):
+        return super().exchanged_heat(rise, heat + self._excess_flow(rise), ambient)
 
     def _excess_flow(self, rise: np.ndarray) -> np.ndarray:
         """Negative of the nodal heat flow in excess of that at constant conductivity [W]."""

@@ -113,11 +113,10 @@ class FrictionHeat:
         conduction, face, load = self._thermal.conduction, self._thermal.face, heat.load
         rise = heat.rise(faces)
         content = conduction.stored_heat(rise)
-        storage = (content - before.content) / step
-        nodal = face.nodal_heat(faces, bath=False) + load.heat
-        lost = sum(conduction.losses(rise, nodal, storage, load.ambient))
+        nodal = face.nodal_heat(faces, bath=False) + load.heat - (content - before.content) / step
+        lost = sum(conduction.losses(rise, nodal, load.ambient))
         made = float(face.weights @ friction_heat)
-        outside = conduction.exchanged_heat(rise, nodal, storage, load.ambient)
+        outside = conduction.exchanged_heat(rise, nodal, load.ambient)
         exchanged = made + load.magnitude + outside
         largest = max(before.largest, float(np.abs(faces.rise).max()), self._largest(rise))
         turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.laws import LocalState
 
 from .bad import Bad, assert_refused
 from .starter import FRETTING, GONE, RECIPROCATING, RUNNING_IN, STEADY, tables
@@ -79,7 +80,7 @@ def test_factors_multiply_by_straight_lines_constant_beyond_their_ends():
     factors = tw.load(tables(STEADY, {FRICTION: given})).contact.friction_factor
     T = np.array([393.15, 0.0, 900.0])
     p, v = np.array([20e6, 0.0, 1e9]), np.array([0.5, 0.0, 3.0])
-    assert factors.multipliers.value(p, v, T) == pytest.approx(
+    assert factors.multipliers.value(LocalState(p, v, T)) == pytest.approx(
         [0.75 * 1.5 * 0.9, 1.0, 0.5 * 2.0 * 0.8]
     )
     assert factors.depends_on == ("temperature", "pressure", "speed")
@@ -90,11 +91,8 @@ def test_without_tables_the_factor_is_one():
     requirement: nothing changes unless the case says so, hot or cold.
     """
     case = tw.load(tables(STEADY, {"heat": GONE}))
-    assert case.wear["punch"].factor.multipliers.value(np.zeros(3), np.ones(3), 0.0).tolist() == [
-        1,
-        1,
-        1,
-    ]
+    state = LocalState(np.zeros(3), np.ones(3), 0.0)
+    assert case.wear["punch"].factor.multipliers.value(state).tolist() == [1, 1, 1]
     assert case.contact.friction_factor.depends_on == ()
     assert not case.varies
 

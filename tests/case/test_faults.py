@@ -488,7 +488,7 @@ HISTORIES = [
         "a cycle that does not close",
         {f"{HISTORY}.cycle_start": "1.5 s"},
         f"{HISTORY}.cycle_start",
-        "must end with the loads that it begins with",
+        "the loads at both ends of the cycle must be equal",
         FRETTING,
     ),
     Bad(

@@ -12,13 +12,12 @@ from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.contact.operators.condensation import condense
+from thermowear.contact.operators.condensation import influence
 from thermowear.contact.operators.heat import baseline_response
 from thermowear.contact.operators.heat_condensation import (
     bath_matrix,
     condense_distortion,
     condense_heat,
-    gap_per_rise,
 )
 from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
@@ -136,17 +135,10 @@ def test_condensed_distortion_equals_the_bodies_own():
     }
     elastic = elasticity(bodies, Axisymmetric(), 5, materials, ["upper_end", "lower_end"])
     trace = gap_trace(elastic.space, pairing)
-    contact = condense(
-        elastic,
-        pairing,
-        trace,
-        trace,
-        basis,
-        hold(pairing, pairing.normals, [RigidMode(translation((0, -1)), load=1.0)]),
-        keep_influence=True,
-    )
+    holder = hold(pairing, pairing.normals, [RigidMode(translation((0, -1)), load=1.0)])
     load = elastic.thermal_load(conducting.space)
-    per_rise = gap_per_rise(load, contact)
+    answers = influence(elastic, pairing, trace, basis, [load])
+    contact, (per_rise,) = answers.condensed(trace, holder), answers.per_rise
     distortion = condense_distortion(conducting, per_rise, face)
     still = conducting.solve(np.zeros(len(conducting.fixed)))
     rest = baseline_response(still, face.traces, COMM, per_rise)

@@ -259,11 +259,11 @@ def test_a_law_of_ones_own_is_asked():
     """requirement: a wear law that somebody derives is used, in fretting, too."""
 
     class Doubled(PowerWear):
-        def rate(self, *state, **more):
-            return 2 * super().rate(*state, **more)
+        def value(self, at):
+            return 2 * super().value(at)
 
-        def slope(self, *state, **more):
-            return 2 * super().slope(*state, **more)
+        def slope(self, at):
+            return 2 * super().slope(at)
 
     x, p, slip = np.linspace(0, 1, 5), np.full(5, 1e6), np.full(5, 1e-6)
     plain, doubled = (wear(x, (law(2e-13),), (0,)) for law in (PowerWear, Doubled))

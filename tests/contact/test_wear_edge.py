@@ -24,7 +24,7 @@ def face():
     modes = np.ones((len(x), 1))
     holder = SimpleNamespace(modes=modes, force_modes=modes)
     means = weighted.T @ modes
-    contact = CondensedContact(basis, weighted, np.exp(-apart), means, means, None)
+    contact = CondensedContact(basis, weighted, np.exp(-apart), means, means)
     return facet, x, contact, holder
 
 

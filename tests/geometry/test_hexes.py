@@ -5,8 +5,8 @@ import pytest
 
 from thermowear.geometry.mesh.nodes import facet_nodes, reference_nodes
 from thermowear.geometry.mesh.orders import shape_functions
-from thermowear.geometry.meshing.blocks import graded_face
-from thermowear.geometry.meshing.hexes import Lattice, ends_of, mesh_lattice
+from thermowear.geometry.meshing.blocks import ends_of, graded_face
+from thermowear.geometry.meshing.hexes import Lattice, mesh_lattice
 from thermowear.geometry.meshing.quads import tagged_bodies
 from thermowear.geometry.reading.export import write_mesh
 

@@ -7,13 +7,9 @@ import pytest
 
 from thermowear.case.values.expressions import expression
 from thermowear.errors import CaseError, ComputationError
-from thermowear.laws import PowerWear
+from thermowear.laws import LocalState, PowerWear
 from thermowear.laws.by_name import registered_laws
-from thermowear.laws.coefficients.conductance import (
-    PressureConductance,
-    TabulatedConductance,
-    harmonic_mean,
-)
+from thermowear.laws.coefficients.conductance import PressureConductance, harmonic_mean
 from thermowear.laws.coefficients.constant import Constant
 from thermowear.laws.coefficients.multipliers import Multiplied, Multipliers
 from thermowear.laws.coefficients.table1d import Table1D
@@ -24,6 +20,7 @@ from thermowear.laws.plausible import require_interface_law, require_wear_rate
 P = np.array([1e5, 2e6, 7e6, 3e7])
 V = np.array([0.05, 0.2, 0.5, 1.0])
 T = np.array([300.0, 350.0, 400.0, 500.0])
+STATE = LocalState(P, V, T)
 FALLS = Table1D((293.15, 493.15), (1.0, 0.5))
 HARD = Table1D((1e6, 5e6, 9e6), (1.0, 2.0, 1.5))
 
@@ -47,7 +44,7 @@ INTERFACE = {
         FormulaLaw(written("0.3 + p/(1 GPa)")), Multipliers(pressure=HARD)
     ),
     "by pressure": PressureConductance(2e4, np.full(4, 40.0), np.full(4, 2e9)),
-    "table": TabulatedConductance(Table1D((1e6, 1e7), (1e3, 5e3))),
+    "table": Multipliers(pressure=Table1D((1e6, 1e7), (1e3, 5e3))),
     "expression": FormulaLaw(written("0.1 + 0.2*exp(-p/(5 MPa))*(T/(300 K))")),
     "function": interface_law(lambda p, T: 0.1 + 0.2 * np.exp(-p / 5e6) * T / 300),
     "stribeck": registered_laws("friction")["stribeck"](0.35, 0.1, 0.5),
@@ -65,41 +62,35 @@ WEAR = {
 def test_slopes_of_coefficients_are_their_derivatives(law):
     """requirement: every law has its derivative by the pressure."""
     h = 1e-6 * P
-    ahead, behind = (law.value(P + step, V, T) for step in (h, -h))
-    np.testing.assert_allclose(
-        law.slope(P, V, T), (ahead - behind) / (2 * h), rtol=1e-6, atol=1e-20
-    )
-    assert law.value(P, V, T).shape == P.shape
+    above, below = (law.value(STATE._replace(p=P + step)) for step in (h, -h))
+    np.testing.assert_allclose(law.slope(STATE), (above - below) / (2 * h), rtol=1e-6, atol=1e-20)
+    assert law.value(STATE).shape == P.shape
     assert law.variables <= {"p", "v", "T"}
 
 
 @pytest.mark.parametrize("law", WEAR.values(), ids=WEAR.keys())
 def test_slopes_of_wear_rates_are_their_derivatives(law):
     """requirement: every law has its derivative by the pressure, finite without pressure."""
-    h, others = 1e-6 * P, (V, T, np.full(4, 2e-6), np.full(4, 0.3))
-    ahead, behind = (law.rate(P + step, *others) for step in (h, -h))
-    np.testing.assert_allclose(
-        law.slope(P, *others), (ahead - behind) / (2 * h), rtol=1e-6, atol=1e-30
-    )
-    none = np.zeros(4)
-    assert np.all(law.rate(-P, *others) == 0.0)
-    assert np.all(np.isfinite(law.slope(none, *others)))
+    h, state = 1e-6 * P, STATE._replace(depth=np.full(4, 2e-6), mu=np.full(4, 0.3))
+    above, below = (law.value(state._replace(p=P + step)) for step in (h, -h))
+    np.testing.assert_allclose(law.slope(state), (above - below) / (2 * h), rtol=1e-6, atol=1e-30)
+    assert np.all(law.value(state._replace(p=-P)) == 0.0)
+    assert np.all(np.isfinite(law.slope(state._replace(p=np.zeros(4)))))
 
 
 def test_laws_by_hand():
     """requirement: energy above a threshold, Stribeck, harmonic means, the factors of tables."""
     law = registered_laws("wear")["energy"](2e-13, 1e4)
-    p, v, mu = np.array([1e5, 1e6]), 0.2, 0.25
-    assert law.rate(p, v, friction=mu) == pytest.approx([0.0, 2e-13 * 4e4], rel=1e-9, abs=0.0)
-    np.testing.assert_allclose(
-        wear_rate(energy).rate(p, v, friction=mu), [0.0, 2e-13 * 4e4], rtol=1e-9
-    )
+    state = LocalState(np.array([1e5, 1e6]), 0.2, mu=0.25)
+    assert law.value(state) == pytest.approx([0.0, 2e-13 * 4e4], rel=1e-9, abs=0.0)
+    np.testing.assert_allclose(wear_rate(energy).value(state), [0.0, 2e-13 * 4e4], rtol=1e-9)
     friction = registered_laws("friction")["stribeck"](0.35, 0.1, 0.5)
-    assert friction.value(p, 0.5, 0.0) == pytest.approx(0.1 + 0.25 / np.e)
+    assert friction.value(state._replace(v=0.5)) == pytest.approx(0.1 + 0.25 / np.e)
     assert harmonic_mean(10.0, 40.0) == pytest.approx(16.0)
     factors = Multipliers(FALLS, HARD, None)
     assert factors.variables == {"T", "p"}
-    assert factors.value(np.array([3e6]), 0.1, np.array([393.15])) == pytest.approx([0.75 * 1.5])
+    state = LocalState(np.array([3e6]), 0.1, np.array([393.15]))
+    assert factors.value(state) == pytest.approx([0.75 * 1.5])
 
 
 @pytest.mark.parametrize(
@@ -113,13 +104,13 @@ def test_functions_that_drop_the_imaginary_part_have_their_derivative_by_differe
     """requirement: a complex step is taken only where it is right."""
     law, h = interface_law(function), 1e-4 * P
     due = (function(P + h) - function(P - h)) / (2 * h)
-    np.testing.assert_allclose(law.slope(P, V, T), due, rtol=1e-6, atol=1e-20)
+    np.testing.assert_allclose(law.slope(STATE), due, rtol=1e-6, atol=1e-20)
 
 
 def test_a_smooth_function_has_its_derivative_to_rounding():
     """requirement: complex step, not differences, where the function takes it."""
     law = interface_law(lambda p: 0.2 + 0.1 * np.exp(-p / 5e6))
-    np.testing.assert_allclose(law.slope(P, V, T), -2e-8 * np.exp(-P / 5e6), rtol=1e-13)
+    np.testing.assert_allclose(law.slope(STATE), -2e-8 * np.exp(-P / 5e6), rtol=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -130,13 +121,13 @@ def test_a_smooth_function_has_its_derivative_to_rounding():
 def test_functions_that_are_no_laws_are_refused(function, text):
     """requirement: shapes and types are checked; the message names the law."""
     with pytest.raises(CaseError, match="law") as caught:
-        interface_law(function).value(P, V, T)
+        interface_law(function).value(STATE)
     assert text in str(caught.value)
 
 
 BAD_WEAR = [
     ("1e-9 m/s*(1 - p/(1 GPa))", "must be finite and at least 0"),
-    ("1e-13/Pa*v*p*exp(-p/(10 MPa))", "falls as the pressure rises at p ="),
+    ("1e-13/Pa*v*p*exp(-p/(10 MPa))", "decreases with increasing pressure at p ="),
     ("1e-13/Pa*v*p/(1 - depth/(10 mm))", "must be finite"),
     ("1e-13/Pa*p*(v - 1 mm/s)", "must be finite and at least 0"),
     ("1e-13/Pa^2*p^2*v*log(p/(1 Pa))", "must be finite"),
@@ -177,4 +168,4 @@ def test_a_law_that_fails_at_a_point_says_where():
     law = wear_rate(lambda p, v: 1e-13 * p * v)
     broken = FormulaWear(law.formula.of(lambda p, T: p * np.log(T - 400), ("p", "T")), "my law")
     with pytest.raises(ComputationError, match=r"^my law: nan at p = 1e\+05 Pa, v = 0.05 m/s"):
-        broken.rate(P, V, T)
+        broken.value(STATE)

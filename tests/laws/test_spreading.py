@@ -7,6 +7,7 @@ from thermowear import ComputationError
 from thermowear.laws import (
     DutyFactor,
     InPlace,
+    LocalState,
     PowerWear,
     UniformTrack,
     contact_patch,
@@ -89,11 +90,11 @@ def test_wear_that_is_spread_over_a_track(tilting, b_1, b_2, κ_2):
     load = patch.force_modes.T @ (patch.weights * 1e6 * (z / 0.1) ** 2)
     steady = patch.steady(load, laws, [InPlace(), track])
     p = steady.pressure
-    mean = track.row @ laws[1].rate(p, patch.speed)
+    mean = track.row @ laws[1].value(LocalState(p, patch.speed))
     np.testing.assert_allclose(steady.rates[1], mean, rtol=1e-12)
     assert mean > 0.05 * steady.approach.max()
     touching = p > 0
-    total = laws[0].rate(p, patch.speed) + mean
+    total = laws[0].value(LocalState(p, patch.speed)) + mean
     scale = steady.approach.max()
     np.testing.assert_allclose(total[touching], steady.approach[touching], atol=1e-12 * scale)
     assert np.all(steady.approach[~touching] <= mean + 1e-12 * scale)
@@ -117,7 +118,7 @@ def test_a_track_does_not_shape_what_only_descends():
 def test_wear_of_tracks_only_leaves_the_pressure_open():
     """requirement: what does not determine a pressure is said, not made up."""
     _, patch, track = block_on_strip(tilting=False)
-    with pytest.raises(ComputationError, match="spread over a track"):
+    with pytest.raises(ComputationError, match="spread uniformly along tracks"):
         patch.steady([10.0], [PowerWear(1e-13)], [track])
 
 
@@ -165,9 +166,9 @@ def test_the_principle_with_a_disk_that_wears_along_its_track(b_1, b_2):
     load = np.array([1e3, 2.0, 1.0])
     steady = steady_pressure(w, modes, modes, load, laws, 10 * r, [InPlace(), way])
     p = steady.pressure
-    disk = way.operator(len(r)) @ laws[1].rate(p, 10 * r)
+    disk = way.operator(len(r)) @ laws[1].value(LocalState(p, 10 * r))
     np.testing.assert_allclose(steady.rates[1], disk, rtol=1e-12)
-    total, scale = laws[0].rate(p, 10 * r) + disk, steady.approach.max()
+    total, scale = laws[0].value(LocalState(p, 10 * r)) + disk, steady.approach.max()
     np.testing.assert_allclose(total[p > 0], steady.approach[p > 0], atol=1e-10 * scale)
     np.testing.assert_allclose(modes.T @ (w * p), load, atol=1e-9 * 1e3)
     assert np.ptp(p[np.isclose(r, r[0])]) > 0.1 * p.max()

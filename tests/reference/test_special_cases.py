@@ -180,11 +180,13 @@ def test_straight_pad(b, a):
     data = (0.06, 0.11, 0.8)
 
     def force(r):
-        return float(disk_brake.steady_pressure(r, 700.0, *data, b, a)) * data[2] * r
+        return (
+            float(annular_punch.steady_pressure(r, 700.0, *data[:2], b, a, data[2])) * data[2] * r
+        )
 
     assert quad(force, *data[:2])[0] == pytest.approx(700.0, rel=1e-10)
     r = np.linspace(*data[:2], 5)
-    p = disk_brake.steady_pressure(r, 700.0, *data, b, a)
+    p = annular_punch.steady_pressure(r, 700.0, *data[:2], b, a, data[2])
     np.testing.assert_allclose(p**b * r**a, p[0] ** b * r[0] ** a)
     if a == b:
         assert disk_brake.uniform_wear_force(p[0], *data) == pytest.approx(700.0)

@@ -248,11 +248,11 @@ def test_a_law_of_ones_own_is_registered(monkeypatch):
         rate_at_1MPa: float = parameter("m/s", "1 nm/s", gt=0)
         variables = frozenset("p")
 
-        def rate(self, pressure, *state, **more):
-            return self.rate_at_1MPa * np.sqrt(np.maximum(pressure, 0.0) / 1e6)
+        def value(self, at):
+            return self.rate_at_1MPa * np.sqrt(np.maximum(at.p, 0.0) / 1e6)
 
-        def slope(self, pressure, *state, **more):
-            return self.rate_at_1MPa * 0.5 / np.sqrt(np.maximum(pressure, 1.0) * 1e6)
+        def slope(self, at):
+            return self.rate_at_1MPa * 0.5 / np.sqrt(np.maximum(at.p, 1.0) * 1e6)
 
     law = {"rate": {"type": "square-root", "rate_at_1MPa": "2 nm/s"}}
     changes = COLD | {"wear.punch": law, "analysis": {"type": "steady"}}

@@ -5,6 +5,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import ComputationError
+from thermowear.laws import LocalState
 
 from ..case.starter import solved, tables
 
@@ -93,7 +94,8 @@ def test_brake_fade():
     summary, i = result.summary, result.interface
     case = tw.load(tables("disk-brake-fading"))
     mean = (i.temperature_1 + i.temperature_2) / 2
-    friction = 0.4 * case.contact.friction_factor.multipliers.value(i.pressure, 20 * i.x, mean)
+    state = LocalState(i.pressure, 20 * i.x, mean)
+    friction = 0.4 * case.contact.friction_factor.multipliers.value(state)
     np.testing.assert_allclose(
         i.heat_flux_1 + i.heat_flux_2, friction * i.pressure * 20 * i.x, rtol=1e-8
     )

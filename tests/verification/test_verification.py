@@ -36,7 +36,7 @@ def test_case(name):
 
 
 def fake(error):
-    return lambda: iter([Check("fake", "one [1]", 1.0 + error, 1.0, error, 1e-3, "nobody")])
+    return lambda: iter([Check("one [1]", 1.0 + error, 1.0, error, 1e-3, "nobody", "fake")])
 
 
 def test_rows_and_exit_code(monkeypatch, capsys):
@@ -130,6 +130,6 @@ def test_unknown_id(capsys):
 
 def test_nan_is_a_failure():
     """requirement: what was not computed has not passed."""
-    assert not compare("x", "y", math.nan, 1.0, 1.0, "z").passed
-    assert compare("x", "y", 1.01, 1.0, 0.02, "z").passed
-    assert compare("x", "y", 0.001, 0.0, 0.02, "z", scale=1.0).error == pytest.approx(0.001)
+    assert not compare("y", math.nan, 1.0, 1.0, "z").passed
+    assert compare("y", 1.01, 1.0, 0.02, "z").passed
+    assert compare("y", 0.001, 0.0, 0.02, "z", scale=1.0).error == pytest.approx(0.001)

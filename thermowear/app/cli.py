@@ -115,11 +115,11 @@ def _init(chosen) -> int:
 
 def _validate(chosen) -> int:
     case = load(chosen.case, tuple(chosen.overrides))
-    about = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
+    properties = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
     if case.geometry.from_file:
         from ..geometry.reading.mesh_checks import described, whole_bodies
 
-        about += described(whole_bodies(case.tagged_mesh(), case.geometry))
+        properties += described(whole_bodies(case.tagged_mesh(), case.geometry))
     if case.geometry.initial_shape is not None:
         from .workers import start_petsc
 
@@ -130,8 +130,8 @@ def _validate(chosen) -> int:
         from ..simulation.model.building import check_contact_points
 
         check_contact_points(model_of(case), MPI.COMM_SELF)
-        about.append(f"initial shape {case.geometry.initial_shape}")
-    print(f"{chosen.case}: ok ({', '.join(about)})")
+        properties.append(f"initial shape {case.geometry.initial_shape}")
+    print(f"{chosen.case}: ok ({', '.join(properties)})")
     return 0
 
 

@@ -18,7 +18,7 @@ def work_off(
     tasks: Sequence[Any],
     processes: int,
     work: Callable[[Any, Callable[[Any], None]], None],
-    told: Callable[[Any], None],
+    received: Callable[[Any], None],
     lost: Callable[[Any, str], None],
 ) -> None:
     """Distribute tasks to processes, one task per process at a time.
@@ -34,7 +34,7 @@ def work_off(
     work : callable
         Function of a module that computes a task in a worker process; called with the task and a
         function that sends a message.
-    told : callable
+    received : callable
         Called in this process with each message.
     lost : callable
         Called in this process with a task whose process has died, and the reason.
@@ -49,12 +49,12 @@ def work_off(
             worker.begin(waiting.pop(0))
         while workers:
             for pipe in connection.wait(list(workers)):
-                if _receive(workers, workers[pipe], told, lost):  # type: ignore[index]
+                if _receive(workers, workers[pipe], received, lost):  # type: ignore[index]
                     _assign_next(workers, workers[pipe], waiting, work)  # type: ignore[index]
     except KeyboardInterrupt:
         for worker in workers.values():
             worker.process.terminate()
-        _collect_remaining(workers, told)
+        _collect_remaining(workers, received)
         raise
 
 
@@ -93,7 +93,7 @@ class _Worker:
         self.pipe.close()
 
 
-def _receive(workers, worker: _Worker, told, lost) -> bool:
+def _receive(workers, worker: _Worker, received, lost) -> bool:
     """Forward a message of a worker; returns True if it is ready for another task."""
     try:
         message = worker.pipe.recv()
@@ -103,7 +103,7 @@ def _receive(workers, worker: _Worker, told, lost) -> bool:
         return True
     if message is None:
         return True
-    told(message[0])
+    received(message[0])
     return False
 
 
@@ -121,11 +121,11 @@ def _assign_next(workers, worker: _Worker, waiting: list, work) -> None:
         worker.end()
 
 
-def _collect_remaining(workers, told) -> None:
+def _collect_remaining(workers, received) -> None:
     for worker in workers.values():
         try:
             while worker.pipe.poll(_FINISH_TIME) and (message := worker.pipe.recv()) is not None:
-                told(message[0])
+                received(message[0])
         except (EOFError, OSError):
             pass
         worker.process.join(1.0)
@@ -140,7 +140,7 @@ def _serve(pipe, work) -> None:
     deliver_again()
     try:
         while (message := pipe.recv()) is not None:
-            work(message[0], lambda said: _send(pipe, (said,)))
+            work(message[0], lambda message: _send(pipe, (message,)))
             _send(pipe, None)
     except (KeyboardInterrupt, EOFError):
         pass

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -20,48 +19,48 @@ _ALIKE = 0.5
 """Smallest number of points on a circle of a polar mesh, relative to the mean number."""
 
 
-class Distribution(Protocol):
+class Distribution:
     """Map from the local wear rate of a body to its rate at the points.
 
     Attributes
     ----------
     share : float
         Fraction of the local rate that stays in place.
-    rows : ndarray, shape (k, n), or None
-        Weights of the k means shared by several points.
-    varying_rows : ndarray, shape (k, n), or None
-        `rows` without means that hardly change with the pressures.
-    coverage : float
-        Fraction of the worn area that is in contact at a time.
     """
 
-    @property
-    def share(self) -> float: ...
+    share: float = 0.0
 
     @property
-    def rows(self) -> np.ndarray | None: ...
+    def rows(self) -> np.ndarray | None:
+        """Weights of the k means shared by several points, shape (k, n)."""
+        return None
 
     @property
-    def varying_rows(self) -> np.ndarray | None: ...
+    def varying_rows(self) -> np.ndarray | None:
+        """`rows` without means that hardly change with the pressures."""
+        return None
 
     @property
-    def coverage(self) -> float: ...
+    def coverage(self) -> float:
+        """Fraction of the worn area that is in contact at a time."""
+        return self.share if self.rows is None else float(self.rows.sum(axis=1).mean())
 
     def reach(self, n: int) -> np.ndarray:
         """Weights of the k means at the n points, shape (n, k)."""
-        ...
+        return np.zeros((n, 0))
 
     def rate(self, local: np.ndarray) -> np.ndarray:
-        """Wear rate at the points from the local one, shape (n,) [m/s]."""
-        ...
+        """Wear rate at the points from the local one, shape (n,) or (n, columns) [m/s]."""
+        own = self.share * local
+        return own if self.rows is None else own + self.reach(len(local)) @ (self.rows @ local)
 
     def operator(self, n: int) -> np.ndarray:
         """Matrix of `rate`, shape (n, n)."""
-        ...
+        return self.rate(np.eye(n))
 
 
 @dataclass(frozen=True)
-class DutyFactor:
+class DutyFactor(Distribution):
     """Duty factor: each point is in contact for a fraction of the time (disk under a pad).
 
     Attributes
@@ -71,21 +70,6 @@ class DutyFactor:
     """
 
     share: float
-    rows: ClassVar[None] = None
-    varying_rows: ClassVar[None] = None
-
-    @property
-    def coverage(self) -> float:
-        return self.share
-
-    def reach(self, n: int) -> np.ndarray:
-        return np.zeros((n, 0))
-
-    def rate(self, local: np.ndarray) -> np.ndarray:
-        return self.share * local
-
-    def operator(self, n: int) -> np.ndarray:
-        return self.share * np.eye(n)
 
 
 @dataclass(frozen=True)
@@ -96,7 +80,7 @@ class InPlace(DutyFactor):
 
 
 @dataclass(frozen=True)
-class UniformTrack:
+class UniformTrack(Distribution):
     """Uniform track: all points pass through the whole contact (strip, or drum under a shoe).
 
     The mean hardly changes with the pressures, whose resultant is the load.
@@ -108,29 +92,17 @@ class UniformTrack:
     """
 
     row: np.ndarray
-    share: ClassVar[float] = 0.0
-    varying_rows: ClassVar[None] = None
 
     @property
     def rows(self) -> np.ndarray:
         return self.row[None]
 
-    @property
-    def coverage(self) -> float:
-        return float(self.row.sum())
-
     def reach(self, n: int) -> np.ndarray:
         return np.ones((n, 1))
 
-    def rate(self, local: np.ndarray) -> np.ndarray:
-        return np.full(len(local), self.row @ local)
-
-    def operator(self, n: int) -> np.ndarray:
-        return np.tile(self.row, (n, 1))
-
 
 @dataclass(frozen=True)
-class Rings:
+class Rings(Distribution):
     """Rings of a disk under a pad: each point passes through the contact at its own radius.
 
     The mean along each circle is taken with hat functions of the radius, a partition of unity: the
@@ -149,7 +121,6 @@ class Rings:
     hats: np.ndarray
     weights: np.ndarray
     duty: float
-    share: ClassVar[float] = 0.0
 
     @cached_property
     def rows(self) -> np.ndarray:
@@ -160,18 +131,8 @@ class Rings:
     def varying_rows(self) -> np.ndarray:
         return self.rows
 
-    @property
-    def coverage(self) -> float:
-        return self.duty
-
     def reach(self, n: int) -> np.ndarray:
         return self.hats
-
-    def rate(self, local: np.ndarray) -> np.ndarray:
-        return self.hats @ (self.rows @ local)
-
-    def operator(self, n: int) -> np.ndarray:
-        return self.hats @ self.rows
 
 
 def rings(radii: np.ndarray, weights: np.ndarray, duty: float) -> Rings:

@@ -3,60 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from ..errors import ComputationError
-from .interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Formula, Values
+from .interfaces import INTERFACE_VARIABLES, UNITS, WEAR_VARIABLES, Formula, LocalState
 from .power_wear import floored
-
-_UNITS = {"p": "Pa", "v": "m/s", "T": "K", "depth": "m", "mu": ""}
-
-
-@dataclass(frozen=True)
-class FormulaWear:
-    """Wear rate by a formula.
-
-    Attributes
-    ----------
-    formula : Formula
-        Rate in variables of `WEAR_VARIABLES` [m/s].
-    name : str
-        Name of the law, for messages.
-    """
-
-    formula: Formula
-    name: str = "wear rate"
-
-    @property
-    def variables(self) -> frozenset[str]:
-        """Variables of the formula."""
-        return self.formula.variables
-
-    def rate(
-        self,
-        pressure: np.ndarray,
-        speed: Values,
-        temperature: Values = 0.0,
-        depth: Values = 0.0,
-        friction: Values = 0.0,
-    ) -> np.ndarray:
-        """Depth worn per time at points (n,) [m/s]."""
-        pressing = np.maximum(pressure, 0.0)
-        at = _arrays(WEAR_VARIABLES, pressing, speed, temperature, depth, friction)
-        return required(self.name, self.formula.value(at), at, least=0.0)
-
-    def slope(
-        self,
-        pressure: np.ndarray,
-        speed: Values,
-        temperature: Values = 0.0,
-        depth: Values = 0.0,
-        friction: Values = 0.0,
-    ) -> np.ndarray:
-        """Derivative of the rate with respect to the pressure [m/(s Pa)]."""
-        at = _arrays(WEAR_VARIABLES, floored(pressure), speed, temperature, depth, friction)
-        return required(f"derivative of the {self.name}", self.formula.slope(at, "p"), at)
 
 
 @dataclass(frozen=True)
@@ -66,12 +19,14 @@ class FormulaLaw:
     Attributes
     ----------
     formula : Formula
-        Coefficient in variables of `INTERFACE_VARIABLES`.
+        Value in the variables of `NAMES`.
     name : str
         Name of the law, for messages.
     least : float
         Smallest valid value.
     """
+
+    NAMES: ClassVar[tuple[str, ...]] = INTERFACE_VARIABLES
 
     formula: Formula
     name: str = "coefficient"
@@ -82,21 +37,29 @@ class FormulaLaw:
         """Variables of the formula."""
         return self.formula.variables
 
-    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
-        """Coefficient at points (n,)."""
-        at = _arrays(INTERFACE_VARIABLES, pressure, speed, temperature)
-        return required(self.name, self.formula.value(at), at, self.least)
+    def value(self, at: LocalState) -> np.ndarray:
+        """Value at points (n,)."""
+        arrays = at.arrays(self.NAMES)
+        return required(self.name, self.formula.value(arrays), arrays, self.least)
 
-    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure."""
-        at = _arrays(INTERFACE_VARIABLES, floored(pressure), speed, temperature)
-        return required(f"derivative of the {self.name}", self.formula.slope(at, "p"), at)
+        arrays = at._replace(p=floored(at.p)).arrays(self.NAMES)
+        return required(f"derivative of the {self.name}", self.formula.slope(arrays, "p"), arrays)
 
 
-def _arrays(names: tuple[str, ...], *values: Values) -> dict[str, np.ndarray]:
-    """Variables by name, broadcast to a common shape."""
-    arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values))
-    return dict(zip(names, arrays, strict=True))
+@dataclass(frozen=True)
+class FormulaWear(FormulaLaw):
+    """Wear rate by a formula [m/s]; 0 or more, and evaluated at nonnegative pressures only."""
+
+    NAMES: ClassVar[tuple[str, ...]] = WEAR_VARIABLES
+
+    name: str = "wear rate"
+    least: float = 0.0
+
+    def value(self, at: LocalState) -> np.ndarray:
+        """Depth worn per time at points (n,) [m/s]."""
+        return super().value(at._replace(p=np.maximum(at.p, 0.0)))
 
 
 def required(
@@ -114,7 +77,7 @@ def required(
         return found
     first = int(np.argmax(wrong))
     where = ", ".join(
-        f"{key} = {float(values.flat[first]):.4g} {_UNITS[key]}".rstrip()
+        f"{key} = {float(values.flat[first]):.4g} {UNITS[key]}".rstrip()
         for key, values in at.items()
     )
     bound = "finite" if least == -np.inf else f"finite and at least {least:g}"

@@ -9,12 +9,12 @@ import numpy as np
 
 from .coefficients.constant import Constant
 from .formulas import FormulaLaw, FormulaWear
-from .interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, InterfaceLaw, WearRate
+from .interfaces import Law
 from .plain_function import PlainFunction
 from .plausible import require_wear_rate
 
 
-def wear_rate(given: WearRate | Callable[..., np.ndarray]) -> WearRate:
+def wear_rate(given: Law | Callable[..., np.ndarray]) -> Law:
     """Wear rate from a law, or from a function of some of ``p, v, T, depth, mu`` [m/s].
 
     Raises
@@ -24,14 +24,12 @@ def wear_rate(given: WearRate | Callable[..., np.ndarray]) -> WearRate:
     CaseError
         If the function has other parameters, or returns no array of their shape.
     """
-    law: Any = given
-    if not hasattr(given, "rate"):
-        law = FormulaWear(PlainFunction.of(law, WEAR_VARIABLES), getattr(given, "__name__", "law"))
+    law = _law(given, FormulaWear)
     require_wear_rate(law)
     return law
 
 
-def interface_law(given: InterfaceLaw | float | Callable[..., np.ndarray]) -> InterfaceLaw:
+def interface_law(given: Law | float | Callable[..., np.ndarray]) -> Law:
     """Friction or conductance from a law, a number, or a function of some of ``p, v, T``.
 
     Raises
@@ -39,9 +37,10 @@ def interface_law(given: InterfaceLaw | float | Callable[..., np.ndarray]) -> In
     CaseError
         If the function has other parameters.
     """
-    law: Any = given
-    if isinstance(given, int | float):
-        return Constant(float(given))
+    return Constant(float(given)) if isinstance(given, int | float) else _law(given, FormulaLaw)
+
+
+def _law(given: Any, kind: type[FormulaLaw]) -> Law:
     if hasattr(given, "value"):
-        return law
-    return FormulaLaw(PlainFunction.of(law, INTERFACE_VARIABLES), getattr(given, "__name__", "law"))
+        return given
+    return kind(PlainFunction.of(given, kind.NAMES), getattr(given, "__name__", "law"))

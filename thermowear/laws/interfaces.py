@@ -1,99 +1,71 @@
-"""Interfaces of laws: wear rate of a body, and coefficients of the interface.
+"""Interface of laws: wear rate of a body, coefficient of friction, contact conductance.
 
-Every law is a function of arrays at contact points, in SI, with its derivative with respect to the
-pressure. Variables have the names of expressions: ``p`` pressure, ``v`` sliding speed, ``T``
-temperature, ``depth`` worn depth, ``mu`` coefficient of friction.
+Every law is a function of the contact state, in SI, with its derivative with respect to the
+pressure. Variables have the names of expressions: ``p``, ``v``, ``T``, ``depth``, ``mu``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 Values = np.ndarray | float
-WEAR_VARIABLES = ("p", "v", "T", "depth", "mu")
+UNITS = {"p": "Pa", "v": "m/s", "T": "K", "depth": "m", "mu": ""}
+"""SI units of the variables of laws."""
+WEAR_VARIABLES = tuple(UNITS)
 INTERFACE_VARIABLES = ("p", "v", "T")
 
 
-class WearRate(Protocol):
-    """Wear rate of one body.
+class LocalState(NamedTuple):
+    """State at the contact points: arrays of shape (n,), or numbers equal at all points.
+
+    Attributes
+    ----------
+    p : ndarray
+        Pressure [Pa].
+    v : ndarray
+        Sliding speed [m/s].
+    T : ndarray
+        Surface temperature of the body for its wear rate, otherwise mean of both faces [K].
+    depth : ndarray
+        Worn depth of the body so far [m].
+    mu : ndarray
+        Coefficient of friction.
+    """
+
+    p: Values
+    v: Values
+    T: Values = 0.0
+    depth: Values = 0.0
+    mu: Values = 0.0
+
+    def arrays(self, names: tuple[str, ...]) -> dict[str, np.ndarray]:
+        """Variables by name, broadcast to a common shape."""
+        given = (np.asarray(getattr(self, name), dtype=float) for name in names)
+        return dict(zip(names, np.broadcast_arrays(*given), strict=True))
+
+
+class Law(Protocol):
+    """Wear rate of one body [m/s], coefficient of friction [-] or conductance [W/(m² K)].
 
     Attributes
     ----------
     variables : frozenset of str
-        Variables of the rate, a subset of `WEAR_VARIABLES`.
+        Variables that it depends on: a subset of `WEAR_VARIABLES` for a wear rate, otherwise of
+        `INTERFACE_VARIABLES`.
     """
 
     @property
     def variables(self) -> frozenset[str]: ...
 
-    def rate(
-        self,
-        pressure: np.ndarray,
-        speed: Values,
-        temperature: Values = 0.0,
-        depth: Values = 0.0,
-        friction: Values = 0.0,
-    ) -> np.ndarray:
-        """Depth worn per time at points (n,) [m/s]; 0 at negative pressures.
-
-        Parameters
-        ----------
-        pressure : ndarray, shape (n,)
-            Pressure [Pa].
-        speed : ndarray, shape (n,)
-            Sliding speed [m/s].
-        temperature : ndarray, shape (n,)
-            Surface temperature of the body [K].
-        depth : ndarray, shape (n,)
-            Worn depth of the body so far [m].
-        friction : ndarray, shape (n,)
-            Coefficient of friction.
-        """
+    def value(self, at: LocalState) -> np.ndarray:
+        """Value at points (n,); the wear rate at negative pressures is 0."""
         ...
 
-    def slope(
-        self,
-        pressure: np.ndarray,
-        speed: Values,
-        temperature: Values = 0.0,
-        depth: Values = 0.0,
-        friction: Values = 0.0,
-    ) -> np.ndarray:
-        """Derivative of the rate with respect to the pressure [m/(s Pa)], finite at 0 pressure."""
-        ...
-
-
-class InterfaceLaw(Protocol):
-    """Coefficient of friction [-], or contact conductance [W/(m² K)].
-
-    Attributes
-    ----------
-    variables : frozenset of str
-        Variables of the coefficient, a subset of `INTERFACE_VARIABLES`.
-    """
-
-    @property
-    def variables(self) -> frozenset[str]: ...
-
-    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
-        """Coefficient at points (n,).
-
-        Parameters
-        ----------
-        pressure : ndarray, shape (n,)
-            Pressure [Pa].
-        speed : ndarray, shape (n,)
-            Sliding speed [m/s].
-        temperature : ndarray, shape (n,)
-            Mean temperature of both faces [K].
-        """
-        ...
-
-    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
-        """Derivative with respect to the pressure [1/Pa times the unit of the value]."""
+    def slope(self, at: LocalState) -> np.ndarray:
+        """Derivative with respect to the pressure, finite at zero pressure."""
         ...
 
 

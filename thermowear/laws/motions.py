@@ -59,11 +59,11 @@ def _spatial(vector) -> np.ndarray:
     return result
 
 
-def combined(motions, amounts) -> RigidMotion:
+def combined(motions, amplitudes) -> RigidMotion:
     """Superposition of small motions with given amplitudes; its pivot is the origin."""
     turned = np.zeros(3)
     moved = np.zeros(3)
-    for motion, amount in zip(motions, amounts, strict=True):
-        turned = turned + amount * motion.rotation
-        moved = moved + amount * motion.at(np.zeros(3))
+    for motion, amplitude in zip(motions, amplitudes, strict=True):
+        turned = turned + amplitude * motion.rotation
+        moved = moved + amplitude * motion.at(np.zeros(3))
     return RigidMotion(moved, turned, np.zeros(3))

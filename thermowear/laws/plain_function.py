@@ -63,14 +63,14 @@ class PlainFunction:
             return np.zeros(shape)
         x = np.asarray(at[by], dtype=float)
         step = _STEP * np.maximum(np.abs(x), _SCALES[by])
-        behind = np.maximum(x - step, 0.0)  # no variable is negative
-        ends = (self.value({**at, by: place}) for place in (x + step, behind))
-        difference = np.subtract(*ends) / (x + step - behind)
-        turned = self._complex_step(at, by, x)
-        if turned is None:
+        below = np.maximum(x - step, 0.0)  # no variable is negative
+        ends = (self.value({**at, by: place}) for place in (x + step, below))
+        difference = np.subtract(*ends) / (x + step - below)
+        by_complex_step = self._complex_step(at, by, x)
+        if by_complex_step is None:
             return difference
-        agrees = np.abs(turned - difference) <= _AGREED * np.abs(difference)
-        return np.where(agrees, turned, difference)
+        agrees = np.abs(by_complex_step - difference) <= _AGREED * np.abs(difference)
+        return np.where(agrees, by_complex_step, difference)
 
     def _complex_step(self, at: Mapping[str, np.ndarray], by: str, x: np.ndarray):
         """Derivative by a complex step; None if the function fails for complex numbers."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..errors import ComputationError
-from .interfaces import InterfaceLaw, WearRate
+from .interfaces import INTERFACE_VARIABLES, UNITS, Law, LocalState, Values
 
 SAMPLES: Mapping[str, np.ndarray] = {
     "p": np.concatenate([[0.0], np.geomspace(1.0, 1e10, 61)]),
@@ -17,12 +17,12 @@ SAMPLES: Mapping[str, np.ndarray] = {
     "mu": np.array([0.0, 0.1, 0.3, 1.0]),
 }
 """Sample values for the checks, in SI: up to 10 GPa, 100 m/s, 1500 K and 10 mm."""
-TYPICAL = {"p": 1e7, "v": 0.1, "T": 293.15, "depth": 0.0, "mu": 0.3}
+TYPICAL = LocalState(p=1e7, v=0.1, T=293.15, depth=0.0, mu=0.3)
 """Reference state of a contact, in SI."""
 _ROUNDING = 1e-9  # of the rate
 
 
-def require_wear_rate(law: WearRate) -> None:
+def require_wear_rate(law: Law) -> None:
     """Reject a wear rate that is negative or infinite somewhere, or decreases with pressure.
 
     Raises
@@ -31,20 +31,18 @@ def require_wear_rate(law: WearRate) -> None:
         One-line message with a state that violates the condition.
     """
     at = _grid(law.variables | {"p"})
-    names = ("p", "v", "T", "depth", "mu")
-    with np.errstate(all="ignore"):
-        rates = _evaluated(law.rate, *(at.get(name, TYPICAL[name]) for name in names))
+    rates = _evaluated(law, at)
     rates = np.broadcast_to(rates, np.broadcast_shapes(*(v.shape for v in at.values())))
-    _refuse(~np.isfinite(rates), at, "the rate is not finite")
-    _refuse(rates < 0.0, at, "the rate is negative")
-    _refuse(rates[:1] > _ROUNDING * rates[-1:], at, "there is wear without pressure")
-    falls = np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]
-    _refuse(falls, at, "the rate falls as the pressure rises")
+    _reject_where(~np.isfinite(rates), at, "the rate is not finite")
+    _reject_where(rates < 0.0, at, "the rate is negative")
+    _reject_where(rates[:1] > _ROUNDING * rates[-1:], at, "there is wear without pressure")
+    decreases = np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]
+    _reject_where(decreases, at, "the rate decreases with increasing pressure")
     if not rates.any():
         raise ValueError("the rate is 0 at all pressures")
 
 
-def require_interface_law(law: InterfaceLaw) -> None:
+def require_interface_law(law: Law) -> None:
     """Reject a coefficient that is not finite somewhere, or not positive in a typical state.
 
     Raises
@@ -53,32 +51,27 @@ def require_interface_law(law: InterfaceLaw) -> None:
         One-line message with a state that violates the condition.
     """
     at = _grid(law.variables)
-    names = ("p", "v", "T")
-    with np.errstate(all="ignore"):
-        values = _evaluated(law.value, *(at.get(name, TYPICAL[name]) for name in names))
+    values = _evaluated(law, at)
     values = np.broadcast_to(values, np.broadcast_shapes(*(v.shape for v in at.values()), (1,)))
-    _refuse(~np.isfinite(values), at, "the value is not finite")
+    _reject_where(~np.isfinite(values), at, "the value is not finite")
     typical = typical_value(law)
     if not typical > 0.0:
-        one = {name: np.array([TYPICAL[name]]) for name in names}
-        _refuse(np.array([True]), one, f"the value is {typical:.4g}, must be greater than 0,")
+        one = TYPICAL.arrays(INTERFACE_VARIABLES)
+        _reject_where(np.array(True), one, f"the value is {typical:.4g}, must be greater than 0,")
 
 
-def typical_value(law: InterfaceLaw) -> float:
-    """Coefficient in the state of `TYPICAL`."""
-    return float(law.value(*(np.array([TYPICAL[name]]) for name in ("p", "v", "T")))[0])
+def typical_value(law: Law, friction: Values = TYPICAL.mu) -> float:
+    """Value of a law in the state of `TYPICAL`, at a coefficient of friction."""
+    state = LocalState(*(np.array([value]) for value in TYPICAL._replace(mu=friction)))
+    return float(law.value(state)[0])
 
 
-def typical_rate(law: WearRate, friction: float) -> float:
-    """Wear rate in the state of `TYPICAL`, at a coefficient of friction [m/s]."""
-    p, v, T, depth = (np.array([TYPICAL[name]]) for name in ("p", "v", "T", "depth"))
-    return float(law.rate(p, v, T, depth, np.array([friction]))[0])
-
-
-def _evaluated(function, *at: np.ndarray | float) -> np.ndarray:
-    arrays = np.broadcast_arrays(*(np.asarray(values, dtype=float) for values in at))
+def _evaluated(law: Law, at: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Values of a law on a grid of some variables, the others as in `TYPICAL`."""
+    state = LocalState(*np.broadcast_arrays(*TYPICAL._replace(**at)))
     try:
-        return function(*arrays)
+        with np.errstate(all="ignore"):
+            return law.value(state)
     except ComputationError as error:  # of a law that checks its values itself
         raise ValueError(str(error)) from None
 
@@ -93,15 +86,11 @@ def _grid(variables: frozenset[str]) -> dict[str, np.ndarray]:
     }
 
 
-def _refuse(wrong: np.ndarray, at: Mapping[str, np.ndarray], what: str) -> None:
+def _reject_where(wrong: np.ndarray, at: Mapping[str, np.ndarray], what: str) -> None:
     """Raise for the first point of a grid with a violated condition."""
     if not wrong.any():
         return
-    first = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
-    units = {"p": " Pa", "v": " m/s", "T": " K", "depth": " m", "mu": ""}
-    where = ", ".join(
-        f"{name} = {float(values[tuple(np.minimum(first, np.array(values.shape) - 1))]):.3g}"
-        f"{units[name]}"
-        for name, values in at.items()
-    )
+    first = np.array(np.unravel_index(int(np.argmax(wrong)), wrong.shape), dtype=int)
+    values = {name: x[tuple(np.minimum(first, np.array(x.shape) - 1))] for name, x in at.items()}
+    where = ", ".join(f"{name} = {x:.3g} {UNITS[name]}".rstrip() for name, x in values.items())
     raise ValueError(f"{what} at {where}" if where else what)

@@ -7,12 +7,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from .interfaces import Values
+from .interfaces import LocalState, Values
 
 _FLOOR = 1e-9  # relative to the largest pressure: avoids the infinite slope of p^b (b < 1) at p = 0
 
 
-def floored(pressure: np.ndarray) -> np.ndarray:
+def floored(pressure: Values) -> np.ndarray:
     """Pressures bounded from below, so that a law has a finite slope at zero pressure [Pa]."""
     return np.maximum(pressure, _FLOOR * max(float(np.max(pressure, initial=0.0)), 1.0))
 
@@ -43,25 +43,11 @@ class PowerWear:
         """Factor Z = κ v^a at points, so that the rate is Z p^b."""
         return self.coefficient * np.power(speed, self.velocity_exponent)
 
-    def rate(
-        self,
-        pressure: np.ndarray,
-        speed: Values,
-        temperature: Values = 0.0,
-        depth: Values = 0.0,
-        friction: Values = 0.0,
-    ) -> np.ndarray:
-        """Depth worn per time [m/s] at pressures [Pa] and speeds [m/s], shape (n,)."""
-        return self.factor(speed) * np.power(np.maximum(pressure, 0.0), self.pressure_exponent)
+    def value(self, at: LocalState) -> np.ndarray:
+        """Depth worn per time at points (n,) [m/s]."""
+        return self.factor(at.v) * np.power(np.maximum(at.p, 0.0), self.pressure_exponent)
 
-    def slope(
-        self,
-        pressure: np.ndarray,
-        speed: Values,
-        temperature: Values = 0.0,
-        depth: Values = 0.0,
-        friction: Values = 0.0,
-    ) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure [m/(s Pa)]; finite at p = 0 for b < 1, too."""
         b = self.pressure_exponent
-        return self.factor(speed) * b * np.power(floored(pressure), b - 1.0)
+        return self.factor(at.v) * b * np.power(floored(at.p), b - 1.0)

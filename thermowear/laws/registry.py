@@ -11,7 +11,7 @@ from dataclasses import field
 from typing import Any, Literal, TypeVar
 
 Role = Literal["wear", "friction", "conductance"]
-Law = TypeVar("Law", bound=type)
+Registered = TypeVar("Registered", bound=type)
 
 REGISTERED: dict[str, dict[str, type]] = {"wear": {}, "friction": {}, "conductance": {}}
 """Laws by role and name; `by_name` imports the modules of `named` first."""
@@ -37,10 +37,10 @@ def parameter(unit: str, example: str, *, default: Any = None, **bounds: float) 
     return field(default=default, metadata=metadata)
 
 
-def registered(role: Role, name: str) -> Callable[[Law], Law]:
+def registered(role: Role, name: str) -> Callable[[Registered], Registered]:
     """Decorator that registers a law under a name for case files."""
 
-    def register(law: Law) -> Law:
+    def register(law: Registered) -> Registered:
         REGISTERED[role][name] = law
         return law
 

@@ -12,8 +12,8 @@ import numpy as np
 from ..laws.coefficients.conductance import PressureConductance, harmonic_mean
 from ..laws.coefficients.constant import Constant
 from ..laws.coefficients.multipliers import Multiplied, Multipliers
-from ..laws.interfaces import InterfaceLaw
-from ..laws.plausible import typical_rate, typical_value
+from ..laws.interfaces import Law
+from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
 from .facing import WHY, Facing
 from .material import Material
@@ -70,7 +70,7 @@ class Interface:
     ----------
     faces : tuple of str
         Contact surfaces of body 1 and of body 2.
-    friction : InterfaceLaw
+    friction : Law
         Coefficient of friction in the direction of sliding.
     friction_factors : Multipliers
         Tabulated factors of the friction.
@@ -79,7 +79,7 @@ class Interface:
     transverse_friction : float
         Coefficient of friction across the sliding direction, on inclined faces (mu_d of Páczelt
         and Mróz).
-    conductance : InterfaceLaw, HardnessConductance or None
+    conductance : Law, HardnessConductance or None
         Contact conductance [W/(m² K)]; None: perfect contact.
     gap_conductance : float
         Conductance of separated faces [W/(m² K)].
@@ -101,11 +101,11 @@ class Interface:
     """
 
     faces: tuple[str, str]
-    friction: InterfaceLaw = field(default_factory=lambda: Constant(0.0))
+    friction: Law = field(default_factory=lambda: Constant(0.0))
     friction_factors: Multipliers = field(default_factory=Multipliers)
     friction_history: TimeFunction | None = None
     transverse_friction: float = 0.0
-    conductance: InterfaceLaw | HardnessConductance | None = None
+    conductance: Law | HardnessConductance | None = None
     gap_conductance: float = 0.0
     partition: float | Literal["effusivity"] = 0.5
     wear: Mapping[int, FaceWear] = field(default_factory=dict)
@@ -116,7 +116,7 @@ class Interface:
     method: ContactMethod = field(default_factory=ContactMethod)
 
     @cached_property
-    def friction_law(self) -> InterfaceLaw:
+    def friction_law(self) -> Law:
         """Friction with its tabulated factors, without its history in time."""
         factors = self.friction_factors
         return Multiplied(self.friction, factors) if factors.variables else self.friction
@@ -144,14 +144,12 @@ class Interface:
     def wearing_in_place(self) -> dict[int, float]:
         """Typical wear rates of the faces that close the gap by wear in place, by index [m/s]."""
         return {
-            index: typical_rate(wear.law, self.nominal_friction)
+            index: typical_value(wear.law, self.nominal_friction)
             for index, wear in self.wear.items()
             if self.closes_by_wear and wear.in_place
         }
 
-    def conductance_law(
-        self, facing: Facing, materials: Mapping[str, Material]
-    ) -> InterfaceLaw | None:
+    def conductance_law(self, facing: Facing, materials: Mapping[str, Material]) -> Law | None:
         """Contact conductance at the points [W/(m² K)]; None: perfect contact."""
         given = self.conductance
         return given.law(facing, materials) if isinstance(given, HardnessConductance) else given

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..laws.coefficients.multipliers import Multipliers
 from ..laws.distribution import Distribution, DutyFactor, InPlace, Rings, UniformTrack, rings
-from ..laws.interfaces import WearRate
+from ..laws.interfaces import Law
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class FaceWear:
 
     Attributes
     ----------
-    law : WearRate
+    law : Law
     factors : Multipliers
         Tabulated factors of the rate, by the temperature of the face, the pressure and the speed.
     friction_exponent : float
@@ -68,7 +68,7 @@ class FaceWear:
         Stress that a coefficient of wear multiplies, for the summary; None for other laws.
     """
 
-    law: WearRate
+    law: Law
     factors: Multipliers = field(default_factory=Multipliers)
     friction_exponent: float = 0.0
     track: DutyFactor | EvenTrack | CircularTrack = field(default_factory=InPlace)

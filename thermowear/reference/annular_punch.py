@@ -40,8 +40,10 @@ STEADY_PRESSURE = {
 p at 20, 40, 70 and 120 mm [MPa], and the torque over mu [N mm]."""
 
 
-def steady_pressure(r, force: float, inner: float, outer: float, b: float, a: float = 1.0):
-    """Steady pressure ``p = (F/I) r^(-a/b)``, ``I = 2 π ∫ r^(1 - a/b) dr``, on a flat face.
+def steady_pressure(
+    r, force: float, inner: float, outer: float, b: float, a: float = 1.0, angle: float = 2 * pi
+) -> np.ndarray:
+    """Steady pressure ``p = (F/I) r^(-a/b)``, ``I = θ ∫ r^(1 - a/b) dr``, on a flat face.
 
     Parameters
     ----------
@@ -51,13 +53,15 @@ def steady_pressure(r, force: float, inner: float, outer: float, b: float, a: fl
         Radii of the ring [m].
     b, a : float
         Pressure and velocity exponents of the wear law.
+    angle : float
+        θ, less than 2 π for a part of the ring [rad].
 
     Returns
     -------
     ndarray [Pa]
     """
-    integral = _power_integral(2.0 - a / b, inner, outer)
-    return force / (2 * pi * integral) * np.asarray(r, dtype=float) ** (-a / b)
+    integral = power_integral(2.0 - a / b, inner, outer)
+    return force / (angle * integral) * np.asarray(r, dtype=float) ** (-a / b)
 
 
 def conical_pressure(
@@ -121,7 +125,7 @@ def toroidal_pressure(
 def torque(force: float, inner: float, outer: float, friction: float, b: float, a: float) -> float:
     """Torque ``mu ∫ p r dS`` on a flat face [N m]."""
     arm, area = 3.0 - a / b, 2.0 - a / b
-    mean = _power_integral(arm, inner, outer) / _power_integral(area, inner, outer)
+    mean = power_integral(arm, inner, outer) / power_integral(area, inner, outer)
     return friction * force * mean
 
 
@@ -132,7 +136,7 @@ def friction_power(
     return friction * force * speed * (inner + outer) / 2
 
 
-def _power_integral(power: float, low: float, high: float) -> float:
+def power_integral(power: float, low: float, high: float) -> float:
     """Integral ``∫ r^(power - 1) dr``."""
     return log(high / low) if power == 0 else (high**power - low**power) / power
 

@@ -62,7 +62,7 @@ def steady_pressure(
 
 def locking_friction(inner: float, outer: float, offset: float, b: float) -> float:
     """Least mu of self-locking in the sense of minus, where I vanishes."""
-    m = 1 / b
-    with_arm = (outer ** (m + 2) - inner ** (m + 2)) / (m + 2)
-    with_offset = (outer ** (m + 1) - inner ** (m + 1)) / (m + 1)
-    return with_arm / (offset * with_offset)
+    without, against = (
+        bearing_integral(inner, outer, offset, 1.0, friction, b) for friction in (0.0, -1.0)
+    )
+    return without / (without - against)

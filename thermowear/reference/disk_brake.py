@@ -1,34 +1,19 @@
 """Pad on a rotating disk (special case 9).
 
 The pad covers ``ri < r < ro`` and an angle θ, symmetric about the x axis; the disk rotates at ω,
-so that ``v = ω r``. Without tilting, ``p = (F/I) r^(-a/b)`` with ``I = θ ∫ r^(1 - a/b) dr``; with
-free tilting, ``p^b v^a`` is linear in x and y (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007)
-895). For a = b the pad without tilting has ``p = p_a ri/r``, uniform wear in machine design.
+so that ``v = ω r``. Without tilting the pressure is that of a part of a ring, see
+`annular_punch.steady_pressure`; with free tilting, ``p^b v^a`` is linear in x and y (Páczelt and
+Mróz, Int. J. Solids Struct. 44 (2007) 895). For a = b the pad without tilting has
+``p = p_a ri/r``, uniform wear in machine design.
 """
 
 from __future__ import annotations
 
-from math import log, sin
+from math import sin
 
 import numpy as np
 
-
-def steady_pressure(
-    r, force: float, inner: float, outer: float, angle: float, b: float, a: float
-) -> np.ndarray:
-    """Steady pressure of a pad that cannot tilt [Pa].
-
-    Parameters
-    ----------
-    r : array_like [m]
-    force : float [N]
-    inner, outer : float [m]
-    angle : float
-        θ [rad].
-    b, a : float
-    """
-    integral = angle * _power_integral(1 - a / b, inner, outer)
-    return force / integral * np.asarray(r, dtype=float) ** (-a / b)
+from .annular_punch import power_integral
 
 
 def uniform_wear_force(largest: float, inner: float, outer: float, angle: float) -> float:
@@ -74,7 +59,7 @@ def tilted_pressure(
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     half = angle / 2
     c0, c1, c2, s2 = angle, 2 * sin(half), half + sin(angle) / 2, half - sin(angle) / 2
-    r1, r2, r3 = (_power_integral(power - a, inner, outer) for power in (1, 2, 3))
+    r1, r2, r3 = (power_integral(power - a, inner, outer) for power in (2, 3, 4))
     # columns: A, B x, C y; rows: force and both moments
     system = np.array(
         [
@@ -85,10 +70,3 @@ def tilted_pressure(
     )
     A, B, C = np.linalg.solve(system, force * np.array([1.0, *centre]))
     return (A + B * x + C * y) * np.hypot(x, y) ** -a
-
-
-def _power_integral(power: float, low: float, high: float) -> float:
-    """Integral ``∫ r^power dr``."""
-    if power == -1:
-        return log(high / low)
-    return (high ** (power + 1) - low ** (power + 1)) / (power + 1)

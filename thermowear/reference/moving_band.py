@@ -111,6 +111,6 @@ def _integral(u: np.ndarray) -> np.ndarray:
     """Integral ``∫ exp(-s) K0(|s|) ds`` from 0 to u."""
     size = np.abs(u)
     safe = np.where(size > 0, size, 1.0)
-    ahead = 1 + safe * np.exp(-2 * safe) * (k0e(safe) - k1e(safe))
-    behind = 1 - safe * (k0e(safe) + k1e(safe))
-    return np.where(size > 0, np.where(u > 0, ahead, behind), 0.0)
+    in_front = 1 + safe * np.exp(-2 * safe) * (k0e(safe) - k1e(safe))
+    at_rear = 1 - safe * (k0e(safe) + k1e(safe))
+    return np.where(size > 0, np.where(u > 0, in_front, at_rear), 0.0)

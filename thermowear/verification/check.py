@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -17,8 +17,6 @@ class Check:
 
     Attributes
     ----------
-    id : str
-        Id of the verification case.
     quantity : str
         Compared quantity, with its unit.
     computed, reference : float
@@ -26,15 +24,17 @@ class Check:
         Relative error and its tolerance, to the reference or to the scale named by the quantity.
     source : str
         Source of the reference.
+    id : str
+        Id of the verification case, see `identified`.
     """
 
-    id: str
     quantity: str
     computed: float
     reference: float
     error: float
     allowed: float
     source: str
+    id: str = ""
 
     @property
     def passed(self) -> bool:
@@ -42,7 +42,7 @@ class Check:
 
     def as_row(self) -> dict:
         """Dictionary for ``--json``; None for numbers that are not finite."""
-        row = asdict(self) | {"passed": self.passed}
+        row = {"id": self.id} | asdict(self) | {"passed": self.passed}
         numbers = (key for key, value in row.items() if isinstance(value, float))
         return row | {key: None for key in numbers if not math.isfinite(row[key])}
 
@@ -51,7 +51,6 @@ Checks = Callable[[], Iterator[Check]]
 
 
 def compare(
-    id: str,
     quantity: str,
     computed: float,
     reference: float,
@@ -61,7 +60,22 @@ def compare(
 ) -> Check:
     """Compare two numbers, relative to the reference or to a scale."""
     error = abs(float(computed) - float(reference)) / abs(float(scale or reference))
-    return Check(id, quantity, float(computed), float(reference), error, allowed, source)
+    return Check(quantity, float(computed), float(reference), error, allowed, source)
+
+
+def compare_worst(
+    quantity: str, computed, exact, allowed: float, source: str, scale: float | None = None
+) -> Check:
+    """Compare values at points at the point of largest deviation, relative to the largest value."""
+    computed, exact = np.broadcast_arrays(computed, exact)
+    at = int(np.abs(computed - exact).argmax())
+    scale = scale or float(np.abs(exact).max())
+    return compare(quantity, computed[at], exact[at], allowed, source, scale)
+
+
+def identified(id: str, checks: Checks) -> Checks:
+    """Checks of a case with its id."""
+    return lambda: (replace(check, id=id) for check in checks())
 
 
 def all_checks(id: str, checks: Checks) -> list[Check]:
@@ -72,12 +86,8 @@ def all_checks(id: str, checks: Checks) -> list[Check]:
     except Exception as error:
         expected = isinstance(error, CaseError | ComputationError)
         reason = " ".join(f"{'' if expected else f'{type(error).__name__}: '}{error}".split())
-        nothing = math.nan
-        found.append(
-            Check(
-                id, f"not computed: {reason}", nothing, nothing, nothing, 0.0, "the program itself"
-            )
-        )
+        nothing = (math.nan,) * 3
+        found.append(Check(f"not computed: {reason}", *nothing, 0.0, "the program itself", id))
     return found
 
 

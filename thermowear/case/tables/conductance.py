@@ -7,20 +7,18 @@ from typing import Annotated, Any, Literal
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter, model_validator
 
-from ...errors import quoted
-from ...laws.by_name import registered_laws
 from ...laws.coefficients.table1d import Table1D
 from ...laws.expressions import Expression
 from ...laws.interfaces import INTERFACE_VARIABLES
 from ..values import units
 from ..values.expressions import expression
 from ..values.section import KeyFault, Section
-from .law_values import NamedLaw, checked, named_law, written
+from .law_values import LawTable, checked, typed_table, written
 from .multipliers import must_increase, must_match
 
 
 class PressureConductanceTable(Section):
-    """Conductance in proportion to the pressure, see `laws.coefficients.conductance`.
+    """Conductance proportional to the pressure, see `laws.coefficients.conductance`.
 
     Attributes
     ----------
@@ -33,7 +31,7 @@ class PressureConductanceTable(Section):
 
 
 class TabulatedConductanceTable(Section):
-    """Conductance by straight lines between given pressures, constant beyond the ends.
+    """Conductance tabulated over the pressure: piecewise linear, constant beyond the ends.
 
     Attributes
     ----------
@@ -52,7 +50,7 @@ class TabulatedConductanceTable(Section):
         must_increase("pressure", self.pressure)
         must_match("conductance", self.conductance, self.pressure, "pressures")
         if not any(self.conductance):
-            raise KeyFault("conductance", "one at least must be greater than 0")
+            raise KeyFault("conductance", "at least one value must be greater than 0")
         return self
 
     @property
@@ -70,34 +68,23 @@ _VARIABLE = re.compile(rf"(?<![\w.])({'|'.join(INTERFACE_VARIABLES)})(?!\w)", re
 
 
 def _read(data: Any) -> Any:
-    """A constant where the text has no variable, an expression, or the law that its type names."""
-    if isinstance(data, Section | Expression | NamedLaw):
+    if isinstance(data, Section | Expression):
         return data
     if isinstance(data, str) and _VARIABLE.search(data):
         return checked(expression(data, "W/(m^2 K)", INTERFACE_VARIABLES), "heat.conductance", 0.0)
     if not isinstance(data, dict):
         return _CONSTANT.validate_python(data)
-    laws = registered_laws("conductance")
-    allowed = " or ".join(repr(kind) for kind in (*_KINDS, *laws))
-    if "type" not in data:
-        raise KeyFault("type", f"missing; must be {allowed}")
-    kind = data["type"]
-    if isinstance(kind, str) and kind in _KINDS:
-        return _KINDS[kind].model_validate(data)
-    if not isinstance(kind, str) or kind not in laws:
-        raise KeyFault("type", f"found {quoted(kind)}; must be {allowed}")
-    return checked(named_law("conductance", data), "heat.conductance", 0.0)
+    table = typed_table("conductance", data, _KINDS)
+    return checked(table, "heat.conductance", 0.0) if isinstance(table, LawTable) else table
 
 
 def _written(value: Any) -> Any:
-    if isinstance(value, Section):
-        return value.model_dump()
     return _CONSTANT.dump_python(value) if isinstance(value, float) else written(value)
 
 
 Conductance = Annotated[
-    float | PressureConductanceTable | TabulatedConductanceTable | Expression | NamedLaw,
+    float | PressureConductanceTable | TabulatedConductanceTable | Expression | LawTable,
     PlainValidator(_read),
     PlainSerializer(_written),
 ]
-"""A constant [W/(m² K)], one of the tables, an expression in p, v and T, or a registered law."""
+"""Constant [W/(m² K)], table, expression in p, v and T, or registered law."""

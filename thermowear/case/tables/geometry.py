@@ -48,6 +48,11 @@ def keyed(value: Callable[[Any], Any]) -> Any:
     return property(value)
 
 
+def named(body: str, *parts: str) -> tuple[str, ...]:
+    """Names of surfaces of a body: ``body_part``."""
+    return tuple(f"{body}_{part}" for part in parts)
+
+
 class Geometry(Section):
     """Base of all geometries.
 
@@ -64,7 +69,7 @@ class Geometry(Section):
     surfaces : tuple of str
         All named surfaces.
     contact : tuple of str
-        Contact faces of body 1 and body 2.
+        Contact faces of body 1 and body 2, by default ``body_face``.
     held, fixed : str
         Surface of body 1 on the rigid holder; fixed surface of body 2.
     unmeshed : tuple of str
@@ -73,6 +78,28 @@ class Geometry(Section):
         True if body 1 may slide across its axis or section, as a ball on a flat does.
     from_file : bool
         True if the mesh was made elsewhere and therefore has to be checked like the case.
+    symmetry : tuple of str
+        Surfaces on a plane of symmetry x = const.
+    rollers : tuple of str
+        Surfaces that cannot move along y, but freely along x.
+    press_direction : tuple of float
+        Unit vector of the load direction of body 1, towards body 2.
+    pivot_point : tuple of float or None
+        Default centre of rotation of the holder of body 1 [m].
+    rotation_center : tuple of float or None
+        Centre of rotation of body 2, in the section; None: it moves along x [m].
+    track : float or None
+        Length of the track on body 2 that passes under body 1 [m].
+    duty : float or None
+        Duty factor: fraction of a turn for which a point of body 2 is under body 1, in space.
+    sector : float
+        Fraction of the circumference covered by an axisymmetric body 1.
+    thickness_factor : float or None
+        Thickness that forces of plane models refer to; twice the key's in half models [m].
+    zones : dict of str to str
+        Parts of bodies that may have their own material, and the body of each.
+    set_of : dict of str to str
+        Cell sets of a mesh file by the zones that represent them.
     initial_shape : str or None
         File with an initial worn shape (a design written by ``shape``, or ``profile.csv`` of an
         earlier run).
@@ -82,13 +109,23 @@ class Geometry(Section):
     models: ClassVar[tuple[str, ...]]
     bodies: ClassVar[tuple[str, str]]
     surfaces: ClassVar[tuple[str, ...]]
-    contact: ClassVar[tuple[str, str]]
     held: ClassVar[str]
     fixed: ClassVar[str]
 
     unmeshed: ClassVar[tuple[str, ...]] = ("thickness", "length_unit")
     slides_across: ClassVar[bool] = False
     from_file: ClassVar[bool] = False
+    symmetry: ClassVar[tuple[str, ...]] = ()
+    rollers: ClassVar[tuple[str, ...]] = ()
+    press_direction: ClassVar[tuple[float, ...]] = (0.0, -1.0)
+    pivot_point: ClassVar[tuple[float, ...] | None] = None
+    rotation_center: ClassVar[tuple[float, float] | None] = None
+    track: ClassVar[float | None] = None
+    duty: ClassVar[float | None] = None
+    sector: ClassVar[float] = 1.0
+    thickness_factor: ClassVar[float | None] = None
+    zones: ClassVar[dict[str, str]] = {}
+    set_of: ClassVar[dict[str, str]] = {}
 
     type: str
     initial_shape: UserFile | None = None
@@ -125,50 +162,22 @@ class Geometry(Section):
             if key not in self.unmeshed and getattr(self, key)
         }
 
-    @property
-    def symmetry(self) -> tuple[str, ...]:
-        """Surfaces on a plane of symmetry x = const."""
-        return ()
+    def check_less(self, key: str, other: str) -> None:
+        """Reject a length that is not less than another one."""
+        a, b = getattr(self, key), getattr(self, other)
+        if not a < b:
+            raise KeyFault(key, f"{a:g} m must be less than {other} {b:g} m")
 
-    @property
-    def rollers(self) -> tuple[str, ...]:
-        """Surfaces that cannot move along y, but freely along x."""
-        return ()
+    def check_greater(self, key: str, other: str) -> None:
+        """Reject a length that is not greater than another one."""
+        a, b = getattr(self, key), getattr(self, other)
+        if not a > b:
+            raise KeyFault(key, f"{a:g} m must be greater than {other} {b:g} m")
 
-    @property
-    def press_direction(self) -> tuple[float, ...]:
-        """Unit vector of the load direction of body 1, towards body 2."""
-        return (0.0, -1.0)
-
-    @property
-    def pivot_point(self) -> tuple[float, ...] | None:
-        """Default centre of rotation of the holder of body 1, unless the case gives one [m]."""
-        return None
-
-    @property
-    def rotation_center(self) -> tuple[float, float] | None:
-        """Centre of rotation of body 2, in the section; None: it moves along x [m]."""
-        return None
-
-    @property
-    def track(self) -> float | None:
-        """Length of the track on body 2 that passes under body 1 [m]."""
-        return None
-
-    @property
-    def duty(self) -> float | None:
-        """Duty factor: fraction of a turn for which a point of body 2 is under body 1, in space."""
-        return None
-
-    @property
-    def sector(self) -> float:
-        """Fraction of the circumference covered by an axisymmetric body 1."""
-        return 1.0
-
-    @property
-    def zones(self) -> dict[str, str]:
-        """Parts of bodies that may have their own material, and the body of each."""
-        return {}
+    @keyed
+    def contact(self) -> tuple[str, str]:
+        first, second = self.bodies
+        return f"{first}_face", f"{second}_face"
 
     @property
     def facing(self) -> tuple[str | None, str | None]:
@@ -178,11 +187,6 @@ class Geometry(Section):
         """
         first, second = (self.parts_of(body)[:2][-1] for body in self.bodies)
         return first, second
-
-    @property
-    def set_of(self) -> dict[str, str]:
-        """Cell sets of a mesh file by the zones that represent them."""
-        return {}
 
     def sets_of(self, body: str) -> tuple[str, ...]:
         """Cell sets of a mesh file that a body consists of."""
@@ -206,11 +210,6 @@ class Geometry(Section):
     def parts_of(self, body: str) -> tuple[str, ...]:
         """Body and its zones."""
         return body, *(zone for zone, owner in self.zones.items() if owner == body)
-
-    @property
-    def thickness_factor(self) -> float | None:
-        """Thickness that forces of plane models refer to; twice the key's in half models [m]."""
-        return None
 
     @property
     def follows_contact(self) -> bool:

@@ -1,4 +1,4 @@
-"""Histories: piecewise linear functions of time."""
+"""Time histories: piecewise linear functions of time."""
 
 from __future__ import annotations
 
@@ -16,25 +16,26 @@ from ..values.section import KeyFault, Section, Switch
 from .multipliers import NotNegative, must_increase, must_match
 
 _PATH = TypeAdapter(UserFile)
-_CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
+_CLOSED = 1e-9
+"""Largest difference between start and end of a closed cycle, relative to the largest value."""
 
 
 class TimeHistory(Section):
-    """Base of what is given at instants: straight lines between them, constant before and after.
+    """Base of time histories: piecewise linear between instants, constant before and after.
 
-    A table of lists, or a CSV file with a column for each of them: the name of the file instead of
-    the table, or ``file`` in the table beside keys that are no lists.
+    A table of lists, or a CSV file with a column for each list: the name of the file instead of the
+    table, or as key ``file`` of the table, together with keys that are no lists.
 
     Attributes
     ----------
     time : tuple of float
         Increasing [s].
     repeat : bool
-        From the last instant on it goes on as from the first one, again and again.
+        Periodic continuation after the last instant.
     """
 
     COLUMNS: ClassVar[dict[str, str]]
-    """Lists that a CSV file may hold, with a unit that fits each; empty for plain numbers."""
+    """Columns of a CSV file, with a suitable unit for each; empty for plain numbers."""
 
     time: tuple[units.Instant, ...]
     repeat: Switch = False
@@ -56,7 +57,7 @@ class TimeHistory(Section):
         try:
             return handler(others | columns.values)
         except ValidationError as error:
-            _charge(error, columns)
+            _report_line(error, columns)
             raise
 
     @model_validator(mode="after")
@@ -67,25 +68,25 @@ class TimeHistory(Section):
         return self
 
     def _closes(self, key: str, values: tuple[float, ...]) -> None:
-        """Refuse repetitions of values that jump from the end back to the begin."""
+        """Reject periodic values that differ between start and end."""
         if self.repeat and abs(values[-1] - values[0]) > _CLOSED * max(map(abs, values)):
-            raise KeyFault("repeat", f"{key} must end with the value that it begins with")
+            raise KeyFault("repeat", f"the last value of {key} must equal the first one")
 
     @property
     def course(self) -> TimeCourse:
-        """The instants."""
+        """Instants of the history."""
         return TimeCourse(self.time, self.repeat)
 
 
-def _charge(error: ValidationError, columns: Columns) -> None:
-    """Refuse a value of a file with its line; other faults are those of the table."""
+def _report_line(error: ValidationError, columns: Columns) -> None:
+    """Report an invalid value of a file with its line; leave other faults to the table."""
     for fault in error.errors(include_url=False):
         place = fault["loc"]
         if len(place) == 2 and place[0] in columns.values and isinstance(place[1], int):
-            said = fault.get("ctx", {}).get("error", fault["msg"])
-            said = str(said).replace("Input should be", "must be")
+            message = fault.get("ctx", {}).get("error", fault["msg"])
+            message = str(message).replace("Input should be", "must be")
             line = columns.lines[place[1]]
-            raise ValueError(f"{columns.name}, line {line}: {place[0]}: {said}") from None
+            raise ValueError(f"{columns.name}, line {line}: {place[0]}: {message}") from None
 
 
 class FactorHistory(TimeHistory):
@@ -94,7 +95,7 @@ class FactorHistory(TimeHistory):
     Attributes
     ----------
     factor : tuple of float
-        One of them at least greater than 0.
+        Factors, at least one of them greater than 0.
     """
 
     COLUMNS = {"time": "s", "factor": ""}
@@ -105,18 +106,18 @@ class FactorHistory(TimeHistory):
     def _fits(self):
         must_match("factor", self.factor, self.time, "times")
         if not any(self.factor):
-            raise KeyFault("factor", "one at least must be greater than 0")
+            raise KeyFault("factor", "at least one value must be greater than 0")
         self._closes("factor", self.factor)
         return self
 
     @property
     def function(self) -> TimeFunction:
-        """The factor as a function of time."""
+        """Factor as a function of time."""
         return TimeFunction(self.course, self.factor)
 
 
 class TemperatureHistory(TimeHistory):
-    """Temperature of a surface, or of the surroundings.
+    """Temperature of a surface, or ambient temperature.
 
     Attributes
     ----------
@@ -136,7 +137,7 @@ class TemperatureHistory(TimeHistory):
 
     @property
     def function(self) -> TimeFunction:
-        """The temperature [K] as a function of time."""
+        """Temperature [K] as a function of time."""
         return TimeFunction(self.course, self.temperature)
 
 
@@ -169,7 +170,7 @@ class History(TimeHistory):
                 must_match(key, values, self.time, "times")
                 self._closes(key, values)
         if self.force is not None and not any(self.force):
-            raise KeyFault("force", "one at least must be greater than 0 N")
+            raise KeyFault("force", "at least one value must be greater than 0 N")
         start = self.cycle_start
         if start is not None:
             if not self.time[0] <= start < self.time[-1]:
@@ -179,11 +180,14 @@ class History(TimeHistory):
                     f"{self.time[-1]:g} s, the ends of time",
                 )
             if not self.loads.ends_as(start):
-                raise KeyFault("cycle_start", "a cycle must end with the loads that it begins with")
+                raise KeyFault(
+                    "cycle_start",
+                    "the loads at both ends of the cycle must be equal",
+                )
         return self
 
     @property
     def loads(self) -> LoadHistory:
-        """The loads as functions of time."""
+        """Loads as functions of time."""
         values = {key: getattr(self, key) for key in KEYS}
         return LoadHistory(self.course, **values, cycle_start=self.cycle_start)

@@ -1,134 +1,128 @@
-"""Laws in a case file: a number, an expression, or a registered law with its keys."""
+"""Laws in a case file: a number, an expression, or the table of a registered law."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import Annotated, Any
+from dataclasses import MISSING, fields
+from functools import lru_cache
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, PlainSerializer, PlainValidator, TypeAdapter, ValidationError
+from pydantic import Field, PlainSerializer, PlainValidator, TypeAdapter, create_model
 
 from ...errors import quoted
 from ...laws.by_name import registered_laws
 from ...laws.coefficients.constant import Constant
 from ...laws.expressions import Expression
 from ...laws.formulas import FormulaLaw, FormulaWear
-from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, InterfaceLaw, WearRate
+from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
 from ...laws.plausible import require_interface_law, require_wear_rate
 from ...laws.registry import Role
 from ..values.expressions import expression
-from ..values.section import KeyFault, Number
+from ..values.section import KeyFault, Number, Section
 from ..values.units import quantity
 
 _COEFFICIENT: TypeAdapter[float] = TypeAdapter(Annotated[Number, Field(ge=0.0)])
 
 
-@dataclass(frozen=True)
-class NamedLaw:
-    """A registered law.
+class LawTable(Section):
+    """Table of a registered law: its type, and a key for each parameter of the law."""
 
-    Attributes
-    ----------
-    type : str
-        Its name.
-    law : object
-        The law, with the values of its keys.
-    """
+    LAW: ClassVar[type]
 
     type: str
-    law: Any
+
+    @property
+    def law(self) -> Law:
+        """Law with the values of the keys."""
+        keys = type(self).model_fields.keys() - {"type"}
+        return self.LAW(**{key: getattr(self, key) for key in keys})
+
+    def __reduce__(self):
+        """Pickle the law with its keys, as the class of its table is made when needed."""
+        return _restored, (self.LAW, dict(self))
 
 
-def named_law(role: Role, table: Mapping[str, Any]) -> NamedLaw:
-    """Read the table of a registered law.
+def _restored(law: type, keys: dict[str, Any]) -> LawTable:
+    return _table_of(law).model_construct(**keys)
+
+
+@lru_cache
+def _table_of(law: type) -> type[LawTable]:
+    """Table of a registered law, with the units and bounds of its parameters."""
+    keys: dict[str, Any] = {}
+    for field in fields(law):
+        unit, example, bounds = (field.metadata[name] for name in ("unit", "example", "bounds"))
+        kind = quantity(unit, example, **bounds) if unit else Annotated[Number, Field(**bounds)]
+        keys[field.name] = (kind, ... if field.default is MISSING else field.default)
+    table = create_model(law.__name__, __base__=LawTable, **keys)
+    table.LAW = law
+    return table
+
+
+def typed_table(
+    role: Role, data: Mapping[str, Any], others: Mapping[str, type[Section]] | None = None
+) -> Section:
+    """Read the table of a registered law, or of one of other types.
 
     Raises
     ------
-    KeyFault
+    KeyFault, ValidationError
         If the type or a key is missing, unknown, or out of bounds.
     """
-    laws = registered_laws(role)
-    allowed = ", ".join(repr(name) for name in laws)
-    if "type" not in table:
-        raise KeyFault("type", f"missing; one of: {allowed}")
-    name = table["type"]
-    if not isinstance(name, str) or name not in laws:
+    laws, others = registered_laws(role), others or {}
+    allowed = ", ".join(repr(name) for name in (*others, *laws))
+    if "type" not in data:
+        raise KeyFault("type", f"missing; must be one of: {allowed}")
+    name = data["type"]
+    if not isinstance(name, str) or name not in (*others, *laws):
         raise KeyFault("type", f"found {quoted(name)}; must be one of: {allowed}")
-    parameters = {field.name: field for field in fields(laws[name])}
-    for key in table:
-        if key not in parameters and key != "type":
-            raise KeyFault(key, f"unknown key; known: {', '.join(parameters)}")
-    values = {
-        key: _value(key, field.metadata, table[key])
-        for key, field in parameters.items()
-        if key in table
-    }
-    try:
-        return NamedLaw(name, laws[name](**values))
-    except TypeError:
-        missing = next(key for key in parameters if key not in values)
-        raise KeyFault(missing, f"missing; a law of type {name!r} needs it") from None
-
-
-def _value(key: str, metadata: Mapping[str, Any], given: Any) -> float:
-    unit, example, bounds = (metadata[name] for name in ("unit", "example", "bounds"))
-    kind = quantity(unit, example, **bounds) if unit else Annotated[Number, Field(**bounds)]
-    try:
-        return TypeAdapter(kind).validate_python(given)
-    except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
-        said = fault.get("ctx", {}).get("error")
-        text = f"found {quoted(given)}; {fault['msg'].replace('Input should be', 'must be')}"
-        raise KeyFault(key, str(said) if said else text) from None
+    if name in others:
+        return others[name].model_validate(data)
+    table = _table_of(laws[name])
+    for key in data:
+        if key not in table.model_fields:
+            known = [key for key in table.model_fields if key != "type"]
+            raise KeyFault(key, f"unknown key; known: {', '.join(known)}")
+    return table.model_validate(data)
 
 
 def written(value: Any) -> Any:
-    """A law as the case file has it."""
-    if isinstance(value, Expression):
-        return value.text
-    if isinstance(value, NamedLaw):
-        keys = {
-            field.name: _quantity(getattr(value.law, field.name), field.metadata["unit"])
-            for field in fields(value.law)
-        }
-        return {"type": value.type, **keys}
-    return value
+    """Law as in a case file."""
+    if isinstance(value, Section):
+        return value.model_dump()
+    return value.text if isinstance(value, Expression) else value
 
 
-def _quantity(value: float, unit: str) -> float | str:
-    return f"{value!r} {unit}" if unit else value
-
-
-def law_of(value: float | Expression | NamedLaw, name: str, least: float) -> InterfaceLaw:
-    """The law of a value of a key.
+def law_of(value: float | Expression | LawTable, name: str, least: float) -> Law:
+    """Friction or conductance law of a value of a key.
 
     Parameters
     ----------
-    value : float, Expression or NamedLaw
+    value : float, Expression or LawTable
     name : str
-        For messages of the law.
+        Name of the law, for its messages.
     least : float
-        Smallest value that the law may have.
+        Smallest valid value of the law.
     """
     if isinstance(value, Expression):
         return FormulaLaw(value, name, least)
-    return value.law if isinstance(value, NamedLaw) else Constant(value)
+    return value.law if isinstance(value, LawTable) else Constant(value)
 
 
-def wear_rate_of(value: Expression | NamedLaw, name: str) -> WearRate:
-    """The wear rate of a value of a key; `name` is for its messages."""
-    return value.law if isinstance(value, NamedLaw) else FormulaWear(value, name)
+def wear_rate_of(value: Expression | LawTable) -> Law:
+    """Wear rate of a value of a key."""
+    return value.law if isinstance(value, LawTable) else FormulaWear(value)
 
 
-def checked(value: Expression | NamedLaw, name: str, least: float) -> Expression | NamedLaw:
-    """Check the law of a value, and return the value."""
+def checked(value: Any, name: str, least: float) -> Any:
+    """Value of a key, after a check of its law."""
     require_interface_law(law_of(value, name, least))
     return value
 
 
 def _friction(given: Any) -> Any:
-    if isinstance(given, Expression | NamedLaw):
+    if isinstance(given, Expression | LawTable):
         return given
     if isinstance(given, str):
         found = expression(given, "", INTERFACE_VARIABLES)
@@ -139,30 +133,30 @@ def _friction(given: Any) -> Any:
             )
         return checked(found, "friction", -math.inf)
     if isinstance(given, dict):
-        return checked(named_law("friction", given), "friction", -math.inf)
+        return checked(typed_table("friction", given), "friction", -math.inf)
     return _COEFFICIENT.validate_python(given)
 
 
 def _wear(given: Any) -> Any:
-    if isinstance(given, Expression | NamedLaw):
+    if isinstance(given, Expression | LawTable):
         return given
-    if not isinstance(given, str | dict):
+    law: Any
+    if isinstance(given, str):
+        law = expression(given, "m/s", WEAR_VARIABLES)
+    elif isinstance(given, dict):
+        law = typed_table("wear", given)
+    else:
         raise ValueError(
             f"found {quoted(given)}; must be an expression in "
             f"{', '.join(WEAR_VARIABLES)}, or a table with a type"
         )
-    law = (
-        expression(given, "m/s", WEAR_VARIABLES)
-        if isinstance(given, str)
-        else named_law("wear", given)
-    )
-    require_wear_rate(wear_rate_of(law, "wear rate"))
+    require_wear_rate(wear_rate_of(law))
     return law
 
 
 Friction = Annotated[
-    float | Expression | NamedLaw, PlainValidator(_friction), PlainSerializer(written)
+    float | Expression | LawTable, PlainValidator(_friction), PlainSerializer(written)
 ]
 """Coefficient of friction: a number, an expression in p, v and T, or a registered law."""
-RateOfWear = Annotated[Expression | NamedLaw, PlainValidator(_wear), PlainSerializer(written)]
+RateOfWear = Annotated[Expression | LawTable, PlainValidator(_wear), PlainSerializer(written)]
 """Wear rate: an expression in p, v, T, depth and mu [m/s], or a registered law."""

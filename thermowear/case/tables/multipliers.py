@@ -17,7 +17,7 @@ NotNegative = Annotated[Number, Field(ge=0.0)]
 
 
 def must_increase(key: str, values: tuple[float, ...]) -> None:
-    """Refuse a list that is empty, or that somewhere does not increase."""
+    """Reject a list that is empty or not strictly increasing."""
     if not values:
         raise KeyFault(key, "is empty; needs at least one value")
     if any(b <= a for a, b in pairwise(values)):
@@ -25,13 +25,13 @@ def must_increase(key: str, values: tuple[float, ...]) -> None:
 
 
 def must_match(key: str, values: tuple[float, ...], places: tuple[float, ...], what: str) -> None:
-    """Refuse a list with more or fewer values than there are places for them."""
+    """Reject a list whose length differs from that of another list."""
     if len(values) != len(places):
         raise KeyFault(key, f"has {len(values)} values for {len(places)} {what}")
 
 
 class MultiplierTable(Section):
-    """Factor by straight lines between given places, constant beyond the ends.
+    """Piecewise linear factor of one variable, constant beyond the ends.
 
     Attributes
     ----------
@@ -51,36 +51,36 @@ class MultiplierTable(Section):
 
     @property
     def table(self) -> Table1D:
-        """The factor as a piecewise linear function."""
+        """Factor as a piecewise linear function."""
         return Table1D(self.at, self.factor)
 
 
 class TemperatureTable(MultiplierTable):
-    """A factor that depends on the temperature [K]."""
+    """Factor that depends on the temperature [K]."""
 
     at: tuple[units.Temperature, ...]
 
 
 class ExpansionTable(TemperatureTable):
-    """A factor of the secant coefficient of expansion, which may vanish."""
+    """Factor of the secant coefficient of expansion, which may be 0."""
 
     factor: tuple[NotNegative, ...]
 
 
 class PressureTable(MultiplierTable):
-    """A factor that depends on the pressure [Pa]."""
+    """Factor that depends on the pressure [Pa]."""
 
     at: tuple[units.LeastPressure, ...]
 
 
 class SpeedTable(MultiplierTable):
-    """A factor that depends on the sliding speed [m/s]."""
+    """Factor that depends on the sliding speed [m/s]."""
 
     at: tuple[units.Speed, ...]
 
 
 class MultiplierTables(Section):
-    """Factors that multiply each other."""
+    """Product of tabulated factors."""
 
     temperature: TemperatureTable | None = None
     pressure: PressureTable | None = None
@@ -94,6 +94,6 @@ class MultiplierTables(Section):
 
     @property
     def multipliers(self) -> Multipliers:
-        """The factors as a law."""
+        """Factors as a law."""
         tables = (self.temperature, self.pressure, self.speed)
         return Multipliers(*(None if table is None else table.table for table in tables))

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from ..values.section import Switch
 from ..values.units import Length
-from .geometry import Geometry
+from .geometry import Geometry, keyed
 
 
 class PlaneGeometry(Geometry):
@@ -22,7 +22,7 @@ class PlaneGeometry(Geometry):
 
     thickness: Length = 1e-3
 
-    @property
+    @keyed
     def thickness_factor(self) -> float | None:
         return self.thickness
 
@@ -40,6 +40,6 @@ class HalvableGeometry(PlaneGeometry):
 
     half: Switch = False
 
-    @property
+    @keyed
     def thickness_factor(self) -> float | None:
         return 2 * self.thickness if self.half else self.thickness

@@ -1,4 +1,4 @@
-"""The tables and keys of a case file.
+"""Tables and keys of a case file.
 
 All values are in SI after reading; `units` defines the unit of each key.
 """
@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from ...errors import CaseError, quoted
-from ...laws.interfaces import InterfaceLaw
+from ...laws.interfaces import Law
 from ...laws.plausible import typical_value
 from ..values import units
 from ..values.section import Number, Section, Switch
@@ -85,7 +85,7 @@ class MeshTable(Section):
 
 
 class ContactTable(Section):
-    """The interface, see `model.interface.Interface`.
+    """Table ``contact``, see `model.interface.Interface`.
 
     Attributes
     ----------
@@ -110,13 +110,13 @@ class ContactTable(Section):
     positioning: Switch = False
 
     @property
-    def friction_law(self) -> InterfaceLaw:
-        """The coefficient of friction as a law, without `friction_factor`."""
+    def friction_law(self) -> Law:
+        """Coefficient of friction as a law, without `friction_factor`."""
         return law_of(self.friction, "contact.friction", -math.inf)
 
     @property
     def nominal_friction(self) -> float:
-        """The coefficient of friction; of a law, its value in a typical state."""
+        """Coefficient of friction; for a law, its value in a typical state."""
         given = self.friction
         return given if isinstance(given, float) else typical_value(self.friction_law)
 

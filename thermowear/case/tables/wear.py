@@ -1,12 +1,13 @@
-"""The wear tables: ``rate = coefficient · s^b · v^a`` of each body; s: friction stress or pressure.
+"""Table ``wear``: wear law of each body, and settings of the geometry updates.
 
-Beside them stands how worn faces are followed.
+The wear law is ``rate = coefficient · s^b · v^a`` (s: friction stress or pressure),
+or any law of the rate.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import ItemsView, Iterator, KeysView, ValuesView
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import (
@@ -19,7 +20,7 @@ from pydantic import (
 )
 
 from ...errors import quoted
-from ...laws.interfaces import WearRate
+from ...laws.interfaces import Law
 from ..values.section import KeyFault, Number, Section
 from ..values.units import parse, registry
 from .law_values import RateOfWear, wear_rate_of
@@ -27,7 +28,7 @@ from .multipliers import MultiplierTables
 
 _EXAMPLE = "2e-7 1/MPa"
 _OF_POWER = ("coefficient", "per", "pressure_exponent", "velocity_exponent")
-"""Keys of a law that is a power."""
+"""Keys of a power law."""
 
 
 def _coefficient(text: Any):
@@ -38,7 +39,7 @@ def _coefficient(text: Any):
 
 
 def _text(value) -> str:
-    """As text that is read back to the very same quantity."""
+    """Text that is read back to the same quantity exactly."""
     unit = f"{value.units:~C}"
     if registry().parse_units(unit) != value.units:  # pint rounds the exponents it writes
         unit = " * ".join(f"{name}**{power!r}" for name, power in value.unit_items())
@@ -54,20 +55,21 @@ class BodyWearTable(Section):
     Attributes
     ----------
     coefficient : pint.Quantity or None
-        In the unit that fits both exponents.
-    rate : Expression, NamedLaw or None
+        Wear coefficient, in a unit that fits both exponents.
+    rate : Expression, LawTable or None
         Wear rate as an expression in p, v, T, depth and mu, or a registered law, in place of the
         coefficient, its exponents and `per`.
     per : str
-        ``"friction-stress"``: it multiplies ``(mu p)^b v^a``; ``"pressure"``: ``p^b v^a``.
+        ``"friction-stress"``: the coefficient multiplies ``(mu p)^b v^a``; ``"pressure"``:
+        ``p^b v^a``.
     pressure_exponent, velocity_exponent : float
         b and a.
     spread : str
-        ``"in-place"``: the body wears where it is pressed; ``"track"``: a body 2 that passes under
-        body 1 wears along its whole track: evenly under a plane body 1; a turning disk at each
-        radius, by the part of a turn for which it is under the pad.
+        ``"in-place"``: wear at the contact points; ``"track"``: wear of body 2 along its whole
+        track: uniform in plane models; on a rotating disk at each radius, multiplied by the
+        fraction of a turn for which it is under the pad.
     factor : MultiplierTables
-        Of the coefficient, by the temperature of the body's own face, pressure and speed.
+        Factors of the rate: tables of the temperature of the body's own face, pressure and speed.
     """
 
     coefficient: Coefficient | None = None
@@ -83,7 +85,7 @@ class BodyWearTable(Section):
         if self.rate is not None:
             for key in _OF_POWER:
                 if key in self.model_fields_set:
-                    raise KeyFault(key, "is for a wear coefficient; leave it out beside rate")
+                    raise KeyFault(key, "not allowed together with rate")
             return self
         if self.coefficient is None:
             raise KeyFault("coefficient", "missing")
@@ -96,20 +98,20 @@ class BodyWearTable(Section):
         return self
 
     @model_serializer(mode="wrap")
-    def _keys_of_its_law(self, handler):
-        """Without the keys of the other kind of law."""
+    def _without_other_keys(self, handler):
+        """Leave out the keys of the other type of law."""
         written = handler(self)
         left_out = ("rate",) if self.rate is None else _OF_POWER
         return {key: value for key, value in written.items() if key not in left_out}
 
     @property
-    def law(self) -> WearRate | None:
-        """The law of `rate`; None where there is a coefficient."""
-        return None if self.rate is None else wear_rate_of(self.rate, "wear rate")
+    def law(self) -> Law | None:
+        """Law given by `rate`; None for a coefficient."""
+        return None if self.rate is None else wear_rate_of(self.rate)
 
     @property
     def variables(self) -> frozenset[str]:
-        """Variables of the law, of p, v, T, depth and mu; those of the tables are not counted."""
+        """Variables of the law (p, v, T, depth, mu), without those of the tables of factors."""
         if self.law is not None:
             return self.law.variables
         return frozenset({"p", "v", "mu"} if self.per == "friction-stress" else {"p", "v"})
@@ -120,7 +122,7 @@ class BodyWearTable(Section):
         return bool(self.variables & {"T", "depth"})
 
     def coefficient_si(self) -> float:
-        """The coefficient in ``(m/s)^(1-a) Pa^(-b)``.
+        """Coefficient in ``(m/s)^(1-a) Pa^(-b)``.
 
         Raises
         ------
@@ -129,9 +131,11 @@ class BodyWearTable(Section):
         """
         assert self.coefficient is not None
         a, b = self.velocity_exponent, self.pressure_exponent
-        due = {"[length]": 1 - a + b, "[time]": a - 1 + 2 * b, "[mass]": -b}
+        needed = {"[length]": 1 - a + b, "[time]": a - 1 + 2 * b, "[mass]": -b}
         found = dict(self.coefficient.dimensionality)
-        if any(abs(due.get(k, 0) - found.get(k, 0)) > 1e-9 for k in due.keys() | found.keys()):
+        if any(
+            abs(needed.get(k, 0) - found.get(k, 0)) > 1e-9 for k in needed.keys() | found.keys()
+        ):
             rate = "" if a == 1 else f"(m/s)^{1 - a:.12g} "
             raise KeyFault(
                 "coefficient",
@@ -148,19 +152,18 @@ def _update(value: Any) -> Any:
     raise ValueError(f'found {quoted(value)}; must be "auto", "never", or a number up to 1')
 
 
-class WearTable(Section):
+class WearTable(Section, Mapping[str, BodyWearTable]):
     """Wear laws by body, a mapping to `BodyWearTable`, and settings of the geometry updates.
 
     Attributes
     ----------
     update : str or float
-        When the meshes are moved to the worn faces. ``"auto"``: when the wear kept in the gap
-        exceeds `AUTOMATIC` of the sizes that it is held against; a number: that part of them;
-        ``"never"``: all wear stays in the gap.
+        Largest gap wear before a geometry update, relative to the sizes of the bodies: a number,
+        ``"auto"`` for `AUTOMATIC`, or ``"never"`` for no updates.
     cycles : int or None
-        Of an analysis of cycles: how many of them wear.
+        Number of cycles of a fretting or reciprocating analysis.
     max_jump : int or None
-        The most cycles that a computed one may stand for.
+        Largest cycle jump.
     """
 
     model_config = ConfigDict(extra="allow")
@@ -175,7 +178,7 @@ class WearTable(Section):
 
     @property
     def largest_kept(self) -> float:
-        """Part of the sizes of the bodies up to which wear is kept in the gap."""
+        """Largest gap wear, relative to the sizes of the bodies."""
         if self.update == "never":
             return math.inf
         return self.AUTOMATIC if self.update == "auto" else float(self.update)
@@ -183,23 +186,11 @@ class WearTable(Section):
     def __getitem__(self, body: str) -> BodyWearTable:
         return self._laws[body]
 
-    def __contains__(self, body: object) -> bool:
-        return body in self._laws
-
     def __iter__(self) -> Iterator[str]:  # type: ignore[override]
         return iter(self._laws)
 
     def __len__(self) -> int:
         return len(self._laws)
-
-    def keys(self) -> KeysView[str]:
-        return self._laws.keys()
-
-    def values(self) -> ValuesView[BodyWearTable]:
-        return self._laws.values()
-
-    def items(self) -> ItemsView[str, BodyWearTable]:
-        return self._laws.items()
 
     @property
     def _laws(self) -> dict[str, BodyWearTable]:

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from ..tables.analyses import Fretting, Transient
 from ..tables.history import History
 from ..tables.schema import Case
-
-Fault = tuple[str, str]
+from .faults import Fault
 
 _CONSTANT = ("moment", "moments", "tangential_force", "surfaces")
 """Loads that no history changes."""

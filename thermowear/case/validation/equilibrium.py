@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from ..tables.geometry import Geometry
 from ..tables.schema import Case
-
-Fault = tuple[str, str]
+from .faults import Fault
 
 _FREE = {
     "axisymmetric": ("z",),

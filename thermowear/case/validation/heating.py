@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from ..tables.heat import HeatTable
 from ..tables.schema import Case
+from .faults import Fault
 
-Fault = tuple[str, str]
 Need = tuple[str, str, str]
 
 SURFACES = ("cooling", "temperature", "flux", "power")

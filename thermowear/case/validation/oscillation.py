@@ -8,8 +8,7 @@ from ...laws.load_history import LoadHistory
 from ..tables.analyses import Fretting, Reciprocating
 from ..tables.driving import MotionTable
 from ..tables.schema import Case
-
-Fault = tuple[str, str]
+from .faults import Fault
 
 
 def counted(case: Case) -> Iterator[Fault]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..tables.schema import Case
-
-Fault = tuple[str, str]
+from .faults import Fault
 
 _CONSTANT = ("fretting", "reciprocating", "stability")
 """Analyses in which all properties are constant."""

@@ -1,4 +1,4 @@
-"""Units in the expressions of laws."""
+"""Expressions of laws, with units by pint."""
 
 from __future__ import annotations
 
@@ -6,31 +6,30 @@ import math
 from functools import lru_cache
 
 from ...laws.expressions import Dimension, Expression, parse_expression
+from ...laws.interfaces import UNITS
 from .units import registry, unit_of
 
 _ROUNDING = 1e-9
-VARIABLES = {"p": "Pa", "v": "m/s", "T": "K", "depth": "m", "mu": ""}
-"""Names and SI units of the variables of laws."""
 
 
 def expression(text: str, unit: str, variables: tuple[str, ...]) -> Expression:
-    """Read the expression of a law.
+    """Parse the expression of a law.
 
     Parameters
     ----------
     text : str
-        What the case file holds at the key.
+        Value of the key in the case file.
     unit : str
-        Of the value.
+        Unit of the value of the expression.
     variables : tuple of str
-        Those that may occur, of `VARIABLES`.
+        Variables that may occur, from `UNITS`.
 
     Raises
     ------
     ValueError
-        In one line, with the position of the fault.
+        One-line message with the position of the fault.
     """
-    known = {name: _dimension(VARIABLES[name]) for name in variables}
+    known = {name: _dimension(UNITS[name]) for name in variables}
     return parse_expression(text, known, unit, in_si)
 
 
@@ -41,7 +40,7 @@ def in_si(text: str) -> tuple[float, Dimension]:
     Raises
     ------
     ValueError
-        If it is none, or not in proportion to SI: a temperature scale, or decibels.
+        If it is invalid, or not proportional to the SI unit (temperature scales, decibels).
     """
     units = registry()
     try:
@@ -52,9 +51,7 @@ def in_si(text: str) -> tuple[float, Dimension]:
     if not 0.0 < one.magnitude < math.inf:
         raise ValueError(f"the unit {text!r} is out of range in SI")
     if abs(two.magnitude / one.magnitude - 2.0) > _ROUNDING:
-        raise ValueError(
-            f"{text!r} is a scale with a zero of its own; write temperatures in K (293.15 K)"
-        )
+        raise ValueError(f"{text!r} is a scale with an offset; write temperatures in K (293.15 K)")
     powers = {
         units.get_symbol(name): power
         for name, power in one.unit_items()

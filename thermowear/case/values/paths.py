@@ -22,12 +22,12 @@ def _resolve_path(path: str, info: ValidationInfo) -> str:
     folder = (info.context or {}).get(FOLDER)
     if folder is None:
         return here
-    beside = os.path.abspath(os.path.join(folder, path))
-    if here == beside or not os.path.exists(here):
-        return beside
-    if os.path.exists(beside):
-        note(f"found {beside}, next to the case file; the other file {here} is not read")
-        return beside
+    in_folder = os.path.abspath(os.path.join(folder, path))
+    if here == in_folder or not os.path.exists(here):
+        return in_folder
+    if os.path.exists(in_folder):
+        note(f"found {in_folder}, next to the case file; the other file {here} is not read")
+        return in_folder
     note(
         f"found {here} in the current folder; paths are relative to the folder of the case "
         f"file: {folder}"

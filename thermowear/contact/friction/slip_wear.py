@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...laws.interfaces import WearRate
+from ...laws.interfaces import Law, LocalState
 from ..search.pairing import Pairing
 from .stick_slip_state import StickSlipState
 
@@ -85,7 +85,7 @@ class SlipWear:
 
     Attributes
     ----------
-    laws : tuple of WearRate
+    laws : tuple of Law
         Wear laws of the wearing bodies, independent of temperature and depth.
     profiles : tuple of WornProfile
         Worn profiles of the same bodies.
@@ -97,7 +97,7 @@ class SlipWear:
         Number of such increments that it represents, one per cycle.
     """
 
-    laws: tuple[WearRate, ...]
+    laws: tuple[Law, ...]
     profiles: tuple[WornProfile, ...]
     friction: float
     duration: float
@@ -120,7 +120,7 @@ class SlipWear:
         slip : ndarray, shape (m,)
             Magnitude of the weighted mean slip of the increment [m].
         """
-        return self._each(pressure, slip, [law.rate for law in self.laws])
+        return self._each(pressure, slip, [law.value for law in self.laws])
 
     def slopes(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
         """Derivatives of `depths` with respect to the pressure, shape (n_wearing, m) [m/Pa]."""
@@ -130,7 +130,8 @@ class SlipWear:
         if self.duration == 0.0:
             return np.zeros((len(self.laws), len(pressure)))
         speed, time = slip / self.duration, self.repeats * self.duration
-        values = [time * of_law(pressure, speed, friction=self.friction) for of_law in functions]
+        state = LocalState(pressure, speed, mu=self.friction)
+        values = [time * of_law(state) for of_law in functions]
         return np.reshape(values, (-1, len(pressure)))
 
     def halved(self) -> SlipWear:

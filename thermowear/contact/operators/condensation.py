@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+
+from petsc4py import PETSc
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,6 +14,7 @@ from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .holder import RigidHolder
+from .traces import transpose_product
 
 _COLUMNS = {2: 32, 3: 128}
 """Right-hand sides per solution, by dimension; limited by the caches, or the memory."""
@@ -34,9 +38,6 @@ class CondensedContact:
         Rw = Ψᵀ w R: weak gap closed per unit of each free rigid motion of the holder.
     force_modes : ndarray, shape (m, k)
         Ψᵀ w T: generalised force of each coefficient on each of these motions.
-    influence : ndarray or None, shape (n_owned, m)
-        K⁻¹ Bᵗ w Ψ: the weak gap due to any nodal load f is ``influenceᵀ f``. Large: stored on
-        request.
     """
 
     basis: np.ndarray
@@ -44,7 +45,6 @@ class CondensedContact:
     compliance: np.ndarray
     modes: np.ndarray
     force_modes: np.ndarray
-    influence: np.ndarray | None
 
     def weak(self, values: np.ndarray) -> np.ndarray:
         """Weighted means ``Ψᵀ w v`` of values at the points, shape (m,)."""
@@ -69,8 +69,8 @@ class Influence:
         Owned degrees of freedom in cells at the contact, the only ones loaded by its tractions.
     near : ndarray, shape (n_touching, m)
         Rows of K⁻¹ Bᵗ w Ψ for these [m per coefficient].
-    whole : ndarray or None, shape (n_owned, m)
-        All rows: large, stored on request.
+    per_rise : tuple of ndarray, shape (n_owned of the temperature, m)
+        Gᵀ K⁻¹ Bᵗ w Ψ for each thermal load matrix G: weak gap per nodal rise [m³/K].
     comm : mpi4py.MPI.Comm
     """
 
@@ -79,7 +79,7 @@ class Influence:
     weighted: np.ndarray
     touching: np.ndarray
     near: np.ndarray
-    whole: np.ndarray | None
+    per_rise: tuple[np.ndarray, ...]
     comm: object
 
     def condensed(self, traction: sp.csr_matrix, holder: RigidHolder) -> CondensedContact:
@@ -96,9 +96,7 @@ class Influence:
         if traction is self.trace:
             compliance = (compliance + compliance.T) / 2
         modes, force_modes = (self.weighted.T @ m for m in (holder.modes, holder.force_modes))
-        return CondensedContact(
-            self.basis, self.weighted, compliance, modes, force_modes, self.whole
-        )
+        return CondensedContact(self.basis, self.weighted, compliance, modes, force_modes)
 
 
 def influence(
@@ -106,9 +104,12 @@ def influence(
     pairing: Pairing,
     trace: sp.csr_matrix,
     basis: np.ndarray,
-    keep_whole: bool = False,
+    thermal_loads: Sequence[PETSc.Mat] = (),
 ) -> Influence:
     """Compute the elastic response to every pressure function. Every rank calls.
+
+    Solutions are reduced block by block: only rows at the contact and products with the thermal
+    loads are stored.
 
     Parameters
     ----------
@@ -118,8 +119,8 @@ def influence(
         Transposed gap trace Bᵀ.
     basis : ndarray, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
-    keep_whole : bool
-        Whether to store all rows, for thermal distortion.
+    thermal_loads : sequence of petsc4py.PETSc.Mat
+        Matrices G of nodal forces per nodal rise, from `Elasticity.thermal_load`.
     """
     dim = elastic.bodies.mesh.geometry.dim
     weighted = pairing.weights[:, None] * basis
@@ -127,34 +128,25 @@ def influence(
     loads = (trace @ sp.csr_matrix(weighted)).tocsc()
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
     touching = (nodes[:, None] * dim + np.arange(dim)).ravel()
-    near, whole = [], []
-    for start in range(0, weighted.shape[1], _COLUMNS[dim]):
-        displacements = elastic.solve(loads[:, start : start + _COLUMNS[dim]].tocsr())
+    near: list[np.ndarray] = []
+    per_rise: list[list[np.ndarray]] = [[] for _ in thermal_loads]
+    for columns in blocks(weighted.shape[1], dim):
+        displacements = elastic.solve(loads[:, columns].tocsr())
         near.append(displacements[touching])
-        if keep_whole:
-            whole.append(displacements)
+        for matrix, products in zip(thermal_loads, per_rise, strict=True):
+            products.append(transpose_product(matrix, displacements))
     return Influence(
         trace,
         basis,
         weighted,
         touching,
         np.hstack(near),
-        np.hstack(whole) if keep_whole else None,
+        tuple(np.hstack(products) for products in per_rise),
         elastic.space.mesh.comm,
     )
 
 
-def condense(
-    elastic: Elasticity,
-    pairing: Pairing,
-    trace: sp.csr_matrix,
-    traction: sp.csr_matrix,
-    basis: np.ndarray,
-    holder: RigidHolder,
-    keep_influence: bool = False,
-) -> CondensedContact:
-    """Condense elasticity to the pressure space; parameters as in `influence` and `Influence`.
-
-    Every rank calls.
-    """
-    return influence(elastic, pairing, trace, basis, keep_influence).condensed(traction, holder)
+def blocks(count: int, dim: int) -> Iterator[slice]:
+    """Ranges of columns that are solved for together, in a mesh of dimension `dim`."""
+    size = _COLUMNS[dim]
+    return (slice(start, start + size) for start in range(0, count, size))

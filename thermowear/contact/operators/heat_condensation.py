@@ -11,7 +11,7 @@ import scipy.sparse as sp
 
 from ...bulk.heat.conduction import Conduction
 from ...parallel import sum_over_ranks
-from .condensation import CondensedContact
+from .condensation import blocks
 from .heat import BaselineResponse, HeatExchange, InterfaceHeat
 from .traces import distributed
 
@@ -54,8 +54,12 @@ def condense_heat(
     """
     comm = conduction.space.mesh.comm
     # the bodies are uncoupled in the bulk: one solution serves a column of both faces
-    field = conduction.respond(((traces[0] + traces[1]) @ sp.diags(weights)).tocsr())
-    Θ1, Θ2 = (sum_over_ranks(comm, trace.T @ field) for trace in traces)
+    heat = ((traces[0] + traces[1]) @ sp.diags(weights)).tocsc()
+    found = []
+    for columns in blocks(len(weights), conduction.space.mesh.topology.dim):
+        field = conduction.respond(heat[:, columns].tocsr())
+        found.append([trace.T @ field for trace in traces])
+    Θ1, Θ2 = (sum_over_ranks(comm, np.hstack(columns)) for columns in zip(*found, strict=True))
     return InterfaceHeat(weights, basis, traces, shift, (Θ1, Θ2), partition)
 
 
@@ -71,29 +75,17 @@ def condense_distortion(
     ----------
     conduction : Conduction
     per_rise : ndarray, shape (n_owned, m)
-        Weak gap per nodal rise, see `gap_per_rise` [m³/K].
+        Weak gap per nodal rise, see `Influence` [m³/K].
     face : InterfaceHeat
     """
-    comm = conduction.space.mesh.comm
-    adjoint = conduction.adjoint_response(per_rise)
+    mesh, found = conduction.space.mesh, []
+    for columns in blocks(per_rise.shape[1], mesh.topology.dim):
+        adjoint = conduction.adjoint_response(per_rise[:, columns])
+        found.append([(trace.T @ adjoint).T * face.weights for trace in face.traces])
     first, second = (
-        sum_over_ranks(comm, (trace.T @ adjoint).T * face.weights) for trace in face.traces
+        sum_over_ranks(mesh.comm, np.vstack(rows)) for rows in zip(*found, strict=True)
     )
     return ThermalDistortion((first, second))
-
-
-def gap_per_rise(thermal_load: PETSc.Mat, contact: CondensedContact) -> np.ndarray:
-    """Weak gap per nodal temperature rise, shape (n_owned, m) [m³/K].
-
-    Parameters
-    ----------
-    thermal_load : petsc4py.PETSc.Mat
-        Thermal load matrix G, from `Elasticity.thermal_load`.
-    contact : CondensedContact
-        Contact with stored influence.
-    """
-    assert contact.influence is not None
-    return transpose_product(thermal_load, contact.influence)
 
 
 def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
@@ -105,14 +97,3 @@ def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
     other = second.matMult(second.copy().transpose())
     matrix.axpy(1.0, other, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     return matrix
-
-
-def transpose_product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
-    """Product ``matrixᵀ columns`` by owned rows, shape (n_owned of the matrix's columns, m)."""
-    rows, _ = matrix.getSizes()
-    right = PETSc.Mat().createDense(
-        (rows, columns.shape[1]), array=np.asfortranarray(columns), comm=matrix.comm
-    )
-    right.assemble()
-    result = matrix.transposeMatMult(right)
-    return np.array(result.getDenseArray(), order="F")

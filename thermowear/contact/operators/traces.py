@@ -127,3 +127,14 @@ def gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:
         rows, columns, values = (np.concatenate([part[k] for part in received]) for k in range(3))
     shape = (index_map.size_local * bs, n_points)
     return sp.coo_matrix((values, (rows - first, columns)), shape=shape).tocsr()
+
+
+def transpose_product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
+    """Product ``matrixᵀ columns`` by owned rows, shape (n_owned of the matrix's columns, m)."""
+    rows, _ = matrix.getSizes()
+    right = PETSc.Mat().createDense(
+        (rows, columns.shape[1]), array=np.asfortranarray(columns), comm=matrix.comm
+    )
+    right.assemble()
+    result = matrix.transposeMatMult(right)
+    return np.array(result.getDenseArray(), order="F")

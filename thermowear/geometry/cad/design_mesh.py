@@ -42,5 +42,5 @@ def write_design_mesh(
     if mesh.order == 1 or (path.suffix == ".vtu" and mesh.order > 2):
         mesh = quadratic(mesh)
     points = moved_body(mesh, design, face, extension)
-    told = np.pad(points - mesh.points, ((0, 0), (0, 3 - points.shape[1])))
-    write_mesh(replace(mesh, points=points), path, {"displacement_m": told})
+    displacement = np.pad(points - mesh.points, ((0, 0), (0, 3 - points.shape[1])))
+    write_mesh(replace(mesh, points=points), path, {"displacement_m": displacement})

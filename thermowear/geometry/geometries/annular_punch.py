@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
+from ...case.tables.geometry import named
 from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
 from ..mesh.tagged import TaggedMesh
@@ -48,15 +49,9 @@ class AnnularPunch(Stacked):
     models = ("axisymmetric",)
     bodies = ("punch", "plate")
     surfaces = (
-        "punch_face",
-        "punch_top",
-        "punch_inside",
-        "punch_outside",
-        "plate_face",
-        "plate_bottom",
-        "plate_side",
+        *named("punch", "face", "top", "inside", "outside"),
+        *named("plate", "face", "bottom", "side"),
     )
-    contact = ("punch_face", "plate_face")
     held = "punch_top"
     fixed = "plate_bottom"
 
@@ -72,17 +67,8 @@ class AnnularPunch(Stacked):
 
     @model_validator(mode="after")
     def _nested(self):
-        if not self.inner_radius < self.outer_radius:
-            raise KeyFault(
-                "inner_radius",
-                f"{self.inner_radius:g} m must be less than outer_radius {self.outer_radius:g} m",
-            )
-        if not self.outer_radius < self.plate_radius:
-            raise KeyFault(
-                "plate_radius",
-                f"{self.plate_radius:g} m must be greater than "
-                f"outer_radius {self.outer_radius:g} m",
-            )
+        self.check_less("inner_radius", "outer_radius")
+        self.check_greater("plate_radius", "outer_radius")
         return self
 
     @model_validator(mode="after")

@@ -32,11 +32,16 @@ class ArcContact(PlaneGeometry):
         Angles at the edges of the contact, clockwise from 12 o'clock (+y) [rad].
     rest : str
         Surface of body 2 that is the rest of its contact circle.
+    circle, far_circle : str
+        Keys of the radii of the contact circle and of the circle where body 2 is fixed.
     """
 
     name: ClassVar[str] = ""
     models = ("plane-strain", "plane-stress")
+    rotation_center = (0.0, 0.0)
     rest: ClassVar[str]
+    circle: ClassVar[str] = "disk_radius"
+    far_circle: ClassVar[str]
 
     arc_start: Angle
     arc_end: Angle
@@ -63,12 +68,12 @@ class ArcContact(PlaneGeometry):
     @property
     def radius(self) -> float:
         """Radius of the contact circle [m]."""
-        raise NotImplementedError
+        return getattr(self, self.circle)
 
     @property
     def far_radius(self) -> float:
         """Radius of the circle where body 2 is fixed [m]."""
-        raise NotImplementedError
+        return getattr(self, self.far_circle)
 
     def upper_sheets(self, division: Division) -> list[Sheet]:
         """Cells of body 1."""
@@ -79,11 +84,6 @@ class ArcContact(PlaneGeometry):
         raise NotImplementedError
 
     @keyed
-    def contact(self) -> tuple[str, str]:
-        upper, ring = self.bodies
-        return f"{upper}_face", f"{ring}_face"
-
-    @keyed
     def surfaces(self) -> tuple[str, ...]:
         return tuple(self._claims())
 
@@ -91,11 +91,7 @@ class ArcContact(PlaneGeometry):
     def arc(self) -> tuple[float, float]:
         return self.arc_start, self.arc_end
 
-    @property
-    def rotation_center(self) -> tuple[float, float]:
-        return (0.0, 0.0)
-
-    @property
+    @keyed
     def track(self) -> float:
         return 2 * math.pi * self.radius
 

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
+from ...case.tables.geometry import named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
@@ -39,19 +40,12 @@ class BeamOnFoundation(PlaneGeometry):
     models = ("plane-strain", "plane-stress")
     bodies = ("beam", "foundation")
     surfaces = (
-        "beam_face",
-        "beam_clamp",
-        "beam_support",
-        "beam_load",
-        "beam_top",
-        "foundation_face",
-        "foundation_left",
-        "foundation_right",
-        "foundation_bottom",
+        *named("beam", "face", "clamp", "support", "load", "top"),
+        *named("foundation", "face", "left", "right", "bottom"),
     )
-    contact = ("beam_face", "foundation_face")
     held = "beam_clamp"
     fixed = "foundation_bottom"
+    rollers = ("beam_support",)
 
     type: Literal["beam-on-foundation"]
     length: Length
@@ -71,10 +65,6 @@ class BeamOnFoundation(PlaneGeometry):
                 f"must be between the ends of the beam, 0 and {self.length:g} m",
             )
         return self
-
-    @property
-    def rollers(self) -> tuple[str, ...]:
-        return ("beam_support",)
 
     @property
     def load_span(self) -> tuple[float, float]:
@@ -109,8 +99,8 @@ class BeamOnFoundation(PlaneGeometry):
         """Cells over the whole length, with the number of rows within limits."""
         columns = self._columns(elements)
         wanted = round((top - bottom) / np.diff(columns).max())
-        count = int(np.clip(wanted, *rows))
-        return mesh_body([Sheet(grid(columns, np.linspace(bottom, top, count + 1)), _identity)], 1)
+        ends = np.linspace(bottom, top, int(np.clip(wanted, *rows)) + 1)
+        return mesh_body([Sheet(grid(columns, ends), lambda p: p)], 1)
 
     def _columns(self, elements: int) -> np.ndarray:
         """X of the ends of nearly equal elements that match the ends of the load."""
@@ -124,7 +114,3 @@ class BeamOnFoundation(PlaneGeometry):
             for a, b, n in zip(places[:-1], places[1:], counts, strict=True)
         ]
         return np.concatenate([*parts, [self.length]])
-
-
-def _identity(p: np.ndarray) -> np.ndarray:
-    return p

@@ -11,7 +11,6 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from ...case.values.section import KeyFault
 from ...case.values.units import Length
 from ..meshing.polar import Division
 from ..meshing.quads import Sheet, grid
@@ -38,6 +37,7 @@ class BlockOnDisk(ArcContact):
     held = "block_top"
     fixed = "disk_bore"
     rest = "disk_rim"
+    far_circle = "disk_bore"
 
     type: Literal["block-on-disk"]
     disk_radius: Length
@@ -47,20 +47,8 @@ class BlockOnDisk(ArcContact):
     @model_validator(mode="after")
     def _fits(self):
         self.check_arc(_STEEPEST)
-        if not self.disk_bore < self.disk_radius:
-            raise KeyFault(
-                "disk_bore",
-                f"{self.disk_bore:g} m must be less than disk_radius {self.disk_radius:g} m",
-            )
+        self.check_less("disk_bore", "disk_radius")
         return self
-
-    @property
-    def radius(self) -> float:
-        return self.disk_radius
-
-    @property
-    def far_radius(self) -> float:
-        return self.disk_bore
 
     @property
     def top(self) -> float:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from ...case.tables.geometry import keyed
+from ...case.tables.geometry import keyed, named
 from ..meshing.blocks import SAME
 from .pads_on_disk import PadsOnDisk
 from .stacked import Rectangle, Stacked
@@ -28,14 +28,15 @@ class DiskBrake(PadsOnDisk, Stacked):
     name = "disk-brake"
     models = ("axisymmetric",)
     widest_pad = 360.0
+    rollers = ("disk_middle",)
 
     type: Literal["disk-brake"]
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:
-        pad = (f"pad_{part}" for part in ("face", "back", "inside", "outside"))
-        disk = (f"disk_{part}" for part in ("face", "middle", "outside", "inside"))
-        return *pad, *disk, *(() if self.covers_disk else ("disk_rest",))
+        disk = named("disk", "face", "middle", "outside", "inside")
+        rest = () if self.covers_disk else ("disk_rest",)
+        return *named("pad", "face", "back", "inside", "outside"), *disk, *rest
 
     @property
     def covers_disk(self) -> bool:
@@ -52,10 +53,6 @@ class DiskBrake(PadsOnDisk, Stacked):
     def lower(self) -> Rectangle:
         return Rectangle(self.disk_inner_radius, self.disk_outer_radius, self.disk_thickness / 2)
 
-    @property
-    def rollers(self) -> tuple[str, ...]:
-        return ("disk_middle",)
-
-    @property
+    @keyed
     def sector(self) -> float:
         return self.pad_angle / (2 * math.pi)

@@ -11,8 +11,9 @@ from typing import Literal
 
 import numpy as np
 
-from ..meshing.blocks import SAME, Interval, graded_face, growing, smallest
-from ..meshing.hexes import Lattice, ends_of, level, mesh_lattice
+from ...case.tables.geometry import keyed, named
+from ..meshing.blocks import SAME, Interval, ends_of, graded_face, growing, smallest
+from ..meshing.hexes import Lattice, level, mesh_lattice
 from ..meshing.quads import MeshedBody, tagged_bodies
 from .pads_on_disk import PadsOnDisk
 
@@ -32,35 +33,21 @@ class DiskSector(PadsOnDisk):
     models = ("3d",)
     widest_pad = 300.0
     surfaces = (
-        "pad_face",
-        "pad_back",
-        "pad_inside",
-        "pad_outside",
-        "pad_ends",
-        "disk_face",
-        "disk_rest",
-        "disk_middle",
-        "disk_inside",
-        "disk_outside",
+        *named("pad", "face", "back", "inside", "outside", "ends"),
+        *named("disk", "face", "rest", "middle", "inside", "outside"),
     )
+    press_direction = (0.0, 0.0, -1.0)
+    rotation_center = (0.0, 0.0)
 
     type: Literal["disk-sector"]
 
-    @property
-    def press_direction(self) -> tuple[float, ...]:
-        return (0.0, 0.0, -1.0)
-
-    @property
+    @keyed
     def pivot_point(self) -> tuple[float, ...]:
         """Centroid of the pad's face."""
         r, R, half = self.pad_inner_radius, self.pad_outer_radius, self.pad_angle / 2
         return (2 / 3 * (R**3 - r**3) / (R**2 - r**2) * math.sin(half) / half, 0.0, 0.0)
 
-    @property
-    def rotation_center(self) -> tuple[float, float]:
-        return (0.0, 0.0)
-
-    @property
+    @keyed
     def duty(self) -> float:
         return self.pad_angle / (2 * math.pi)
 

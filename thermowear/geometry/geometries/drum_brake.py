@@ -11,6 +11,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
+from ...case.tables.geometry import keyed
 from ...case.values.section import KeyFault
 from ...case.values.units import Coordinate, Length
 from ..meshing.polar import Division
@@ -42,6 +43,8 @@ class DrumBrake(InsideRing):
     held = "shoe_inside"
     fixed = "drum_rim"
     rest = "drum_inside"
+    circle = "drum_radius"
+    zones = {"lining": "shoe"}
 
     type: Literal["drum-brake"]
     drum_radius: Length
@@ -93,27 +96,19 @@ class DrumBrake(InsideRing):
         x, y = self.pivot
         return y * math.sin(angle) - x * math.cos(angle)
 
-    @property
+    @keyed
     def pivot_point(self) -> tuple[float, float]:
         return self.pivot
 
-    @property
+    @keyed
     def press_direction(self) -> tuple[float, float]:
         """Outward direction at the middle of the lining."""
         middle = (self.arc_start + self.arc_end) / 2
         return math.sin(middle), math.cos(middle)
 
     @property
-    def radius(self) -> float:
-        return self.drum_radius
-
-    @property
     def far_radius(self) -> float:
         return self.drum_radius + self.drum_thickness
-
-    @property
-    def zones(self) -> dict[str, str]:
-        return {"lining": "shoe"}
 
     @property
     def layers(self) -> tuple[float, ...]:

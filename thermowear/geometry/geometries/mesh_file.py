@@ -44,7 +44,6 @@ class MeshFile(HalvableGeometry):
     """Path of a mesh file, and the names of bodies and surfaces in it.
 
     The file names bodies and surfaces by physical groups (gmsh), sets (Abaqus), families (MED) or
-    The file names bodies and surfaces by physical groups (gmsh), sets (Abaqus), families (MED) or
     the numbers of integer cell data (VTK, XDMF). A surface not listed under ``surfaces`` has its
     name in the file.
 
@@ -101,7 +100,7 @@ class MeshFile(HalvableGeometry):
         for key, names in roles.items():
             for name in names:
                 if name in seen:
-                    raise KeyFault(key, f"{name!r} is used twice; each surface has one purpose")
+                    raise KeyFault(key, f"{name!r} is used twice; a surface can have one role only")
                 seen.add(name)
         return self
 
@@ -126,7 +125,7 @@ class MeshFile(HalvableGeometry):
     def fixed(self) -> str:
         return self.fixed_name
 
-    @property
+    @keyed
     def symmetry(self) -> tuple[str, ...]:
         return self.symmetry_names
 
@@ -137,13 +136,13 @@ class MeshFile(HalvableGeometry):
     def contact_area(self) -> float | None:
         return self.contact_area_given
 
-    @property
+    @keyed
     def set_of(self) -> dict[str, str]:
         return {
             f"{body}.{name}": name for body, names in self._with_material.items() for name in names
         }
 
-    @property
+    @keyed
     def zones(self) -> dict[str, str]:
         return {
             f"{body}.{name}": body for body, sets in self._with_material.items() for name in sets

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...case.tables.geometry import Geometry, keyed
+from ...case.tables.geometry import Geometry, keyed, named
 from ...case.tables.plane_geometry import HalvableGeometry
 from ...case.values.units import Length
 from ...errors import CaseError
@@ -42,11 +42,6 @@ class OnBlock(Geometry):
     block_height: Length
 
     @keyed
-    def contact(self) -> tuple[str, str]:
-        upper, block = self.bodies
-        return f"{upper}_face", f"{block}_face"
-
-    @keyed
     def held(self) -> str:
         return f"{self.bodies[0]}_top"
 
@@ -57,11 +52,8 @@ class OnBlock(Geometry):
     @keyed
     def surfaces(self) -> tuple[str, ...]:
         upper, block = self.bodies
-        return (
-            *(f"{upper}_{part}" for part in ("face", "side", "top")),
-            *(f"{block}_{part}" for part in ("face", "top", "side", "bottom")),
-            *self.symmetry,
-        )
+        on_block = named(block, "face", "top", "side", "bottom")
+        return *named(upper, "face", "side", "top"), *on_block, *self.symmetry
 
     @property
     def right_only(self) -> bool:
@@ -171,7 +163,7 @@ class PlaneOnBlock(OnBlock, HalvableGeometry):
 
     block_width: Length
 
-    @property
+    @keyed
     def symmetry(self) -> tuple[str, ...]:
         return tuple(f"{body}_axis" for body in self.bodies) if self.half else ()
 

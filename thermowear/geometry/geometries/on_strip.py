@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from ...case.tables.geometry import keyed
+from ...case.tables.geometry import keyed, named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Length
@@ -35,10 +35,6 @@ class OnStrip(Stacked, PlaneGeometry):
     strip_height: Length
 
     @keyed
-    def contact(self) -> tuple[str, str]:
-        return f"{self.bodies[0]}_face", "strip_face"
-
-    @keyed
     def held(self) -> str:
         return f"{self.bodies[0]}_top"
 
@@ -48,9 +44,9 @@ class OnStrip(Stacked, PlaneGeometry):
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:
-        upper = (f"{self.bodies[0]}_{part}" for part in ("face", "top", "left", "right"))
-        strip = (f"strip_{part}" for part in ("face", "bottom", "right", "left"))
-        return *upper, *strip, *(() if self.covers_strip else ("strip_top",))
+        upper = named(self.bodies[0], "face", "top", "left", "right")
+        rest = () if self.covers_strip else ("strip_top",)
+        return *upper, *named("strip", "face", "bottom", "right", "left"), *rest
 
     @property
     def covers_strip(self) -> bool:
@@ -68,7 +64,7 @@ class OnStrip(Stacked, PlaneGeometry):
         reach = self.strip_length / 2
         return Rectangle(middle - reach, middle + reach, self.strip_height)
 
-    @property
+    @keyed
     def track(self) -> float:
         return self.strip_length
 

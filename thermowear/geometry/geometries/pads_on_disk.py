@@ -32,7 +32,6 @@ class PadsOnDisk(Geometry):
 
     name: ClassVar[str] = ""
     bodies = ("pad", "disk")
-    contact = ("pad_face", "disk_face")
     held = "pad_back"
     fixed = "disk_middle"
     widest_pad: ClassVar[float]

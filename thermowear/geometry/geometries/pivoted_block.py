@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from ...case.values.section import KeyFault
+from ...case.tables.geometry import keyed
 from ...case.values.units import Distance, Length
 from .on_strip import OnStrip
 from .stacked import Rectangle
@@ -39,15 +39,11 @@ class PivotedBlock(OnStrip):
 
     @model_validator(mode="after")
     def _fits(self):
-        if not self.face_start < self.face_end:
-            raise KeyFault(
-                "face_start",
-                f"{self.face_start:g} m must be less than face_end {self.face_end:g} m",
-            )
+        self.check_less("face_start", "face_end")
         self.check_strip()
         return self
 
-    @property
+    @keyed
     def pivot_point(self) -> tuple[float, float]:
         return 0.0, self.pivot_height
 

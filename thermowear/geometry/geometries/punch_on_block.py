@@ -14,7 +14,7 @@ from pydantic import model_validator
 from ...case.tables.geometry import Pressing
 from ...case.values.section import KeyFault
 from ...case.values.units import Length, Radius
-from ..meshing.blocks import growing_from_both, sizes
+from ..meshing.blocks import ends_of, growing_from_both
 from ..meshing.face_ends import face_ends, smoothed
 from ..meshing.quads import Sheet, grid, mesh_body
 from ..meshing.rounded_punch import RoundedPunch, expected_end
@@ -145,10 +145,8 @@ class PunchOnBlock(PlaneOnBlock):
         contact = np.diff(columns).min()
         coarsest = max(self.width, self.height) * 3.0 / elements
         first = (contact, math.sqrt(contact * coarsest))
-        rows = sizes(growing_from_both(0.0, self.height, first, grading, coarsest))
-        ends = np.concatenate([[0.0], np.cumsum(rows)])
-        ends[-1] = self.height
-        return Sheet(grid(columns, ends), lambda p: p)
+        rows = ends_of(growing_from_both(0.0, self.height, first, grading, coarsest))
+        return Sheet(grid(columns, rows), lambda p: p)
 
 
 def _with_end(ends: np.ndarray, place: float, kept: tuple[float, ...]) -> np.ndarray:

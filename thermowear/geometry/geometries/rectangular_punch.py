@@ -11,11 +11,11 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from ...case.tables.geometry import Geometry
+from ...case.tables.geometry import Geometry, named
 from ...case.values.section import KeyFault
 from ...case.values.units import Length
-from ..meshing.blocks import Interval, graded_face, growing, smallest
-from ..meshing.hexes import Lattice, ends_of, level, mesh_lattice
+from ..meshing.blocks import Interval, ends_of, graded_face, growing, smallest
+from ..meshing.hexes import Lattice, level, mesh_lattice
 from ..meshing.quads import MeshedBody, tagged_bodies
 
 
@@ -35,15 +35,10 @@ class RectangularPunch(Geometry):
     models = ("3d",)
     bodies = ("punch", "block")
     surfaces = (
-        "punch_face",
-        "punch_top",
-        "punch_sides",
-        "block_face",
-        "block_top",
-        "block_bottom",
-        "block_sides",
+        *named("punch", "face", "top", "sides"),
+        *named("block", "face", "top", "bottom", "sides"),
     )
-    contact = ("punch_face", "block_face")
+    press_direction = (0.0, 0.0, -1.0)
     held = "punch_top"
     fixed = "block_bottom"
 
@@ -65,10 +60,6 @@ class RectangularPunch(Geometry):
                     f"{block:g} m must be greater than 10/9 of size_{axis} {size:g} m",
                 )
         return self
-
-    @property
-    def press_direction(self) -> tuple[float, ...]:
-        return (0.0, 0.0, -1.0)
 
     def contact_area(self) -> float:
         return self.size_x * self.size_y

@@ -10,7 +10,6 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from ...case.values.section import KeyFault
 from ...case.values.units import Length
 from .inside_ring import InsideRing
 
@@ -33,6 +32,8 @@ class RingSegmentOnDisk(InsideRing):
     held = "segment_inside"
     fixed = "disk_rim"
     rest = "disk_inside"
+    far_circle = "disk_outer_radius"
+    press_direction = (0.0, 1.0)
 
     type: Literal["ring-segment-on-disk"]
     disk_radius: Length
@@ -42,30 +43,9 @@ class RingSegmentOnDisk(InsideRing):
     @model_validator(mode="after")
     def _fits(self):
         self.check_arc(_STEEPEST)
-        radius = self.disk_radius
-        if not self.disk_outer_radius > radius:
-            raise KeyFault(
-                "disk_outer_radius",
-                f"{self.disk_outer_radius:g} m must be greater than disk_radius {radius:g} m",
-            )
-        if not self.segment_thickness < radius:
-            raise KeyFault(
-                "segment_thickness",
-                f"{self.segment_thickness:g} m must be less than disk_radius {radius:g} m",
-            )
+        self.check_greater("disk_outer_radius", "disk_radius")
+        self.check_less("segment_thickness", "disk_radius")
         return self
-
-    @property
-    def press_direction(self) -> tuple[float, float]:
-        return (0.0, 1.0)
-
-    @property
-    def radius(self) -> float:
-        return self.disk_radius
-
-    @property
-    def far_radius(self) -> float:
-        return self.disk_outer_radius
 
     @property
     def layers(self) -> tuple[float, ...]:

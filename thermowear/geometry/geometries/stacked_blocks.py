@@ -11,6 +11,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from ...case.tables.geometry import named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.units import Length
 from ..meshing.blocks import growing, sizes
@@ -36,15 +37,8 @@ class StackedBlocks(PlaneGeometry):
     name = "stacked-blocks"
     models = ("plane-strain", "plane-stress")
     bodies = ("upper", "lower")
-    surfaces = (
-        "upper_face",
-        "upper_top",
-        "upper_side",
-        "lower_face",
-        "lower_bottom",
-        "lower_side",
-    )
-    contact = ("upper_face", "lower_face")
+    surfaces = (*named("upper", "face", "top", "side"), *named("lower", "face", "bottom", "side"))
+    symmetry = ("upper_side", "lower_side")
     held = "upper_top"
     fixed = "lower_bottom"
     slides_across: ClassVar[bool] = True
@@ -53,10 +47,6 @@ class StackedBlocks(PlaneGeometry):
     width: Length
     upper_height: Length
     lower_height: Length
-
-    @property
-    def symmetry(self) -> tuple[str, ...]:
-        return "upper_side", "lower_side"
 
     def contact_area(self) -> float:
         return self.width * self.thickness

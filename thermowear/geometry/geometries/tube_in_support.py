@@ -12,9 +12,8 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from ...case.tables.geometry import Pressing
+from ...case.tables.geometry import Pressing, named
 from ...case.tables.plane_geometry import PlaneGeometry
-from ...case.values.section import KeyFault
 from ...case.values.units import Length
 from ...errors import CaseError
 from ..meshing.polar import Polar, incomplete
@@ -47,15 +46,7 @@ class TubeInSupport(PlaneGeometry):
     name = "tube-in-support"
     models = ("plane-strain", "plane-stress")
     bodies = ("tube", "support")
-    surfaces = (
-        "tube_face",
-        "tube_outside",
-        "tube_bore",
-        "support_face",
-        "support_hole",
-        "support_rim",
-    )
-    contact = ("tube_face", "support_face")
+    surfaces = (*named("tube", "face", "outside", "bore"), *named("support", "face", "hole", "rim"))
     held = "tube_bore"
     fixed = "support_rim"
 
@@ -68,11 +59,7 @@ class TubeInSupport(PlaneGeometry):
 
     @model_validator(mode="after")
     def _fits(self):
-        if not self.tube_wall < self.tube_radius:
-            raise KeyFault(
-                "tube_wall",
-                f"{self.tube_wall:g} m must be less than tube_radius {self.tube_radius:g} m",
-            )
+        self.check_less("tube_wall", "tube_radius")
         return self
 
     @property

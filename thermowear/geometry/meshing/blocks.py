@@ -132,6 +132,13 @@ def sizes(intervals: list[Interval]) -> np.ndarray:
     )
 
 
+def ends_of(intervals: list[Interval]) -> np.ndarray:
+    """Ends of the elements of consecutive intervals."""
+    ends = intervals[0].start + np.concatenate([[0.0], np.cumsum(sizes(intervals))])
+    ends[-1] = intervals[-1].end
+    return ends
+
+
 @dataclass(frozen=True)
 class Grid:
     """Curves and surfaces of a meshed rectangle in gmsh, by position in the grid.

@@ -14,7 +14,6 @@ import numpy as np
 from ..mesh.limits import MOST_HEXAHEDRA, check_count
 from ..mesh.nodes import reference_nodes
 from ..mesh.orders import boundary
-from .blocks import Interval, sizes
 from .quads import MeshedBody
 
 
@@ -51,13 +50,6 @@ def mesh_lattice(lattice: Lattice, order: int) -> MeshedBody:
     place[1] %= len(v)
     cells = np.ravel_multi_index(tuple(place), shape)
     return MeshedBody(points, cells, boundary("hexahedron", order, cells))
-
-
-def ends_of(intervals: list[Interval]) -> np.ndarray:
-    """Ends of the elements of consecutive intervals."""
-    ends = intervals[0].start + np.concatenate([[0.0], np.cumsum(sizes(intervals))])
-    ends[-1] = intervals[-1].end
-    return ends
 
 
 def level(places: np.ndarray, z: float) -> np.ndarray:

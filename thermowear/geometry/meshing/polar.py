@@ -58,8 +58,8 @@ class Polar:
         x, y = p.mean(axis=1).T
         up = self.height - y if self.downwards else y - self.height
         turned = np.arctan2(x, up) - (span[0] + span[1]) / 2
-        beside = np.abs((turned + math.pi) % (2 * math.pi) - math.pi)
-        return self.on_circle(p, radius) & (beside < (span[1] - span[0]) / 2)
+        off_middle = np.abs((turned + math.pi) % (2 * math.pi) - math.pi)
+        return self.on_circle(p, radius) & (off_middle < (span[1] - span[0]) / 2)
 
 
 @dataclass(frozen=True)
@@ -90,8 +90,8 @@ class Division:
         """Angles of the element ends around the whole circle, starting with the face."""
         steps = np.diff(self.angles)
         left, right = self._beside(steps[0]), self._beside(steps[-1])
-        beside = np.cumsum(np.concatenate([right, left[::-1]]))
-        angles = np.concatenate([self.angles, self.angles[-1] + beside])
+        outside = np.cumsum(np.concatenate([right, left[::-1]]))
+        angles = np.concatenate([self.angles, self.angles[-1] + outside])
         angles[-1] = self.angles[0] + 2 * math.pi
         return angles
 

@@ -40,7 +40,9 @@ def check_ending(path: Path) -> None:
         raise CaseError(f"-o {path}: unknown file ending; must be one of: {', '.join(_FORMATS)}")
 
 
-def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None = None) -> None:
+def write_mesh(
+    mesh: TaggedMesh, path: Path, point_data: dict[str, np.ndarray] | None = None
+) -> None:
     """Write bodies and named surfaces as physical groups (.msh), sets (.inp) or tags (.vtu, .xdmf).
 
     Third-order cells are supported in .msh only; other formats get second-order cells.
@@ -49,7 +51,7 @@ def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None 
     ----------
     mesh : TaggedMesh
     path : Path
-    told : dict of str to ndarray, optional
+    point_data : dict of str to ndarray, optional
         Scalars or vectors at the points, if the format supports the mesh unchanged.
 
     Raises
@@ -75,7 +77,7 @@ def write_mesh(mesh: TaggedMesh, path: Path, told: dict[str, np.ndarray] | None 
     # one numbering for both dimensions, so that a tag is unique in every format
     tags = [mesh.cell_tags, mesh.facet_tags + n]
     points = np.pad(mesh.points, ((0, 0), (0, 3 - mesh.points.shape[1])))
-    result = meshio.Mesh(points, cells, point_data=told)
+    result = meshio.Mesh(points, cells, point_data=point_data)
     if path.suffix == ".inp":
         result.cell_sets = _sets(mesh)
     elif path.suffix == ".msh":

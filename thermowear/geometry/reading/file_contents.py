@@ -15,7 +15,7 @@ from pathlib import Path
 from ...errors import CaseError
 from .abaqus import read_abaqus
 from .contents import MeshContents, shown
-from .gmsh_file import read_gmsh
+from .gmsh.file import read_gmsh
 from .isolated import read_isolated
 
 _LARGEST = 32 * 2**20

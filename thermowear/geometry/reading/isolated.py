@@ -61,11 +61,12 @@ def read_isolated(path: Path, ending: str) -> MeshContents:
 def _unpacked(data: bytes) -> MeshContents:
     with np.load(io.BytesIO(data), allow_pickle=False) as file:
         arrays = dict(file)
-    about = json.loads(str(arrays["about"]))
+    contents = json.loads(str(arrays["contents"]))
     blocks = [
-        CellBlock(kind, arrays[f"nodes_{index}"], {}) for index, kind in enumerate(about["kinds"])
+        CellBlock(kind, arrays[f"nodes_{index}"], {})
+        for index, kind in enumerate(contents["kinds"])
     ]
-    for number, (index, name) in enumerate(about["sets"]):
+    for number, (index, name) in enumerate(contents["sets"]):
         blocks[index].sets[name] = arrays[f"set_{number}"]
-    sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(about["node_sets"])}
+    sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(contents["node_sets"])}
     return MeshContents(arrays["points"], blocks, sets)

@@ -7,6 +7,7 @@ next to an .xdmf) is opened. The result is written to the standard output as ``.
 
 from __future__ import annotations
 
+import importlib
 import io
 import json
 import os
@@ -18,19 +19,6 @@ import numpy as np
 
 _SECONDS = 20
 """Largest processor time [s]."""
-_XDMF = {
-    "Polyvertex": "vertex",
-    "Polyline": "line",
-    "Edge_3": "line3",
-    "Triangle": "triangle",
-    "Triangle_6": "triangle6",
-    "Tri_6": "triangle6",
-    "Quadrilateral": "quad",
-    "Quadrilateral_8": "quad8",
-    "Quad_8": "quad8",
-    "Quadrilateral_9": "quad9",
-    "Quad_9": "quad9",
-}
 _MIXED = {
     1: ("vertex", 1),
     2: ("line", 2),
@@ -57,31 +45,25 @@ def read(path: Path, ending: str) -> dict[str, np.ndarray]:
     """Arrays that describe a mesh, see `isolated.read_isolated`."""
     if ending == ".med":
         _check_hdf5_links(path)
-        from meshio.med import read as reader
-
-        mesh = reader(str(path))
-        cells = [(block.type, block.data) for block in mesh.cells]
-    elif ending == ".vtu":
-        _check_xml(path)
-        from meshio.vtu import read as reader
-
-        mesh = reader(str(path))
-        cells = [(block.type, block.data) for block in mesh.cells]
     else:
         _check_xml(path)
+    if ending == ".xdmf":
         mesh = _read_xdmf(path)
         cells = mesh.cells
+    else:
+        mesh = importlib.import_module(f"meshio{ending}").read(str(path))
+        cells = [(block.type, block.data) for block in mesh.cells]
     arrays = {"points": np.asarray(mesh.points, dtype=float)}
-    about = {"kinds": [kind for kind, _ in cells], "sets": [], "node_sets": []}
+    contents = {"kinds": [kind for kind, _ in cells], "sets": [], "node_sets": []}
     for index, (_, nodes) in enumerate(cells):
         arrays[f"nodes_{index}"] = np.asarray(nodes, dtype=np.int64)
         for name, members in _sets_of_block(mesh, index).items():
-            arrays[f"set_{len(about['sets'])}"] = members
-            about["sets"].append([index, name])
+            arrays[f"set_{len(contents['sets'])}"] = members
+            contents["sets"].append([index, name])
     for name, members in _node_sets(mesh).items():
-        arrays[f"node_set_{len(about['node_sets'])}"] = members
-        about["node_sets"].append(name)
-    return arrays | {"about": np.array(json.dumps(about))}
+        arrays[f"node_set_{len(contents['node_sets'])}"] = members
+        contents["node_sets"].append(name)
+    return arrays | {"contents": np.array(json.dumps(contents))}
 
 
 def _sets_of_block(mesh, index: int) -> dict[str, np.ndarray]:
@@ -163,6 +145,8 @@ def _read_xdmf(path: Path) -> _Mesh:
     """Mesh of an XDMF file with one grid, with data in it or in an HDF5 file next to it."""
     from xml.etree import ElementTree as ET
 
+    from meshio.xdmf.common import xdmf_to_meshio_type as types
+
     grids = ET.parse(path).getroot().findall("./Domain/Grid")
     if len(grids) != 1 or grids[0].get("GridType", "Uniform") != "Uniform":
         raise ValueError("an .xdmf file must have one uniform grid")
@@ -177,8 +161,8 @@ def _read_xdmf(path: Path) -> _Mesh:
     kind, data = _type(topology, "Topology"), _item(path, topology)
     if kind == "Mixed":
         cells, at = _mixed(data.ravel())
-    elif kind in _XDMF:
-        cells = [(_XDMF[kind], data.reshape(len(data), -1))]
+    elif kind in types:
+        cells = [(types[kind], data.reshape(len(data), -1))]
         at = [np.arange(len(data))]
     else:
         raise ValueError(f"cells of type {kind} are not supported in .xdmf")

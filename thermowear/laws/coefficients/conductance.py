@@ -7,8 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import Values
-from .table1d import Table1D
+from ..interfaces import LocalState
 
 
 def harmonic_mean(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -38,33 +37,11 @@ class PressureConductance:
     hardness: np.ndarray
     variables: ClassVar[frozenset[str]] = frozenset("p")
 
-    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Conductance at points (n,) [W/(m² K)]."""
-        return self.coefficient * self.conductivity * np.asarray(pressure) / self.hardness
+        return self.coefficient * self.conductivity * np.asarray(at.p) / self.hardness
 
-    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure [W/(m² K Pa)]."""
         slope = self.coefficient * self.conductivity / self.hardness
-        return np.broadcast_to(slope, np.shape(pressure))
-
-
-@dataclass(frozen=True)
-class TabulatedConductance:
-    """Conductance tabulated over the pressure.
-
-    Attributes
-    ----------
-    table : Table1D
-        Conductance [W/(m² K)] by pressure [Pa].
-    """
-
-    table: Table1D
-    variables: ClassVar[frozenset[str]] = frozenset("p")
-
-    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
-        """Conductance at points (n,) [W/(m² K)]."""
-        return self.table.value(pressure)
-
-    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
-        """Derivative with respect to the pressure [W/(m² K Pa)]."""
-        return self.table.slope(pressure)
+        return np.broadcast_to(slope, np.shape(at.p))

@@ -7,26 +7,20 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import Values
+from ..interfaces import LocalState
 
 
 @dataclass(frozen=True)
 class Constant:
-    """Constant coefficient of friction, or conductance.
-
-    Attributes
-    ----------
-    number : float
-        Value [-] or [W/(m² K)].
-    """
+    """Constant coefficient of friction [-], or conductance [W/(m² K)]."""
 
     number: float
     variables: ClassVar[frozenset[str]] = frozenset()
 
-    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Coefficient at points (n,)."""
-        return np.full(np.shape(pressure), self.number)
+        return np.full(np.shape(at.p), self.number)
 
-    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure: 0."""
-        return np.zeros(np.shape(pressure))
+        return np.zeros(np.shape(at.p))

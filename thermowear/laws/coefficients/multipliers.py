@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..interfaces import InterfaceLaw, Values
+from ..interfaces import Law, LocalState
 from .table1d import Table1D
 
 
 @dataclass(frozen=True)
 class Multipliers:
-    """Product of tabulated factors.
+    """Law that is a product of tabulated factors.
 
     Attributes
     ----------
@@ -25,39 +25,34 @@ class Multipliers:
     speed: Table1D | None = None
 
     @property
-    def variables(self) -> frozenset[str]:
-        """Variables with a table, named as in `InterfaceLaw`."""
+    def tables(self) -> dict[str, Table1D]:
+        """Tables by the name of their variable."""
         tables = {"T": self.temperature, "p": self.pressure, "v": self.speed}
-        return frozenset(name for name, table in tables.items() if table is not None)
+        return {name: table for name, table in tables.items() if table is not None}
 
-    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    @property
+    def variables(self) -> frozenset[str]:
+        """Variables with a table, named as in `Law`."""
+        return frozenset(self.tables)
+
+    def value(self, at: LocalState) -> np.ndarray:
         """Product of the factors at points (n,)."""
-        product = np.ones(np.broadcast_shapes(np.shape(pressure), np.shape(speed)))
-        tables = (self.temperature, temperature), (self.pressure, pressure), (self.speed, speed)
-        for table, at in tables:
-            if table is not None:
-                product = product * table.value(at)
+        product = np.ones(np.broadcast_shapes(np.shape(at.p), np.shape(at.v)))
+        for name, table in self.tables.items():
+            product = product * table.value(getattr(at, name))
         return product
 
-    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative of the product with respect to the pressure [1/Pa]."""
-        if self.pressure is None:
-            return np.zeros(np.broadcast_shapes(np.shape(pressure), np.shape(speed)))
-        others = Multipliers(self.temperature, None, self.speed)
-        return others.value(pressure, speed, temperature) * self.pressure.slope(pressure)
+        others = Multipliers(self.temperature, None, self.speed).value(at)
+        return others * (0.0 if self.pressure is None else self.pressure.slope(at.p))
 
 
 @dataclass(frozen=True)
 class Multiplied:
-    """Coefficient of the interface times tabulated factors.
+    """Coefficient of the interface times tabulated factors."""
 
-    Attributes
-    ----------
-    law : InterfaceLaw
-    factors : Multipliers
-    """
-
-    law: InterfaceLaw
+    law: Law
     factors: Multipliers
 
     @property
@@ -65,13 +60,11 @@ class Multiplied:
         """Variables of the law and of the factors."""
         return self.law.variables | self.factors.variables
 
-    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Coefficient at points (n,)."""
-        at = pressure, speed, temperature
-        return self.law.value(*at) * self.factors.value(*at)
+        return self.law.value(at) * self.factors.value(at)
 
-    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure."""
-        at = pressure, speed, temperature
-        first = self.law.slope(*at) * self.factors.value(*at)
-        return first + self.law.value(*at) * self.factors.slope(*at)
+        first = self.law.slope(at) * self.factors.value(at)
+        return first + self.law.value(at) * self.factors.slope(at)

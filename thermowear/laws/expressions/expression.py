@@ -10,7 +10,7 @@ import numpy as np
 from .dimensions import Dimension
 from .parser import Parser, Units
 from .tokens import fault
-from .tree import Call, ConstantNode, Extreme, Node, Power, Product, Sum, Variable
+from .tree import Node, evaluate, variables
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Expression:
     @property
     def constant(self) -> float | None:
         """Value of an expression without variables."""
-        return self.node.value if isinstance(self.node, ConstantNode) else None
+        return self.node if isinstance(self.node, float) else None
 
     def value(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
         """Value in SI at arrays of the variables, of their common shape."""
@@ -47,19 +47,19 @@ class Expression:
         shape = np.broadcast_shapes(*(np.shape(values) for values in at.values()))
         arrays = {name: np.asarray(values, dtype=float) for name, values in at.items()}
         with np.errstate(all="ignore"):  # the caller checks for finite values
-            value, slope = self.node.at(arrays, by)
+            value, slope = evaluate(self.node, arrays, by)
         return np.zeros(shape) + value, np.zeros(shape) + slope
 
 
 def parse_expression(
-    text: str, variables: Mapping[str, Dimension], unit: str, units: Units
+    text: str, known: Mapping[str, Dimension], unit: str, units: Units
 ) -> Expression:
     """Parse an expression and check the units in it.
 
     Parameters
     ----------
     text : str
-    variables : mapping of str to Dimension
+    known : mapping of str to Dimension
         Variables that may occur.
     unit : str
         Unit of the value; empty for a dimensionless number.
@@ -71,31 +71,9 @@ def parse_expression(
     ValueError
         One-line message with the position of the fault in the text.
     """
-    found = Parser(text, variables, units).parse()
+    found = Parser(text, known, units).parse()
     dimension = units(unit)[1] if unit else Dimension()
     if not found.dimension.same(dimension):
         needed = unit or "a dimensionless number"
         raise fault(found.start, f"the value has the unit {found.dimension}; needs {needed}")
-    return Expression(text, found.node, frozenset(_names(found.node)))
-
-
-def _names(node: Node) -> set[str]:
-    """Variables in a tree."""
-    if isinstance(node, Variable):
-        return {node.name}
-    return set().union(*(_names(part) for part in _parts(node)))
-
-
-def _parts(node: Node) -> tuple[Node, ...]:
-    match node:
-        case Sum():
-            return tuple(term for _, term in node.terms)
-        case Product():
-            return tuple(factor for _, factor in node.factors)
-        case Power():
-            return node.base, node.exponent
-        case Call():
-            return (node.argument,)
-        case Extreme():
-            return node.arguments
-    return ()
+    return Expression(text, found.node, variables(found.node))

@@ -22,7 +22,7 @@ import numpy as np
 from .dimensions import Dimension
 from .functions import EXTREMES, FUNCTIONS, KNOWN
 from .tokens import Token, fault, tokens
-from .tree import Call, ConstantNode, Extreme, Node, Power, Product, Sum, Variable
+from .tree import Node, evaluate
 from .unit_text import unit_end
 
 Units = Callable[[str], tuple[float, Dimension]]
@@ -55,7 +55,7 @@ class Parsed:
     @property
     def constant(self) -> float | None:
         """Value of a constant."""
-        return self.node.value if isinstance(self.node, ConstantNode) else None
+        return self.node if isinstance(self.node, float) else None
 
 
 class Parser:
@@ -121,7 +121,7 @@ class Parser:
 
     def _sum(self) -> Parsed:
         first = self._product()
-        terms = [(1.0, first)]
+        terms, nodes = [first], [first.node]
         while (sign := self._accept("+", "-")) is not None:
             term = self._product()
             if not term.dimension.same(first.dimension):
@@ -129,15 +129,15 @@ class Parser:
                     sign.start,
                     f"{sign.text!r} between the units {first.dimension} and {term.dimension}",
                 )
-            terms.append((1.0 if sign.text == "+" else -1.0, term))
+            terms.append(term)
+            nodes.append(term.node if sign.text == "+" else ("-", term.node))
         if len(terms) == 1:
             return first
-        node = Sum(tuple((sign, term.node) for sign, term in terms))
-        return self._folded(node, first.dimension, [term for _, term in terms], first.start)
+        return self._folded(("+", *nodes), first.dimension, terms, first.start)
 
     def _product(self) -> Parsed:
         first = self._signed()
-        factors, dimension = [(False, first)], first.dimension
+        factors, nodes, dimension = [first], [first.node], first.dimension
         while (sign := self._accept("*", "/")) is not None:
             factor, divides = self._signed(), sign.text == "/"
             if divides and factor.literal == "compound":
@@ -145,18 +145,18 @@ class Parser:
                     factor.start, "'/' before a quantity with a compound unit needs parentheses"
                 )
             dimension = dimension.times(factor.dimension, -1.0 if divides else 1.0)
-            factors.append((divides, factor))
+            factors.append(factor)
+            nodes.append(("/", factor.node) if divides else factor.node)
         if len(factors) == 1:
             return first
-        node = Product(tuple((divides, factor.node) for divides, factor in factors))
-        return self._folded(node, dimension, [factor for _, factor in factors], first.start)
+        return self._folded(("*", *nodes), dimension, factors, first.start)
 
     def _signed(self) -> Parsed:
         sign = self._accept("+", "-")
         if sign is None:
             return self._power()
         operand = self._deeper(self._signed)
-        node = Sum(((1.0 if sign.text == "+" else -1.0, operand.node),))
+        node = operand.node if sign.text == "+" else ("-", operand.node)
         found = self._folded(node, operand.dimension, [operand], sign.start)
         return Parsed(found.node, found.dimension, found.start, operand.literal)
 
@@ -182,7 +182,7 @@ class Parser:
             )
         dimension = base.dimension.to(number if number is not None else 0.0)
         parts = [base, exponent]
-        return self._folded(Power(base.node, exponent.node), dimension, parts, base.start)
+        return self._folded(("^", base.node, exponent.node), dimension, parts, base.start)
 
     def _atom(self) -> Parsed:
         token = self._next
@@ -211,20 +211,19 @@ class Parser:
         if not np.isfinite(number):
             raise fault(token.start, "a number must be finite")
         self._at += 1
-        end = unit_end(self._tokens, self._at, self._variables)
-        if end == self._at:
-            return Parsed(ConstantNode(number), Dimension(), token.start)
-        start = self._next.start
-        text = self._text[start : self._tokens[end - 1].end]
+        start, end = self._next.start, unit_end(self._text, token.end, self._variables)
+        if end <= start:
+            return Parsed(number, Dimension(), token.start)
         try:
-            factor, dimension = self._units(text)
+            factor, dimension = self._units(self._text[start:end])
         except ValueError as error:
             raise fault(start, str(error)) from None
         if not np.isfinite(number * factor):
             raise fault(token.start, "a number must be finite in SI, too")
-        literal = "plain" if end == self._at + 1 else "compound"
-        self._at = end
-        return Parsed(ConstantNode(number * factor), dimension, token.start, literal)
+        literal = "plain" if self._next.end == end else "compound"
+        while self._next.start < end:
+            self._at += 1
+        return Parsed(number * factor, dimension, token.start, literal)
 
     def _named(self) -> Parsed:
         token = self._next
@@ -233,7 +232,7 @@ class Parser:
         if opened is not None:
             return self._call(token, opened)
         if token.text in self._variables:
-            return Parsed(Variable(token.text), self._variables[token.text], token.start)
+            return Parsed(token.text, self._variables[token.text], token.start)
         known = ", ".join(self._variables)
         if token.text in KNOWN:
             raise fault(token.start, f"{token.text!r} is a function; its argument is missing")
@@ -264,7 +263,7 @@ class Parser:
                 f"the argument of {name} must be dimensionless, found {argument.dimension}",
             )
         dimension = Dimension() if power is None else argument.dimension.to(power)
-        return self._folded(Call(name, argument.node), dimension, arguments, token.start)
+        return self._folded((name, argument.node), dimension, arguments, token.start)
 
     def _extreme(self, token: Token, arguments: list[Parsed]) -> Parsed:
         if len(arguments) < 2:
@@ -276,7 +275,7 @@ class Parser:
                     other.start,
                     f"{token.text} of the units {first.dimension} and {other.dimension}",
                 )
-        node = Extreme(token.text, tuple(argument.node for argument in arguments))
+        node = (token.text, *(argument.node for argument in arguments))
         return self._folded(node, first.dimension, arguments, token.start)
 
     def _folded(self, node: Node, dimension: Dimension, parts: list[Parsed], start: int) -> Parsed:
@@ -290,7 +289,7 @@ class Parser:
         if any(part.constant is None for part in parts):
             return Parsed(node, dimension, start)
         with np.errstate(all="ignore"):
-            value = float(node.at({}, "")[0])
+            value = float(evaluate(node, {}, "")[0])
         if not np.isfinite(value):
             raise fault(start, f"the value of this part is {value:g}: not a finite number")
-        return Parsed(ConstantNode(value), dimension, start)
+        return Parsed(value, dimension, start)

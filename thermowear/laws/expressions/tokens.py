@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 LONGEST = 1000
 """Largest number of characters of an expression."""
+NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _TOKEN = re.compile(
-    r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+    rf"(?P<number>{NUMBER})"
     r"|(?P<name>[A-Za-z_]\w*)"
     r"|(?P<sign>\*\*|[-+*/^(),])"
     r"|(?P<space>\s+)",

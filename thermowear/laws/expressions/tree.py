@@ -1,30 +1,41 @@
 """Expression trees, evaluated with their derivative (forward-mode differentiation).
 
-Values are in SI. Derivatives are taken with respect to one variable; at kinks (``abs``, ``min``,
-``max``) they are one-sided.
+A node is a constant in SI, the name of a variable, or a tuple of an operation and its operands:
+``"+"`` and ``"*"`` have any number of them, ``"-"`` (negative) and ``"/"`` (reciprocal) one,
+``"^"`` two; the others are in `functions`. Derivatives are taken with respect to one variable;
+at kinks (``abs``, ``min``, ``max``) they are one-sided.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Callable, Mapping
+from functools import partial, reduce
+from typing import Any
 
 import numpy as np
 
-from .functions import EXTREMES, FUNCTIONS
+from .functions import EXTREMES, FUNCTIONS, Function
 
-Values = Mapping[str, np.ndarray]
+Node = float | str | tuple[Any, ...]
 Pair = tuple[np.ndarray, np.ndarray]
 """Value and derivative, both of the shape of the variables or scalars."""
 
 
-class Node(Protocol):
-    """Node of an expression."""
+def evaluate(node: Node, values: Mapping[str, np.ndarray], by: str) -> Pair:
+    """Value of a tree, and derivative with respect to the variable `by`."""
+    if isinstance(node, float):
+        return np.asarray(node), np.asarray(0.0)
+    if isinstance(node, str):
+        return values[node], np.asarray(float(node == by))
+    operation, *operands = node
+    return _OPERATIONS[operation](*(evaluate(operand, values, by) for operand in operands))
 
-    def at(self, values: Values, by: str) -> Pair:
-        """Value, and derivative with respect to the variable `by`."""
-        ...
+
+def variables(node: Node) -> frozenset[str]:
+    """Variables in a tree."""
+    if isinstance(node, tuple):
+        return frozenset().union(*(variables(operand) for operand in node[1:]))
+    return frozenset({node} if isinstance(node, str) else ())
 
 
 def _chain(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
@@ -32,114 +43,40 @@ def _chain(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
     return np.where(inner == 0.0, 0.0, outer * np.where(inner == 0.0, 1.0, inner))
 
 
-@dataclass(frozen=True)
-class ConstantNode:
-    """Constant."""
-
-    value: float
-
-    def at(self, values: Values, by: str) -> Pair:
-        return np.asarray(self.value), np.asarray(0.0)
+def _add(a: Pair, b: Pair) -> Pair:
+    return a[0] + b[0], a[1] + b[1]
 
 
-@dataclass(frozen=True)
-class Variable:
-    """Variable, by name."""
-
-    name: str
-
-    def at(self, values: Values, by: str) -> Pair:
-        return values[self.name], np.asarray(float(self.name == by))
+def _multiply(a: Pair, b: Pair) -> Pair:
+    return a[0] * b[0], _chain(b[0], a[1]) + _chain(a[0], b[1])
 
 
-@dataclass(frozen=True)
-class Sum:
-    """Signed sum.
-
-    Attributes
-    ----------
-    terms : tuple of (float, Node)
-        Sign (1 or -1) and term.
-    """
-
-    terms: tuple[tuple[float, Node], ...]
-
-    def at(self, values: Values, by: str) -> Pair:
-        value, slope = np.asarray(0.0), np.asarray(0.0)
-        for sign, term in self.terms:
-            part, part_slope = term.at(values, by)
-            value, slope = value + sign * part, slope + sign * part_slope
-        return value, slope
+def _power(base: Pair, exponent: Pair) -> Pair:
+    value = np.power(base[0], exponent[0])
+    slope = _chain(exponent[0] * np.power(base[0], exponent[0] - 1.0), base[1])
+    logarithm = np.log(np.where(value == 0.0, 1.0, base[0]))
+    return value, slope + _chain(value * logarithm, exponent[1])
 
 
-@dataclass(frozen=True)
-class Product:
-    """Product and quotient.
-
-    Attributes
-    ----------
-    factors : tuple of (bool, Node)
-        True for a divisor, and the factor.
-    """
-
-    factors: tuple[tuple[bool, Node], ...]
-
-    def at(self, values: Values, by: str) -> Pair:
-        value, slope = np.asarray(1.0), np.asarray(0.0)
-        for divides, factor in self.factors:
-            other, other_slope = factor.at(values, by)
-            if divides:
-                value = value / other
-                slope = (slope - _chain(value, other_slope)) / other
-            else:
-                slope = _chain(other, slope) + _chain(value, other_slope)
-                value = value * other
-        return value, slope
+def _call(function: Function, argument: Pair) -> Pair:
+    return function.value(argument[0]), _chain(function.slope(argument[0]), argument[1])
 
 
-@dataclass(frozen=True)
-class Power:
-    """Power with a constant or a variable exponent."""
-
-    base: Node
-    exponent: Node
-
-    def at(self, values: Values, by: str) -> Pair:
-        base, base_slope = self.base.at(values, by)
-        exponent, exponent_slope = self.exponent.at(values, by)
-        value = np.power(base, exponent)
-        slope = _chain(exponent * np.power(base, exponent - 1.0), base_slope)
-        if not isinstance(self.exponent, ConstantNode):
-            logarithm = np.log(np.where(value == 0.0, 1.0, base))
-            slope = slope + _chain(value * logarithm, exponent_slope)
-        return value, slope
+def _extreme(keeps: Callable[..., np.ndarray], a: Pair, b: Pair) -> Pair:
+    kept = keeps(a[0], b[0])
+    return np.where(kept, a[0], b[0]), np.where(kept, a[1], b[1])
 
 
-@dataclass(frozen=True)
-class Call:
-    """Function of one variable."""
-
-    name: str
-    argument: Node
-
-    def at(self, values: Values, by: str) -> Pair:
-        function = FUNCTIONS[self.name]
-        inner, inner_slope = self.argument.at(values, by)
-        return function.value(inner), _chain(function.slope(inner), inner_slope)
+def _repeated(operation: Callable[[Pair, Pair], Pair]) -> Callable[..., Pair]:
+    return lambda *operands: reduce(operation, operands)
 
 
-@dataclass(frozen=True)
-class Extreme:
-    """Smallest or largest of several arguments."""
-
-    name: str
-    arguments: tuple[Node, ...]
-
-    def at(self, values: Values, by: str) -> Pair:
-        keeps = EXTREMES[self.name]
-        value, slope = self.arguments[0].at(values, by)
-        for argument in self.arguments[1:]:
-            other, other_slope = argument.at(values, by)
-            kept = keeps(value, other)
-            value, slope = np.where(kept, value, other), np.where(kept, slope, other_slope)
-        return value, slope
+_OPERATIONS: dict[str, Callable[..., Pair]] = {
+    "+": _repeated(_add),
+    "*": _repeated(_multiply),
+    "-": lambda a: (-a[0], -a[1]),
+    "/": partial(_call, Function(lambda x: 1 / x, lambda x: -1 / x**2)),
+    "^": _power,
+    **{name: partial(_call, function) for name, function in FUNCTIONS.items()},
+    **{name: _repeated(partial(_extreme, keeps)) for name, keeps in EXTREMES.items()},
+}

@@ -1,94 +1,53 @@
-"""Extent of the unit after a number, in the notation of the case file: ``W/(m^2 K)``."""
+"""Extent of the unit after a number, in the notation of the case file: ``W/(m^2 K)``.
+
+::
+
+    unit     = [ [ "1" ] "/" factor | name ] { ( "*" | "/" ) factor | name }
+    factor   = name | "(" factor { ( "*" | "/" ) factor | name } ")" [ exponent ]
+    name     = a word with an optional exponent, no variable and no function
+
+All repetitions are possessive, so that the time is proportional to the length of the text.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import re
+from collections.abc import Collection
+from functools import lru_cache
 
-from .tokens import Token, fault
+from .tokens import NUMBER, fault
+
+_SIGNED = rf"[-+]?\s*{NUMBER}"
+_EXPONENT = rf"(?:\s*(?:\^|\*\*)\s*(?:{_SIGNED}|\(\s*{_SIGNED}\s*(?:/\s*{_SIGNED}\s*)?\)))?+"
+_LEVELS = 2
+"""Largest nesting depth of parentheses in a unit."""
+_POWER = re.compile(r"\s*(?:\^|\*\*)")
+_NAME_AT_END = re.compile(r"(?<![\w.])[A-Za-z_]\w*\Z", re.ASCII)
 
 
-def unit_end(tokens: Sequence[Token], start: int, variables: Collection[str]) -> int:
-    """Index of the token after the unit that begins at a token; the same index without unit.
-
-    Parameters
-    ----------
-    tokens : sequence of Token
-        Tokens of the expression; the last one is its end.
-    start : int
-        Index of the token after the number.
-    variables : collection of str
-        Names that end a unit, as a name followed by ``(`` does.
+def unit_end(text: str, start: int, variables: Collection[str]) -> int:
+    """Position after the unit that begins at a position; the same position without unit.
 
     Raises
     ------
     ValueError
         If the exponent of a unit is not a number.
     """
-    return _Extent(tokens, variables).after(start)
+    found = _pattern(tuple(variables)).match(text, start)
+    if found is None:
+        return start
+    power = _POWER.match(text, found.end())
+    if power is not None and _NAME_AT_END.search(found[0]):
+        raise fault(power.end() - len(power[0].lstrip()), "the exponent of a unit must be a number")
+    return found.end()
 
 
-class _Extent:
-    def __init__(self, tokens: Sequence[Token], variables: Collection[str]):
-        self._tokens, self._variables = tokens, variables
-
-    def after(self, start: int) -> int:
-        """Index after a unit, which may begin with ``/`` or ``1/``; the start if there is none."""
-        at = start
-        if self._is(at, "1") and self._is(at + 1, "/"):
-            at += 1
-        if self._is(at, "/"):
-            behind = self._factor(at + 1)
-            return start if behind is None else self._rest(behind)
-        first = self._factor(at, parenthesised=False)
-        return start if first is None else self._rest(first)
-
-    def _rest(self, at: int) -> int:
-        """Index after further factors: juxtaposed, or after ``*`` and ``/``."""
-        while True:
-            signed = self._is(at, "*") or self._is(at, "/")
-            behind = self._factor(at + 1 if signed else at, parenthesised=signed)
-            if behind is None:
-                return at
-            at = behind
-
-    def _factor(self, at: int, parenthesised: bool = True) -> int | None:
-        """Index after one name or parenthesis with its exponent; None if there is none."""
-        token = self._tokens[at]
-        if token.kind == "name" and not self._ends_unit(at):
-            return self._exponent(at + 1)
-        if not (parenthesised and self._is(at, "(")):
-            return None
-        inner = self._factor(at + 1)
-        if inner is None:
-            return None
-        end = self._rest(inner)
-        return self._exponent(end + 1) if self._is(end, ")") else None
-
-    def _ends_unit(self, at: int) -> bool:
-        return self._tokens[at].text in self._variables or self._is(at + 1, "(")
-
-    def _exponent(self, at: int) -> int:
-        """Index after the exponent of a unit, or the same index without exponent."""
-        if not self._is(at, "^"):
-            return at
-        end = at + 1
-        if self._is(end, "("):
-            behind = self._number(end + 1)
-            if behind is not None and self._is(behind, "/"):
-                behind = self._number(behind + 1)
-            if behind is not None and self._is(behind, ")"):
-                return behind + 1
-        else:
-            behind = self._number(end)
-            if behind is not None:
-                return behind
-        raise fault(self._tokens[at].start, "the exponent of a unit must be a number")
-
-    def _number(self, at: int) -> int | None:
-        """Index after a signed number; None if there is none."""
-        if self._is(at, "-") or self._is(at, "+"):
-            at += 1
-        return at + 1 if self._tokens[at].kind == "number" else None
-
-    def _is(self, at: int, text: str) -> bool:
-        return at < len(self._tokens) and self._tokens[at].text == text
+@lru_cache
+def _pattern(variables: tuple[str, ...]) -> re.Pattern[str]:
+    name = rf"(?!(?:{'|'.join(variables)})\b)[A-Za-z_]\w*+(?!\s*\(){_EXPONENT}"
+    factor = name
+    for _ in range(_LEVELS):
+        factors = rf"(?:\s*[*/]\s*{factor}|\s*{name})*+"
+        factor = rf"(?:{name}|\(\s*{factor}{factors}\s*\){_EXPONENT})"
+    factors = rf"(?:\s*[*/]\s*{factor}|\s*{name})*+"
+    return re.compile(rf"\s*(?:(?:1\s*)?/\s*{factor}|{name}){factors}", re.ASCII)

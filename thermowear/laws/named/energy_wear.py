@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import Values
+from ..interfaces import LocalState
 from ..registry import parameter, registered
 
 
@@ -31,26 +31,12 @@ class EnergyWear:
     threshold: float = parameter("W/m^2", "1e4 W/m^2", default=0.0, ge=0)
     variables: ClassVar[frozenset[str]] = frozenset({"p", "v", "mu"})
 
-    def rate(
-        self,
-        pressure: np.ndarray,
-        speed: Values,
-        temperature: Values = 0.0,
-        depth: Values = 0.0,
-        friction: Values = 0.0,
-    ) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Depth worn per time at points (n,) [m/s]."""
-        power = friction * np.maximum(pressure, 0.0) * speed
+        power = at.mu * np.maximum(at.p, 0.0) * at.v
         return self.coefficient * np.maximum(power - self.threshold, 0.0)
 
-    def slope(
-        self,
-        pressure: np.ndarray,
-        speed: Values,
-        temperature: Values = 0.0,
-        depth: Values = 0.0,
-        friction: Values = 0.0,
-    ) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure [m/(s Pa)]; right-hand at the threshold."""
-        wears = friction * pressure * speed >= self.threshold
-        return np.where(wears, self.coefficient * friction * speed, 0.0)
+        wears = at.mu * at.p * at.v >= self.threshold
+        return np.where(wears, self.coefficient * at.mu * at.v, 0.0)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import Values
+from ..interfaces import LocalState
 from ..registry import parameter, registered
 
 
@@ -31,13 +31,11 @@ class StribeckFriction:
     speed: float = parameter("m/s", "0.5 m/s", gt=0)
     variables: ClassVar[frozenset[str]] = frozenset("v")
 
-    def value(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def value(self, at: LocalState) -> np.ndarray:
         """Coefficient at points (n,)."""
-        fallen = self.kinetic + (self.static - self.kinetic) * np.exp(
-            -np.asarray(speed) / self.speed
-        )
-        return np.zeros(np.shape(pressure)) + fallen
+        fallen = (self.static - self.kinetic) * np.exp(-np.asarray(at.v) / self.speed)
+        return np.full(np.shape(at.p), self.kinetic) + fallen
 
-    def slope(self, pressure: np.ndarray, speed: Values, temperature: Values) -> np.ndarray:
+    def slope(self, at: LocalState) -> np.ndarray:
         """Derivative with respect to the pressure: 0."""
-        return np.zeros(np.shape(pressure))
+        return np.zeros(np.shape(at.p))

@@ -28,7 +28,7 @@ FLOOR = 1e-2  # relative starting pressure of points that separate without frict
 TO_THE_BOUNDARY = 0.9995  # fraction of the step to the boundary of positive p and s
 CENTRED, SHORT = 0.3, 0.1  # target of p s relative to its mean; smallest useful step length
 GROWTH = 10.0  # largest growth of rates in a step: large exponents would overshoot
-LOST = 1e-60  # sum of p s below which an unconverged iteration has no solution
+VANISHED = 1e-60  # sum of p s below which an unconverged iteration has no solution
 EXACT, ENOUGH = 1e-13, 1e-10  # relative errors: target, and largest accepted one
 
 
@@ -139,39 +139,39 @@ class _Conditions:
 class _Linearised:
     """Linearised conditions at positive pressures and separation rates."""
 
-    def __init__(self, conditions: _Conditions, pressure, parting, multipliers):
+    def __init__(self, conditions: _Conditions, pressure, separation, multipliers):
         worn, slope = conditions.local.at(pressure)
         passed, passed_slope = conditions.common.at(pressure)
         rate = conditions.rate(multipliers)
         self.loads = k = len(conditions.goal)
-        self.pressure, self.parting = pressure, parting
+        self.pressure, self.separation = pressure, separation
         self.worn = worn
-        self.misfit = worn - rate - parting
+        self.residual = worn - rate - separation
         self.balance = np.append(
             conditions.carried.T @ pressure - conditions.goal, multipliers[k:] - passed
         )
         self.modes = np.column_stack([conditions.approach, -conditions.common.reach])
         self.borne = np.column_stack([conditions.carried, -passed_slope.T])
-        self.compliance = 1 / (slope + parting / pressure)
+        self.compliance = 1 / (slope + separation / pressure)
         self.tangent = self.borne.T @ (self.compliance[:, None] * self.modes)
         self.tangent[k:, k:] += np.eye(len(passed))
         self.rate_scale = np.abs(rate).max()
 
     def error(self) -> float:
         """Largest violation of any condition, relative."""
-        apart = np.minimum(self.pressure / self.pressure.max(), self.parting / self.rate_scale)
+        apart = np.minimum(self.pressure / self.pressure.max(), self.separation / self.rate_scale)
         k = self.loads
-        rates = np.abs(np.append(self.misfit, self.balance[k:])) / self.rate_scale
+        rates = np.abs(np.append(self.residual, self.balance[k:])) / self.rate_scale
         return float(np.max([np.abs(self.balance[:k]).max(), rates.max(), apart.max()]))
 
     def step(self, product: np.ndarray):
         """Newton step of (V, S), p and s for a change of the products p s by `product`."""
-        drive = product / self.pressure - self.misfit
+        drive = product / self.pressure - self.residual
         right = -self.balance - self.borne.T @ (self.compliance * drive)
         multipliers = np.linalg.lstsq(self.tangent, right, rcond=None)[0]
         pressure = self.compliance * (self.modes @ multipliers + drive)
-        parting = (product - self.parting * pressure) / self.pressure
-        return multipliers, pressure, parting
+        separation = (product - self.separation * pressure) / self.pressure
+        return multipliers, pressure, separation
 
 
 def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
@@ -181,8 +181,8 @@ def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
     unit = float((worn + common).mean())
     if unit == 0.0:
         raise ComputationError(
-            "no steady state: the mean pressure wears nothing, so many pressures last; a larger "
-            "load or speed is needed"
+            "no unique steady state: the wear rate at the mean pressure is 0 (below the threshold "
+            "of the wear law); increase the load or the speed"
         )
     found = _iterate(conditions.scaled(start, unit))
     if found is None:
@@ -197,25 +197,27 @@ def _iterate(conditions: _Conditions) -> tuple[np.ndarray, np.ndarray, bool] | N
     """Iterate from pressure 1; pressure, multipliers ``(V, S)`` and regularity."""
     pressure = np.ones(len(conditions.approach))
     multipliers = np.append(conditions.goal, np.zeros(conditions.common.reach.shape[1]))
-    parting = conditions.local.at(pressure)[0] - conditions.rate(multipliers)
-    parting = np.maximum(parting, 1.0)
+    separation = conditions.local.at(pressure)[0] - conditions.rate(multipliers)
+    separation = np.maximum(separation, 1.0)
     for _ in range(STEPS):
-        newton = _Linearised(conditions, pressure, parting, multipliers)
+        newton = _Linearised(conditions, pressure, separation, multipliers)
         error = newton.error()
-        lost = not pressure @ parting > LOST or not np.isfinite(error + newton.tangent.sum())
-        if error < EXACT or lost:
+        diverged = not pressure @ separation > VANISHED or not np.isfinite(
+            error + newton.tangent.sum()
+        )
+        if error < EXACT or diverged:
             break
         d, dp, ds = _predicted_and_corrected(newton)
-        reach = _reach((pressure, dp), (parting, ds))
+        reach = _step_length((pressure, dp), (separation, ds))
         most = GROWTH * max(newton.worn.max(), newton.rate_scale)
         while conditions.local.at(pressure + reach * dp)[0].max() > most:
             reach /= 2
         multipliers = multipliers + reach * d
         pressure = pressure + reach * dp
-        parting = parting + reach * ds
+        separation = separation + reach * ds
     if not error < ENOUGH:
         return None
-    touching = pressure / pressure.max() > parting / newton.rate_scale
+    touching = pressure / pressure.max() > separation / newton.rate_scale
     return np.where(touching, pressure, 0.0), multipliers, bool(np.linalg.det(newton.tangent) > 0)
 
 
@@ -225,21 +227,21 @@ def _predicted_and_corrected(newton: _Linearised):
     The common target of the products p s is chosen from a predictor step to zero, but not so small
     that they vanish before the rates are in balance.
     """
-    pressure, parting = newton.pressure, newton.parting
-    product = pressure * parting
+    pressure, separation = newton.pressure, newton.separation
+    product = pressure * separation
     mean = np.mean(product)
     _, dp, ds = newton.step(-product)
-    reach = _reach((pressure, dp), (parting, ds))
-    ahead = np.mean((pressure + reach * dp) * (parting + reach * ds))
-    unfit = np.mean(pressure * np.abs(newton.misfit))
-    centre = max((ahead / mean) ** 3 * mean, min(CENTRED * mean, unfit / 10))
+    reach = _step_length((pressure, dp), (separation, ds))
+    predicted = np.mean((pressure + reach * dp) * (separation + reach * ds))
+    mean_residual = np.mean(pressure * np.abs(newton.residual))
+    centre = max((predicted / mean) ** 3 * mean, min(CENTRED * mean, mean_residual / 10))
     step = newton.step(centre - product - dp * ds)
-    if _reach((pressure, step[1]), (parting, step[2])) < SHORT:
+    if _step_length((pressure, step[1]), (separation, step[2])) < SHORT:
         step = newton.step(CENTRED * mean - product)  # the corrector is not useful
     return step
 
 
-def _reach(*positive: tuple[np.ndarray, np.ndarray]) -> float:
+def _step_length(*positive: tuple[np.ndarray, np.ndarray]) -> float:
     """Largest fraction of a step that keeps all values positive."""
     falls = [(-step[step < 0] / value[step < 0]).max(initial=0.0) for value, step in positive]
     return min(1.0, TO_THE_BOUNDARY / max(*falls, 1e-300))

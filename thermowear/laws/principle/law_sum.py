@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...errors import ComputationError
-from ..interfaces import Values, WearRate
+from ..interfaces import Law, LocalState
+from .rate_sums import RateSum
 
 _MULTIPLES = np.array([0.03, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0])
 """Multiples of the steady pressure between which a rate must not decrease."""
@@ -21,26 +22,21 @@ class BoundLaw:
 
     Attributes
     ----------
-    law : WearRate
-    speed, temperature, friction : ndarray, shape (n,)
-        Sliding speed [m/s], temperature [K], coefficient of friction [-].
+    law : Law
+    state : LocalState
+        State of the points; its pressure is not used.
     """
 
-    law: WearRate
-    speed: Values
-    temperature: Values
-    friction: Values
+    law: Law
+    state: LocalState
 
     def rate(self, pressure: np.ndarray) -> np.ndarray:
         """Local wear rate (n,) [m/s]."""
-        return self._of(self.law.rate, pressure)
+        return self.law.value(self.state._replace(p=pressure))
 
     def slope(self, pressure: np.ndarray) -> np.ndarray:
         """Derivative with respect to the pressure (n,) [m/(s Pa)]."""
-        return self._of(self.law.slope, pressure)
-
-    def _of(self, function: Callable[..., np.ndarray], pressure: np.ndarray) -> np.ndarray:
-        return function(pressure, self.speed, self.temperature, 0.0, self.friction)
+        return self.law.slope(self.state._replace(p=pressure))
 
     def require_growth(self, pressure: np.ndarray) -> None:
         """Reject a law whose rate decreases with pressure, around given pressures.
@@ -53,13 +49,13 @@ class BoundLaw:
         rates = np.array([self.rate(factor * pressure) for factor in _MULTIPLES])
         if np.any(np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]):
             raise ComputationError(
-                "no steady state: a wear rate falls as the pressure rises; the principle needs "
-                "rates that grow with it"
+                "no steady state: a wear rate decreases with increasing pressure; the steady "
+                "principle requires wear rates that increase with it"
             )
 
 
 @dataclass(frozen=True)
-class LawSum:
+class LawSum(RateSum):
     """Weighted rates of several laws, in units of a pressure at each point and of a value.
 
     Attributes
@@ -78,21 +74,14 @@ class LawSum:
     pressure: np.ndarray
     value: float = 1.0
 
-    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Value and derivative at positive pressures, shape (n,) each."""
-        return self.terms(pressure).sum(axis=0), self.slopes(pressure).sum(axis=0)
-
     def terms(self, pressure: np.ndarray) -> np.ndarray:
-        """Summands, shape (m, n)."""
         rates = [law.rate(self.pressure * pressure) for law in self.laws]
         return self.weights * np.reshape(rates, self.weights.shape) / self.value
 
     def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivatives of the summands, shape (m, n)."""
         slopes = [law.slope(self.pressure * pressure) for law in self.laws]
         scale = self.pressure / self.value
         return self.weights * np.reshape(slopes, self.weights.shape) * scale
 
     def scaled(self, pressure: np.ndarray, value: float) -> LawSum:
-        """Rates in units of a further pressure at each point and of a value."""
         return LawSum(self.laws, self.weights, self.pressure * pressure, self.value * value)

@@ -28,9 +28,8 @@ from .solvability import not_carried
 from .steady import steady_pressure
 
 _SEARCH = 16  # number of search intervals for the ratio of κ
-_SETTLED = 1e-13
-_ENOUGH = 1e-9
-_TURNS = 120  # largest number of evaluations of the direction, each a minimisation
+_TOLERANCE, _ACCEPTED = 1e-13, 1e-9  # of the direction: target, and largest accepted error
+_MOST_EVALUATIONS = 120  # of the direction, each a minimisation
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ def least_wear_dissipation(
     """
     scale = np.abs(normal_modes).max(axis=0)
 
-    def least(direction: np.ndarray) -> Minimum:
+    def minimum_for(direction: np.ndarray) -> Minimum:
         opposed, approach = force_modes @ (direction / scale), normal_modes @ (direction / scale)
         pressed = (opposed > 0) & (approach > 0)
         factor = opposed[pressed] / approach[pressed]
@@ -125,21 +124,24 @@ def least_wear_dissipation(
         pressure[pressed] = found.pressure
         return replace(found, pressure=pressure)
 
-    def turned(direction: np.ndarray) -> np.ndarray:
+    def residual(direction: np.ndarray) -> np.ndarray:
         length = np.linalg.norm(direction)
-        own = scale * least(direction).multipliers
+        own = scale * minimum_for(direction).multipliers
         return own / np.linalg.norm(own) - direction / length + (length - 1) * direction
 
     steady = steady_pressure(weights, normal_modes, force_modes, load, laws, speed)
     start = scale * steady.velocity
     direction = root(
-        turned, start / np.linalg.norm(start), options={"xtol": _SETTLED, "maxfev": _TURNS}
+        residual,
+        start / np.linalg.norm(start),
+        options={"xtol": _TOLERANCE, "maxfev": _MOST_EVALUATIONS},
     ).x
-    if not np.linalg.norm(turned(direction)) < _ENOUGH:
+    if not np.linalg.norm(residual(direction)) < _ACCEPTED:
         raise ComputationError(
-            "no minimum found: the direction of the rigid-body wear velocity does not settle"
+            "no minimum found: the iteration for the direction of the rigid-body wear velocity "
+            "did not converge"
         )
-    return least(direction)
+    return minimum_for(direction)
 
 
 def _in_units(functional: PowerFunctional, pressure: float) -> PowerFunctional:
@@ -176,7 +178,7 @@ def _stationary_ratios(functional: PowerFunctional, force_modes, load) -> list[f
     places = np.linspace(middle - half, middle + half, 2 if convex else _SEARCH)
     values = [excess(place) for place in places]
     return [
-        brentq(excess, *ends, xtol=_SETTLED)
+        brentq(excess, *ends, xtol=_TOLERANCE)
         for ends, (low, high) in zip(pairwise(places), pairwise(values), strict=True)
         if low >= 0 >= high or low <= 0 <= high
     ]

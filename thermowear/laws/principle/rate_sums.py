@@ -2,30 +2,34 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 
-class RateSum(Protocol):
+class RateSum(ABC):
     """Sum of rates that increase with the pressure at each point."""
 
-    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Value and derivative at positive pressures, shape (n,) each."""
-
+    @abstractmethod
     def terms(self, pressure: np.ndarray) -> np.ndarray:
         """Summands, shape (m, n)."""
 
+    @abstractmethod
     def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivatives of the summands, shape (m, n)."""
+        """Derivatives of the summands at positive pressures, shape (m, n)."""
 
+    @abstractmethod
     def scaled(self, pressure: np.ndarray, value: float) -> RateSum:
         """Sum scaled by a pressure at each point and by a value."""
 
+    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Value and derivative at positive pressures, shape (n,) each."""
+        return self.terms(pressure).sum(axis=0), self.slopes(pressure).sum(axis=0)
+
 
 @dataclass(frozen=True)
-class PowerSum:
+class PowerSum(RateSum):
     """Pointwise sum of powers ``Σ_i g_i p^e_i``.
 
     Attributes
@@ -37,21 +41,13 @@ class PowerSum:
     factors: np.ndarray
     exponents: np.ndarray
 
-    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Value and derivative at positive pressures, shape (n,) each."""
-        terms = self.terms(pressure)
-        return terms.sum(axis=0), self.exponents @ terms / pressure
-
     def terms(self, pressure: np.ndarray) -> np.ndarray:
-        """Summands, shape (m, n)."""
         return self.factors * pressure ** self.exponents[:, None]
 
     def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivatives of the summands at positive pressures, shape (m, n)."""
         return self.exponents[:, None] * self.terms(pressure) / pressure
 
     def scaled(self, pressure: np.ndarray, value: float) -> PowerSum:
-        """Sum scaled by a pressure at each point and by a value."""
         return PowerSum(self.terms(pressure) / value, self.exponents)
 
 

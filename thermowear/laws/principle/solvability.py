@@ -25,8 +25,8 @@ def not_carried(weights: np.ndarray, modes: np.ndarray, load: np.ndarray) -> Not
     if left < _NOTHING * np.linalg.norm(load / scale):
         return None
     return NotCarried(
-        "the load is outside of what pressure on this face can carry: it lifts the body off or "
-        "tips it over an edge"
+        "no contact pressure is in equilibrium with the load: it lifts the body off or tips it "
+        "over an edge of the face; change the load or its line of action"
     )
 
 
@@ -50,14 +50,15 @@ def why_no_steady_state(
     outside = not_carried(weights, normal_modes, load)
     if outside is None and not _bounded(normal_modes, force_modes):
         return SelfLocking(
-            "self-locking: friction carries the load whatever the pressure, and nothing wears "
-            "steadily in this sense of sliding; lower the friction or turn the motion round"
+            "self-locking: friction carries any load, without steady wear in this direction of "
+            "sliding; lower the friction or reverse the motion"
         )
     return (
         outside
         or not_carried(weights, force_modes, load)
         or ComputationError(
-            "no steady state: no rigid-body wear velocity was found that carries the load"
+            "no steady state: the solver found no pressure and rigid-body wear velocity in "
+            "equilibrium with the load"
         )
     )
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..distribution import Distribution, InPlace
-from ..interfaces import Values, WearRate
+from ..interfaces import Law, LocalState, Values
 from ..power_wear import PowerWear
 from .interior_point import solve
 from .law_sum import BoundLaw, LawSum
@@ -59,7 +59,7 @@ def steady_pressure(
     normal_modes: np.ndarray,
     force_modes: np.ndarray,
     load: np.ndarray,
-    laws: Sequence[WearRate],
+    laws: Sequence[Law],
     speed: np.ndarray,
     spread: Sequence[Distribution] | None = None,
     factors: np.ndarray | None = None,
@@ -78,7 +78,7 @@ def steady_pressure(
         T: component along ``n + mu e_1 + mu_d e_2``, for the equilibrium of pressure and friction.
     load : ndarray, shape (k,)
         Force or moment along each free direction [N or N m].
-    laws : sequence of WearRate
+    laws : sequence of Law
         Laws of one or two wearing bodies; rates must increase with the pressure.
     speed : ndarray, shape (n,)
         Sliding speed [m/s].
@@ -108,22 +108,26 @@ def steady_pressure(
     spread = spread if spread is not None else [InPlace()] * len(laws)
     factors = factors if factors is not None else np.ones((len(laws), len(weights)))
     if not np.all(speed > 0):
-        raise ComputationError("no steady state: some contact points do not slide")
+        raise ComputationError("no steady state: the sliding speed is 0 at some contact points")
     if not laws:
-        raise ComputationError("no steady state: no body wears")
-    if not any(way.share > 0 for way in spread):
+        raise ComputationError("no steady state: no body has a wear law")
+    if not any(distribution.share > 0 for distribution in spread):
         raise ComputationError(
-            "no steady pressure: all wear is spread over a track, which takes any pressure"
+            "no unique steady pressure: all wear is spread uniformly along tracks, which does not "
+            "constrain it; let one body wear in place"
         )
     _check_motions(weights, normal_modes)
-    warm = np.zeros((len(laws), 1)) if temperature is None else temperature
-    bound = [BoundLaw(law, speed, T, friction) for law, T in zip(laws, warm, strict=True)]
+    temperature = np.zeros((len(laws), 1)) if temperature is None else temperature
+    states = (LocalState(0.0, speed, T, mu=friction) for T in temperature)
+    bound = [BoundLaw(law, state) for law, state in zip(laws, states, strict=True)]
     found = solve(
         weights,
         normal_modes,
         force_modes,
         load,
-        local=_rate_sum(bound, factors, np.array([[way.share] for way in spread])),
+        local=_rate_sum(
+            bound, factors, np.array([[distribution.share] for distribution in spread])
+        ),
         common=_common(bound, factors, spread),
     )
     if found is None or not found.regular:
@@ -132,8 +136,8 @@ def steady_pressure(
         if not _in_closed_form(law.law):
             law.require_growth(found.pressure)
     rates = tuple(
-        way.rate(factor * law.rate(found.pressure))
-        for law, way, factor in zip(bound, spread, factors, strict=True)
+        distribution.rate(factor * law.rate(found.pressure))
+        for law, distribution, factor in zip(bound, spread, factors, strict=True)
     )
     return SteadyWear(
         found.pressure,
@@ -149,12 +153,12 @@ def _rate_sum(laws: Sequence[BoundLaw], factors: np.ndarray, weights: np.ndarray
     powers = [law.law for law in laws if _in_closed_form(law.law)]
     if len(powers) < len(laws):
         return LawSum(laws, weights * factors, np.ones(factors.shape[1]))
-    Z = [law.factor(bound.speed) for law, bound in zip(powers, laws, strict=True)]
+    Z = [law.factor(bound.state.v) for law, bound in zip(powers, laws, strict=True)]
     exponents = np.array([law.pressure_exponent for law in powers])
     return PowerSum(weights * factors * np.reshape(Z, factors.shape), exponents)
 
 
-def _in_closed_form(law: WearRate) -> TypeGuard[PowerWear]:
+def _in_closed_form(law: Law) -> TypeGuard[PowerWear]:
     """True if a law is exactly a power law; a derived class may override its rate."""
     return type(law) is PowerWear
 
@@ -164,16 +168,14 @@ def _common(
 ) -> Common | None:
     """Means of the rates shared by several points; None without any."""
     n = factors.shape[1]
-    each = zip(laws, factors, spread, strict=True)
-    found = [
-        (law, factor, way.rows, way.reach(n)) for law, factor, way in each if way.rows is not None
-    ]
-    if not found:
+    tracks = [(k, track.rows, track) for k, track in enumerate(spread) if track.rows is not None]
+    if not tracks:
         return None
-    rows = np.vstack([row for _, _, row, _ in found])
-    repeated = [law for law, _, row, _ in found for _ in row]
-    factors = np.vstack([np.tile(factor, (len(row), 1)) for _, factor, row, _ in found])
-    return Common(_rate_sum(repeated, factors, rows), np.hstack([reach for *_, reach in found]))
+    owners = [k for k, rows, _ in tracks for _ in rows]
+    means = _rate_sum(
+        [laws[k] for k in owners], factors[owners], np.vstack([rows for _, rows, _ in tracks])
+    )
+    return Common(means, np.hstack([track.reach(n) for *_, track in tracks]))
 
 
 def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:
@@ -185,6 +187,6 @@ def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:
         or np.linalg.svd(modes / lengths, compute_uv=False)[-1] < _DEPENDENT
     ):
         raise ComputationError(
-            "no steady state: a free motion of the holder does not press the faces, or presses "
-            "them as another one does; a guide must take its load"
+            "no steady state: the free motions of the holder are linearly dependent at the "
+            "contact faces; remove one of them from holder.free"
         )

@@ -27,7 +27,7 @@ from ...contact.search.pairing import pair
 from ...contact.search.surface import Surface
 from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
-from ...laws import steady_pressure
+from ...laws.principle.steady import steady_pressure
 from ...model.analyses import Analysis
 from ..interface.body_state import ContactState
 from ..model.building import sliding_of

@@ -30,7 +30,7 @@ from ...contact.solvers.signorini import solve_contact
 from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.track import StrokeGrid, track
 from ...errors import ComputationError
-from ...laws.interfaces import WearRate
+from ...laws.interfaces import Law, LocalState
 from ..interface.contact_solver import ContactSolution, Slope
 from ..interface.sdirk import InterfaceState, WearProblem
 from ..model.system import System
@@ -188,27 +188,27 @@ class _LocalWear:
 
     Attributes
     ----------
-    laws : tuple of WearRate
+    laws : tuple of Law
         Wear laws of the wearing bodies.
     speeds : ndarray, shape (J, 1) [m/s]
     friction : float
     """
 
-    laws: tuple[WearRate, ...]
+    laws: tuple[Law, ...]
     speeds: np.ndarray
     friction: float
 
     def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
         """Local rates under coefficients of the pressure (J, m), shape (n_wearing, J, m) [m/s]."""
-        return self._each(pressure, [law.rate for law in self.laws])
+        return self._each(pressure, [law.value for law in self.laws])
 
     def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
         """Derivatives of the local rates with respect to pressure [m/s/Pa]."""
         return Slope.diagonal(self._each(pressure, [law.slope for law in self.laws]))
 
     def _each(self, pressure: np.ndarray, functions) -> np.ndarray:
-        at = pressure, self.speeds
-        return np.array([of_law(*at, friction=self.friction) for of_law in functions])
+        at = LocalState(pressure, self.speeds, mu=self.friction)
+        return np.array([of_law(at) for of_law in functions])
 
 
 def _unevenness(rate: np.ndarray, place: np.ndarray) -> float:

@@ -7,9 +7,9 @@ from ...case.tables.conductance import PressureConductanceTable, TabulatedConduc
 from ...case.tables.law_values import law_of
 from ...case.tables.schema import Case
 from ...case.tables.wear import BodyWearTable
-from ...laws.coefficients.conductance import TabulatedConductance
+from ...laws.coefficients.multipliers import Multipliers
 from ...laws.distribution import DutyFactor, InPlace
-from ...laws.interfaces import InterfaceLaw
+from ...laws.interfaces import Law
 from ...laws.power_wear import PowerWear
 from ...model.interface import ContactMethod, HardnessConductance, Interface
 from ...model.wear import CircularTrack, EvenTrack, FaceWear
@@ -42,11 +42,11 @@ def interface(case: Case) -> Interface:
     )
 
 
-def conductance(case: Case) -> InterfaceLaw | HardnessConductance | None:
+def conductance(case: Case) -> Law | HardnessConductance | None:
     """Contact conductance of a case; None: perfect contact, or no heat."""
     given = None if case.heat is None else case.heat.conductance
     if isinstance(given, TabulatedConductanceTable):
-        return TabulatedConductance(given.table)
+        return Multipliers(pressure=given.table)
     if isinstance(given, PressureConductanceTable):
         return HardnessConductance(given.coefficient)
     return None if given is None else law_of(given, "heat.conductance", 0.0)

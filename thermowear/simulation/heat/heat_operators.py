@@ -14,7 +14,6 @@ from ...contact.operators.heat import HeatExchange, InterfaceHeat
 from ...contact.operators.heat_condensation import (
     ThermalDistortion,
     condense_distortion,
-    gap_per_rise,
 )
 from ..model.conditions import InterfaceConditions
 from ..model.setup_cache import SetupCache
@@ -58,14 +57,10 @@ class CondensedDistortion:
                 return condensed()
             return self.system.parts.get("distortion", self.system.inputs.conduction, condensed)
 
-    @cached_property
+    @property
     def per_rise(self) -> np.ndarray:
         """Weak gap per nodal rise at constant expansion, shape (n_owned, m) [m³/K]."""
-        return self.system.parts.get(
-            "gap per rise",
-            self.system.inputs.elasticity,
-            lambda: gap_per_rise(self.thermal.load, self.system.contact),
-        )
+        return self.system.influence.per_rise[0]
 
     def slope(self, rise: np.ndarray) -> np.ndarray:
         """Derivative of the weak gap by a nodal rise, shape (n_owned, m) [m³/K]."""
@@ -85,11 +80,11 @@ class CondensedDistortion:
             total = total + per_rise.T @ (part.excess(rise) - linear)
         return total
 
-    @cached_property
+    @property
     def _per_excess(self) -> list[tuple[VaryingExpansion, np.ndarray]]:
         """Varying expansions and the weak gap per excess rise of their parts, (n_owned, m)."""
-        contact = self.system.contact
-        return [(part, gap_per_rise(part.matrix, contact)) for part in self.thermal.expansions]
+        per_excess = self.system.influence.per_rise[1:]
+        return list(zip(self.thermal.expansions, per_excess, strict=True))
 
 
 class HeatOperators:

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...laws.distribution import Distribution
-from ...laws.interfaces import WearRate
+from ...laws.interfaces import Law
 from ...serialise import serialisable
 from ..heat.heat_steps import HeatStep
 from ..model.conditions import InterfaceConditions
@@ -145,7 +145,7 @@ class WearRates:
 
     Attributes
     ----------
-    laws : list of WearRate
+    laws : list of Law
         Wear laws of the wearing bodies.
     spreads : list of Distribution
         Distributions of the wear of these bodies.
@@ -154,7 +154,7 @@ class WearRates:
         Time in which `value` is worn, see `contact.wear.implicit_step` [s].
     """
 
-    laws: list[WearRate]
+    laws: list[Law]
     spreads: list[Distribution]
     conditions: InterfaceConditions
     step: float = 1.0

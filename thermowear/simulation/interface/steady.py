@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...contact.operators.heat import ThermalState
-from ...laws import SteadyWear, steady_pressure
+from ...laws.principle.steady import SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
 from ..model.conditions import ConditionModel, InterfaceConditions
 from ..model.system import System

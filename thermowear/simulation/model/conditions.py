@@ -10,7 +10,7 @@ import numpy as np
 
 from ...contact.operators.heat import ThermalState
 from ...errors import ComputationError
-from ...laws.interfaces import InterfaceLaw, WearRate
+from ...laws.interfaces import Law, LocalState
 from .system import System
 
 _SETTLED = 1e-10
@@ -50,16 +50,17 @@ class InterfaceConditions:
         """Friction heat per pressure, ``mu v`` [m/s]."""
         return self.friction * self.speed
 
-    def wear_rate(self, row: int, law: WearRate, pressure: np.ndarray) -> np.ndarray:
+    def wear_rate(self, row: int, law: Law, pressure: np.ndarray) -> np.ndarray:
         """Local wear rate of a wearing body at pressures (n,) [m/s]."""
-        return self.wear[row] * law.rate(pressure, *self._state(row))
+        return self.wear[row] * law.value(self._state(row, pressure))
 
-    def wear_slope(self, row: int, law: WearRate, pressure: np.ndarray) -> np.ndarray:
+    def wear_slope(self, row: int, law: Law, pressure: np.ndarray) -> np.ndarray:
         """Derivative of the wear rate with respect to the pressure [m/(s Pa)]."""
-        return self.wear[row] * law.slope(pressure, *self._state(row))
+        return self.wear[row] * law.slope(self._state(row, pressure))
 
-    def _state(self, row: int) -> tuple[np.ndarray, ...]:
-        return self.speed, self.temperature[row], self.depth[row], self.friction
+    def _state(self, row: int, pressure: np.ndarray) -> LocalState:
+        own = self.temperature[row], self.depth[row]
+        return LocalState(pressure, self.speed, *own, self.friction)
 
     @property
     def released(self) -> bool:
@@ -187,7 +188,7 @@ class ConditionModel:
 
     def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
         """Coefficient of friction, at least 0; `require_friction` checks the converged state."""
-        value = self._friction_law.value(pressure, speed, self._mean(temperatures))
+        value = self._friction_law.value(LocalState(pressure, speed, self._mean(temperatures)))
         history = self._interface.friction_history
         return (1.0 if history is None else _part(history.at(time))) * np.maximum(value, 0.0)
 
@@ -204,7 +205,7 @@ class ConditionModel:
             return
         mean = np.broadcast_to(self._mean(self._temperatures(faces)), pressure.shape)
         speed = self._speed(time)
-        value = self._friction_law.value(pressure, speed, mean)
+        value = self._friction_law.value(LocalState(pressure, speed, mean))
         lowest = int(np.argmin(np.where(pressure > 0, value, np.inf)))
         if pressure[lowest] > 0 and value[lowest] < 0:
             raise ComputationError(
@@ -218,20 +219,20 @@ class ConditionModel:
         result = np.ones((len(self._wearing), len(pressure)))
         for row, (_, wear) in enumerate(self._wearing):
             own = 0.0 if temperatures is None else temperatures[row]
-            result[row] = wear.factors.value(pressure, speed, own)
+            result[row] = wear.factors.value(LocalState(pressure, speed, own))
             if wear.friction_exponent and self._friction_varies:
                 nominal = self._interface.nominal_friction
                 result[row] *= (friction / nominal) ** wear.friction_exponent
         return result
 
     @cached_property
-    def _conductance_law(self) -> InterfaceLaw | None:
+    def _conductance_law(self) -> Law | None:
         return self._interface.conductance_law(self._system.facing, self._system.model.materials)
 
     def _conductance(self, temperatures, pressure, speed, touching) -> np.ndarray:
         if self._system.thermal is None:
             return np.zeros(len(pressure))
         law = self._conductance_law
-        at = pressure, speed, self._mean(temperatures)
-        closed = np.inf if law is None else law.value(*at)
+        at = LocalState(pressure, speed, self._mean(temperatures))
+        closed = np.inf if law is None else law.value(at)
         return np.where(touching, closed, self._interface.gap_conductance)

@@ -16,7 +16,7 @@ from ...contact.operators.sliding import Sliding
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
 from ...laws.distribution import Distribution
-from ...laws.interfaces import WearRate
+from ...laws.interfaces import Law
 from ...laws.motions import RigidMotion
 from ...model.facing import Facing
 from ...model.meshes import Zone
@@ -134,7 +134,7 @@ class System:
         return self.model.interface.nominal_friction
 
     @cached_property
-    def laws(self) -> dict[int, WearRate]:
+    def laws(self) -> dict[int, Law]:
         """Wear laws by index of the body (0 is body 1); bodies that do not wear are left out."""
         return {index: wear.law for index, wear in self.model.interface.wear.items()}
 
@@ -164,9 +164,9 @@ class System:
     def influence(self) -> Influence:
         """Responses of the bodies to the pressure basis functions. Every rank calls."""
         bodies = self.elastic, self.pairing, self.trace, self.basis
-        hot = self.thermal is not None
+        thermal_loads = () if self.thermal is None else self.thermal.load_matrices
         return self.parts.get(
-            "influence", self.inputs.elasticity, lambda: influence(*bodies, keep_whole=hot)
+            "influence", self.inputs.elasticity, lambda: influence(*bodies, thermal_loads)
         )
 
     @cached_property

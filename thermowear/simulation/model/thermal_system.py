@@ -68,6 +68,11 @@ class ThermalSystem:
         """True if conductivity or expansion depend on temperature."""
         return isinstance(self.conduction, VaryingConduction)
 
+    @property
+    def load_matrices(self) -> list[PETSc.Mat]:
+        """Nodal forces per nodal rise [N/K]: of all bodies, then of each varying expansion."""
+        return [self.load, *(expansion.matrix for expansion in self.expansions)]
+
     def forces(self, rise: np.ndarray) -> np.ndarray:
         """Nodal forces of a temperature rise, owned rows [N]."""
         return thermal_forces(self.load, self.expansions, rise)

@@ -11,7 +11,6 @@ from ...simulation import Result
 from ..check import Check, along, compare
 from ..starter import run_starter
 
-ID = "annular-punch"
 TABLE = "converged tables of degree 8 to 10 on other meshes"
 CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, special case 8"
 INNER, OUTER, FRICTION, AMBIENT = 0.02, 0.12, 0.25, 293.15
@@ -30,10 +29,7 @@ def checks() -> Iterator[Check]:
 
 def steady(b: float, speed: float) -> Result:
     """Starter case with another pressure exponent; speed 0 means without heat."""
-    overrides = (
-        f"wear.punch.pressure_exponent={b}",
-        f'wear.punch.coefficient="2e-7 1/MPa^{b}"',
-    )
+    overrides = (f"wear.punch.pressure_exponent={b}", f'wear.punch.coefficient="2e-7 1/MPa^{b}"')
     return run_starter("annular-punch", *overrides, without=() if speed else ("heat",))
 
 
@@ -49,7 +45,7 @@ def _shape(result: Result, b: float, speed: float) -> Iterator[Check]:
         corner = r in (INNER, OUTER)
         quantity = f"shape at r = {1e3 * r:g} mm, b = {b:g}, {_state(speed)} [mm]"
         allowed = 2e-3 if corner else 5e-4
-        yield compare(ID, quantity, found, known, allowed, TABLE, scale=np.ptp(expected))
+        yield compare(quantity, found, known, allowed, TABLE, scale=np.ptp(expected))
 
 
 def _pressure(result: Result, b: float, speed: float) -> Iterator[Check]:
@@ -57,7 +53,7 @@ def _pressure(result: Result, b: float, speed: float) -> Iterator[Check]:
     exact = reference.steady_pressure(interface.x, FORCE, INNER, OUTER, b)
     worst = int(np.abs(interface.pressure / exact - 1).argmax())
     quantity = f"pressure at the point of largest deviation, b = {b:g}, {_state(speed)} [Pa]"
-    yield compare(ID, quantity, interface.pressure[worst], exact[worst], 1e-6, CLOSED_FORM)
+    yield compare(quantity, interface.pressure[worst], exact[worst], 1e-6, CLOSED_FORM)
 
 
 def _heat(result: Result) -> Iterator[Check]:
@@ -65,10 +61,10 @@ def _heat(result: Result) -> Iterator[Check]:
     rises = along(interface, reference.RADII, interface.temperature_1 - AMBIENT)
     for r, found, known in zip(reference.RADII, rises, reference.TEMPERATURE_RISE, strict=True):
         quantity = f"temperature rise at r = {1e3 * r:g} mm, b = 1, hot [K]"
-        yield compare(ID, quantity, found, known, 5e-4, TABLE)
+        yield compare(quantity, found, known, 5e-4, TABLE)
     power = reference.friction_power(FORCE, INNER, OUTER, FRICTION, 0.1)
     found = result.summary["friction_power_W"]
-    yield compare(ID, "friction power, b = 1, hot [W]", found, power, 1e-6, CLOSED_FORM)
+    yield compare("friction power, b = 1, hot [W]", found, power, 1e-6, CLOSED_FORM)
 
 
 def _state(speed: float) -> str:

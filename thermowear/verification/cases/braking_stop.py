@@ -11,11 +11,9 @@ from ...simulation import Result
 from ..check import Check, compare
 from ..computed import computed
 from ..starter import run_starter, starter
-from .step_flux import AMBIENT, DEEP, HEAT, LOWER, UPPER
+from .step_flux import AMBIENT, DEEP, HEAT, LOWER, UPPER, balance
 
-ID = "braking-stop"
 EXACT = "Duhamel's integral; Fazekas, SAE Technical Paper 530221, 1953"
-BALANCE = "energy balance"
 ENERGY = "energy over heat capacity, by hand"
 STOP, TIMES = 4.0, (1.0, 2.0, 3.0, 4.0, 6.0)
 FORCE, FRICTION, SPEED, RISE = 7.9e3, 0.4, 92.6, 0.2
@@ -49,24 +47,24 @@ def _wide_blocks() -> Iterator[Check]:
         known = float(surface_rise(both, HEAT, STOP, time))
         for body in (1, 2):
             found = getattr(result.outputs[time], f"temperature_{body}").mean() - AMBIENT
-            yield compare(ID, f"rise of body {body} at {time:g} s [K]", found, known, 1e-3, EXACT)
+            yield compare(f"rise of body {body} at {time:g} s [K]", found, known, 1e-3, EXACT)
     highest = result.summary["peak_temperature_K"] - AMBIENT
-    yield compare(ID, "highest rise [K]", highest, highest_rise(both, HEAT, STOP), 2e-3, EXACT)
+    yield compare("highest rise [K]", highest, highest_rise(both, HEAT, STOP), 2e-3, EXACT)
     slid = result.history[-1].sliding_distance
-    yield compare(ID, "sliding distance [m]", slid, 0.1 * STOP / 2, 1e-12, "half of v t")
-    yield _balance(result, "wide blocks")
+    yield compare("sliding distance [m]", slid, 0.1 * STOP / 2, 1e-12, "half of v t")
+    yield balance(result, "wide blocks")
 
 
 def _starter(result: Result) -> Iterator[Check]:
     """Energy balance in each step, and integral of the friction power."""
-    yield _balance(result, "car")
+    yield balance(result, "car")
     time = np.array([row.time for row in result.heat])
     power = np.array([row.friction_power for row in result.heat])
     made, known = result.summary["heat_in_J"], float(np.trapezoid(power, time))
-    yield compare(ID, "friction heat, car [J]", made, known, 1e-3, "integral of the friction power")
+    yield compare("friction heat, car [J]", made, known, 1e-3, "integral of the friction power")
     slid = result.history[-1].sliding_distance
-    way = SPEED * ARM * STOP / 2
-    yield compare(ID, "sliding distance, car [m]", slid, way, 1e-9, "half of v t")
+    distance = SPEED * ARM * STOP / 2
+    yield compare("sliding distance, car [m]", slid, distance, 1e-9, "half of v t")
 
 
 def _insulated_disk() -> Iterator[Check]:
@@ -78,22 +76,14 @@ def _insulated_disk() -> Iterator[Check]:
         'analysis.end_time="5000 s"',
         without=("heat.cooling",),
     )
-    yield _balance(result, "insulated disk")
+    yield balance(result, "insulated disk")
     made, last = result.summary["heat_in_J"], result.heat[-1]
     expected = made / DISK_CAPACITY
     for which in ("mean", "max"):
         rise = getattr(last, f"{which}_temperature_2") - AMBIENT
         quantity = f"{which} rise of the insulated disk's face in the end [K]"
-        yield compare(ID, quantity, rise, expected, 1e-3, ENERGY)
+        yield compare(quantity, rise, expected, 1e-3, ENERGY)
     # torque for a uniform pressure, which is an approximation
     under_way = RISE / 2 - RISE**2 / (3 * STOP) + (STOP - RISE) ** 2 / (2 * STOP)
     work = FRICTION * FORCE * ARM * SPEED * under_way
-    yield compare(ID, "friction heat, insulated disk [J]", made, work, 2e-2, "torque times angle")
-
-
-def _balance(result: Result, name: str) -> Check:
-    """Energy balance in the step with the largest error."""
-    worst = max(result.heat, key=lambda row: row.balance_error)
-    gone = worst.heat_stored + worst.heat_lost
-    quantity = f"heat stored and lost in the step of largest balance error, {name} [J]"
-    return compare(ID, quantity, gone, worst.heat_in, 1e-9, BALANCE)
+    yield compare("friction heat, insulated disk [J]", made, work, 2e-2, "torque times angle")

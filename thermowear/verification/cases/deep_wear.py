@@ -15,7 +15,6 @@ from ...simulation import Result
 from ..check import Check, along, compare
 from ..starter import run_starter
 
-ID = "deep-wear"
 STARTER = "annular-punch"
 RADII = (0.022, 0.025, 0.04, 0.07, 0.1, 0.115, 0.118)
 AREA = pi * (0.12**2 - 0.02**2)
@@ -39,23 +38,18 @@ def checks() -> Iterator[Check]:
     worn = deep("wear.update=0.007", *FINE)
     summary = worn.summary
     error = 1 + summary["geometry_volume_error"]
-    yield compare(ID, "worst update: volume lost by the mesh [1]", error, 1.0, 1e-6, FACE)
+    yield compare("worst update: volume lost by the mesh [1]", error, 1.0, 1e-6, FACE)
     slanted = 1.0 / summary["geometry_smallest_scaled_jacobian"]
-    yield Check(ID, "1 / smallest scaled Jacobian [1]", slanted, 1.0, slanted, 10.0, "a rectangle")
+    yield Check("1 / smallest scaled Jacobian [1]", slanted, 1.0, slanted, 10.0, "a rectangle")
     lost = summary["geometry_volume_1_m3"]
     volume = float(worn.interface.weight @ worn.interface.wear_1)
     whole = summary["wear_volume_1_m3"]
-    yield compare(ID, "volume lost by the mesh and kept in the gap [m³]", whole, volume, 1e-6, FACE)
+    yield compare("volume lost by the mesh and kept in the gap [m³]", whole, volume, 1e-6, FACE)
     # the last step is repeated on the moved mesh: the difference of both remains in the gap
     yield compare(
-        ID,
-        "volume lost by the mesh in the end, but for the last step [m³]",
-        lost,
-        whole,
-        1e-5,
-        FACE,
+        "volume lost by the mesh in the end, but for the last step [m³]", lost, whole, 1e-5, FACE
     )
-    yield compare(ID, "height worn off [m]", lost / AREA, WORN, 1e-3, "the steady wear rate")
+    yield compare("height worn off [m]", lost / AREA, WORN, 1e-3, "the steady wear rate")
     height = HEIGHT - lost / AREA
     yield from _against_low_punch(worn, height)
     late = deep("wear.update=0.0035", *FINE, height=height + LAST, worn=LAST)
@@ -85,7 +79,7 @@ def _against_low_punch(worn: Result, height: float) -> Iterator[Check]:
         )
         for r, T, exact in zip(RADII, found, known, strict=True):
             name = f"temperature of body {body} at r = {1e3 * r:g} mm [K], of its rise"
-            yield compare(ID, name, T, exact, 1e-3, LOW, exact - AMBIENT)
+            yield compare(name, T, exact, 1e-3, LOW, exact - AMBIENT)
 
 
 def _shapes(worn: Result, known: Result, source: str, origin: str) -> Iterator[Check]:
@@ -96,7 +90,7 @@ def _shapes(worn: Result, known: Result, source: str, origin: str) -> Iterator[C
         profiles.append(along(face, RADII, face.shape - mean))
     for r, found, exact in zip(RADII, *profiles, strict=True):
         name = f"shape at r = {1e3 * r:g} mm from {origin} [m], of its range"
-        yield compare(ID, name, found, exact, 1e-3, source, known.summary["shape_range_m"])
+        yield compare(name, found, exact, 1e-3, source, known.summary["shape_range_m"])
 
 
 def _updates() -> Iterator[Check]:
@@ -110,7 +104,7 @@ def _updates() -> Iterator[Check]:
     order = log2(changes[0] / changes[-1]) / (len(changes) - 1)
     sizes = ", ".join(f"{100 * size:g} %" for size in SIZES)
     name = f"order, updates at {sizes}: hottest point in the mean over the run [1]"
-    yield Check(ID, name, order, 1.0, max(1.0 - order, 0.0), _SCATTER, ORDER)
+    yield Check(name, order, 1.0, max(1.0 - order, 0.0), _SCATTER, ORDER)
     chosen, fine = deep(*COARSE), deep("wear.update=0.0025", *COARSE)
     means = _mean_of_hottest(chosen), _mean_of_hottest(fine)
     rows = [("hottest point in the mean over the run [K], of its rise", means)]
@@ -124,7 +118,7 @@ def _updates() -> Iterator[Check]:
     for name, (found, known) in rows:
         scale = known - AMBIENT if "rise" in name else None
         label = f"{name}, updates as they are chosen"
-        yield compare(ID, label, found, known, 5e-3, SMALL, scale)
+        yield compare(label, found, known, 5e-3, SMALL, scale)
 
 
 def _mean_of_hottest(result: Result) -> float:

@@ -6,20 +6,17 @@ running-in from unworn faces, whose final pressure and shape must be the steady 
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
 
 import numpy as np
 
-from ... import geometry  # noqa: F401  (makes the geometries known)
-from ...case import load
-from ...case.starters import starter_text
 from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion, rotation, translation
 from ...simulation import Result
 from ...simulation.from_case import model_of
 from ..check import Check, compare
 from ..computed import computed
+from ..starter import starter
 
 PRINCIPLE = "steady state from the principle of minimum wear dissipation power"
 EDGE = 2e-3
@@ -31,29 +28,27 @@ _TRANSIENT = "analysis={type='transient', until='steady', steady_tolerance=1e-3,
 
 
 def running_in(
-    id: str, label: str, starter: str, *overrides: str, without: tuple[str, ...] = ()
+    label: str, name: str, *overrides: str, without: tuple[str, ...] = ()
 ) -> Iterator[Check]:
     """Pressure and worn shape at the end of a running-in from unworn faces.
 
     Parameters
     ----------
-    id : str
-        Id of the verification case.
     label : str
         Label of the run in the output.
-    starter : str
+    name : str
+        Starter case.
     *overrides : str
         ``KEY=VALUE`` each.
     without : tuple of str
         Tables to leave out.
     """
-    case = variant(starter, *overrides, without=without)
+    case = starter(name, *overrides, without=without)
     direct = computed(case)
-    reached = computed(variant(starter, *overrides, _TRANSIENT, _UNWORN, without=without))
-    name = f"{starter}, {label}" if label else starter
+    reached = computed(starter(name, *overrides, _TRANSIENT, _UNWORN, without=without))
+    name = f"{name}, {label}" if label else name
     inner = away_from_ends(case, direct)
     yield compare(
-        id,
         f"{name}: pressure after running-in minus the steady one, root mean square [Pa]",
         _mean_square(direct, reached.interface.pressure - direct.interface.pressure, inner),
         0.0,
@@ -69,15 +64,7 @@ def running_in(
     }
     for measure, (found, allowed) in measures.items():
         quantity = f"{name}: worn shape after running-in minus the steady one, {measure} [m]"
-        yield compare(id, quantity, found, 0.0, allowed, PRINCIPLE, scale=size)
-
-
-def variant(starter: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
-    """Starter case with keys changed and tables left out."""
-    tables = tomllib.loads(starter_text(starter))
-    for table in without:
-        tables.pop(table, None)
-    return load(tables, overrides)
+        yield compare(quantity, found, 0.0, allowed, PRINCIPLE, scale=size)
 
 
 def away_from_ends(case: Case, result: Result) -> np.ndarray:
@@ -109,8 +96,8 @@ def _without_motion(
     motions = [_motion(case, name) for name in case.holder.free]
     closing = [(motion.at(points) * normals).sum(axis=1) for motion in motions]
     modes = np.column_stack([np.ones(len(points)), *closing])
-    amounts = np.linalg.lstsq(modes[inner], heights[inner], rcond=None)[0]
-    return heights - modes @ amounts
+    amplitudes = np.linalg.lstsq(modes[inner], heights[inner], rcond=None)[0]
+    return heights - modes @ amplitudes
 
 
 def _motion(case: Case, name: str) -> RigidMotion:
@@ -123,8 +110,4 @@ def _motion(case: Case, name: str) -> RigidMotion:
 
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
-_TURNS = {
-    "rotation": (0.0, 0.0, 1.0),
-    "rotation-x": (1.0, 0.0, 0.0),
-    "rotation-y": (0.0, 1.0, 0.0),
-}
+_TURNS = {"rotation": (0.0, 0.0, 1.0), "rotation-x": (1.0, 0.0, 0.0), "rotation-y": (0.0, 1.0, 0.0)}

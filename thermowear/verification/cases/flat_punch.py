@@ -10,7 +10,6 @@ from ...reference import hertz as reference
 from ..check import Check, along, compare
 from ..starter import run_starter
 
-ID = "flat-punch"
 JOHNSON = "Johnson, Contact Mechanics (1985), section 2.8"
 HALF_WIDTH, THICKNESS = 5e-3, 1e-3
 PLACES = (0.0, 0.3, 0.6, 0.8, 0.9, 0.95)
@@ -27,4 +26,4 @@ def checks() -> Iterator[Check]:
         found = along(result.interface, places, result.interface.pressure)
         for place, p, known in zip(PLACES, found, exact, strict=True):
             quantity = f"pressure at x = {place:g} of the half-width, {model} [Pa]"
-            yield compare(ID, quantity, p, known, 1e-2, JOHNSON)
+            yield compare(quantity, p, known, 1e-2, JOHNSON)

@@ -10,7 +10,6 @@ from ...simulation import CycleRow, Result
 from ..check import Check, compare
 from ..starter import run_starter
 
-ID = "fretting-wear"
 FORCE, THICKNESS, RADIUS, AMPLITUDE, FRICTION = 18.5, 1e-3, 6e-3, 25e-6, 0.9
 FLAT, CYLINDER = 2.9e-14, 1.9e-14  # 1/Pa
 GROWTH = "quasi-steady growth for elastic bodies, to first order in (a0/a)²"
@@ -27,24 +26,21 @@ def checks() -> Iterator[Check]:
     cycles = rubbed(CYLINDER, FLAT)
     for number, depth in DEPTHS.items():
         quantity = f"depth of the flat after {number} cycles [m]"
-        yield compare(ID, quantity, cycles[number].max_wear_2, depth, 3e-2, MCCOLL)
+        yield compare(quantity, cycles[number].max_wear_2, depth, 3e-2, MCCOLL)
     last = cycles[5000]
     bound = FORCE * 4 * AMPLITUDE * last.cycle
     for body, k, volume in (("cylinder", CYLINDER, 1), ("flat", FLAT, 2)):
         quantity = f"worn volume over its bound, {body} [1]"
         found = getattr(last, f"wear_volume_{volume}") / (k * bound)
-        yield compare(ID, quantity, found, 0.97, 5e-3, MCCOLL)
+        yield compare(quantity, found, 0.97, 5e-3, MCCOLL)
     yield from _balance(last, CYLINDER + FLAT, "both wear")
     last = rubbed(CYLINDER + FLAT, None)[5000]
     law = growing_line(
-        FORCE / THICKNESS,
-        RADIUS,
-        contact_modulus((200e9, 0.3), (200e9, 0.3)),
-        CYLINDER + FLAT,
+        FORCE / THICKNESS, RADIUS, contact_modulus((200e9, 0.3), (200e9, 0.3)), CYLINDER + FLAT
     )
     slid = last.wear_volume_1 / ((CYLINDER + FLAT) * FORCE)
     quantity = "depth of the cylinder, which alone wears [m]"
-    yield compare(ID, quantity, last.max_wear_1, float(law.elastic_depth(slid)), 1e-2, GROWTH)
+    yield compare(quantity, last.max_wear_1, float(law.elastic_depth(slid)), 1e-2, GROWTH)
     yield from _balance(last, CYLINDER + FLAT, "the cylinder wears")
 
 
@@ -78,4 +74,4 @@ def _balance(row: CycleRow, coefficient: float, note: str) -> Iterator[Check]:
     found = row.wear_volume_1 + row.wear_volume_2
     known = coefficient / FRICTION * row.dissipated
     quantity = f"worn volume, {note} [m³]"
-    yield compare(ID, quantity, found, known, 1e-9, "k/mu times the dissipated energy")
+    yield compare(quantity, found, known, 1e-9, "k/mu times the dissipated energy")

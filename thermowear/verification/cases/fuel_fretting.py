@@ -17,7 +17,6 @@ from ...simulation import Result
 from ..check import Check, along, compare
 from ..starter import run_starter
 
-ID = "fuel-fretting"
 STARTER = "tube-in-support"
 TUBE, CLEARANCE, THICKNESS = 4.75e-3, 0.05e-3, 10e-3
 FORCE, FRICTION, AMPLITUDE, COEFFICIENT = 20.0, 0.5, 5e-6, 5e-14
@@ -47,7 +46,7 @@ def _energy(result: Result) -> Iterator[Check]:
     for body in (1, 2):
         found = result.summary[f"wear_volume_{body}_m3"]
         known = COEFFICIENT / FRICTION * result.summary["dissipated_energy_J"]
-        yield compare(ID, f"worn volume, body {body} [m³]", found, known, 1e-9, ENERGY)
+        yield compare(f"worn volume, body {body} [m³]", found, known, 1e-9, ENERGY)
 
 
 def _volumes(result: Result) -> Iterator[Check]:
@@ -66,7 +65,7 @@ def _volumes(result: Result) -> Iterator[Check]:
         found = result.summary[f"wear_volume_per_cycle_{body}_m3"]
         known = COEFFICIENT * FORCE * slid
         quantity = f"worn volume of a cycle, body {body} [m³]"
-        yield compare(ID, quantity, found, known, 1e-3, SLIDING)
+        yield compare(quantity, found, known, 1e-3, SLIDING)
 
 
 def _weighted_slip() -> float:
@@ -95,12 +94,12 @@ def _zone() -> Iterator[Check]:
         passed = 2 * COEFFICIENT * FORCE / THICKNESS * CLEARANCE / path * count
         found = along(i, inside, i.wear_1 if body == 1 else i.wear_2).mean()
         quantity = f"mean depth where the contact passes, body {body} [m]"
-        yield compare(ID, quantity, found, passed, 2e-2, ROLLING)
+        yield compare(quantity, found, passed, 2e-2, ROLLING)
     assert result.friction is not None
     row = result.friction.cycles[-1]
     reach = travel * TUBE / HOLE + HERTZ.normal.half_width
     quantity = "half-width of the zone swept by the contact [m]"
-    yield compare(ID, quantity, row.contact_area / THICKNESS / 2, reach, 4e-2, ROLLING)
+    yield compare(quantity, row.contact_area / THICKNESS / 2, reach, 4e-2, ROLLING)
 
 
 def _sticking() -> Iterator[Check]:
@@ -120,7 +119,6 @@ def _sticking() -> Iterator[Check]:
     found, line = result.friction.last, push / THICKNESS
     c = HERTZ.stick_half_width(line)
     yield compare(
-        ID,
         "half-width of the stick zone [m]",
         result.summary["stick_area_m2"] / THICKNESS / 2,
         c,
@@ -133,4 +131,4 @@ def _sticking() -> Iterator[Check]:
         quantity = f"shear at {place:g} of the half-width [Pa]"
         limit = FRICTION * HERTZ.normal.peak
         known = float(HERTZ.shear(x, line))
-        yield compare(ID, quantity, float(shear), known, 2e-2, MINDLIN, scale=limit)
+        yield compare(quantity, float(shear), known, 2e-2, MINDLIN, scale=limit)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +21,8 @@ ARCHARD = "Archard's law"
 SPEED = 0.05
 FULL = ("penalty", "nitsche")
 """Methods on the full system: slower, so on the coarsest mesh and not as far."""
+ELEMENTS, PLACES = (40, 80, 160), (3, 3.55, 4.1, 4.65, 5.2, 5.75, 6)
+"""Meshes, and multiples of the first half-width, for the largest pressures."""
 _SEEN = 0.9e-2
 """Largest relative effect of elasticity for which closed forms of rigid bodies are compared."""
 
@@ -31,8 +33,8 @@ class Growth:
 
     Attributes
     ----------
-    id, note : str
-        Id of the verification case, and label of the run.
+    note : str
+        Label of the run.
     law : GrowingContact
         Closed form.
     moment : int
@@ -42,7 +44,6 @@ class Growth:
         Interfaces by sliding distance [m].
     """
 
-    id: str
     note: str
     law: GrowingContact
     moment: int
@@ -57,9 +58,9 @@ class Growth:
             elastic = self.law.elastic_half_width(distance), self.law.elastic_depth(distance)
             names = f"half-width {place} [m]", f"depth {place} [m]"
             for name, value, hard, soft in zip(names, found, rigid, elastic, strict=True):
-                yield compare(self.id, name, value, float(soft), 1e-2, ELASTIC)
+                yield compare(name, value, float(soft), 1e-2, ELASTIC)
                 if abs(soft / hard - 1) < _SEEN:
-                    yield compare(self.id, f"{name}, rigid", value, float(hard), 1e-2, RIGID)
+                    yield compare(f"{name}, rigid", value, float(hard), 1e-2, RIGID)
 
     def from_scar(self) -> Iterator[Check]:
         """Checks from the first state on, against the closed form of rigid bodies only.
@@ -75,7 +76,7 @@ class Growth:
             found = worn_half_width(state, self.moment), float((state.wear_1 + state.wear_2)[0])
             known = float(law.half_width(slid)), float(law.depth(slid))
             for name, value, rigid in zip(("half-width", "depth"), found, known, strict=True):
-                yield compare(self.id, f"{name} {place}, rigid [m]", value, rigid, 1e-2, RIGID)
+                yield compare(f"{name} {place}, rigid [m]", value, rigid, 1e-2, RIGID)
 
     def peaks(self, load: float, power: int) -> Iterator[Check]:
         """Largest pressure against the uniform one, for any position of the edge in an element.
@@ -86,14 +87,63 @@ class Growth:
             a = float(self.law.elastic_half_width(distance))
             place = f"at {float(self.law.half_width(distance)) / self.law.start:.3g} a0{self.note}"
             found, uniform = float(state.pressure.max()), load / a**power
-            yield compare(self.id, f"largest pressure {place} [Pa]", found, uniform, 5e-2, ELASTIC)
+            yield compare(f"largest pressure {place} [Pa]", found, uniform, 5e-2, ELASTIC)
 
     def volumes(self, rate: float) -> Iterator[Check]:
         """Wear volume against ``k F s``; `rate` is k F [m²]."""
         for distance, state in self.states.items():
             volume = state.weight @ (state.wear_1 + state.wear_2)
             quantity = f"volume after {distance:.4g} m{self.note} [m³]"
-            yield compare(self.id, quantity, volume, rate * distance, 1e-3, ARCHARD)
+            yield compare(quantity, volume, rate * distance, 1e-3, ARCHARD)
+
+
+@dataclass(frozen=True)
+class GrowingCase:
+    """Starter case of a contact that grows by wear.
+
+    Attributes
+    ----------
+    starter : str
+    law : callable
+        Closed form for an exponent and a coefficient of wear.
+    coefficient : float
+        Coefficient of wear of the starter case [1/Pa].
+    moment : int
+        See `Growth`.
+    load, power
+        See `Growth.peaks`.
+    """
+
+    starter: str
+    law: Callable[[float, float], GrowingContact]
+    coefficient: float
+    moment: int
+    load: float
+    power: int
+
+    def run(
+        self,
+        note: str,
+        multiples: Sequence[float],
+        *overrides: str,
+        exponent: float = 1.0,
+        coefficient: float | None = None,
+    ) -> Growth:
+        """Run up to multiples of the first half-width, by the closed form of rigid bodies."""
+        law = self.law(exponent, coefficient or self.coefficient)
+        distances = law.distance(law.start * np.array(multiples))
+        states = grown(self.starter, distances, "mesh.elements=60", *overrides)
+        return Growth(note, law, self.moment, states)
+
+    def peaks(self) -> Iterator[Check]:
+        """Largest pressures on all meshes, and by the methods on the full system."""
+        for elements in ELEMENTS:
+            growth = self.run(f", {elements} elements", PLACES, f"mesh.elements={elements}")
+            yield from growth.peaks(self.load, self.power)
+        for method in FULL:
+            keys = f"mesh.elements={ELEMENTS[0]}", f"contact.method={method}"
+            growth = self.run(f", {ELEMENTS[0]} elements, {method}", PLACES[:3], *keys)
+            yield from growth.peaks(self.load, self.power)
 
 
 def grown(starter: str, distances, *overrides: str) -> dict[float, InterfaceFields]:

@@ -13,7 +13,6 @@ from ..check import Check, compare
 from ..starter import run_starter
 from .hertz import MODULUS, STEEL, half_width
 
-ID = "hertz-sphere"
 JOHNSON = "Johnson, Contact Mechanics (1985), section 4.2"
 LURE = "Lur'e, Theory of Elasticity (1964), ch. 6"
 RADIUS = 10e-3
@@ -43,15 +42,15 @@ def pressed(*overrides: str) -> Result:
 def _against_formula(result: Result, name: str) -> Iterator[Check]:
     exact = point_contact(result.summary["normal_force_N"], RADIUS, MODULUS)
     peak = result.summary["max_pressure_Pa"]
-    yield compare(ID, f"peak pressure, {name} [Pa]", peak, exact.peak, 5e-3, JOHNSON)
+    yield compare(f"peak pressure, {name} [Pa]", peak, exact.peak, 5e-3, JOHNSON)
     finite = sphere_on_half_space(result.summary["normal_force_N"], RADIUS, STEEL, STEEL)
     quantity = f"peak pressure of a sphere of finite size, {name} [Pa]"
-    yield compare(ID, quantity, peak, finite.peak, 5e-4, LURE)
+    yield compare(quantity, peak, finite.peak, 5e-4, LURE)
     found = half_width(result)
-    yield compare(ID, f"contact radius, {name} [m]", found, exact.half_width, 5e-3, JOHNSON)
+    yield compare(f"contact radius, {name} [m]", found, exact.half_width, 5e-3, JOHNSON)
     for part in (0.5, 0.8):
         r = part * exact.half_width
         pressure = np.interp(r, result.interface.x, result.interface.pressure)
         quantity = f"pressure at {part:g} of the contact radius, {name} [Pa]"
         known = float(exact.pressure(np.array(r)))
-        yield compare(ID, quantity, float(pressure), known, 5e-3, JOHNSON)
+        yield compare(quantity, float(pressure), known, 5e-3, JOHNSON)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from ... import geometry  # noqa: F401  (makes the geometries known)
 from ...case import load
 from ...simulation import Result
+from ..check import Check, compare
 from ..computed import computed
 
 YOUNG_MODULUS = 2.1e11  # Pa
@@ -89,3 +92,13 @@ def stability(
     if wear > 0:
         tables["wear"] = {"upper": {"coefficient": f"{wear} 1/Pa", "per": "pressure"}}
     return computed(load(tables))
+
+
+def growth(result: Result, at: str, rate: complex, source: str) -> Iterator[Check]:
+    """Growth rate of the fastest mode, and its frequency if it is oscillatory."""
+    found = result.summary["growth_rate_per_s"]
+    yield compare(f"growth rate {at} [1/s]", found, rate.real, 1e-3, source, abs(rate))
+    if rate.imag > 0:
+        found = result.summary["growth_frequency_rad_per_s"]
+        quantity = f"frequency of the growing mode {at} [1/s]"
+        yield compare(quantity, found, rate.imag, 1e-3, source)

@@ -12,22 +12,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...laws import (
-    Minimum,
+from ...laws.power_wear import PowerWear
+from ...laws.principle.functionals import (
     PowerFunctional,
-    PowerWear,
-    admissible_changes,
     friction_dissipation,
-    least_wear_dissipation,
-    minimise,
     wear_dissipation,
     wear_volume_rate,
 )
+from ...laws.principle.minimum import Minimum, least_wear_dissipation, minimise
+from ...laws.principle.perturbation import admissible_changes
 from ..check import Check, compare
 from ..closed_forms import patches
 from ..closed_forms.patches import SpecialCase
 
-ID = "minimality"
 CHANGES = 1000
 CONTROLS = (0.8, 2.0, 5.0)
 """Values of q other than 1."""
@@ -90,9 +87,7 @@ def checks() -> Iterator[Check]:
             yield _count(rng, f"{name}: {what}", there, functional, minimum.pressure, CONVEX)
 
 
-def own_minima(
-    case: SpecialCase,
-) -> Iterator[tuple[str, SpecialCase, PowerFunctional, Minimum]]:
+def own_minima(case: SpecialCase) -> Iterator[tuple[str, SpecialCase, PowerFunctional, Minimum]]:
     """Functional, its points and its minimum, for all q for which it has one."""
     velocity = case.steady().velocity
     pressed = _approaching(case, velocity)
@@ -145,4 +140,4 @@ def _count(
     changes = admissible_changes(rng, CHANGES, patch.weights, patch.force_modes, pressure)
     lower = np.count_nonzero(functional(pressure + changes) <= functional(pressure))
     quantity = f"{what}: lower ones among {CHANGES} admissible pressures [1]"
-    return compare(ID, quantity, lower, 0, 0.0, source, scale=CHANGES)
+    return compare(quantity, lower, 0, 0.0, source, scale=CHANGES)

@@ -20,9 +20,9 @@ from ...simulation.from_case import model_of
 from ...timer import Phases
 from ..check import Check, compare
 from ..computed import computed
-from .finite_elements import away_from_ends, variant
+from ..starter import starter
+from .finite_elements import away_from_ends
 
-ID = "optimal-shape"
 PRINCIPLE = "steady state from the principle of minimum wear dissipation power"
 HOT_SHOE = (
     "bodies.shoe.conductivity=180 W/(m K)",
@@ -35,11 +35,7 @@ HOT_SHOE = (
     "cooling={drum_rim='300 W/(m^2 K)', shoe_inside='100 W/(m^2 K)'}}",
 )
 """Heat data of the drum brake, our own: with less cooling its steady state would be unstable."""
-CASES = {
-    "block-on-disk": (),
-    "drum-brake": HOT_SHOE,
-    "annular-punch": (),
-}
+CASES = {"block-on-disk": (), "drum-brake": HOT_SHOE, "annular-punch": ()}
 OTHER = ("mesh.elements=17", "mesh.degree=6", "mesh.grading=0.4")
 TIMES = (1e-6, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0)
 """Output times relative to the end time of the run."""
@@ -49,14 +45,14 @@ _WORN = 5.0
 
 def checks() -> Iterator[Check]:
     """Largest deviation from the steady pressure in the whole run, for special cases 3, 7 and 8."""
-    for starter, overrides in CASES.items():
+    for name, overrides in CASES.items():
         for label, mesh in (("", ()), (", on another mesh", OTHER)):
-            steady, began = from_its_shape(starter, *overrides, mesh=mesh)
-            inner = away_from_ends(variant(starter), steady)
-            yield _worst(f"{starter}, hot, from its design{label}", steady, began, inner)
+            steady, began = from_its_shape(name, *overrides, mesh=mesh)
+            inner = away_from_ends(starter(name), steady)
+            yield _worst(f"{name}, hot, from its design{label}", steady, began, inner)
             if not mesh:
                 every = np.full(len(inner), True)
-                yield _worst(f"{starter}, hot, from its design, edges too", steady, began, every)
+                yield _worst(f"{name}, hot, from its design, edges too", steady, began, every)
 
 
 def _worst(label: str, steady: Result, began: Result, chosen: np.ndarray) -> Check:
@@ -67,17 +63,18 @@ def _worst(label: str, steady: Result, began: Result, chosen: np.ndarray) -> Che
         f"{worst:.3g} s "
         f"of {max(times):.3g} s [1]"
     )
-    return compare(ID, quantity, 1.0 + times[worst], 1.0, 0.01, PRINCIPLE)
+    return compare(quantity, 1.0 + times[worst], 1.0, 0.01, PRINCIPLE)
 
 
 def from_its_shape(
-    starter: str, *overrides: str, body: int = 1, mesh: tuple[str, ...] = ()
+    name: str, *overrides: str, body: int = 1, mesh: tuple[str, ...] = ()
 ) -> tuple[Result, Result]:
     """Steady state, and a running-in of a face that has its shape initially.
 
     Parameters
     ----------
-    starter : str
+    name : str
+        Starter case.
     *overrides : str
         ``KEY=VALUE`` each.
     body : int
@@ -85,8 +82,8 @@ def from_its_shape(
     mesh : tuple of str
         Overrides for the mesh of both runs, but not of the design.
     """
-    steady = computed(variant(starter, *overrides, *mesh))
-    design = design_of(variant(starter, *overrides), body)
+    steady = computed(starter(name, *overrides, *mesh))
+    design = design_of(starter(name, *overrides), body)
     fastest = (steady.interface.wear_rate_1 + steady.interface.wear_rate_2).max()
     end = _WORN * design.depth.max() / fastest
     times = ", ".join(f"'{part * end:.12g} s'" for part in TIMES)
@@ -95,7 +92,7 @@ def from_its_shape(
         file = Path(place) / "design.csv"
         write_table(design, file)
         shaped = f"geometry.initial_shape={str(file)!r}"
-        return steady, computed(variant(starter, *overrides, *mesh, analysis, shaped))
+        return steady, computed(starter(name, *overrides, *mesh, analysis, shaped))
 
 
 def design_of(case: Case, body: int) -> Design:

@@ -17,7 +17,6 @@ from ..starter import run_starter
 from .growing import ARCHARD, ELASTIC, RIGID, SPEED, worn_half_width
 from .hertz import MODULUS
 
-ID = "pin-on-disc"
 FORCE, RADIUS, COEFFICIENT = 10.385, 50e-3, 1.33e-13
 FIRST, LAST = 0.32, 0.64
 PUBLISHED = {FIRST: (2.7426, 1.6924e-6), LAST: (3.2543, 2.3829e-6)}
@@ -36,17 +35,17 @@ def checks() -> Iterator[Check]:
         state, place = states[distance], f"after {1e3 * distance:g} mm"
         radius, worn = worn_half_width(state, 3), float(state.wear_1[0])
         found, elastic = radius / law.start, float(law.elastic_half_width(distance)) / law.start
-        yield compare(ID, f"radius over a0 {place} [1]", found, ratio, 2e-2, RIGID)
-        yield compare(ID, f"radius over a0 {place}, elastic [1]", found, elastic, 1e-2, ELASTIC)
+        yield compare(f"radius over a0 {place} [1]", found, ratio, 2e-2, RIGID)
+        yield compare(f"radius over a0 {place}, elastic [1]", found, elastic, 1e-2, ELASTIC)
         cap = radius**2 / (2 * RADIUS)
-        yield compare(ID, f"depth {place}, by the radius of the scar [m]", cap, depth, 2e-2, CAP)
+        yield compare(f"depth {place}, by the radius of the scar [m]", cap, depth, 2e-2, CAP)
         name, dented = f"depth {place}, in the middle", float(law.elastic_depth(distance))
         if distance == LAST:
-            yield compare(ID, f"{name} [m]", worn, depth, 2e-2, RIGID)
-        yield compare(ID, f"{name}, elastic [m]", worn, dented, 1e-2, ELASTIC)
+            yield compare(f"{name} [m]", worn, depth, 2e-2, RIGID)
+        yield compare(f"{name}, elastic [m]", worn, dented, 1e-2, ELASTIC)
     summary, volume = result.summary, COEFFICIENT * FORCE * LAST
     lost = summary["geometry_volume_1_m3"]
-    yield compare(ID, "volume lost by the mesh [m³]", lost, volume, 1e-4, ARCHARD)
+    yield compare("volume lost by the mesh [m³]", lost, volume, 1e-4, ARCHARD)
     error = summary["geometry_volume_error"]
     known = "integral of the wear over the face"
-    yield compare(ID, "worst update: volume lost by the mesh [1]", 1 + error, 1.0, 1e-6, known)
+    yield compare("worst update: volume lost by the mesh [1]", 1 + error, 1.0, 1e-6, known)

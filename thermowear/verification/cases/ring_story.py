@@ -16,7 +16,8 @@ from ...reference.annular_punch import steady_pressure
 from ...simulation import Result
 from ..check import Check, compare
 from ..computed import computed
-from .finite_elements import away_from_ends, variant
+from ..starter import starter
+from .finite_elements import away_from_ends
 
 CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, special case 8"
 INNER, OUTER = 0.02, 0.12
@@ -32,22 +33,21 @@ _QUADRATIC = (
 _ON = "analysis={type='transient', until='steady', steady_tolerance=2e-4, tolerance=1e-3}"
 
 
-def story(id: str) -> Iterator[Check]:
+def story() -> Iterator[Check]:
     """Pressures, rates and shapes at the ends of its three parts."""
-    first = computed(variant(_COLD, *_QUADRATIC))
+    first = computed(starter(_COLD, *_QUADRATIC))
     second = _continued(_COLD, first)
     third = _continued(_HOT, second)
     for name, result in (("cold", second), ("then hot", third)):
-        inner = away_from_ends(variant(_COLD), result)
+        inner = away_from_ends(starter(_COLD), result)
         exact = steady_pressure(result.interface.x, FORCE, INNER, OUTER, 1.0)
         off = np.abs(result.interface.pressure / exact - 1.0)[inner]
         worst = np.flatnonzero(inner)[off.argmax()]
         quantity = f"from the shape of b = 2, 100 MPa, with b = 1, 50 MPa, {name}: pressure [Pa]"
         found = result.interface.pressure[worst]
-        yield compare(id, quantity, found, exact[worst], 1e-3, CLOSED_FORM)
+        yield compare(quantity, found, exact[worst], 1e-3, CLOSED_FORM)
         first_rate, last_rate = _volume_rates(result)
         yield compare(
-            id,
             f"{name}: second difference of the worn volume, over the first, at the end [1]",
             last_rate / first_rate - 1.0,
             0.0,
@@ -57,13 +57,13 @@ def story(id: str) -> Iterator[Check]:
         )
 
 
-def _continued(starter: str, before: Result) -> Result:
+def _continued(name: str, before: Result) -> Result:
     """Running-in from the worn shape of another run."""
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / "shape.csv"
         table = np.column_stack([before.profile.s, before.profile.shape])
         np.savetxt(file, table, delimiter=",", header="s_m,shape_m", comments="", fmt="%.17g")
-        return computed(variant(starter, _ON, f"geometry.initial_shape={str(file)!r}"))
+        return computed(starter(name, _ON, f"geometry.initial_shape={str(file)!r}"))
 
 
 def _volume_rates(result: Result) -> tuple[float, float]:

@@ -9,7 +9,6 @@ from ...simulation import Result
 from ..check import Check, along, compare
 from ..starter import run_starter
 
-ID = "running-in"
 TABLE = "time-exact running-in with two other pressure spaces in agreement"
 DEPTH_RADII = (0.025, 0.07, 0.115)
 
@@ -33,10 +32,10 @@ def _against_table(result: Result, note: str, allowed: float) -> Iterator[Check]
         found = along(state, reference.RUNNING_IN_RADII, state.pressure) / 1e6
         for r, p, known in zip(reference.RUNNING_IN_RADII, found, pressures, strict=True):
             quantity = f"pressure at {time} s, r = {1e3 * r:g} mm{note} [MPa]"
-            yield compare(ID, quantity, p, known, allowed, TABLE)
+            yield compare(quantity, p, known, allowed, TABLE)
         worn = along(state, DEPTH_RADII, state.wear_1) * 1e6
         for depth_r, w, known in zip(DEPTH_RADII, worn, depths, strict=True):
             quantity = f"wear depth at {time} s, r = {1e3 * depth_r:g} mm{note} [µm]"
-            yield compare(ID, quantity, w, known, allowed, TABLE)
+            yield compare(quantity, w, known, allowed, TABLE)
         lost = state.weight @ state.wear_1 * 1e9
-        yield compare(ID, f"volume at {time} s{note} [mm³]", lost, volume, 5e-4, TABLE)
+        yield compare(f"volume at {time} s{note} [mm³]", lost, volume, 5e-4, TABLE)

@@ -43,10 +43,7 @@ _PIVOT, _TILT = "pivoted-block", "punch-on-strip-tilting"
 
 # hot speeds lie below those at which unworn faces have no steady contact with friction heat
 _RUNS: dict[str, tuple[_Run, ...]] = {
-    "case-1": (
-        _Run("hot", "punch-on-strip"),
-        _Run("cold", "punch-on-strip", without=_COLD),
-    ),
+    "case-1": (_Run("hot", "punch-on-strip"), _Run("cold", "punch-on-strip", without=_COLD)),
     "case-2": (_Run("", "rectangular-punch"),),
     "case-3": (
         _Run("hot", _DISK),
@@ -119,9 +116,9 @@ def _checks_of(id: str) -> Checks:
     def checks() -> Iterator[Check]:
         yield from CLOSED_FORMS[id]()
         for one in _RUNS[id]:
-            yield from running_in(id, one.label, one.starter, *one.overrides, without=one.without)
+            yield from running_in(one.label, one.starter, *one.overrides, without=one.without)
         if id == "case-8":
-            yield from story(id)
+            yield from story()
 
     return checks
 

@@ -6,21 +6,15 @@ references only. Tabulated numbers must agree to the last digit.
 
 from __future__ import annotations
 
-from ..check import Checks
+from ..check import Checks, identified
 from .arcs import case_3, case_4
 from .flat import case_1, case_2, case_6
 from .levers import case_5, case_7
 from .turning import case_8, case_9
 
+_CASES = (case_1, case_2, case_3, case_4, case_5, case_6, case_7, case_8, case_9)
 CLOSED_FORMS: dict[str, Checks] = {
-    "case-1": case_1,
-    "case-2": case_2,
-    "case-3": case_3,
-    "case-4": case_4,
-    "case-5": case_5,
-    "case-6": case_6,
-    "case-7": case_7,
-    "case-8": case_8,
-    "case-9": case_9,
+    f"case-{number}": identified(f"case-{number}", checks)
+    for number, checks in enumerate(_CASES, start=1)
 }
 """Checks by id of the special case."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...laws import wear_vectors
+from ...laws.principle.wear_vectors import wear_vectors
 from ...reference import block_on_disk as arc
 from ..check import Check, compare
 from . import patches as cases
@@ -22,22 +22,22 @@ def case_3() -> Iterator[Check]:
             case = cases.block_on_disk(b, (-0.5, 0.5), *data, friction, sense, probes=(0.0,))
             steady, name = case.steady(), f", b = {b:g}, mu = {sense * friction:g}"
             quantity = f"largest pressure{name} [MPa]"
-            yield printed("case-3", quantity, steady.pressure[-1] / MPA, peak)
+            yield printed(quantity, steady.pressure[-1] / MPA, peak)
             quantity = f"pressure against the one without friction{name} [Pa]"
-            yield worst("case-3", quantity, steady.pressure, without.pressure, 1e-10)
+            yield worst(quantity, steady.pressure, without.pressure, 1e-10)
             guide = case.patch.force(steady.pressure)[0]
             exact = sense * friction * arc.FORCE
             quantity = f"force of the guide{name} [N]"
-            yield compare("case-3", quantity, guide, exact, 1e-10, CLOSED_FORM, scale=arc.FORCE)
+            yield compare(quantity, guide, exact, 1e-10, CLOSED_FORM, scale=arc.FORCE)
         if b == 1:
             exact = arc.symmetric_peak(*data, 0.5)
             quantity = "largest pressure, formula of b = 1 [Pa]"
-            yield compare("case-3", quantity, without.pressure[-1], exact, 1e-10, CLOSED_FORM)
+            yield compare(quantity, without.pressure[-1], exact, 1e-10, CLOSED_FORM)
     for sense, peak in arc.ASYMMETRIC.items():
         case = cases.block_on_disk(1.0, (-0.2, 0.7), *data, arc.FRICTION, sense, probes=(0.0,))
         quantity = f"largest pressure, asymmetric, sense {sense:+d} [MPa]"
-        yield printed("case-3", quantity, case.pressure(1)[0] / MPA, peak)
-    yield from _random_arcs("case-3", cases.block_on_disk)
+        yield printed(quantity, case.pressure(1)[0] / MPA, peak)
+    yield from _random_arcs(cases.block_on_disk)
 
 
 def case_4() -> Iterator[Check]:
@@ -46,11 +46,11 @@ def case_4() -> Iterator[Check]:
     for sense, peak in arc.ASYMMETRIC.items():
         case = cases.ring_segment(1.0, (-0.2, 0.7), *data, arc.FRICTION, sense, probes=(0.0,))
         quantity = f"largest pressure, asymmetric, sense {sense:+d} [MPa]"
-        yield printed("case-4", quantity, case.pressure(1)[0] / MPA, peak)
-    yield from _random_arcs("case-4", cases.ring_segment)
+        yield printed(quantity, case.pressure(1)[0] / MPA, peak)
+    yield from _random_arcs(cases.ring_segment)
 
 
-def _random_arcs(id: str, build) -> Iterator[Check]:
+def _random_arcs(build) -> Iterator[Check]:
     """Pressures and rates on random arcs."""
     rng = np.random.default_rng(3)
     for sense in (1, -1, 1, -1):
@@ -61,12 +61,12 @@ def _random_arcs(id: str, build) -> Iterator[Check]:
         steady, name = case.steady(), f", b = {b:.3g}, mu = {sense * friction:.3g}"
         α = np.arctan2(case.patch.points[:, 0], case.patch.points[:, 1])
         exact = arc.steady_pressure(α, force, radius, width, start, end, sense * friction, b)
-        yield worst(id, f"pressure{name} [Pa]", steady.pressure, exact)
+        yield worst(f"pressure{name} [Pa]", steady.pressure, exact)
         integral = arc.bearing_integral(radius, width, start, end, sense * friction, b)
         factor = case.laws[0].factor(case.patch.speed)
         vertical = arc.vertical_rate(force, integral, factor, b)
-        yield worst(id, f"normal wear rate{name} [m/s]", steady.rates[0], vertical * np.cos(α))
+        yield worst(f"normal wear rate{name} [m/s]", steady.rates[0], vertical * np.cos(α))
         vectors = wear_vectors(case.patch, steady)
-        yield worst(id, f"vertical wear rate{name} [m/s]", abs(vectors.rates[0][:, 1]), vertical)
-        yield worst(id, f"inclination χ{name} [rad]", vectors.inclination, np.abs(α))
-        yield dissipation(id, case, name)
+        yield worst(f"vertical wear rate{name} [m/s]", abs(vectors.rates[0][:, 1]), vertical)
+        yield worst(f"inclination χ{name} [rad]", vectors.inclination, np.abs(α))
+        yield dissipation(case, name)

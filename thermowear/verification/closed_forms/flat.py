@@ -20,12 +20,12 @@ def case_1() -> Iterator[Check]:
         case = cases.punch(b, force, length, width, speed)
         steady, name = case.steady(), f", b = {b:.3g}"
         exact = flat_face.centred_pressure(force, length * width)
-        yield worst("case-1", f"pressure{name} [Pa]", steady.pressure, exact)
+        yield worst(f"pressure{name} [Pa]", steady.pressure, exact)
         factor = float(case.laws[0].factor(np.array([speed]))[0])
         exact = flat_face.volume_rate(force, length * width, factor, b)
         volume = case.patch.weights @ steady.rates[0]
-        yield compare("case-1", f"volume rate{name} [m³/s]", volume, exact, 1e-9, CLOSED_FORM)
-        yield dissipation("case-1", case, name)
+        yield compare(f"volume rate{name} [m³/s]", volume, exact, 1e-9, CLOSED_FORM)
+        yield dissipation(case, name)
 
 
 def case_2() -> Iterator[Check]:
@@ -35,15 +35,15 @@ def case_2() -> Iterator[Check]:
         found = case.pressure(3) / MPA
         rate = found**b
         name = f", b = {b:g}"
-        yield printed("case-2", f"p^b in the middle{name} [MPa^b]", rate[1], constant)
+        yield printed(f"p^b in the middle{name} [MPa^b]", rate[1], constant)
         fall = (rate[0] - rate[2]) / (2 * rate[1])
-        yield printed("case-2", f"fall of p^b to the edge{name} [1]", fall, slope)
+        yield printed(f"fall of p^b to the edge{name} [1]", fall, slope)
         for place, p, known in zip((0, 30, 60), found, pressures, strict=True):
-            yield printed("case-2", f"pressure at x = {place} mm{name} [MPa]", p, known)
+            yield printed(f"pressure at x = {place} mm{name} [MPa]", p, known)
         x = case.patch.points[:, 0] - 0.03
         exact = flat_face.tilted_pressure(x, 10e3, -50.0, 0.06, 0.08, b)
-        yield worst("case-2", f"pressure{name} [Pa]", case.steady().pressure, exact)
-        yield dissipation("case-2", case, name)
+        yield worst(f"pressure{name} [Pa]", case.steady().pressure, exact)
+        yield dissipation(case, name)
 
 
 def case_6() -> Iterator[Check]:
@@ -69,8 +69,8 @@ def case_6() -> Iterator[Check]:
             exact = flat_face.tilted_pressure(ζ, force, offset, length, width, b)
             smooth = zone == length or b <= 1  # else the root at the edge limits the quadrature
             allowed = 1e-9 if smooth else 1e-4
-            yield worst("case-6", f"pressure{name} [Pa]", steady.pressure, exact, allowed)
+            yield worst(f"pressure{name} [Pa]", steady.pressure, exact, allowed)
             if b == 1 and zone == length:
                 exact = flat_face.linear_pressure(ζ, force, offset, length, width)
-                yield worst("case-6", f"linear pressure{name} [Pa]", steady.pressure, exact)
-            yield dissipation("case-6", case, name)
+                yield worst(f"linear pressure{name} [Pa]", steady.pressure, exact)
+            yield dissipation(case, name)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...laws import SelfLocking
+from ...laws.principle.solvability import SelfLocking
 from ...reference import brake_block as lever
 from ...reference.drum_brake import DrumBrakeShoe
 from ..check import Check, compare
@@ -25,7 +25,7 @@ def case_5() -> Iterator[Check]:
         )
         for place, p, known in zip(("inner", "outer"), case.pressure(2) / MPA, ends, strict=True):
             quantity = f"pressure at the {place} end, b = {b:g}, sense {sense:+d} [MPa]"
-            yield printed("case-5", quantity, p, known)
+            yield printed(quantity, p, known)
     rng = np.random.default_rng(5)
     for sense in (1, -1, 1, -1):
         b, friction, moment = rng.uniform((0.3, 0.0, 10), (4.0, 0.6, 1e3))
@@ -35,16 +35,16 @@ def case_5() -> Iterator[Check]:
         steady, name = case.steady(), f", b = {b:.3g}, mu = {sense * friction:.3g}"
         z = case.patch.points[:, 2]
         exact = lever.steady_pressure(z, moment, *size, sense * friction, b)
-        yield worst("case-5", f"pressure{name} [Pa]", steady.pressure, exact)
+        yield worst(f"pressure{name} [Pa]", steady.pressure, exact)
         integral = lever.bearing_integral(*size, sense * friction, b)
         rate = case.laws[0].factor(case.patch.speed) * (moment / integral) ** b * z
-        yield worst("case-5", f"normal wear rate{name} [m/s]", steady.rates[0], rate)
-        yield dissipation("case-5", case, name)
+        yield worst(f"normal wear rate{name} [m/s]", steady.rates[0], rate)
+        yield dissipation(case, name)
     for b in EXPONENTS:
         limit = lever.locking_friction(lever.INNER, lever.OUTER, lever.OFFSET, b)
         found = _self_locking_friction(b, data, 0.99 * limit, 1.01 * limit)
         quantity = f"least friction of self-locking, b = {b:g} [1]"
-        yield compare("case-5", quantity, found, limit, 1e-6, CLOSED_FORM)
+        yield compare(quantity, found, limit, 1e-6, CLOSED_FORM)
 
 
 def _self_locking_friction(
@@ -74,19 +74,19 @@ def case_7() -> Iterator[Check]:
         tops[shoe] = steady.pressure[-1]
         θ = np.arctan2(case.patch.points[:, 1], case.patch.points[:, 0])
         exact = tops[shoe] * np.sin(θ)
-        yield worst("case-7", f"long-shoe law, {shoe} [Pa]", steady.pressure, exact)
+        yield worst(f"long-shoe law, {shoe} [Pa]", steady.pressure, exact)
         actuating = law.actuating_moment(tops[shoe])
         quantity = f"actuating moment, {shoe} [N m]"
-        yield compare("case-7", quantity, moment, actuating, 1e-9, SHIGLEY)
+        yield compare(quantity, moment, actuating, 1e-9, SHIGLEY)
         torques[shoe] = -sense * case.patch.moment(steady.pressure, (0.0, 0.0, 0.0))[2]
         quantity = f"torque, {shoe} [N m]"
-        yield compare("case-7", quantity, torques[shoe], law.torque(tops[shoe]), 1e-9, SHIGLEY)
+        yield compare(quantity, torques[shoe], law.torque(tops[shoe]), 1e-9, SHIGLEY)
     ratio = DrumBrakeShoe(*size, *ends, friction).leading_over_trailing()
     for what, values in (("pressures", tops), ("torques", torques)):
         found = values["leading"] / values["trailing"]
-        yield compare("case-7", f"leading over trailing, {what} [1]", found, ratio, 1e-9, SHIGLEY)
+        yield compare(f"leading over trailing, {what} [1]", found, ratio, 1e-9, SHIGLEY)
     quantity = "largest pressure, leading, problem 16-1 [kPa]"
-    yield compare("case-7", quantity, tops["leading"] / 1e3, 734, 1e-3, SHIGLEY)
+    yield compare(quantity, tops["leading"] / 1e3, 734, 1e-3, SHIGLEY)
     yield from _random_shoes()
 
 
@@ -102,5 +102,5 @@ def _random_shoes() -> Iterator[Check]:
         θ = np.arctan2(case.patch.points[:, 1], case.patch.points[:, 0])
         name = f", b = {b:.3g}, mu = {sense * friction:.3g}"
         found = case.steady().pressure
-        yield worst("case-7", f"pressure{name} [Pa]", found, law.pressure(θ, moment))
-        yield dissipation("case-7", case, name)
+        yield worst(f"pressure{name} [Pa]", found, law.pressure(θ, moment))
+        yield dissipation(case, name)

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from ...laws import ContactPatch, PowerWear, SteadyWear, contact_patch, rotation, translation
+from ...laws import PowerWear, rotation, translation
+from ...laws.principle.patch import ContactPatch, contact_patch
+from ...laws.principle.steady import SteadyWear
 
 DOWN = (0.0, 0.0, -1.0)
 POINTS = 40
@@ -89,47 +92,29 @@ def block_on_disk(
     friction: float,
     sense: int,
     probes: Sequence[float] = (),
+    side: int = -1,
 ) -> SpecialCase:
-    """Case 3: block above a disk; in the sense +1 the disk rotates anticlockwise."""
+    """Case 3: block above a disk; in the sense +1 the disk rotates anticlockwise.
+
+    With its normal upwards (`side` +1) it is a segment inside a ring, see `ring_segment`.
+    """
     α, w = along(*ends, probes)
     outward = np.column_stack([np.sin(α), np.cos(α)])  # outward normal of the disk
     clockwise = np.column_stack([np.cos(α), -np.sin(α)])
     patch = contact_patch(
         radius * outward,
         w * radius * width,
-        -outward,
-        [translation((0.0, -1.0))],
+        side * outward,
+        [translation((0.0, side))],
         speed=0.3,
         friction=friction,
-        sliding=sense * clockwise,
+        sliding=-side * sense * clockwise,
     )
     return SpecialCase(patch, np.array([force]), (wear_law(b),))
 
 
-def ring_segment(
-    b: float,
-    ends: tuple[float, float],
-    force: float,
-    radius: float,
-    width: float,
-    friction: float,
-    sense: int,
-    probes: Sequence[float] = (),
-) -> SpecialCase:
-    """Case 4: segment pressed up inside a ring; in the sense +1 the ring rotates clockwise."""
-    α, w = along(*ends, probes)
-    outward = np.column_stack([np.sin(α), np.cos(α)])
-    anticlockwise = np.column_stack([-np.cos(α), np.sin(α)])
-    patch = contact_patch(
-        radius * outward,
-        w * radius * width,
-        outward,
-        [translation((0.0, 1.0))],
-        speed=0.3,
-        friction=friction,
-        sliding=sense * anticlockwise,
-    )
-    return SpecialCase(patch, np.array([force]), (wear_law(b),))
+ring_segment = partial(block_on_disk, side=1)
+"""Case 4: segment pressed up inside a ring; in the sense +1 the ring rotates clockwise."""
 
 
 def brake_block(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from ..check import Check, compare
+from ..check import Check, compare, compare_worst
 from .patches import SpecialCase
 
 CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, closed form"
@@ -14,27 +12,24 @@ MPA = 1e6
 _ROUNDED = 1 + 1e-9  # relative to half a unit: allows ties in rounding
 
 
-def printed(id: str, quantity: str, computed: float, text: str) -> Check:
+def printed(quantity: str, computed: float, text: str) -> Check:
     """Compare a number with a tabulated one, to half a unit of its last digit."""
     mantissa, _, power = text.partition("e")
     decimals = len(mantissa.partition(".")[2])
     half_unit = 0.5 * 10.0 ** (int(power or 0) - decimals)
     known = float(text)
-    return compare(id, quantity, computed, known, half_unit / abs(known) * _ROUNDED, TABLE)
+    return compare(quantity, computed, known, half_unit / abs(known) * _ROUNDED, TABLE)
 
 
-def worst(id: str, quantity: str, computed, exact, allowed: float = 1e-9) -> Check:
+def worst(quantity: str, computed, exact, allowed: float = 1e-9) -> Check:
     """Compare values at points with a formula, at the point of largest deviation."""
-    computed, exact = np.broadcast_arrays(computed, exact)
-    at = int(np.abs(computed - exact).argmax())
-    scale = float(np.abs(exact).max())
     quantity = f"{quantity}, at the point of largest deviation"
-    return compare(id, quantity, computed[at], exact[at], allowed, CLOSED_FORM, scale)
+    return compare_worst(quantity, computed, exact, allowed, CLOSED_FORM)
 
 
-def dissipation(id: str, case: SpecialCase, name: str) -> Check:
+def dissipation(case: SpecialCase, name: str) -> Check:
     """Compare ``D_w = ∫ p·w' dS`` with the power of the load, ``F·V``."""
     steady = case.steady()
     quantity = f"wear dissipation power{name} [W]"
     power = float(case.load @ steady.velocity)
-    return compare(id, quantity, steady.dissipation, power, 1e-9, "D_w = F·V")
+    return compare(quantity, steady.dissipation, power, 1e-9, "D_w = F·V")

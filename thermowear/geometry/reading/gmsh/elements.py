@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .contents import CellBlock
-from .gmsh_numbers import Binary, Numbers, Text
+from ..contents import CellBlock
+from .numbers import Binary, Numbers, Text
 
 _CELLS = {
     1: "line",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .contents import parsed
+from ..contents import parsed
 
 
 class Numbers:

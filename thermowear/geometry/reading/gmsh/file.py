@@ -10,9 +10,9 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from .contents import MeshContents, numbering, shown
-from .gmsh_elements import elements_2, elements_4, entities, nodes_2, nodes_4
-from .gmsh_numbers import Binary, Numbers, Text
+from ..contents import MeshContents, numbering, shown
+from .elements import elements_2, elements_4, entities, nodes_2, nodes_4
+from .numbers import Binary, Numbers, Text
 
 _NUMBERS = ("Entities", "Nodes", "Elements")
 _READ = ("MeshFormat", "PhysicalNames", *_NUMBERS)

@@ -1,0 +1,4 @@
+"""Faults found by the consistency checks."""
+
+Fault = tuple[str, str]
+"""Path of the key at fault, and the message."""

@@ -1,0 +1,85 @@
+"""Consistency checks of materials."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..tables.materials import Properties
+from ..tables.schema import Case
+from .faults import Fault
+from .heating import Need, thermal_needs
+
+_LOCKING = {1: 0.45, 2: 0.499}
+"""Largest Poisson ratio by degree, measured for a cylinder on a block with 16 elements in
+contact: up to this value the error of the force is at most twice that at 0.3; no limit from
+degree 3 on."""
+
+
+def locking(case: Case) -> Iterator[Fault]:
+    """Volumetric locking of low-order elements at nearly constant volume."""
+    limit = _LOCKING.get(case.mesh.degree)
+    if limit is None or case.model == "plane-stress":
+        return
+    for name, body in case.bodies.items():
+        sets = {f"{name}.materials.{key}": table for key, table in body.materials.items()}
+        for path, table in {name: body, **sets}.items():
+            if table.poisson_ratio is not None and table.poisson_ratio > limit:
+                yield (
+                    f"bodies.{path}.poisson_ratio",
+                    f"found {table.poisson_ratio:g}; elements of mesh.degree = {case.mesh.degree} "
+                    f"lock (become too stiff) above {limit:g}; use mesh.degree = 3 or more",
+                )
+
+
+def materials(case: Case) -> Iterator[Fault]:
+    """Valid references by ``like``, and all properties that the analysis requires."""
+    geometry, sources = case.geometry, {}
+    for part in geometry.parts:
+        name = part if part in case.bodies else geometry.zones.get(part, part)
+        if name not in case.bodies:
+            continue
+        path = f"bodies.{name}"
+        table: Properties = case.bodies[name]
+        in_set = geometry.set_of.get(part)
+        if in_set is not None:
+            path, table = f"{path}.materials.{in_set}", case.bodies[name].materials[in_set]
+        own = part == name or in_set is not None
+        if table.like is not None and own:
+            for key in sorted(table.model_fields_set - {"like", "materials"}):
+                yield f"{path}.{key}", "not allowed together with like"
+        try:
+            sources[part] = case.located_material(part)
+        except ValueError as error:
+            if own:
+                yield f"{path}.like", str(error)
+    missing: dict[str, str] = {}
+    for part, key, why in _required_properties(case):
+        if part in sources and getattr(sources[part][1], key) is None:
+            missing.setdefault(f"{sources[part][0]}.{key}", f"missing; needed{why}")
+    yield from missing.items()
+
+
+def cell_sets(case: Case) -> Iterator[Fault]:
+    """Materials by cell set require bodies of a mesh file, with a material for each cell."""
+    geometry = case.geometry
+    for name, body in case.bodies.items():
+        if body.materials and not geometry.set_of:
+            yield (
+                f"bodies.{name}.materials",
+                f'needs cell sets of a mesh file (geometry.type = "file"), found {geometry.type!r}',
+            )
+        elif body.materials and name in geometry.bodies and not body.has_own:
+            named = {geometry.set_of[part] for part in geometry.parts_of(name)[1:]}
+            for left in geometry.sets_of(name):
+                if left not in named:
+                    yield (
+                        f"bodies.{name}.young_modulus",
+                        f"missing; cells of {left!r} may be in no set of bodies.{name}.materials",
+                    )
+
+
+def _required_properties(case: Case) -> Iterator[Need]:
+    """Parts, keys of their material that are required, and the reason."""
+    for part in case.geometry.parts:
+        yield from ((part, key, "") for key in ("young_modulus", "poisson_ratio"))
+    yield from thermal_needs(case)

@@ -1,0 +1,1 @@
+"""Reader of gmsh mesh files."""

@@ -22,6 +22,7 @@ ORDER = [
     "contact",
     "model",
     "simulation",
+    "scripting",
     "verification",
     "output",
     "app",

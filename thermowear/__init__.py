@@ -13,7 +13,14 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-_LAZY = {"run": "simulation", "Result": "simulation", "Case": "case", "sweep": "app.sweeping"}
+_SCRIPTING = (
+    *("Body", "Heat", "Holder", "Interface", "LoadHistory", "Material", "Model", "PowerWear"),
+    *("PressureConductance", "Rotation", "TimeHistory", "Translation"),
+)
+_LAZY = {
+    **{"run": "simulation", "Result": "simulation", "Case": "case", "sweep": "app.sweeping"},
+    **dict.fromkeys(_SCRIPTING, "scripting"),
+}
 _ROOMS = (
     "bulk",
     "case",
@@ -23,6 +30,7 @@ _ROOMS = (
     "model",
     "output",
     "reference",
+    "scripting",
     "simulation",
     "verification",
 )

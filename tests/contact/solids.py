@@ -11,7 +11,7 @@ import numpy as np
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.contact.operators.condensation import influence
+from thermowear.contact.operators.condensation import condense
 from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace
@@ -97,4 +97,4 @@ def condensed(tagged, degree, poisson_ratio=0.0, force=1.0, rigid_modes=None, **
     basis = pressure_basis(pairing, max(degree - 1, 1))
     rigid_modes = rigid_modes or [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
     holder = hold(pairing, pairing.normals, rigid_modes)
-    return pairing, holder, influence(elastic, pairing, trace, basis).condensed(trace, holder)
+    return pairing, holder, condense(elastic, pairing, trace, trace, basis, holder)

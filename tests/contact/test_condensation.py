@@ -8,7 +8,7 @@ import pytest
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.contact.operators.condensation import influence
+from thermowear.contact.operators.condensation import condense, influence
 from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, vector_trace
@@ -40,7 +40,7 @@ def condensed(degree, columns, poisson_ratio=0.3):
     trace = gap_trace(elastic.space, pairing)
     basis = pressure_basis(pairing, max(degree - 1, 1))
     holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)])
-    contact = influence(elastic, pairing, trace, basis).condensed(trace, holder)
+    contact = condense(elastic, pairing, trace, trace, basis, holder)
     return elastic, pairing, trace, contact
 
 

@@ -8,7 +8,7 @@ from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.contact.operators.condensation import influence
+from thermowear.contact.operators.condensation import condense
 from thermowear.contact.operators.heat import baseline_response
 from thermowear.contact.operators.heat_condensation import bath_matrix, condense_heat
 from thermowear.contact.operators.holder import RigidMode, hold
@@ -109,7 +109,7 @@ def plane_contact(model, inner, columns, degree, gap, rigid_modes):
     pairing = pair(*faces, model, degree + 2)
     trace, basis = gap_trace(elastic.space, pairing), pressure_basis(pairing, degree - 1)
     holder = hold(pairing, pairing.normals, rigid_modes)
-    contact = influence(elastic, pairing, trace, basis).condensed(trace, holder)
+    contact = condense(elastic, pairing, trace, trace, basis, holder)
     x = pairing.points[:, 0]
     return x, *solved(pairing, holder, contact, gap(x))
 

@@ -44,7 +44,7 @@ def test_no_wrong_pressure_is_returned(tables, method):
         object.__setattr__(system.holder.rigid_modes[0], "load", force)
         conditions = ConditionModel(system).at(0.0, nothing, None, everywhere)
         found = interface_problem(system)._method.solve(
-            gap, Slope.on_the_spot(nothing), None, conditions, None
+            gap, Slope.diagonal(nothing), None, conditions, None
         )
         p, w = found.pressure, system.weights
         assert p.min() >= 0

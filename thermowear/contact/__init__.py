@@ -4,7 +4,7 @@ from .friction.loads import Loads
 from .friction.stick_slip import advance, follow
 from .friction.stick_slip_state import StickSlipState
 from .full.full_system import FullContact, FullSolution
-from .operators.condensation import CondensedContact, influence
+from .operators.condensation import CondensedContact, condense
 from .operators.heat import InterfaceHeat, ThermalState
 from .operators.heat_condensation import condense_distortion, condense_heat
 from .operators.holder import RigidHolder, RigidMode, hold
@@ -36,6 +36,7 @@ __all__ = [
     "Surface",
     "ThermalState",
     "advance",
+    "condense",
     "condense_distortion",
     "condense_heat",
     "condense_tangential",
@@ -44,7 +45,6 @@ __all__ = [
     "gap_trace",
     "gather_face",
     "hold",
-    "influence",
     "normal_traction",
     "pair",
     "pressure_basis",

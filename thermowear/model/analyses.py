@@ -106,6 +106,8 @@ class ReciprocatingAnalysis(TimedAnalysis):
 
     type: ClassVar[str] = "reciprocating"
 
+    tolerance: float = 1e-3
+    steady_tolerance: float = 0.05
     amplitude: float = 0.0
     frequency: float = 1.0
     positions: int = 12
@@ -131,6 +133,7 @@ class FrettingAnalysis(SteppedAnalysis):
 
     type: ClassVar[str] = "fretting"
 
+    tolerance: float = 1e-2
     increments: int = 20
     cycles: int = 1
     jump: int | Literal["auto"] = "auto"

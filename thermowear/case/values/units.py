@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator, PlainSerializer
 
-from ...errors import quoted
+from ...errors import CaseError, quoted
 
 _LONGEST = 200
 """Largest number of characters of a quantity."""
@@ -179,6 +179,31 @@ def quantity(unit: str, example: str, **bounds: float):
         BeforeValidator(lambda text: _to_si(unit, example, bounds, text)),
         PlainSerializer(lambda value: f"{value!r} {unit}", return_type=str),
     ]
+
+
+def in_python(kind: Any, value: Any, name: str) -> float:
+    """Read an argument of a Python function.
+
+    Parameters
+    ----------
+    kind : Annotated
+        Type made by `quantity`.
+    value : float, str or pint.Quantity
+        A number is in SI.
+    name : str
+        Name of the argument, for the message.
+
+    Raises
+    ------
+    CaseError
+        If it is no such quantity, or out of bounds.
+    """
+    read, written = kind.__metadata__
+    bare = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    try:
+        return read.func(written.func(float(value)) if bare else value)
+    except ValueError as error:
+        raise CaseError(f"{name}: {error}") from None
 
 
 _SMALLEST, _FARTHEST = 1e-12, 1e7

@@ -150,3 +150,18 @@ def blocks(count: int, dim: int) -> Iterator[slice]:
     """Ranges of columns that are solved for together, in a mesh of dimension `dim`."""
     size = _COLUMNS[dim]
     return (slice(start, start + size) for start in range(0, count, size))
+
+
+def condense(
+    elastic: Elasticity,
+    pairing: Pairing,
+    trace: sp.csr_matrix,
+    traction: sp.csr_matrix,
+    basis: np.ndarray,
+    holder: RigidHolder,
+) -> CondensedContact:
+    """Condense elasticity to the pressure space; parameters as in `influence` and `Influence`.
+
+    Every rank calls.
+    """
+    return influence(elastic, pairing, trace, basis).condensed(traction, holder)

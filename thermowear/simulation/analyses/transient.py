@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 
 from ...errors import ComputationError
@@ -15,7 +16,7 @@ from ..results.outcome import Outcome
 from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
 from ..time.step_sizes import AnySize, FewSizes
-from ..time.time_loop import times_to_hit
+from ..time.time_loop import Moment, times_to_hit
 from .transient_history import TransientHistory
 
 
@@ -30,12 +31,22 @@ def running_in(
     Results computed before an error or Ctrl-C are kept. The summary includes the wear velocities of
     the steady state that is approached.
     """
+    history, passing = transient_history(system, settings, observer, before)
+    return history.outcome(history.follow("time stepping", passing))
+
+
+def transient_history(
+    system: System,
+    settings: TransientAnalysis,
+    observer: Observer,
+    before: Progress | None = None,
+) -> tuple[TransientHistory, Iterator[Moment]]:
+    """Empty history of a transient analysis, and the moments to keep in it, made one by one."""
     problem = interface_problem(system, observer.note)
     sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
     loop = OuterLoop(system, settings, problem, partial(_principle, settings), sizes, observer)
     history = TransientHistory(loop, settings, observer)
-    passing = history.watched(loop.moments(history.resume(before)))
-    return history.outcome(history.follow("time stepping", passing))
+    return history, history.watched(loop.moments(history.resume(before)))
 
 
 def _principle(settings: TransientAnalysis, system: System) -> SteadyState | None:

@@ -11,7 +11,9 @@ from ...errors import ComputationError
 from ...laws.motions import combined
 from ...model.analyses import TransientAnalysis
 from ..geometry_update.outer_loop import OuterLoop
+from ..interface.interface_problem import InterfaceProblem
 from ..model.conditions import InterfaceConditions
+from ..model.system import System
 from ..results.recording import interface_at
 from ..results.rows import HeatRow, HistoryRow
 from ..runtime.history import AnalysisHistory, Snapshot
@@ -40,20 +42,20 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def __init__(self, loop: OuterLoop, settings: TransientAnalysis, observer: Observer):
         super().__init__(loop.system, settings, observer)
-        self._loop = loop
+        self.loop = loop
         self._speed = 0.0
 
     def restart_data(self) -> tuple:
         """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
-        return self._speed, self._loop.restart_data(), self._loop.problem.restart_data()
+        return self._speed, self.loop.restart_data(), self.loop.problem.restart_data()
 
     def restore(self, data: tuple) -> None:
         self._speed, loop, heat = data
-        self._loop.restore(loop)
-        self._loop.problem.restore(heat)
+        self.loop.restore(loop)
+        self.loop.problem.restore(heat)
 
     def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
-        problem = self._loop.problem
+        problem = self.loop.problem
         conditions = problem.conditions(state.state, state.time)
         speed = self._mean(conditions.speed)
         slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
@@ -76,8 +78,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         try:
             for moment in passing:
                 yield moment
-                hottest = self._loop.problem.hottest(moment.state)
-                if self._loop.problem.stores_heat and hottest > _MELTED:
+                hottest = self.loop.problem.hottest(moment.state)
+                if self.loop.problem.stores_heat and hottest > _MELTED:
                     raise ComputationError(
                         f"transient: {hottest:.3g} K at {moment.time:g} s, above the melting point "
                         "of any solid"
@@ -88,14 +90,10 @@ class TransientHistory(AnalysisHistory[Moment]):
             raise
 
     def snapshot(self, state: Moment) -> Snapshot:
-        problem, system = self._loop.problem, self._loop.system
-        contact = problem.contact_state(state.state, state.time)
-        motion = combined(system.holder.motions, state.state.contact.motion)
-        worn = self._by_body(state.state.worn)
-        return Snapshot(system, contact, motion, *interface_at(system, contact, motion, worn))
+        return snapshot_at(self.loop.system, self.loop.problem, state)
 
     def summary(self) -> dict:
-        loop, rows, heat = self._loop, self.table(HistoryRow), self.table(HeatRow)
+        loop, rows, heat = self.loop, self.table(HistoryRow), self.table(HeatRow)
         steady = loop.steady
         result = {
             "steps": len(rows) - 1,
@@ -126,8 +124,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         return now > _STEEPER * so_far > 0.0
 
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
-        system, pressure, rows = self._loop.system, moment.state.pressure, self.table(HistoryRow)
-        volumes = system.worn_volumes(self._by_body(moment.state.worn))
+        system, pressure, rows = self.loop.system, moment.state.pressure, self.table(HistoryRow)
+        volumes = system.worn_volumes(_by_body(system, moment.state.worn))
         return HistoryRow(
             time=moment.time,
             sliding_distance=slid + (rows[-1].sliding_distance if rows else 0.0),
@@ -135,14 +133,14 @@ class TransientHistory(AnalysisHistory[Moment]):
             contact_area=float(system.weights[pressure > 0].sum()),
             wear_volume_1=float(volumes[0]),
             wear_volume_2=float(volumes[1]),
-            max_temperature=self._loop.problem.hottest(moment.state),
+            max_temperature=self.loop.problem.hottest(moment.state),
             approach=float(system.approaches @ moment.state.contact.motion),
             step=moment.step,
             error=moment.error,
         )
 
     def _heat_row(self, moment: Moment, conditions: InterfaceConditions) -> HeatRow:
-        system, problem, pressure = self._loop.system, self._loop.problem, moment.state.pressure
+        system, problem, pressure = self.loop.system, self.loop.problem, moment.state.pressure
         balance, (T1, T2) = (
             problem.heat_balance(moment.state),
             problem.face_temperatures(moment.state),
@@ -164,10 +162,19 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def _mean(self, values: np.ndarray) -> float:
         """Area mean over the face."""
-        return float(np.average(values, weights=self._loop.system.weights))
+        return float(np.average(values, weights=self.loop.system.weights))
 
-    def _by_body(self, worn: np.ndarray) -> np.ndarray:
-        """Expand rows of the wearing bodies to both bodies, shape (2, n)."""
-        both = np.zeros((2, worn.shape[1]))
-        both[list(self._loop.system.laws)] = worn
-        return both
+
+def snapshot_at(system: System, problem: InterfaceProblem, moment: Moment) -> Snapshot:
+    """Contact and bodies at a moment of a running-in; every rank calls."""
+    contact = problem.contact_state(moment.state, moment.time)
+    motion = combined(system.holder.motions, moment.state.contact.motion)
+    worn = _by_body(system, moment.state.worn)
+    return Snapshot(system, contact, motion, *interface_at(system, contact, motion, worn))
+
+
+def _by_body(system: System, worn: np.ndarray) -> np.ndarray:
+    """Expand rows of the wearing bodies to both bodies, shape (2, n)."""
+    both = np.zeros((2, worn.shape[1]))
+    both[list(system.laws)] = worn
+    return both

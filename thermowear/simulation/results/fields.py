@@ -31,7 +31,7 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
     centre = grid.mean(axis=0)
     inside = centre + (grid - centre) * (1 - _INSET)
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
-    u = as_function(elastic.space, _with_holder(system, state.displacement, motion), "u")
+    u = as_function(elastic.space, with_holder(system, state.displacement, motion), "u")
     du = as_function(elastic.space, state.displacement, "u")
     rise, straining, ambient, thermal = None, None, 0.0, system.thermal
     if state.rise is not None and thermal is not None:
@@ -70,7 +70,7 @@ def _body_of_tag(system: System) -> np.ndarray:
     return np.array([0, *(numbers[part] for part in system.bodies.names)])
 
 
-def _with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -> np.ndarray:
+def with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -> np.ndarray:
     """Add the rigid motion of the holder to the nodes of body 1."""
     upper = system.elastic.owned_by(*system.model.bodies[0].parts)
     nodes = system.elastic.nodes()

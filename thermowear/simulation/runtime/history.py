@@ -217,12 +217,17 @@ class AnalysisHistory(ABC, Generic[State]):
         """Save the progress up to the last state to restart from; every rank calls."""
         if self._restart is None:
             return
-        state, counts, own = self._restart
-        rows = {kind: self._tables[kind][:count] for kind, count in counts.items()}
         with self._system.phases("checkpoint"):
-            saved = Saved.now(self._system, Progress(state, rows, own))
+            saved = Saved.now(self._system, self.progress())
             self._observer.checkpoint(saved)
         self._saved_at = time.monotonic()
+
+    def progress(self) -> Progress:
+        """Progress up to the last state to restart from."""
+        assert self._restart is not None
+        state, counts, own = self._restart
+        rows = {kind: self._tables[kind][:count] for kind, count in counts.items()}
+        return Progress(state, rows, own)
 
     def outcome(self, stopped: BaseException | None) -> Outcome:
         """Outcome of the analysis at the last state; every rank calls."""

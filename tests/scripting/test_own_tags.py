@@ -1,0 +1,76 @@
+"""Models in Python on a user's mesh give the results of a case file."""
+
+import numpy as np
+import pytest
+
+import thermowear as tw
+
+from ..case.starter import FRETTING, RECIPROCATING, STEADY
+from .from_case import python_model, same
+
+COARSE = ("mesh.degree=3", "mesh.elements=6")
+IN_TIME = (*COARSE, "analysis.type=transient", "analysis.end_time=200 s")
+STORED = (
+    *COARSE,
+    "analysis.type=transient",
+    "analysis.end_time=0.5 s",
+    "heat.transient=true",
+    "mesh.degree=2",
+    "bodies.punch.density=7800 kg/m^3",
+    "bodies.punch.specific_heat=460 J/(kg K)",
+)
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("apart", [False, True])
+def test_the_steady_state_of_a_case(apart, backwards):
+    """requirement: the same to 1e-12 with own tags, bodies in any order, on one mesh or on two."""
+    model, _, case = python_model(STEADY, *COARSE, apart=apart, backwards=backwards)
+    same(model.steady().result, tw.run(case))
+
+
+@pytest.mark.parametrize(("overrides", "until"), [(IN_TIME, "200 s"), (STORED, "0.5 s")])
+def test_the_running_in_of_a_case(overrides, until):
+    """requirement: the same to 1e-12, all at once or step by step."""
+    model, face, case = python_model(STEADY, *overrides)
+    known = tw.run(case)
+    same(model.transient(until).result, known)
+    states = list(model.march(until))
+    for name in ("time", "max_pressure", "max_temperature", "wear_volume_1"):
+        found = [getattr(state.row, name) for state in states]
+        assert found == pytest.approx([getattr(row, name) for row in known.history], rel=1e-12)
+    same(states[-1].snapshot, known)
+    assert np.max(states[-1].pressure(face)) == known.interface.pressure.max()
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides", "analysis"),
+    [
+        ("rectangular-punch", ("mesh.degree=2", "mesh.elements=3"), "steady"),
+        ("stacked-blocks", ("mesh.degree=2",), "steady"),
+        ("stacked-blocks", ("mesh.degree=2", "analysis.type=initial"), "initial"),
+        ("stacked-blocks", ("mesh.degree=2", "analysis.type=stability"), "stability"),
+        (FRETTING, ("mesh.degree=2", "mesh.elements=10", "analysis.increments=4"), "fretting"),
+        (RECIPROCATING, ("mesh.degree=2", "mesh.elements=6", "analysis.cycles=200"), None),
+    ],
+)
+def test_all_analyses(name, overrides, analysis):
+    """requirement: sections and space, every analysis: the same to 1e-12 as from a case file."""
+    model, _, case = python_model(name, *overrides)
+    known = tw.run(case)
+    if analysis == "fretting":
+        found = model.fretting(increments=4).result
+        assert [row.dissipated for row in found.friction.rows] == pytest.approx(
+            [row.dissipated for row in known.friction.rows], rel=1e-12
+        )
+    elif analysis is None:
+        found = model.reciprocating(
+            "5 mm", "2 Hz", end_time=100.0, output_times=(10.0, 100.0)
+        ).result
+    else:
+        found = getattr(model, analysis)().result
+    same(found, known)
+    if analysis == "stability":
+        assert found.summary["critical_speed_m_per_s"] == pytest.approx(
+            known.summary["critical_speed_m_per_s"], rel=1e-12
+        )

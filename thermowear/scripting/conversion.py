@@ -1,0 +1,143 @@
+"""Conversion of Python arguments: optional quantities, laws, and histories of time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any, TypeVar
+
+from ..case.values import units
+from ..case.values.expressions import expression
+from ..case.values.units import in_python
+from ..errors import CaseError
+from ..laws import load_history, time_course
+from ..laws.coefficients.constant import Constant
+from ..laws.formulas import FormulaLaw, FormulaWear
+from ..laws.from_python import interface_law, wear_rate
+from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
+from ..laws.plausible import require_interface_law
+from ..laws.time_course import TimeCourse, TimeFunction
+
+Key = TypeVar("Key")
+
+
+def optional(kind: Any, value: Any, name: str) -> float | None:
+    """Read an argument that may be None; see `case.values.units.in_python`."""
+    return None if value is None else in_python(kind, value, name)
+
+
+def number(value: Any, name: str, least: float = -math.inf, most: float = math.inf) -> float:
+    """Read a number without a unit."""
+    if isinstance(value, bool | str) or not least <= value <= most:
+        raise CaseError(f"{name}: found {value!r}; must be a number from {least:g} to {most:g}")
+    return float(value)
+
+
+def coefficient_law(given: Any, name: str, unit: str, least: float) -> Law:
+    """Friction or conductance.
+
+    Parameters
+    ----------
+    given : float, str, Law or callable
+        Number in SI, expression in p, v and T with units, law, or function of some of p, v and T.
+    name : str
+        Name of the argument, for messages.
+    unit : str
+        SI unit of the value; empty for a number without one.
+    least : float
+        Smallest value that an expression may have.
+    """
+
+    def law() -> Law:
+        if not isinstance(given, str):
+            return interface_law(given)
+        found = expression(given, unit, INTERFACE_VARIABLES)
+        constant = found.constant
+        return FormulaLaw(found, name, least) if constant is None else Constant(constant)
+
+    result = _named(law, name)
+    if isinstance(result, Constant):
+        number(result.number, name, least=0.0)
+    else:
+        _named(lambda: require_interface_law(result), name)
+    return result
+
+
+def rate_law(given: Any, name: str) -> Law:
+    """Wear rate from an expression with units, a law, or a function of p, v, T, depth and mu."""
+
+    def law() -> Law:
+        if isinstance(given, str):
+            return wear_rate(FormulaWear(expression(given, "m/s", WEAR_VARIABLES), name))
+        return wear_rate(given)
+
+    return _named(law, name)
+
+
+def _named(read: Callable[[], Any], name: str) -> Any:
+    try:
+        return read()
+    except (ValueError, CaseError) as error:
+        raise CaseError(f"{name}: {error}") from None
+
+
+def TimeHistory(
+    time: Sequence[Any], values: Sequence[Any], repeat: bool = False, kind: Any = None
+) -> TimeFunction:
+    """Piecewise linear function of time, constant beyond its ends or periodic.
+
+    Parameters
+    ----------
+    time : sequence
+        Increasing instants [s].
+    values : sequence
+        Factors without unit, or temperatures [K].
+    repeat : bool
+        Repeat the course from the last instant on.
+    """
+    name = "TimeHistory"
+    read = [
+        in_python(units.Temperature, value, f"{name}.values")
+        if isinstance(value, str)
+        else number(value, f"{name}.values")
+        for value in values
+    ]
+    if len(read) != len(time):
+        raise CaseError(f"{name}: has {len(time)} instants and {len(read)} values")
+    return TimeFunction(_course(time, repeat, name), tuple(read))
+
+
+def LoadHistory(
+    time: Sequence[Any],
+    *,
+    force: Sequence[Any] | None = None,
+    approach: Sequence[Any] | None = None,
+    tangential_force: Sequence[Any] | None = None,
+    tangential_displacement: Sequence[Any] | None = None,
+    repeat: bool = False,
+    cycle_start: Any = None,
+) -> load_history.LoadHistory:
+    """Loads of a holder at instants, see `laws.load_history.LoadHistory`."""
+    given = {
+        "force": (units.LeastForce, force),
+        "approach": (units.Displacement, approach),
+        "tangential_force": (units.SignedForce, tangential_force),
+        "tangential_displacement": (units.Displacement, tangential_displacement),
+    }
+    course, loads = _course(time, repeat, "LoadHistory"), {}
+    for key, (kind, values) in given.items():
+        if values is not None:
+            name = f"LoadHistory.{key}"
+            if len(values) != len(time):
+                raise CaseError(f"{name}: has {len(values)} values for {len(time)} instants")
+            loads[key] = tuple(in_python(kind, value, name) for value in values)
+    start = optional(units.Instant, cycle_start, "LoadHistory.cycle_start")
+    return load_history.LoadHistory(course, **loads, cycle_start=start)
+
+
+def _course(time: Sequence[Any], repeat: bool, name: str) -> TimeCourse:
+    instants = tuple(in_python(units.Instant, value, f"{name}.time") for value in time)
+    if len(instants) < 2 or any(b <= a for a, b in pairwise(instants)):
+        raise CaseError(f"{name}.time: needs two or more increasing instants")
+    return time_course.TimeCourse(instants, repeat)

@@ -1,0 +1,96 @@
+"""Interface of two bodies on users' meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from ..case.values import units
+from ..case.values.units import in_python
+from ..errors import CaseError
+from ..laws.time_course import TimeFunction
+from ..model.interface import ContactMethod, HardnessConductance, Interface
+from ..model.wear import FaceWear
+from .body import BodySurface, MeshBody, require_surface
+from .conversion import coefficient_law, number, rate_law
+
+
+@dataclass(frozen=True, eq=False)
+class FacePair:
+    """Interface of two bodies.
+
+    Attributes
+    ----------
+    one, other : BodySurface
+        Contact faces, in any order.
+    friction : float, str, InterfaceLaw or callable
+        Coefficient of friction: a number, an expression, a law, or a function of some of p, v, T.
+    conductance : float, str, InterfaceLaw, callable, HardnessConductance or None
+        Contact conductance likewise; None: perfect contact [W/(m² K)].
+    wear : mapping of MeshBody to (str, Law, callable or FaceWear)
+        Wear rates of the bodies, also as functions of some of p, v, T, depth, mu [m/s].
+    gap_conductance, partition, compliance, transverse_friction, pressure_degree, method
+        See `model.interface.Interface`.
+    friction_history : TimeFunction or None
+        Time-dependent factor of the friction.
+    """
+
+    one: BodySurface
+    other: BodySurface
+    friction: Any = 0.0
+    conductance: Any = None
+    wear: Mapping[MeshBody, Any] = field(default_factory=dict)
+    gap_conductance: Any = 0.0
+    partition: float | Literal["effusivity"] = 0.5
+    compliance: Any = 0.0
+    transverse_friction: float = 0.0
+    friction_history: TimeFunction | None = None
+    pressure_degree: int | Literal["lobatto"] | None = None
+    method: ContactMethod = field(default_factory=ContactMethod)
+
+    def __post_init__(self):
+        for face in self.faces:
+            require_surface(face, "Interface")
+
+    @property
+    def faces(self) -> tuple[BodySurface, BodySurface]:
+        """Contact faces."""
+        return self.one, self.other
+
+    def in_model(self, bodies: tuple[MeshBody, ...], closes_by_wear: bool) -> Interface:
+        """Interface of a model, with the face of the held body first."""
+        given = self.conductance
+        if given is not None and not isinstance(given, HardnessConductance):
+            given = coefficient_law(given, "Interface.conductance", "W/(m^2 K)", least=0.0)
+        first, second = sorted(self.faces, key=lambda face: bodies.index(face.body))
+        unknown = [body for body in self.wear if body not in bodies]
+        if unknown:
+            raise CaseError(f"Interface.wear: {unknown[0]!r} is no body of this interface")
+        wear = {bodies.index(body): _face_wear(law, body) for body, law in self.wear.items()}
+        gap = in_python(units.LeastHeatTransfer, self.gap_conductance, "Interface.gap_conductance")
+        soft = self.compliance and in_python(
+            units.Compliance, self.compliance, "Interface.compliance"
+        )
+        return Interface(
+            faces=(first.name, second.name),
+            friction=coefficient_law(self.friction, "Interface.friction", "", least=-np.inf),
+            friction_history=self.friction_history,
+            transverse_friction=number(self.transverse_friction, "Interface.transverse_friction"),
+            conductance=given,
+            gap_conductance=gap,
+            partition=self.partition,
+            wear=dict(sorted(wear.items())),
+            closes_by_wear=closes_by_wear,
+            compliance=soft,
+            pressure_degree=self.pressure_degree,
+            method=self.method,
+        )
+
+
+def _face_wear(given: Any, body: MeshBody) -> FaceWear:
+    if isinstance(given, FaceWear):
+        return given
+    return FaceWear(rate_law(given, f"Interface.wear of {body.name!r}"))

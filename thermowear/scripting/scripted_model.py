@@ -1,0 +1,239 @@
+"""Model in Python: interfaces, holders and motions of bodies on users' meshes, and its analyses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Literal
+
+from ..case.values import units
+from ..case.values.units import in_python
+from ..errors import CaseError
+from ..model.analyses import (
+    Analysis,
+    FrettingAnalysis,
+    ReciprocatingAnalysis,
+    StaticAnalysis,
+    TransientAnalysis,
+)
+from ..model.heat import Heat
+from ..model.model import Discretisation, Model
+from ..model.motion import Motion
+from ..simulation.analyses.run import analyse, conclude, estimated
+from ..simulation.model.building import build
+from ..simulation.model.setup_cache import SetupCache
+from ..simulation.model.system import System
+from ..simulation.results.fields import sample
+from ..simulation.runtime.history import Snapshot
+from ..simulation.runtime.observer import Observer
+from ..timer import Phases
+from .body import BodySurface, MeshBody
+from .conversion import number, optional
+from .face_pair import FacePair
+from .march import MarchState, march
+from .motion import Rotation, Translation
+from .solution import ModelSolution
+from .surface_holder import SurfaceHolder
+from .user_mesh import UserMeshes, user_meshes
+
+_OF_SECTIONS = ("axisymmetric", "plane-strain", "plane-stress")
+
+
+@dataclass(frozen=True, eq=False)
+class ScriptedModel:
+    """Bodies in contact, with their holders and motions, and the analyses of them.
+
+    ``dataclasses.replace`` makes a model with other loads, speeds or laws; what does not depend on
+    them (mesh, factors, condensed operators) is computed once.
+
+    Attributes
+    ----------
+    interfaces : sequence of FacePair
+    holders : sequence of SurfaceHolder
+    motions : mapping of MeshBody to (Rotation or Translation)
+    heat : Heat or None
+        None: isothermal.
+    kinematics : str or None
+        ``"axisymmetric"``, ``"plane-strain"`` or ``"plane-stress"``; None in space.
+    thickness : float or quantity
+        Thickness of plane models; twice that in a half model, as forces are those of the whole
+        [m].
+    degree : int
+        Polynomial degree of displacement and temperature.
+    symmetry : sequence of BodySurface
+        Surfaces on planes of symmetry x = const.
+    title : str
+
+    Raises
+    ------
+    CaseError
+        If it has more bodies, interfaces or holders than are supported, or an argument is invalid.
+    """
+
+    interfaces: Sequence[FacePair]
+    holders: Sequence[SurfaceHolder]
+    motions: Mapping[MeshBody, Rotation | Translation] = field(default_factory=dict)
+    heat: Heat | None = None
+    kinematics: Literal["axisymmetric", "plane-strain", "plane-stress"] | None = None
+    thickness: Any = None
+    degree: int = 2
+    symmetry: Sequence[BodySurface] = ()
+    title: str = ""
+    _shared: dict[Any, Any] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self):
+        faces = [face.body for pair in self.interfaces for face in pair.faces]
+        bodies = set(faces) | {holder.surface.body for holder in self.holders} | set(self.motions)
+        counts = len(self.interfaces), len(bodies), len(self.holders)
+        if counts != (1, 2, 1) or len(set(faces)) != 2:
+            raise CaseError(
+                "Model: supported are one interface between two bodies and one holder; found "
+                "{} interfaces, {} bodies and {} holders".format(*counts)
+            )
+        if len({body.name for body in bodies}) != len(bodies):
+            raise CaseError("Model: both bodies have the same name")
+        self._model(closes_by_wear=True)
+
+    @cached_property
+    def bodies(self) -> tuple[MeshBody, ...]:
+        """The held body, then the other one."""
+        held = self.holders[0].surface.body
+        return tuple(sorted({f.body for f in self.interfaces[0].faces}, key=lambda b: b != held))
+
+    @property
+    def meshes(self) -> UserMeshes:
+        """Mesh of both bodies, gathered once."""
+        if self.bodies not in self._shared:
+            self._shared[self.bodies] = user_meshes(self.bodies)
+        return self._shared[self.bodies]
+
+    def initial(self, observer: Observer | None = None) -> ModelSolution:
+        """Contact of the unworn faces."""
+        return self._solved(StaticAnalysis("initial"), observer)
+
+    def steady(self, observer: Observer | None = None) -> ModelSolution:
+        """Steady state of wear."""
+        return self._solved(StaticAnalysis("steady"), observer)
+
+    def stability(self, observer: Observer | None = None) -> ModelSolution:
+        """Thermoelastic stability: critical speeds and modes."""
+        return self._solved(StaticAnalysis("stability"), observer)
+
+    def transient(
+        self, until: Any, observer: Observer | None = None, **settings: Any
+    ) -> ModelSolution:
+        """Whole running-in; arguments as of `march`, with ``output_times`` [s]."""
+        return self._solved(_transient(until, settings), observer)
+
+    def march(
+        self, until: Any, start: MarchState | None = None, **settings: Any
+    ) -> Iterator[MarchState]:
+        """States of a running-in, step by step; stop by leaving the loop.
+
+        Parameters
+        ----------
+        until : float, quantity or ``"steady"``
+            Time [s], or until the pressure is steady within ``steady_tolerance``.
+        start : MarchState, optional
+            State to continue from, of this model or of one with other loads, speeds or laws.
+        **settings
+            Other attributes of `model.analyses.TransientAnalysis`.
+        """
+        analysis = _transient(until, settings)
+        yield from march(self.bodies, self.meshes, self._system(analysis), analysis, start)
+
+    def fretting(self, observer: Observer | None = None, **settings: Any) -> ModelSolution:
+        """Stick and slip under the history of the holder, see `model.analyses.FrettingAnalysis`."""
+        return self._solved(FrettingAnalysis(**settings), observer)
+
+    def reciprocating(
+        self, amplitude: Any, frequency: Any, observer: Observer | None = None, **settings: Any
+    ) -> ModelSolution:
+        """Reciprocating sliding along x, see `model.analyses.ReciprocatingAnalysis`."""
+        x = in_python(units.Length, amplitude, "reciprocating.amplitude")
+        f = in_python(units.Frequency, frequency, "reciprocating.frequency")
+        held = self.bodies[0]
+        moving = replace(self, motions={held: Translation(4 * x * f)})
+        analysis = ReciprocatingAnalysis(**settings, amplitude=x, frequency=f)
+        return moving._solved(analysis, observer)
+
+    def _solved(self, analysis: Analysis, observer: Observer | None) -> ModelSolution:
+        """Solution of an analysis. Every rank calls."""
+        observer = observer or Observer()
+        system = self._system(analysis, observer)
+        outcome = analyse(system, analysis, observer)
+        outcome = estimated(system, analysis, outcome, observer)
+        last = outcome.system or system
+        fields = sample(last, outcome.state, outcome.motion)
+        result = conclude(system, analysis, outcome, fields)
+        if result.stopped is not None:
+            raise result.stopped
+        final = Snapshot(last, outcome.contact, outcome.motion, outcome.state, outcome.interface)
+        return ModelSolution(self.bodies, self.meshes, final, result)
+
+    def _system(self, analysis: Analysis, observer: Observer | None = None) -> System:
+        observer = observer or Observer()
+        model = self._model(closes_by_wear=not isinstance(analysis, FrettingAnalysis))
+        parts = self._shared.setdefault("parts", SetupCache())
+        return build(model, self.bodies[0].mesh.comm, Phases(observer.phase), parts=parts)
+
+    def _model(self, closes_by_wear: bool) -> Model:
+        held, meshes = self.holders[0].surface, self.meshes
+        number(self.degree, "Model.degree", 1, 10)
+        dim = meshes.tagged.points.shape[1]
+        if self.kinematics not in (_OF_SECTIONS if dim == 2 else (None,)):
+            raise CaseError(
+                f"Model.kinematics: found {self.kinematics!r}; must be one of "
+                f"{', '.join(_OF_SECTIONS)} for a mesh of a section, and None in space"
+            )
+        thickness = optional(units.Length, self.thickness, "Model.thickness")
+        if (self.kinematics in _OF_SECTIONS[1:]) is (thickness is None):
+            raise CaseError("Model.thickness: needed for a plane model, and for no other")
+        model = Model(
+            kinematics=self.kinematics or "3d",
+            bodies=tuple(
+                body.in_model(meshes.surfaces_of(body), held if body is held.body else None)
+                for body in self.bodies
+            ),
+            interfaces=(self.interfaces[0].in_model(self.bodies, closes_by_wear),),
+            holders=(self.holders[0].in_model(dim),),
+            meshes=meshes,
+            discretisation=Discretisation(self.degree),
+            motion=self._motion(),
+            heat=self.heat,
+            thickness=thickness,
+            symmetry=tuple(surface.name for surface in self.symmetry),
+            title=self.title,
+        )
+        _check_surfaces(model, meshes.tagged.surfaces)
+        return model
+
+    def _motion(self) -> Motion:
+        if len(self.motions) > 1:
+            raise CaseError("Model.motions: give the motion of one body, relative to the other")
+        for body, motion in self.motions.items():
+            return motion.relative(body is self.bodies[0], self.kinematics == "axisymmetric")
+        return Motion()
+
+
+def _check_surfaces(model: Model, known: Sequence[str]) -> None:
+    """Reject surfaces whose facets do not bound their body."""
+    holder, heat = model.holder, model.heat or Heat()
+    supports = [name for body in model.bodies for name in (*body.fixed, *body.rollers)]
+    loads = *holder.surface_forces, *holder.surface_pressures
+    thermal = *heat.cooling, *heat.temperature, *heat.flux, *heat.power
+    for name in (*model.interface.faces, *supports, *loads, *thermal, *model.symmetry):
+        if name not in known:
+            body, _, tag = name.rpartition(":")
+            raise CaseError(f"Model: facets with the tag {tag} do not bound the body {body!r}")
+    for held in model.bodies:
+        if not (held.fixed or held.rollers):
+            raise CaseError(f"Body {held.name!r}: is neither on a holder nor fixed")
+
+
+def _transient(until: Any, settings: Mapping[str, Any]) -> TransientAnalysis:
+    """Settings of a running-in until a time or the steady state."""
+    if until == "steady":
+        return TransientAnalysis(until="steady", **settings)
+    return TransientAnalysis(end_time=in_python(units.Time, until, "march.until"), **settings)

@@ -1,0 +1,198 @@
+"""Solution of a model: pressures with their points, fields on the user's meshes, tables."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import asdict, dataclass, fields
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from dolfinx import fem
+
+from ..errors import CaseError
+from ..simulation.results.fields import with_holder
+from ..simulation.results.result import Result
+from ..simulation.runtime.history import Snapshot
+from .body import MeshBody
+from .body_fields import on_user_mesh
+from .user_mesh import UserMeshes
+
+
+@dataclass(frozen=True)
+class PointValues:
+    """Quantity at the contact points; numpy functions take it as an array.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+    values : ndarray, shape (n,)
+    points : ndarray, shape (n, gdim)
+        Positions on body 1 [m].
+    position : ndarray, shape (n,)
+        Arc length along the contact; NaN in space [m].
+    weights : ndarray, shape (n,)
+        Areas [m²].
+    """
+
+    name: str
+    unit: str
+    values: np.ndarray
+    points: np.ndarray
+    position: np.ndarray
+    weights: np.ndarray
+
+    def __array__(self, dtype=None, copy=None) -> np.ndarray:
+        return np.array(self.values, dtype=dtype, copy=True)
+
+    def plot(self, axes=None):
+        """Draw the quantity along the contact, or over x and y in space; returns the axes."""
+        import matplotlib.pyplot as plt
+
+        axes = plt.figure().gca() if axes is None else axes
+        if np.isnan(self.position).any():
+            drawn = axes.scatter(*self.points[:, :2].T, c=self.values)
+            axes.figure.colorbar(drawn, ax=axes, label=f"{self.name} [{self.unit}]")
+            axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+            return axes
+        axes.plot(self.position, self.values)
+        axes.set(xlabel="position along the contact [m]", ylabel=f"{self.name} [{self.unit}]")
+        return axes
+
+    def to_dataframe(self):
+        """Pandas frame of the points and values."""
+        axes = dict(zip("xyz", self.points.T, strict=False))
+        return frame(axes | {"s": self.position, "weight": self.weights, self.name: self.values})
+
+
+def frame(columns: Any):
+    """Pandas frame of columns, or of rows.
+
+    Raises
+    ------
+    CaseError
+        If pandas is not installed.
+    """
+    try:
+        import pandas as pd
+    except ImportError:
+        raise CaseError("to_dataframe: needs pandas (Debian: python3-pandas)") from None
+    return pd.DataFrame(columns)
+
+
+class ContactResults(ABC):
+    """Contact and bodies in one state of a model.
+
+    Attributes
+    ----------
+    bodies : tuple of MeshBody
+        The held body first.
+    meshes : UserMeshes
+    """
+
+    bodies: tuple[MeshBody, ...]
+    meshes: UserMeshes
+
+    @property
+    @abstractmethod
+    def snapshot(self) -> Snapshot:
+        """Contact and solved bodies."""
+
+    def pressure(self, face: Any) -> PointValues:
+        """Contact pressure of an interface."""
+        return self._at_points(face, "pressure", "Pa", self.snapshot.interface.pressure)
+
+    def gap(self, face: Any) -> PointValues:
+        """Gap of an interface, positive where it is open."""
+        return self._at_points(face, "gap", "m", self.snapshot.interface.gap)
+
+    def shape(self, face: Any) -> PointValues:
+        """Height of the unloaded worn face above its lowest point."""
+        return self._at_points(face, "shape", "m", self.snapshot.interface.shape)
+
+    def wear(self, face: Any, body: MeshBody) -> PointValues:
+        """Wear depth of the face of a body."""
+        depths = self.snapshot.interface.wear_1, self.snapshot.interface.wear_2
+        return self._at_points(face, "wear", "m", depths[self._index(body)])
+
+    def surface_temperature(self, face: Any, body: MeshBody) -> PointValues:
+        """Temperature of the face of a body; NaN without heat."""
+        both = self.snapshot.interface.temperature_1, self.snapshot.interface.temperature_2
+        return self._at_points(face, "temperature", "K", both[self._index(body)])
+
+    def temperature(self, body: MeshBody) -> fem.Function:
+        """Temperature of a body on its mesh [K]; NaN outside of it. Every rank calls.
+
+        Raises
+        ------
+        CaseError
+            If the model has no heat, or the body has been remeshed.
+        """
+        system, rise = self.snapshot.system, self.snapshot.bodies.rise
+        if system.thermal is None or rise is None:
+            raise CaseError("temperature: the model has no heat")
+        space, values = system.thermal.conduction.space, rise + system.thermal.ambient
+        return on_user_mesh(
+            self.meshes, self.bodies, self._index(body), system, space, values, "temperature"
+        )
+
+    def displacement(self, body: MeshBody) -> fem.Function:
+        """Displacement of a body on its mesh, that of the holder included [m]; NaN outside of it.
+
+        Every rank calls.
+        """
+        now = self.snapshot
+        values = with_holder(now.system, now.bodies.displacement, now.motion)
+        space = now.system.elastic.space
+        return on_user_mesh(
+            self.meshes, self.bodies, self._index(body), now.system, space, values, "displacement"
+        )
+
+    def to_dataframe(self):
+        """Pandas frame of the interface, a row per contact point; columns in SI."""
+        interface = self.snapshot.interface
+        return frame({f.name: getattr(interface, f.name) for f in fields(interface)})
+
+    def _at_points(self, face: Any, name: str, unit: str, values: np.ndarray) -> PointValues:
+        if not hasattr(face, "faces") or not {s.body for s in face.faces} <= set(self.bodies):
+            raise CaseError(f"{name}: found {face!r}; must be the interface of the model")
+        pairing = self.snapshot.system.pairing
+        at = pairing.on_body_1, pairing.position, pairing.weights
+        return PointValues(name, unit, values, *at)
+
+    def _index(self, body: MeshBody) -> int:
+        if body not in self.bodies:
+            raise CaseError(f"found {body!r}; must be a body of the model")
+        return self.bodies.index(body)
+
+
+@dataclass(frozen=True)
+class ModelSolution(ContactResults):
+    """Solution of an analysis.
+
+    Attributes
+    ----------
+    result : Result
+        All tables and the summary, as of `thermowear.run`.
+    """
+
+    bodies: tuple[MeshBody, ...]
+    meshes: UserMeshes
+    final: Snapshot
+    result: Result
+
+    @property
+    def snapshot(self) -> Snapshot:
+        return self.final
+
+    @property
+    def summary(self) -> dict:
+        """Numbers in SI, the unit in each key."""
+        return self.result.summary
+
+    @cached_property
+    def history(self) -> dict[str, np.ndarray]:
+        """Columns of the history in SI; empty for analyses without steps."""
+        rows = [asdict(row) for row in self.result.history]
+        return {key: np.array([row[key] for row in rows]) for key in (rows[0] if rows else ())}

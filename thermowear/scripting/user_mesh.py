@@ -1,0 +1,199 @@
+"""Tagged mesh of the bodies of a model from users' dolfinx meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..compat import coordinate_element, geometry_dofmap
+from ..errors import CaseError
+from ..geometry.mesh.nodes import CORNERS, FACETS, reference_nodes
+from ..geometry.mesh.orders import boundary, compact
+from ..geometry.mesh.tagged import TaggedMesh
+from ..geometry.reading.cell_checks import oriented
+from ..lagrange import equispaced, matching
+from ..parallel import on_root
+from .body import MeshBody
+
+_LEVEL = 1e-9
+"""Out-of-plane coordinates of a plane mesh, relative to its size."""
+
+
+@dataclass(frozen=True)
+class UserMeshes:
+    """Source of the mesh of both bodies, see `model.meshes.MeshSource`.
+
+    Attributes
+    ----------
+    tagged : TaggedMesh
+    checksum : str
+    reversed_cells : tuple of (ndarray of bool)
+        Mask of the cells of each body, in the order of the user's mesh, with reversed orientation.
+    """
+
+    checksum: str
+    tagged: TaggedMesh = field(compare=False, repr=False)
+    reversed_cells: tuple[np.ndarray, ...] = field(compare=False, repr=False)
+    path: None = None
+
+    def mesh(self, zone) -> TaggedMesh:
+        return self.tagged
+
+    def expected_zone(self, force, approach, modulus) -> None:
+        return None
+
+    def surfaces_of(self, body: MeshBody) -> tuple[str, ...]:
+        """Names of the surfaces of a body."""
+        return tuple(s for s in self.tagged.surfaces if s.rpartition(":")[0] == body.name)
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """Mesh of one body: nodes of the cells in gmsh's order, and tagged facets by their corners."""
+
+    name: str
+    kind: str
+    points: np.ndarray
+    cells: np.ndarray
+    parts: np.ndarray
+    corners: np.ndarray
+    tags: np.ndarray
+    order: int
+
+
+def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
+    """Gather the meshes of the bodies, body 1 (held) first. Every rank calls.
+
+    Raises
+    ------
+    CaseError
+        If a mesh is not supported, or invalid.
+    """
+    pieces = [_gathered(body) for body in bodies]
+
+    def joined() -> UserMeshes:
+        checked = [_oriented(piece) for piece in pieces if piece is not None]
+        tagged = _joined([piece for piece, _ in checked], bodies)
+        return UserMeshes(tagged.checksum(), tagged, tuple(turned for _, turned in checked))
+
+    return on_root(bodies[0].mesh.comm, joined)
+
+
+def _gathered(body: MeshBody) -> _Piece | None:
+    """Piece of a body on rank 0, None elsewhere. Every rank calls."""
+    mesh, name = body.mesh, f"Body {body.name!r}"
+    kind, order = mesh.topology.cell_name(), coordinate_element(mesh).degree
+    if kind not in FACETS:
+        raise CaseError(
+            f"{name}: has cells of type {kind}; supported are {', '.join(FACETS)} (a mesh of "
+            "a section, or of hexahedra)"
+        )
+    parts = body.part_of_cells()
+    own = np.flatnonzero(parts >= 0)
+    dofs, nodes = geometry_dofmap(mesh), mesh.geometry.index_map()
+    cells = nodes.local_to_global(dofs[own].ravel()).reshape(len(own), dofs.shape[1])
+    corners = _corners(mesh, dofs, body.facets.indices)
+    shape = corners.shape
+    found = mesh.comm.gather(
+        (
+            mesh.geometry.x[: nodes.size_local],
+            cells,
+            parts[own],
+            nodes.local_to_global(corners.ravel()).reshape(shape),
+            body.facets.values,
+        )
+    )
+    if found is None:
+        return None
+    points, cells, parts, corners, tags = (
+        np.concatenate(each) for each in zip(*found, strict=True)
+    )
+    if not len(cells):
+        raise CaseError(f"{name}: has no cells")
+    in_gmsh = np.empty_like(cells)
+    nodes = equispaced(kind, order).points
+    in_gmsh[:, matching(nodes, reference_nodes(kind, order))] = cells
+    return _Piece(
+        body.name, kind, _in_model(points, kind, name), in_gmsh, parts, corners, tags, order
+    )
+
+
+def _corners(mesh, dofs: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    """Local geometry nodes at the vertices of facets, shape (n_facets, n_vertices)."""
+    topology, tdim = mesh.topology, mesh.topology.dim
+    topology.create_connectivity(tdim - 1, 0)
+    vertices = topology.connectivity(tdim, 0).array
+    node = np.zeros(vertices.max(initial=0) + 1, dtype=dofs.dtype)
+    node[vertices] = dofs[:, : len(vertices) // len(dofs)].ravel()
+    ends = topology.connectivity(tdim - 1, 0)
+    per_facet = len(ends.array) // max(ends.num_nodes, 1)
+    return node[ends.array.reshape(-1, per_facet)[facets]]
+
+
+def _in_model(points: np.ndarray, kind: str, name: str) -> np.ndarray:
+    """Coordinates of a section, or in space, shape (n, 2) or (n, 3)."""
+    if kind not in CORNERS:
+        return points
+    if np.ptp(points[:, 2]) > _LEVEL * np.ptp(points, axis=0).max():
+        raise CaseError(f"{name}: the mesh of a section must lie in a plane z = const")
+    return points[:, :2]
+
+
+def _oriented(piece: _Piece) -> tuple[_Piece, np.ndarray]:
+    """Piece with its cells counter-clockwise, and mask of the reversed ones."""
+    if piece.kind not in CORNERS:
+        return piece, np.zeros(len(piece.cells), dtype=bool)
+    try:
+        cells = oriented(piece.points, piece.cells, piece.kind, piece.order, piece.name)
+    except CaseError as error:
+        raise CaseError(f"Body: {str(error).removeprefix('geometry.path: ')}") from None
+    return replace(piece, cells=cells), np.any(cells != piece.cells, axis=1)
+
+
+def _joined(pieces: list[_Piece], bodies: tuple[MeshBody, ...]) -> TaggedMesh:
+    """Mesh of all bodies; nodes that they share are duplicated."""
+    if len({(piece.kind, piece.order) for piece in pieces}) > 1:
+        kinds = ", ".join(f"{piece.name}: {piece.kind} of order {piece.order}" for piece in pieces)
+        raise CaseError(f"Model: all bodies need cells of one type and order; found {kinds}")
+    kind, order = pieces[0].kind, pieces[0].order
+    extra = [part for body in bodies for part in list(body.parts)[1:]]
+    names = [body.name for body in bodies] + extra
+    starts = np.cumsum([0] + [len(piece.points) for piece in pieces])
+    tags = [
+        np.array([names.index(part) + 1 for part in body.parts])[piece.parts]
+        for piece, body in zip(pieces, bodies, strict=True)
+    ]
+    found = [_surfaces(piece, kind, order) for piece in pieces]
+    surfaces = [name for _, of_facet in found for name in dict.fromkeys(of_facet)]
+    facets = [nodes + start for (nodes, _), start in zip(found, starts, strict=False)]
+    return compact(
+        TaggedMesh(
+            points=np.concatenate([piece.points for piece in pieces]),
+            cell_type=kind,
+            cells=np.concatenate([p.cells + at for p, at in zip(pieces, starts, strict=False)]),
+            cell_tags=np.concatenate(tags).astype(np.int32),
+            facets=np.concatenate(facets),
+            facet_tags=np.array(
+                [surfaces.index(name) + 1 for _, of_facet in found for name in of_facet],
+                dtype=np.int32,
+            ),
+            bodies=tuple(names),
+            surfaces=tuple(surfaces),
+        )
+    )
+
+
+def _surfaces(piece: _Piece, kind: str, order: int) -> tuple[np.ndarray, list[str]]:
+    """Nodes of the tagged facets on the boundary of a body, and the name of each."""
+    facets = boundary(kind, order, piece.cells.astype(np.int64))
+    own = np.sort(facets[:, : piece.corners.shape[1]], axis=1)
+    every = np.concatenate([own, np.sort(piece.corners, axis=1)])
+    _, label = np.unique(every, axis=0, return_inverse=True)
+    label = label.ravel()
+    index = np.full(label.max() + 1, -1)
+    index[label[len(own) :]] = np.arange(len(piece.tags))
+    named = index[label[: len(own)]]
+    tagged = np.flatnonzero(named >= 0)
+    tagged = tagged[np.argsort(piece.tags[named[tagged]], kind="stable")]
+    return facets[tagged], [f"{piece.name}:{tag}" for tag in piece.tags[named[tagged]]]

@@ -221,7 +221,7 @@ class FullContact(ContactEquations):
             else:
                 step /= 2
         assert solution is not None
-        return FullSolution(solution.displacement, solution.motion, solution.pressure, spent)
+        return replace(solution, iterations=spent)
 
     def _advice(self) -> str:
         change = "make contact.penalty smaller"

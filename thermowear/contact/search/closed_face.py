@@ -40,16 +40,9 @@ def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
 
 def _reordered(face: Face, order: np.ndarray) -> Face:
     """Face with its facets in another order."""
-    return replace(
-        face,
-        nodes=face.nodes[order],
-        outward=face.outward[order],
-        rank=face.rank[order],
-        cell=face.cell[order],
-        local_facet=face.local_facet[order],
-        reversed=face.reversed[order],
-        softness=np.broadcast_to(face.softness, len(order))[order],
-    )
+    names = ("nodes", "outward", "rank", "cell", "local_facet", "reversed")
+    columns = {name: getattr(face, name)[order] for name in names}
+    return replace(face, **columns, softness=face.softness_at(order))
 
 
 def _reversed(face: Face) -> Face:

@@ -4,7 +4,7 @@ from mpi4py import MPI
 
 from thermowear.simulation.analyses.positioning import prepare
 from thermowear.simulation.from_case import model_of
-from thermowear.simulation.model.building import build
+from thermowear.simulation.system.building import build
 from thermowear.timer import Phases
 
 

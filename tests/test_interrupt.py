@@ -15,7 +15,6 @@ from thermowear.app.session import SavingRecorder
 from thermowear.errors import ComputationError, UnwritableError
 from thermowear.output import tables
 from thermowear.output.folder import ResultsFolder
-from thermowear.output.quantities import HISTORY, INTERFACE
 from thermowear.simulation import Observer
 from thermowear.simulation.runtime.history import AnalysisHistory
 
@@ -103,9 +102,9 @@ def test_interrupted_run_leaves_readable_results(tmp_path, number):
     assert process.returncode == 130
     assert said.strip() == "error: interrupted"
     assert json.loads((folder / "run.json").read_text())["status"] == "interrupted"
-    rows = tables.read(history, HISTORY)
+    rows = tables.read(history)
     summary = json.loads((folder / "summary.json").read_text())
-    interface = tables.read(folder / "interface.csv", INTERFACE)
+    interface = tables.read(folder / "interface.csv")
     assert summary["time_s"] == pytest.approx(rows["time"][-1], rel=1e-12)
     assert 0 < summary["time_s"] < 200
     volume = interface["weight"] @ interface["wear_1"]

@@ -18,7 +18,6 @@ import numpy as np
 import pytest
 
 from thermowear.app.cli import main
-from thermowear.output.quantities import HISTORY
 from thermowear.output.tables import read
 
 from .conftest import COLD_RUNNING_IN, DEMOS, HOT
@@ -256,7 +255,7 @@ def test_a_row_that_was_not_written_to_its_end_is_written_again(uninterrupted, t
     with (folder / "history.csv").open("a") as file:
         file.write("1,2,3,4,5,6,7,8,9,10\n0.1,2.")
     (folder / "summary.json").unlink()
-    assert len(read(folder / "history.csv", HISTORY)["time"]) == 22
+    assert len(read(folder / "history.csv")["time"]) == 22
     assert_resumes("cold", folder, whole)
 
 

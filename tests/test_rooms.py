@@ -21,6 +21,7 @@ ORDER = [
     "bulk",
     "contact",
     "model",
+    "results",
     "simulation",
     "scripting",
     "verification",
@@ -34,12 +35,14 @@ NOT_ALLOWED = {
     "model": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
     "reference": {"dolfinx", "gmsh", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
     "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl"},
+    "results": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "matplotlib"},
     "output": {"dolfinx", "petsc4py", "ufl", "basix", "gmsh"},
     "app": {"dolfinx", "ufl", "basix", "gmsh"},
 }
 BARE = {
-    "output": {"simulation", "verification", "contact", "bulk", "laws"},
+    "output": {"simulation", "verification", "contact", "bulk", "laws", "model"},
     "reference": {"case"},
+    "results": {"laws", "case", "reference", "geometry", "bulk", "contact", "model"},
     "bulk": {"case", "geometry"},
     "contact": {"case", "geometry"},
     "model": {"case", "reference", "bulk", "contact"},

@@ -16,7 +16,6 @@ import pytest
 import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.output import tables
-from thermowear.output.quantities import INTERFACE
 
 from .conftest import COLD_RUNNING_IN, DEMOS
 
@@ -79,7 +78,7 @@ def test_processes_do_not_change_the_numbers():
         assert main([*words, "-o", processes]) == 0
     for number in range(1, 5):
         one, two = (
-            tables.read(Path(processes) / f"{number:03d}" / "interface.csv", INTERFACE)
+            tables.read(Path(processes) / f"{number:03d}" / "interface.csv")
             for processes in ("1", "2")
         )
         for name, values in one.items():

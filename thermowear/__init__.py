@@ -18,7 +18,7 @@ _SCRIPTING = (
     *("PressureConductance", "Rotation", "TimeHistory", "Translation"),
 )
 _LAZY = {
-    **{"run": "simulation", "Result": "simulation", "Case": "case", "sweep": "app.sweeping"},
+    **{"run": "simulation", "Result": "results", "Case": "case", "sweep": "app.sweeping"},
     **dict.fromkeys(_SCRIPTING, "scripting"),
 }
 _ROOMS = (
@@ -30,6 +30,7 @@ _ROOMS = (
     "model",
     "output",
     "reference",
+    "results",
     "scripting",
     "simulation",
     "verification",

@@ -50,7 +50,7 @@ from thermowear.reference.hertz import contact_modulus
 from thermowear.simulation.analyses.positioning import prepare
 from thermowear.simulation.from_case import model_of
 from thermowear.simulation.interface.factory import interface_problem
-from thermowear.simulation.model.building import build
+from thermowear.simulation.system.building import build
 from thermowear.timer import Phases
 
 gf = importlib.import_module("getfem")  # not in scripts/packages: it serves here only

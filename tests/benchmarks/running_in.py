@@ -18,7 +18,7 @@ from thermowear.bulk.direct_solver import DirectSolver
 from thermowear.simulation.from_case import analysis_of, model_of
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.interface.steady import steady_state
-from thermowear.simulation.model.building import build
+from thermowear.simulation.system.building import build
 from thermowear.simulation.time.time_loop import moments
 from thermowear.timer import Phases
 

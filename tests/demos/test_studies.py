@@ -11,7 +11,6 @@ import pytest
 
 import thermowear as tw
 from thermowear.app.variants import parse_over
-from thermowear.output.quantities import PROFILE
 from thermowear.output.tables import write_points
 
 from ..conftest import DEMOS
@@ -90,7 +89,7 @@ def test_a_part_of_the_worn_shape_needs_no_running_in(name, tmp_path):
     steady, weight = results[-1].interface.pressure, results[-1].interface.weight
     found = []
     for result in (results[-1], results[0]):
-        write_points(tmp_path / "profile.csv", PROFILE, result.profile)
+        write_points(tmp_path / "profile.csv", result.profile)
         sets = (*study.sets, *COARSE, f"{study.key}={study.values[-1]}")
         more = ('analysis={type="initial"}', f"geometry.initial_shape={tmp_path}/profile.csv")
         unworn = tw.run(tw.load(DEMOS / f"{name}.toml", (*sets, *more)))

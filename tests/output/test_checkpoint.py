@@ -12,11 +12,11 @@ from thermowear.output.atomic_write import final_name, replacing
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint, write_checkpoint
 from thermowear.output.folder import finite
 from thermowear.output.lock import Lock
-from thermowear.output.quantities import HISTORY
 from thermowear.output.resuming import read_run
 from thermowear.output.tables import RowWriter, read
+from thermowear.results import HistoryRow
+from thermowear.results.quantity import table_of
 from thermowear.serialise import Checkpoint
-from thermowear.simulation import HistoryRow
 
 ABOUT, ARRAYS = {"time": 0.1, "case": {"title": "µ"}}, {"a0": np.arange(3.0), "b@1": np.eye(2)}
 
@@ -162,10 +162,10 @@ def test_a_table_begins_with_known_rows_and_ends_with_a_whole_one(tmp_path):
     path = tmp_path / "history.csv"
     rows = [HistoryRow(*np.full(10, value).tolist()) for value in (1.0, 2.0, 3.0)]
     path.write_text("what a run that was killed has left", "utf-8")
-    RowWriter(path, HISTORY, rows[:2]).add(rows[2])
+    RowWriter(tmp_path, table_of(HistoryRow), rows[:2]).add(rows[2])
     with path.open("a") as file:
         file.write("4,4,4,4,4,4,4,4,4,4")  # perhaps 41 or 4.5 in the end
-    assert read(path, HISTORY)["error"].tolist() == [1.0, 2.0, 3.0]
+    assert read(path)["error"].tolist() == [1.0, 2.0, 3.0]
 
 
 def test_a_folder_is_locked_as_long_as_a_run_lives(tmp_path):

@@ -5,7 +5,7 @@ import io
 from rich.console import Console
 
 from thermowear.output.console import ConsoleProgress
-from thermowear.simulation import HistoryRow
+from thermowear.results import HistoryRow
 
 
 def row(time):

@@ -8,9 +8,10 @@ import pytest
 from thermowear.output import tables
 from thermowear.output.coordinates import in_model, model_of
 from thermowear.output.pictures import bodies, curves
-from thermowear.output.quantities import INTERFACE, PROFILE
 from thermowear.output.report.columns import shown_table
+from thermowear.results import TABLES
 
+INTERFACE, PROFILE = (TABLES[name].columns for name in ("interface", "profile"))
 AXES = {"axisymmetric": ("r", "z"), "plane-strain": ("x", "y"), "3d": ("x", "y")}
 
 
@@ -33,10 +34,13 @@ def test_axes_and_tables_of_a_folder(model, names, tmp_path):
     (tmp_path / "summary.json").write_text(json.dumps({"model": model}), encoding="utf-8")
     assert model_of(tmp_path) == model
     x = np.linspace(1.0, 2.0, 5)
-    label, place = curves.abscissa({"x": x, "y": 0 * x, "s": x}, model_of(tmp_path))
+    data = tables.TableColumns(tmp_path / "interface.csv", {"x_m": x, "y_m": 0 * x, "s_m": x})
+    label, place = curves.abscissa(data)
     assert label == f"{names[0]} [mm]"
     assert place == pytest.approx(1e3 * x)
-    shown = shown_table("", {"x_m": x, "y_m": x, "pressure_Pa": x}, "interface.csv", model)
+    columns = {"x_m": x, "y_m": x, "pressure_Pa": x}
+    data = tables.TableColumns(tmp_path / "interface.csv", columns)
+    shown = shown_table("", data, data.quantities, "interface.csv")
     assert [head.label for head in shown.heads] == [*names, "contact pressure"]
 
 
@@ -47,8 +51,8 @@ def test_pictures_of_the_bodies(tmp_path, monkeypatch):
     grid["von_mises_Pa"] = np.ones(grid.n_points)
     grid["displacement_m"] = np.zeros((grid.n_points, 3))
     monkeypatch.setattr(bodies.pyvista, "read", lambda _: grid)
-    interface = {"x": np.ones(1), "y": np.ones(1), "pressure": np.ones(1)}
-    monkeypatch.setattr(tables, "read", lambda *_: interface)
+    interface = {name: np.ones(1) for name in ("x_m", "y_m", "pressure_Pa")}
+    monkeypatch.setattr(tables, "read", lambda path: tables.TableColumns(path, interface))
     drawn = []
     monkeypatch.setattr(
         bodies, "_draw", lambda path, grid, fields, axes, *_, **__: drawn.append(axes)

@@ -17,7 +17,7 @@ from thermowear.app.cli import main
 from thermowear.case.starters import starter_text, starters
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.output import tables
-from thermowear.output.quantities import FRICTION, HISTORY, INTERFACE, LOADS, PROFILE
+from thermowear.output.names import name_at
 
 from ..case import starter
 from ..case.starter import FRETTING, HERTZ, PUNCH, RECIPROCATING, RUNNING_IN, SPHERE, STEADY
@@ -144,7 +144,7 @@ def test_the_resolved_case_is_the_same_case(finished):
 def test_summary_and_interface_tell_one_story(finished):
     """requirement: peak, area and force of the summary are those of interface.csv."""
     name, folder = finished
-    summary, i = summary_of(folder), tables.read(folder / "interface.csv", INTERFACE)
+    summary, i = summary_of(folder), tables.read(folder / "interface.csv")
     pressing = i["pressure"] > 0
     assert len(i["x"]) == summary["contact_points"]
     assert i["pressure"].max() == pytest.approx(summary["max_pressure_Pa"], rel=1e-12)
@@ -170,8 +170,8 @@ def test_summary_and_interface_tell_one_story(finished):
 def test_the_profile_is_that_of_the_interface(finished):
     """requirement: heights along the load direction are normal heights over the cosine."""
     _, folder = finished
-    i = tables.read(folder / "interface.csv", INTERFACE)
-    profile = tables.read(folder / "profile.csv", PROFILE)
+    i = tables.read(folder / "interface.csv")
+    profile = tables.read(folder / "profile.csv")
     normals = np.array([profile[f"normal_{axis}"] for axis in "xyz"])
     assert np.linalg.norm(normals, axis=0) == pytest.approx(1.0)
     assert np.array_equal(profile["shape"], i["shape"])
@@ -224,17 +224,14 @@ def fretting(tmp_path_factory):
 def test_tables_of_fretting_agree(fretting):
     """requirement: loads.csv, friction.csv and interface.csv are consistent."""
     folder, summary = fretting / "results", summary_of(fretting / "results")
-    loads = tables.read(folder / "loads.csv", LOADS)
+    loads = tables.read(folder / "loads.csv")
     assert len(loads["time"]) == summary["steps"] == 4 * 3
     assert loads["time"][[2, 5, 8, 11]] == pytest.approx([0, 1, 2, 3])
     assert loads["tangential_force"][[5, 8, 11]] == pytest.approx([36, -36, 36], rel=1e-9)
     assert loads["dissipated"][-1] == pytest.approx(summary["dissipated_energy_J"], rel=1e-12)
     assert np.all(loads["iterations"][1:] >= 1)
     for time, row in ((1, 5), (2, 8), (None, 11)):
-        f, i = (
-            tables.read(folder / tables.name_at(stem, time), table)
-            for stem, table in (("friction", FRICTION), ("interface", INTERFACE))
-        )
+        f, i = (tables.read(folder / name_at(stem, time)) for stem in ("friction", "interface"))
         for column in ("x", "y", "s", "weight", "pressure"):
             np.testing.assert_array_equal(f[column], i[column])
         assert f["weight"] @ f["shear"] == pytest.approx(-loads["tangential_force"][row], rel=2e-3)
@@ -362,7 +359,7 @@ def test_a_mesh_from_a_file_gives_the_same_pressure(name, ending, allowed, tmp_p
     )
     assert main(["validate", str(again)]) == 0
     assert run(again, tmp_path / "two", *sets(*MESHED)) == 0
-    one, two = (tables.read(tmp_path / f / "interface.csv", INTERFACE) for f in ("one", "two"))
+    one, two = (tables.read(tmp_path / f / "interface.csv") for f in ("one", "two"))
     np.testing.assert_allclose(two["x"], one["x"], rtol=0, atol=1e-3 * allowed)
     assert np.abs(two["pressure"] - one["pressure"]).max() < allowed * one["pressure"].max()
     first, second = summary_of(tmp_path / "one"), summary_of(tmp_path / "two")
@@ -422,7 +419,7 @@ def test_triangles_of_gmsh_give_the_pressure_of_the_starter(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(tomli_w.dumps(starter.tables(PUNCH, {"geometry": geometry})), encoding="utf-8")
     assert run(file, tmp_path / "own", *sets("mesh.degree=4")) == 0
-    own = tables.read(tmp_path / "own" / "interface.csv", INTERFACE)
+    own = tables.read(tmp_path / "own" / "interface.csv")
     known = starter.solved(PUNCH, {}, "mesh.degree=6").interface
     x = np.linspace(-3.5e-3, 3.5e-3, 60)
     pressures = np.interp(x, own["x"], own["pressure"]), np.interp(x, known.x, known.pressure)
@@ -486,7 +483,7 @@ def test_history_rows_are_written_as_they_come(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(tomli_w.dumps(starter.tables(PUNCH, changes)), encoding="utf-8")
     assert run(file, tmp_path / "results", *sets(*COARSE)) == 0
-    history = tables.read(tmp_path / "results" / "history.csv", HISTORY)
+    history = tables.read(tmp_path / "results" / "history.csv")
     np.testing.assert_allclose(
         history["wear_volume_1"], 6e-11 * history["sliding_distance"], rtol=1e-6, atol=1e-20
     )

@@ -13,9 +13,9 @@ import thermowear as tw
 from thermowear.case import as_plain
 from thermowear.case.starters import starter_text
 from thermowear.output.folder import ResultsFolder
-from thermowear.output.quantities import HISTORY
-from thermowear.output.tables import name_at, read
-from thermowear.simulation import HistoryRow
+from thermowear.output.names import name_at
+from thermowear.output.tables import read
+from thermowear.results import HistoryRow
 
 TABLES = as_plain(tw.load(tomllib.loads(starter_text("annular-punch-running-in"))))
 
@@ -150,9 +150,9 @@ def test_every_step_is_on_disk_at_once(tmp_path):
     first = HistoryRow(*(0.1 * n for n in range(1, 11)))
     second = HistoryRow(*(math.pi * n for n in range(1, 10)), error=math.nan)
     for count, row in enumerate((first, second), start=1):
-        folder.step(row)
-        table = read(tmp_path / "history.csv", HISTORY)
-        assert [len(column) for column in table.values()] == [count] * len(HISTORY)
+        folder.add(row)
+        table = read(tmp_path / "history.csv")
+        assert [len(column) for column in table.values()] == [count] * 10
         for name, column in table.items():
             assert column[-1] == pytest.approx(getattr(row, name), rel=1e-14, nan_ok=True)
 

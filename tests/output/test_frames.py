@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from thermowear.app.cli import main
-from thermowear.output.frames import FRAMES, frame_files, keep_indexed, remove_frames
-from thermowear.output.quantities import HISTORY, INTERFACE
+from thermowear.output.frames import frame_files, keep_indexed, remove_frames
+from thermowear.output.names import FRAMES
 from thermowear.output.tables import read
 
 from ..conftest import COLD_RUNNING_IN
@@ -33,22 +33,22 @@ def folder(tmp_path_factory):
 def test_index_and_files_agree(folder):
     """requirement: the index lists each frame with its time; no other files remain."""
     frames = frame_files(folder / FRAMES)
-    times = read(folder / "history.csv", HISTORY)["time"]
+    times = read(folder / "history.csv")["time"]
     assert 4 <= len(frames) <= 8
     assert len(set(np.diff([frame.number for frame in frames]))) == 1
     assert len(times) > 8
     assert [frame.time for frame in frames] == [times[frame.number] for frame in frames]
-    expected = {f.name for frame in frames for f in (frame.fields, frame.interface)}
+    expected = {f.name for frame in frames for f in map(frame.file, ("fields", "interface"))}
     assert {path.name for path in (folder / FRAMES).iterdir()} == expected | {"frames.pvd"}
 
 
 def test_fields_are_those_of_the_step(folder):
     """requirement: the largest pressure equals that of the history; stress in single precision."""
-    largest = read(folder / "history.csv", HISTORY)["max_pressure"]
+    largest = read(folder / "history.csv")["max_pressure"]
     for frame in frame_files(folder / FRAMES):
-        pressure = read(frame.interface, INTERFACE)["pressure"]
+        pressure = read(frame.file("interface"))["pressure"]
         assert pressure.max() == pytest.approx(largest[frame.number], rel=1e-9)
-        mesh = meshio.read(frame.fields)
+        mesh = meshio.read(frame.file("fields"))
         assert mesh.point_data["von_mises_Pa"].dtype == np.float32
         assert mesh.point_data["von_mises_Pa"].max() > 1e6
 

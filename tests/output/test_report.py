@@ -17,10 +17,10 @@ from thermowear import output
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
 from thermowear.output import tables
+from thermowear.output.names import PICTURES
 from thermowear.output.pictures.curves import draw_interface
-from thermowear.output.quantities import FRICTION, HISTORY, LOADS
 from thermowear.output.report import is_report
-from thermowear.output.report.contents import CAPTIONS, TABLES
+from thermowear.results import TABLES
 
 from ..case.starter import FRETTING, HERTZ, RUNNING_IN, STEADY
 
@@ -295,14 +295,14 @@ def test_output_times_agree_with_the_history(copy):
     """requirement: pressure, area and volumes at 1 s and at the end are those of history.csv."""
     folder = copy(RUNNING_IN)
     heads, rows = report(folder).table("Output times")
-    history = tables.read(folder / "history.csv", HISTORY)
+    history = tables.read(folder / "history.csv")
     assert [row[0] for row in rows] == ["1", "2"]
     for row in rows:
         shown = dict(zip(heads, map(float, row), strict=True))
         (at,) = np.flatnonzero(history["time"] == shown["time [s]"])
         for name in ("max_pressure", "contact_area", "wear_volume_1"):
-            expected = HISTORY[name].drawn(history[name][at])
-            assert shown[HISTORY[name].axis] == pytest.approx(expected, rel=1e-5)
+            expected = history.quantities[name].drawn(history[name][at])
+            assert shown[history.quantities[name].axis] == pytest.approx(expected, rel=1e-5)
     assert "worn volume, body 2 [mm³]" not in heads  # nothing but zeros
 
 
@@ -310,16 +310,16 @@ def test_output_times_of_fretting_agree_with_the_loads(copy):
     """requirement: energy and stick area at the output times are those of loads.csv."""
     folder = copy(FRETTING)
     heads, rows = report(folder).table("Output times")
-    loads = tables.read(folder / "loads.csv", LOADS)
+    loads = tables.read(folder / "loads.csv")
     assert [row[0] for row in rows] == ["1", "2", "3"]
     for row, at in zip(rows, (5, 8, 11), strict=True):
         shown = dict(zip(heads, map(float, row), strict=True))
         for name in ("dissipated", "stick_area", "contact_area", "max_pressure"):
-            expected = LOADS[name].drawn(loads[name][at])
-            assert shown[LOADS[name].axis] == pytest.approx(expected, rel=1e-5)
+            expected = loads.quantities[name].drawn(loads[name][at])
+            assert shown[loads.quantities[name].axis] == pytest.approx(expected, rel=1e-5)
     slip = heads.index("largest slip [µm]")
     for row, name in zip(rows, ("friction_1", "friction_2", "friction"), strict=True):
-        friction = tables.read(folder / f"{name}.csv", FRICTION)
+        friction = tables.read(folder / f"{name}.csv")
         expected = 1e6 * max(friction["slip"].max(), -friction["slip"].min())
         assert float(row[slip]) == pytest.approx(expected, rel=1e-5)
 
@@ -372,7 +372,7 @@ def test_pictures_are_in_the_page(copy):
     assert decoded == (folder / "interface.png").read_bytes()
     (folder / "again.png").write_bytes(decoded)
     assert mpimg.imread(folder / "again.png").shape[0] > 400
-    assert page.text["figcaption"] == [CAPTIONS["interface"]]
+    assert page.text["figcaption"] == [PICTURES["interface"]]
     assert not any("plot" in text for text in page.text["p"])
 
 
@@ -399,9 +399,8 @@ def test_everything_has_a_caption():
     """requirement: the report covers all pictures and tables of the program."""
     pictures = names_in(Path(output.__file__).parent / "pictures", "png")
     assert len(pictures) >= 7
-    assert pictures <= set(CAPTIONS)
-    written = names_in(Path(output.__file__).parent, "csv")
-    assert {"history", "loads"} <= written <= set(TABLES)
+    assert pictures <= set(PICTURES)
+    assert all(table.caption and table.content for table in TABLES.values())
 
 
 # ---- unfinished runs, and what is none ----

@@ -10,29 +10,26 @@ import numpy as np
 import pytest
 
 from thermowear.errors import CaseError
-from thermowear.output.quantities import INTERFACE
 from thermowear.output.sweep import SweepFolder, draw_sweep, is_sweep, swept
 from thermowear.output.sweep.keys import axis
 from thermowear.output.sweep.layout import is_wide, lay_out
 from thermowear.output.sweep.record import read_sweep
 from thermowear.output.sweep.shapes import alike
 from thermowear.output.tables import write_points
+from thermowear.results import TABLES, InterfaceFields
 
 
-class Points:
-    """Contact points with a shape of some height, for `write_points`."""
-
-    def __init__(self, height, surface=False):
-        x = np.linspace(0.0, 0.02, 21)
-        if surface:
-            x, y = (grid.ravel() for grid in np.meshgrid(np.linspace(0, 0.02, 6), x))
-        for name in INTERFACE:
-            setattr(self, name, np.zeros(len(x)))
-        self.x, self.s = x, np.full(len(x), np.nan) if surface else x
-        if surface:
-            self.y = y
-        self.pressure = 1e6 + x * 1e7
-        self.shape = height * (x - 0.01) ** 2
+def points(height, surface=False):
+    """Contact points with a shape of some height."""
+    x = np.linspace(0.0, 0.02, 21)
+    y = 0 * x
+    if surface:
+        x, y = (grid.ravel() for grid in np.meshgrid(np.linspace(0, 0.02, 6), x))
+    values = dict.fromkeys(TABLES["interface"].columns, 0 * x)
+    values |= {"x": x, "y": y, "s": np.full(len(x), np.nan) if surface else x}
+    return InterfaceFields(
+        **values | {"pressure": 1e6 + x * 1e7, "shape": height * (x - 0.01) ** 2}
+    )
 
 
 def made(path, over, surface=False, failing=()):
@@ -52,7 +49,7 @@ def made(path, over, surface=False, failing=()):
         if number in failing:
             folder.add(number, "failed: contact: nothing holds, really", None, 0.1)
             continue
-        write_points(variant / "interface.csv", INTERFACE, Points(number, surface))
+        write_points(variant / "interface.csv", points(number, surface))
         summary = {"max_pressure_Pa": 1e6 * number, "title": "x", "steps": 3, "contact": True}
         folder.add(number, "done", summary | {"max_temperature_K": None}, 0.25)
     folder.close("done", "", 1.0)

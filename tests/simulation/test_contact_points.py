@@ -9,9 +9,9 @@ import pytest
 
 from thermowear.bulk.mesh_motion import HarmonicExtension
 from thermowear.simulation.geometry_update.gap_wear import GapWear, movable_body
-from thermowear.simulation.model.building import build
-from thermowear.simulation.model.setup_cache import SetupCache
-from thermowear.simulation.model.worn_geometry import along
+from thermowear.simulation.system.building import build
+from thermowear.simulation.system.setup_cache import SetupCache
+from thermowear.simulation.system.worn_geometry import along
 from thermowear.timer import Phases
 from thermowear.verification.starter import run_starter, starter
 

@@ -322,4 +322,4 @@ def test_bodies_of_a_case_that_do_not_wear():
     assert result.friction.cycles[0].dissipated == close(
         once.summary["dissipated_energy_J"], rel=1e-12
     )
-    assert isinstance(result.friction.rows[0], tw.simulation.LoadRow)
+    assert isinstance(result.friction.rows[0], tw.results.LoadRow)

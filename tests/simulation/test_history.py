@@ -11,7 +11,8 @@ import pytest
 
 from thermowear.errors import ComputationError
 from thermowear.model.analyses import SteppedAnalysis
-from thermowear.simulation import HistoryRow, Observer
+from thermowear.results import HistoryRow
+from thermowear.simulation import Observer
 from thermowear.simulation.runtime.history import AnalysisHistory
 
 

@@ -8,7 +8,6 @@ import pytest
 
 from thermowear.app.cli import main
 from thermowear.errors import CaseError
-from thermowear.output.quantities import PROFILE
 from thermowear.output.tables import write_points
 
 from ..case.starter import RUNNING_IN, solved
@@ -23,7 +22,7 @@ def steady(tmp_path_factory):
     """The steady state and a file with its shape."""
     result = solved(RUNNING_IN, None, *COARSE, STEADY)
     file = tmp_path_factory.mktemp("shape") / "profile.csv"
-    write_points(file, PROFILE, result.profile)
+    write_points(file, result.profile)
     return result, file
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from thermowear.reference.growing_contact import growing_point
 from thermowear.simulation.geometry_update import geometry_update
-from thermowear.simulation.model.building import build
+from thermowear.simulation.system.building import build
 from thermowear.verification.cases.growing import worn_half_width
 from thermowear.verification.starter import run_starter
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from thermowear.output.quantities import PROFILE
 from thermowear.output.tables import write_points
 from thermowear.simulation.from_case import run
 from thermowear.verification.starter import run_starter, starter
@@ -68,7 +67,7 @@ def test_a_shape_that_bodies_begin_with_lasts_through_updates(tmp_path):
     """requirement: what the mesh lacks of the initial shape stays in the gap: no running-in."""
     steady = run_starter(*RING, "analysis={type='steady'}")
     file = tmp_path / "profile.csv"
-    write_points(file, PROFILE, steady.profile)
+    write_points(file, steady.profile)
     shaped = f"geometry.initial_shape={str(file)!r}"
     keys = "analysis.end_time=1000 s", "analysis.output_times=['400 s', '700 s']"
     worn = run_starter(*RING, *keys, shaped, "wear.update=0.005")

@@ -8,7 +8,7 @@ from thermowear.case.starters import starter_text
 from thermowear.parallel import sum_over_ranks
 from thermowear.simulation.interface.contact_solver import Slope
 from thermowear.simulation.interface.factory import interface_problem
-from thermowear.simulation.model.conditions import ConditionModel
+from thermowear.simulation.system.conditions import ConditionModel
 
 from ..conftest import EXPLORES
 from ..systems import built

@@ -10,7 +10,6 @@ import tomli_w
 import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.output import tables as csv_tables
-from thermowear.output.quantities import HEAT, HISTORY
 from thermowear.reference.sliding_rod import SlidingRod
 from thermowear.simulation.heat.linearisation import HeatSteps
 from thermowear.simulation.interface.factory import interface_problem
@@ -344,7 +343,7 @@ def test_runaway_is_called_by_its_name(tmp_path, capsys):
     said = " ".join(capsys.readouterr().err.split())
     assert "thermal runaway" in said
     assert "thermoelastic instability" in said
-    heat = csv_tables.read(folder / "heat.csv", HEAT)
+    heat = csv_tables.read(folder / "heat.csv")
     assert heat["max_temperature_1"][-1] > 5000.0
     assert 400.0 < heat["time"][-1] < 600.0
     assert json.loads((folder / "run.json").read_text())["status"] == "failed"
@@ -425,7 +424,7 @@ def test_files(tmp_path):
         "heat_stored_J", "heat_lost_J", "balance_relative_error", "max_temperature_1_K",
         "max_temperature_2_K", "mean_temperature_1_K", "mean_temperature_2_K",
     ]  # fmt: skip
-    history = csv_tables.read(folder / "history.csv", HISTORY)
+    history = csv_tables.read(folder / "history.csv")
     assert [float(row[0]) for row in rows] == history["time"].tolist()
     assert len(next(csv.reader((folder / "history.csv").open(encoding="utf-8")))) == 10
     assert (folder / "heat.png").stat().st_size > 20_000

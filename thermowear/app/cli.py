@@ -127,7 +127,7 @@ def _validate(chosen) -> int:
         from mpi4py import MPI
 
         from ..simulation.from_case import model_of
-        from ..simulation.model.building import check_contact_points
+        from ..simulation.system.building import check_contact_points
 
         check_contact_points(model_of(case), MPI.COMM_SELF)
         properties.append(f"initial shape {case.geometry.initial_shape}")

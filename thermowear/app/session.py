@@ -14,17 +14,9 @@ from ..output.console import ConsoleProgress, Terminal, print_discretisations, p
 from ..output.folder import ResultsFolder
 from ..output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from ..parallel import on_root
+from ..results import CycleRow, Frame, HeatRow, HistoryRow, InterfaceFields, LoadRow
 from ..serialise import Checkpoint, pack
-from ..simulation import (
-    CycleRow,
-    Frame,
-    HeatRow,
-    HistoryRow,
-    InterfaceFields,
-    LoadRow,
-    Observer,
-    run,
-)
+from ..simulation import Observer, run
 from ..simulation.runtime.checkpoint_data import Saved
 from ..timer import Phases
 from .discretisations import COMPARED, side_by_side
@@ -45,21 +37,21 @@ class Recorder(Observer):
 
     def step(self, row: HistoryRow, distance: float) -> None:
         self._steps += 1
-        self._save(lambda: self._folder.step(row))
+        self._save(lambda: self._folder.add(row))
         if self._progress is not None:
             self._progress.step(self._steps, row, distance)
 
     def heat(self, row: HeatRow) -> None:
-        self._save(lambda: self._folder.heat(row))
+        self._save(lambda: self._folder.add(row))
 
     def load_step(self, row: LoadRow) -> None:
         self._steps += 1
-        self._save(lambda: self._folder.load_step(row))
+        self._save(lambda: self._folder.add(row))
         if self._progress is not None:
             self._progress.load_step(self._steps, row)
 
     def cycle(self, row: CycleRow) -> None:
-        self._save(lambda: self._folder.cycle(row))
+        self._save(lambda: self._folder.add(row))
 
     def note(self, text: str) -> None:
         if self._progress is not None:

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..balances import BALANCES, holds
-from .quantities import PHASES
+from ..results.summary_keys import PHASES, of_key
 
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
 
@@ -145,52 +145,62 @@ def print_checks(console: Console, checks: list) -> None:
 
 
 def _highlights(summary: dict):
+    """Labels and values of the main results that exist."""
+
+    def row(key: str, digits: int = 6, unit: str = "", label: str = "") -> tuple[str, str]:
+        quantity = of_key(key).shown_in(unit) if unit else of_key(key)
+        value = f"{quantity.drawn(summary[key]):.{digits}g} {quantity.unit}"
+        return label or quantity.label, value
+
+    def exists(key: str) -> bool:
+        return summary.get(key) is not None
+
     for key, balance in BALANCES.items():
-        error = summary.get(key)
-        if error is not None and not holds(error):
-            yield f"NOT BALANCED: {balance.name}", f"relative error {error:.1e}"
-    yield "normal force", f"{summary['normal_force_N'] / 1e3:.6g} kN"
-    low, high = summary["min_pressure_Pa"] / 1e6, summary["max_pressure_Pa"] / 1e6
+        if exists(key) and not holds(summary[key]):
+            yield f"NOT BALANCED: {balance.name}", f"relative error {summary[key]:.1e}"
+    yield row("normal_force_N", unit="kN")
+    low, high = (
+        of_key("max_pressure_Pa").drawn(summary[f"{m}_pressure_Pa"]) for m in ("min", "max")
+    )
     yield "pressure", f"{low:.5g} … {high:.5g} MPa{_margin(summary, 'pressure', 'max_pressure')}"
-    yield "approach of the holder towards body 2", f"{summary['approach_m'] * 1e6:.5g} µm"
+    yield row("approach_m", 5, label="approach of the holder towards body 2")
     if summary["shape_range_m"] > 0:
-        shape = f"{summary['shape_range_m'] * 1e6:.5g} µm{_margin(summary, 'shape')}"
-        yield "peak-to-valley of the worn shape", shape
-    if summary["max_temperature_K"] is not None:
-        hottest = f"{summary['max_temperature_K'] - 273.15:.5g} °C"
-        yield "highest temperature", f"{hottest}{_margin(summary, 'temperature')}"
-        yield "friction power", f"{summary['friction_power_W']:.6g} W"
-    if summary.get("contact_heat_1_W") is not None and summary["friction_power_W"] == 0.0:
-        yield "heat from body 1 to body 2", f"{summary['contact_heat_2_W']:.6g} W"
-    if summary.get("prescribed_heat_W") is not None:
-        yield "heat through surfaces", f"{summary['prescribed_heat_W']:.6g} W"
-    if summary.get("peak_temperature_K") is not None:
-        peak, time = summary["peak_temperature_K"] - 273.15, summary["peak_temperature_time_s"]
-        yield "peak surface temperature", f"{peak:.5g} °C at {time:.5g} s"
-    if summary.get("max_cell_peclet_number") is not None:
+        label, value = row("shape_range_m", 5)
+        yield label, f"{value}{_margin(summary, 'shape')}"
+    if exists("max_temperature_K"):
+        label, value = row("max_temperature_K", 5)
+        yield label, f"{value}{_margin(summary, 'temperature')}"
+        yield row("friction_power_W")
+    if exists("contact_heat_1_W") and summary["friction_power_W"] == 0.0:
+        yield row("contact_heat_2_W", label="heat from body 1 to body 2")
+    if exists("prescribed_heat_W"):
+        yield row("prescribed_heat_W", label="heat through surfaces")
+    if exists("peak_temperature_K"):
+        label, value = row("peak_temperature_K", 5)
+        yield label, f"{value} at {summary['peak_temperature_time_s']:.5g} s"
+    if exists("max_cell_peclet_number"):
         peclet = f"cell Péclet number up to {summary['max_cell_peclet_number']:.3g}"
-        yield "heat advection", f"{summary['heat_advection']}, {peclet}"
-    if summary.get("heat_carried_out_W") is not None:
-        yield "heat removed by advection", f"{summary['heat_carried_out_W']:.6g} W"
-    if summary.get("rigid_wear_velocity_m_per_s") is not None:
-        yield "steady wear rate", f"{summary['rigid_wear_velocity_m_per_s'] * 1e9:.5g} nm/s"
-    if summary.get("dissipated_energy_J") is not None:
-        yield "tangential force", f"{summary['tangential_force_N']:.6g} N"
-        yield "dissipated energy", f"{summary['dissipated_energy_J'] * 1e3:.5g} mJ"
+        yield of_key("heat_advection").label, f"{summary['heat_advection']}, {peclet}"
+    if exists("heat_carried_out_W"):
+        yield row("heat_carried_out_W")
+    if exists("rigid_wear_velocity_m_per_s"):
+        yield row("rigid_wear_velocity_m_per_s", 5)
+    if exists("dissipated_energy_J"):
+        yield row("tangential_force_N")
+        yield row("dissipated_energy_J", 5)
     if "time_s" in summary:
         yield "time, steps", f"{summary['time_s']:.6g} s, {summary['steps']}"
     if summary.get("cycles"):
         yield "cycles", f"{summary['cycles']:.6g}"
-    volumes = (summary["wear_volume_1_m3"], summary["wear_volume_2_m3"])
-    if max(volumes) > 0:
-        yield "worn volume, body 1 and 2", " and ".join(f"{v * 1e9:.5g} mm³" for v in volumes)
-    if summary.get("critical_speed_factor") is not None:
-        yield "critical speed", _critical(summary, "")
-    if summary.get("critical_speed_factor_with_wear") is not None:
-        yield "critical speed with wear", _critical(summary, "_with_wear")
-    if summary.get("growth_rate_per_s") is not None:
+    volumes = [row(f"wear_volume_{body}_m3", 5)[1] for body in (1, 2)]
+    if max(summary["wear_volume_1_m3"], summary["wear_volume_2_m3"]) > 0:
+        yield "worn volume, body 1 and 2", " and ".join(volumes)
+    for which, label in (("", ""), ("_with_wear", " with wear")):
+        if exists(f"critical_speed_factor{which}"):
+            yield f"critical speed{label}", _critical(summary, which)
+    if exists("growth_rate_per_s"):
         yield "pressure perturbations", _growing(summary)
-    if summary.get("distance_from_steady") is not None:
+    if exists("distance_from_steady"):
         yield "distance from the steady state", f"{summary['distance_from_steady']:.2e}"
 
 

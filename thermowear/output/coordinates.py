@@ -1,21 +1,31 @@
-"""Coordinate names in labels: r and z in axisymmetric models, x and y in others."""
+"""Summary of a results folder, and coordinate names in labels: r and z in axisymmetric models."""
 
 from __future__ import annotations
 
 import json
 import re
+import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from .quantities import Quantity
+from ..results.quantity import Quantity
 
 _AXISYMMETRIC = {"x": "r", "y": "z"}
 
 
-def model_of(folder: Path) -> str:
-    """Kinematic model of the run in a results folder; empty without a summary."""
+def read_summary(folder: Path) -> dict[str, Any]:
+    """Summary of the run in a results folder; empty if there is none."""
     path = folder / "summary.json"
-    return json.loads(path.read_bytes()).get("model", "") if path.is_file() else ""
+    return json.loads(path.read_bytes()) if path.is_file() else {}
+
+
+def model_of(folder: Path) -> str:
+    """Kinematic model of the run in a results folder; empty if it is not known."""
+    case = folder / "case.resolved.toml"
+    if (folder / "summary.json").is_file() or not case.is_file():
+        return read_summary(folder).get("model", "")
+    return tomllib.loads(case.read_text("utf-8")).get("model", "")
 
 
 def in_model(quantity: Quantity, model: str) -> Quantity:

@@ -6,7 +6,6 @@ import json
 import math
 import os
 import platform
-import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import cache
@@ -18,30 +17,15 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
+from ..results import TABLES
+from ..results.quantity import table_of
 from .atomic_write import final_name, replacing
 from .checkpoint import CHECKPOINT, write_checkpoint
-from .frames import FRAMES, remove_frames, write_frame
+from .frames import remove_frames, write_frame
 from .lock import Lock
-from .quantities import CYCLES, FRICTION, HEAT, HISTORY, INTERFACE, LOADS, MODES, PROFILE, TRACK
-from .report_file import is_report
-from .tables import RowWriter, name_at, write_points
+from .names import FRAMES, is_ours, name_at
+from .tables import RowWriter, write_points
 from .vtu import write_fields
-
-_OURS = re.compile(
-    r"summary\.json|checkpoint\.npz|run\.json|case\.resolved\.toml|fields\.vtu"
-    r"|(history|heat|loads|cycles|profile|mode)\.csv"
-    r"|frames|animation\.gif|(interface|friction|track)(_[-+.0-9e]+)?\.csv"
-    r"|(interface|profile|wear|history|heat|friction|loads|cycles|track|mode|bodies|deformed)\.png"
-)
-
-_BEGUN = ("history.csv", "heat.csv", "loads.csv", "cycles.csv")
-"""Tables to which a run appends rows."""
-_ROWS = {
-    "HistoryRow": ("history.csv", HISTORY),
-    "HeatRow": ("heat.csv", HEAT),
-    "LoadRow": ("loads.csv", LOADS),
-    "CycleRow": ("cycles.csv", CYCLES),
-}
 
 
 class ResultsFolder:
@@ -102,60 +86,40 @@ class ResultsFolder:
             elif entry.name != "run.json":  # replaced later; it marks the folder as ours
                 entry.unlink()
 
-    def step(self, row) -> None:
-        """Append a step of a transient run."""
-        self._add(row, "history.csv", HISTORY)
-
-    def heat(self, row) -> None:
-        """Append the heat quantities of a step."""
-        self._add(row, "heat.csv", HEAT)
-
-    def load_step(self, row) -> None:
-        """Append an increment of a fretting analysis."""
-        self._add(row, "loads.csv", LOADS)
-
-    def cycle(self, row) -> None:
-        """Append a cycle of a fretting analysis."""
-        self._add(row, "cycles.csv", CYCLES)
+    def add(self, row) -> None:
+        """Append a row, such as a `thermowear.results.HistoryRow`, to its table."""
+        table = table_of(row)
+        if table.stem not in self._rows:
+            self._rows[table.stem] = RowWriter(self.path, table)
+        self._rows[table.stem].add(row)
 
     def restore(self, rows: Sequence) -> None:
         """Start a table anew with rows of the checkpoint, discarding its present rows."""
         if rows:
-            name, table = _ROWS[type(rows[0]).__name__]
-            self._rows[name] = RowWriter(self.path / name, table, rows)
+            table = table_of(rows[0])
+            self._rows[table.stem] = RowWriter(self.path, table, rows)
 
     def checkpoint(self, about: dict, arrays: dict) -> None:
         """Write a state from which the run can be resumed."""
         write_checkpoint(self.path, about, arrays)
 
-    def _add(self, row, name: str, table: dict) -> None:
-        if name not in self._rows:
-            self._rows[name] = RowWriter(self.path / name, table)
-        self._rows[name].add(row)
-
-    def output(self, time: float, interface, friction=None, track=None) -> None:
-        """Write interface, stick-slip state and worn track at an output time."""
-        self._points(time, interface, friction, track)
+    def output(self, time: float, *tables) -> None:
+        """Write tables of points, such as the interface, at an output time."""
+        for points in tables:
+            if points is not None:
+                write_points(self.path / name_at(table_of(points).stem, time), points)
 
     def frame(self, frame) -> None:
-        """Write a `thermowear.simulation.Frame` for an animation."""
+        """Write a `thermowear.results.Frame` for an animation."""
         write_frame(self.path / FRAMES, frame)
 
-    def _points(self, time: float | None, interface, friction, track) -> None:
-        tables = {"interface": INTERFACE, "friction": FRICTION, "track": TRACK}
-        for (name, table), points in zip(tables.items(), (interface, friction, track), strict=True):
-            if points is not None:
-                write_points(self.path / name_at(name, time), table, points)
-
     def finish(self, result, seconds: dict[str, float]) -> None:
-        """Write interface, profile, fields and summary of a `thermowear.simulation.Result`."""
-        friction, track = (more and more.last for more in (result.friction, result.track))
-        self._points(None, result.interface, friction, track)
-        write_points(self.path / "profile.csv", PROFILE, result.profile)
+        """Write points, fields and summary of a `thermowear.results.Result`."""
+        for stem, content in result.tables().items():
+            if not TABLES[stem].grows:
+                write_points(self.path / name_at(stem, None), content)
         if result.fields is not None:
             write_fields(self.path / "fields.vtu", result.fields)
-        if result.modes is not None:
-            write_points(self.path / "mode.csv", MODES, result.modes)
         rounded = {name: round(value, 4) for name, value in seconds.items()}
         self._write_json("summary.json", finite(result.summary) | {"seconds": rounded})
 
@@ -174,7 +138,8 @@ class ResultsFolder:
 
         Computed results are kept.
         """
-        if any((self.path / name).is_file() for name in (CHECKPOINT, *_BEGUN)):
+        begun = (f"{table.stem}.csv" for table in TABLES.values() if table.grows)
+        if any((self.path / name).is_file() for name in (CHECKPOINT, *begun)):
             self.close("failed", "the case proved invalid during the run")
             return
         for name in ("case.resolved.toml", "run.json"):
@@ -193,13 +158,6 @@ class ResultsFolder:
     def _write(self, name: str, text: str) -> None:
         with replacing(self.path / name) as draft:
             draft.write_text(text, "utf-8")
-
-
-def is_ours(path: Path) -> bool:
-    """Test whether a file is a result of this program; a report is recognised by its head."""
-    if path.name == "report.html":
-        return is_report(path)
-    return bool(_OURS.fullmatch(final_name(path)))
 
 
 def finite(summary: dict[str, Any]) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -10,18 +9,17 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from .atomic_write import final_name, replacing
-from .quantities import INTERFACE, TRACK
 from .tables import write_points
 from .vtu import write_fields
 
-FRAMES = "frames"
 _INDEX = "frames.pvd"
-_FRAME = re.compile(r"fields_\d{5,}\.vtu|(interface|track)_\d{5,}\.csv")
+_KINDS = {"fields": ".vtu", "interface": ".csv", "track": ".csv"}
+"""Files of a frame with their endings."""
 
 
 @dataclass(frozen=True)
 class FrameFiles:
-    """Files of an intermediate state; see `thermowear.simulation.Frame`.
+    """Files of an intermediate state; see `thermowear.results.Frame`.
 
     Attributes
     ----------
@@ -36,22 +34,9 @@ class FrameFiles:
     number: int
     place: Path
 
-    @property
-    def fields(self) -> Path:
-        return self.place / f"fields_{self.number:05d}.vtu"
-
-    @property
-    def interface(self) -> Path:
-        return self.place / f"interface_{self.number:05d}.csv"
-
-    @property
-    def track(self) -> Path:
-        """Table of the worn track, in reciprocating analyses only."""
-        return self.place / f"track_{self.number:05d}.csv"
-
-    @property
-    def files(self) -> tuple[Path, ...]:
-        return self.fields, self.interface, self.track
+    def file(self, kind: str) -> Path:
+        """File of the fields, the interface or, in reciprocating analyses only, the track."""
+        return self.place / f"{kind}_{self.number:05d}{_KINDS[kind]}"
 
 
 def write_frame(place: Path, frame) -> None:
@@ -64,14 +49,14 @@ def write_frame(place: Path, frame) -> None:
     ----------
     place : Path
         Folder, created with the first frame.
-    frame : thermowear.simulation.Frame
+    frame : thermowear.results.Frame
     """
     place.mkdir(exist_ok=True)
     new = FrameFiles(frame.time, frame.number, place)
-    write_points(new.interface, INTERFACE, frame.interface)
+    write_points(new.file("interface"), frame.interface)
     if frame.track is not None:
-        write_points(new.track, TRACK, frame.track)
-    write_fields(new.fields, _single(frame.fields))
+        write_points(new.file("track"), frame.track)
+    write_fields(new.file("fields"), _single(frame.fields))
     earlier = [old for old in frame_files(place) if old.number != new.number]
     kept = [o for o in earlier if o.number < new.number and o.number % frame.every == 0]
     _write_index(place, [*kept, new])
@@ -115,10 +100,16 @@ def remove_frames(place: Path) -> None:
 
 def _remove_others(place: Path, frames: list[FrameFiles]) -> None:
     """Remove files of frames, complete or partial, that belong to none of the given frames."""
-    kept = {path for frame in frames for path in frame.files}
+    kept = {frame.file(kind) for frame in frames for kind in _KINDS}
     for path in place.iterdir():
-        if path not in kept and _FRAME.fullmatch(final_name(path)):
+        if path not in kept and _is_of_frame(final_name(path)):
             path.unlink()
+
+
+def _is_of_frame(name: str) -> bool:
+    kind, _, number = name.partition("_")
+    number, ending = number[:-4], number[-4:]
+    return _KINDS.get(kind) == ending and len(number) >= 5 and number.isdecimal()
 
 
 def _write_index(place: Path, frames: list[FrameFiles]) -> None:
@@ -126,7 +117,9 @@ def _write_index(place: Path, frames: list[FrameFiles]) -> None:
     root = ET.Element("VTKFile", type="Collection", version="0.1")
     collection = ET.SubElement(root, "Collection")
     for frame in frames:
-        ET.SubElement(collection, "DataSet", timestep=f"{frame.time:.15g}", file=frame.fields.name)
+        ET.SubElement(
+            collection, "DataSet", timestep=f"{frame.time:.15g}", file=frame.file("fields").name
+        )
     ET.indent(root)
     with replacing(place / _INDEX) as draft:
         ET.ElementTree(root).write(draft, encoding="utf-8", xml_declaration=True)

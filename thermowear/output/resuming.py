@@ -13,7 +13,8 @@ from ..case.validation.comparison import forbidden_changes, irrelevant_changes_o
 from ..errors import CaseError, other_mesh
 from .checkpoint import read_checkpoint
 from .folder import ResultsFolder, now, versions
-from .frames import FRAMES, keep_indexed
+from .frames import keep_indexed
+from .names import FRAMES
 
 _START_ANEW = "--overwrite starts the run from the beginning"
 

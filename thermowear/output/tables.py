@@ -5,33 +5,93 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Iterable
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
+from ..results import TABLES
+from ..results.quantity import Quantity, Table, table_of, unknown
 from .atomic_write import replacing
-from .quantities import Quantity
+from .coordinates import in_model, model_of
+from .names import stem_and_time
 
 _NUMBER = "{:.15g}"
 
 
-def name_at(stem: str, time: float | None) -> str:
-    """File name of a table at an output time, or at the end."""
-    return f"{stem}.csv" if time is None else f"{stem}_{time:g}.csv"
+class MissingColumnError(ValueError):
+    """A file, such as one of another version of the program, lacks a column."""
 
 
-def write_points(path: Path, table: dict[str, Quantity], points) -> None:
-    """Write one row per contact point.
+class TableColumns(dict[str, np.ndarray]):
+    """Columns of a file in SI, by the names of its fields; unknown ones by header.
 
     Parameters
     ----------
     path : Path
-    table : dict of str to Quantity
-        `INTERFACE` or `FRICTION`.
-    points : thermowear.simulation.InterfaceFields or FrictionInterface
+    columns : dict of str to ndarray
+        Columns by header.
     """
-    columns = [getattr(points, name) for name in table]
-    _write(path, table, zip(*columns, strict=True))
+
+    def __init__(self, path: Path, columns: dict[str, np.ndarray]):
+        self._path = path
+        table = TABLES.get(stem_and_time(path.name)[0])
+        self._known = {} if table is None else table.columns
+        names = {quantity.header: name for name, quantity in self._known.items()}
+        super().__init__((names.get(header, header), column) for header, column in columns.items())
+
+    def __missing__(self, name: str) -> np.ndarray:
+        raise MissingColumnError(f"{self._path.name} has no column {self._header(name)}")
+
+    @cached_property
+    def quantities(self) -> dict[str, Quantity]:
+        """Quantities of the columns, labelled for the kinematic model of the run."""
+        others = {name: unknown(name, self[name]) for name in self if name not in self._known}
+        model = model_of(self._path.parent)
+        return {name: in_model(q, model) for name, q in (self._known | others).items()}
+
+    def drawn(self, name: str) -> np.ndarray:
+        """Column in the unit of plots."""
+        return self.quantities[name].drawn(self[name])
+
+    @property
+    def is_ours(self) -> bool:
+        """True if the program declares any of the columns, or no table of that name."""
+        return not self._known or not self._known.keys().isdisjoint(self)
+
+    def rows(self, chosen: np.ndarray | slice) -> TableColumns:
+        """Columns of some of the rows, chosen by a mask or a slice."""
+        return TableColumns(self._path, {self._header(name): v[chosen] for name, v in self.items()})
+
+    def _header(self, name: str) -> str:
+        return self._known[name].header if name in self._known else name
+
+
+def read(path: Path) -> TableColumns:
+    """Read a CSV file of any version of the program; an incomplete last row is ignored.
+
+    Raises
+    ------
+    ValueError
+        If the file is not a table of numbers, or one of another program.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        head, *rows = csv.reader(text[: text.rfind("\n") + 1].splitlines())
+        values = np.array([[float(cell) for cell in row] for row in rows])
+        columns = values.reshape(len(rows), len(head)).T
+        found = TableColumns(path, dict(zip(head, columns, strict=True)))
+    except ValueError:
+        raise ValueError(f"{path}: is not a table of numbers with headers") from None
+    if not found.is_ours:
+        raise ValueError(f"{path}: has none of the columns that this program writes")
+    return found
+
+
+def write_points(path: Path, points) -> None:
+    """Write points, such as `thermowear.results.InterfaceFields`, one per row."""
+    table = table_of(points)
+    _write(path, table, zip(*table.values(points), strict=True))
 
 
 class RowWriter:
@@ -39,54 +99,32 @@ class RowWriter:
 
     Parameters
     ----------
-    path : Path
-    table : dict of str to Quantity
+    folder : Path
+    table : Table
     rows : iterable, optional
-        Initial rows, such as `thermowear.simulation.HistoryRow` or `LoadRow`.
+        Initial rows, such as `thermowear.results.HistoryRow`.
     """
 
-    def __init__(self, path: Path, table: dict[str, Quantity], rows: Iterable = ()):
-        self._path = path
+    def __init__(self, folder: Path, table: Table, rows: Iterable = ()):
+        self._path = folder / f"{table.stem}.csv"
         self._table = table
-        _write(path, table, map(self._values, rows))
+        _write(self._path, table, map(table.values, rows))
 
     def add(self, row) -> None:
         """Append a row; if the disk is full, no part of it is kept."""
         whole = self._path.stat().st_size
         try:
             with self._path.open("a", encoding="utf-8", newline="") as file:
-                csv.writer(file, lineterminator="\n").writerow(_texts(self._values(row)))
+                csv.writer(file, lineterminator="\n").writerow(_texts(self._table.values(row)))
         except OSError:
             os.truncate(self._path, whole)
             raise
 
-    def _values(self, row) -> list[float]:
-        return [getattr(row, name) for name in self._table]
 
-
-def read(path: Path, table: dict[str, Quantity]) -> dict[str, np.ndarray]:
-    """Read the columns of a CSV file by the names of its table, in SI.
-
-    An incomplete last row is ignored.
-
-    Raises
-    ------
-    ValueError
-        If the file does not have the columns of the table.
-    """
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.reader(line for line in file if line.endswith("\n")))
-    headers = [quantity.header for quantity in table.values()]
-    if not rows or rows[0] != headers:
-        raise ValueError(f"{path}: does not begin with the columns {','.join(headers)}")
-    values = np.array([[float(cell) for cell in row] for row in rows[1:]])
-    return dict(zip(table, values.reshape(-1, len(headers)).T, strict=True))
-
-
-def _write(path: Path, table: dict[str, Quantity], rows: Iterable) -> None:
+def _write(path: Path, table: Table, rows: Iterable) -> None:
     with replacing(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(quantity.header for quantity in table.values())
+        writer.writerow(quantity.header for quantity in table.columns.values())
         writer.writerows(map(_texts, rows))
 
 

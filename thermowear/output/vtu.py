@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..results import FIELDS
 from .atomic_write import replacing
 
 _CELLS = {3: "triangle", 4: "quad", 8: "hexahedron"}
@@ -17,7 +18,7 @@ def write_fields(path: Path, fields) -> None:
     Parameters
     ----------
     path : Path
-    fields : thermowear.simulation.BodyFields
+    fields : thermowear.results.BodyFields
     """
     import meshio
 
@@ -25,12 +26,11 @@ def write_fields(path: Path, fields) -> None:
     first = np.arange(n_cells)[:, None, None] * n_points
     corners = fields.pieces.shape[1]
     pieces = (first + fields.pieces).reshape(-1, corners)
-    data = {
-        "displacement_m": _three(fields.displacement.reshape(-1, gdim)),
-        "von_mises_Pa": fields.von_mises.ravel(),
-    }
+    values = {"displacement": _three(fields.displacement.reshape(-1, gdim))}
+    values["von_mises"] = fields.von_mises.ravel()
     if fields.temperature is not None:
-        data["temperature_K"] = fields.temperature.ravel()
+        values["temperature"] = fields.temperature.ravel()
+    data = {FIELDS[name].header: value for name, value in values.items()}
     body = np.repeat(fields.body, len(fields.pieces))
     mesh = meshio.Mesh(
         _three(fields.points.reshape(-1, gdim)), [(_CELLS[corners], pieces)], data, {"body": [body]}

@@ -8,7 +8,7 @@ from dolfinx import fem
 from ..bulk.field import as_function, basis_element, lagrange_space
 from ..errors import CaseError
 from ..lagrange import matching
-from ..simulation.model.system import System
+from ..simulation.system.system import System
 from .body import MeshBody
 from .user_mesh import UserMeshes
 

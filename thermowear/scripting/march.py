@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ..model.analyses import TransientAnalysis
+from ..results import HistoryRow
 from ..simulation.analyses.transient import transient_history
 from ..simulation.analyses.transient_history import snapshot_at
 from ..simulation.interface.interface_problem import InterfaceProblem
-from ..simulation.model.system import System
-from ..simulation.results.rows import HistoryRow
+from ..simulation.results.recording import Snapshot
 from ..simulation.runtime.checkpoint_data import Progress
-from ..simulation.runtime.history import Snapshot
 from ..simulation.runtime.observer import Observer
+from ..simulation.system.system import System
 from .body import MeshBody
 from .solution import ContactResults
 from .user_mesh import UserMeshes

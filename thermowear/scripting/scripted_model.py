@@ -20,13 +20,11 @@ from ..model.analyses import (
 from ..model.heat import Heat
 from ..model.model import Discretisation, Model
 from ..model.motion import Motion
-from ..simulation.analyses.run import analyse, conclude, estimated
-from ..simulation.model.building import build
-from ..simulation.model.setup_cache import SetupCache
-from ..simulation.model.system import System
-from ..simulation.results.fields import sample
-from ..simulation.runtime.history import Snapshot
+from ..simulation.analyses.run import solve
 from ..simulation.runtime.observer import Observer
+from ..simulation.system.building import build
+from ..simulation.system.setup_cache import SetupCache
+from ..simulation.system.system import System
 from ..timer import Phases
 from .body import BodySurface, MeshBody
 from .conversion import number, optional
@@ -162,15 +160,10 @@ class ScriptedModel:
         """Solution of an analysis. Every rank calls."""
         observer = observer or Observer()
         system = self._system(analysis, observer)
-        outcome = analyse(system, analysis, observer)
-        outcome = estimated(system, analysis, outcome, observer)
-        last = outcome.system or system
-        fields = sample(last, outcome.state, outcome.motion)
-        result = conclude(system, analysis, outcome, fields)
+        end, result = solve(system, analysis, observer)
         if result.stopped is not None:
             raise result.stopped
-        final = Snapshot(last, outcome.contact, outcome.motion, outcome.state, outcome.interface)
-        return ModelSolution(self.bodies, self.meshes, final, result)
+        return ModelSolution(self.bodies, self.meshes, end, result)
 
     def _system(self, analysis: Analysis, observer: Observer | None = None) -> System:
         observer = observer or Observer()

@@ -11,9 +11,9 @@ import numpy as np
 from dolfinx import fem
 
 from ..errors import CaseError
+from ..results import Result
 from ..simulation.results.fields import with_holder
-from ..simulation.results.result import Result
-from ..simulation.runtime.history import Snapshot
+from ..simulation.results.recording import Snapshot
 from .body import MeshBody
 from .body_fields import on_user_mesh
 from .user_mesh import UserMeshes

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ..case.tables.schema import Case
-from ..simulation import Result, run
+from ..results import Result
+from ..simulation import run
 
 
 def computed(case: Case) -> Result:

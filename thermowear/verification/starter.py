@@ -8,7 +8,7 @@ from .. import geometry  # noqa: F401  (makes the geometries known)
 from ..case import load
 from ..case.starters import starter_text
 from ..case.tables.schema import Case
-from ..simulation import Result
+from ..results import Result
 from .computed import computed
 
 

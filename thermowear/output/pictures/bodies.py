@@ -12,9 +12,8 @@ import numpy as np
 import pyvista
 from matplotlib.figure import Figure
 
+from ...results import FIELDS
 from .. import tables
-from ..coordinates import in_model, model_of
-from ..quantities import INTERFACE
 from .solids import draw_solids
 from .windows import FLAT, Extent, around_contact, color_limits, is_small, whole, within
 
@@ -27,17 +26,18 @@ def draw_bodies(folder: Path) -> None:
     """Draw ``bodies.png`` (fields on the undeformed bodies) and ``deformed.png``."""
     grid = pyvista.read(folder / "fields.vtu")
     grid.points = grid.points * 1e3
-    grid["von Mises stress [MPa]"] = grid["von_mises_Pa"] / 1e6
-    fields = [("von Mises stress [MPa]", "viridis")]
-    if "temperature_K" in grid.point_data:
-        grid["temperature [°C]"] = grid["temperature_K"] - 273.15
-        fields.insert(0, ("temperature [°C]", "inferno"))
+    fields = []
+    for name, colors in (("temperature", "inferno"), ("von_mises", "viridis")):
+        shown = FIELDS[name]
+        if shown.header in grid.point_data:
+            grid[shown.axis] = shown.drawn(grid[shown.header])
+            fields.append((shown.axis, colors))
     in_space = pyvista.CellType.HEXAHEDRON in grid.celltypes
     if in_space:
         draw_solids(folder / "bodies.png", grid, fields, "", _middle(folder))
     else:
-        table = tables.read(folder / "interface.csv", INTERFACE)
-        axes = tuple(in_model(INTERFACE[name], model_of(folder)).axis for name in "xy")
+        table = tables.read(folder / "interface.csv")
+        axes = tuple(table.quantities[name].axis for name in "xy")
         _draw(folder / "bodies.png", grid, fields, axes, contact=around_contact([table]))
     largest = float(np.linalg.norm(grid["displacement_m"], axis=1).max()) * 1e3
     size = float(np.ptp(grid.points, axis=0).max())
@@ -52,7 +52,7 @@ def draw_bodies(folder: Path) -> None:
 
 def _middle(folder: Path) -> float:
     """Middle of the contact face along y [mm]."""
-    y = tables.read(folder / "interface.csv", INTERFACE)["y"] * 1e3
+    y = tables.read(folder / "interface.csv").drawn("y")
     return float((y.min() + y.max()) / 2)
 
 

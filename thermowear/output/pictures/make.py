@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from ...balances import violated
 from ...errors import CaseError, ComputationError
+from ..coordinates import read_summary
+from ..tables import MissingColumnError
 from .animation import FPS, check_film, has_frames
 from .curves import draw_history, draw_interface, draw_wear
 from .friction import draw_cycles, draw_friction, draw_loads
@@ -44,21 +46,14 @@ def make_pictures(folder: Path) -> list[str]:
         raise CaseError(
             f"{folder}: contains no interface.csv; not a results folder of a finished run"
         )
-    if is_surface(folder):
-        draw_interface_maps(folder)
-        draw_wear_maps(folder)
-    else:
-        draw_interface(folder)
-        draw_profile(folder)
-        draw_wear(folder)
-    draw_history(folder)
-    draw_heat(folder)
-    draw_friction(folder)
-    draw_loads(folder)
-    draw_cycles(folder)
-    draw_track(folder)
-    draw_modes(folder)
-    notes = [f"{folder}: not balanced: {line}" for line in violated(_summary(folder))]
+    notes = []
+    for name, draw in _pictures(folder).items():
+        try:
+            if name == "wear" or (folder / f"{name}.csv").is_file():
+                draw(folder)
+        except MissingColumnError as reason:
+            notes.append(f"{folder}: no {name}.png, as {reason}")
+    notes += [f"{folder}: not balanced: {line}" for line in violated(read_summary(folder))]
     if not (folder / "fields.vtu").is_file():
         return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]
     reasons = {"the bodies": _render("bodies", str(folder.resolve()))}
@@ -67,10 +62,19 @@ def make_pictures(folder: Path) -> list[str]:
     return notes + [f"{what} could not be drawn: {why}" for what, why in reasons.items() if why]
 
 
-def _summary(folder: Path) -> dict:
-    """Read the summary of a run; empty if there is none."""
-    path = folder / "summary.json"
-    return json.loads(path.read_bytes()) if path.is_file() else {}
+def _pictures(folder: Path) -> dict[str, Callable]:
+    """Functions that draw curves or maps, by the names of their pictures."""
+    along = {"interface": draw_interface, "profile": draw_profile, "wear": draw_wear}
+    over = {"interface": draw_interface_maps, "wear": draw_wear_maps}
+    return (over if is_surface(folder) else along) | {
+        "history": draw_history,
+        "heat": draw_heat,
+        "friction": draw_friction,
+        "loads": draw_loads,
+        "cycles": draw_cycles,
+        "track": draw_track,
+        "mode": draw_modes,
+    }
 
 
 def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from pathlib import Path
 
 import matplotlib as mpl
@@ -11,13 +12,11 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.tri import Triangulation
 
 from .. import tables
-from ..quantities import HISTORY, INTERFACE, Quantity
-from .curves import STYLE
+from .curves import STYLE, final_time, interface_panels
 
 COLORS = {"pressure": "viridis", "temperature": "inferno", "shape": "cividis", "wear": "magma_r"}
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
-_FLAT = 1e-12  # m
 _LARGEST_ANGLE = (
     100.0  # largest angle of a boundary triangle [degrees]; larger ones lie outside the face
 )
@@ -25,35 +24,31 @@ _LARGEST_ANGLE = (
 
 def is_surface(folder: Path) -> bool:
     """Test whether the contact points of a results folder form a surface, not a line."""
-    return bool(np.isnan(tables.read(folder / "interface.csv", INTERFACE)["s"]).all())
+    data = tables.read(folder / "interface.csv")
+    return "s" in data and bool(np.isnan(data["s"]).all())
 
 
 def draw_interface_maps(folder: Path) -> None:
     """Draw ``interface.png``: pressure, temperatures and shape over the face."""
-    data = tables.read(folder / "interface.csv", INTERFACE)
-    names = ["pressure"]
-    if np.isfinite(data["temperature_1"]).all():
-        names += ["temperature_1", "temperature_2"]
-    if np.ptp(data["shape"]) > _FLAT:  # not for flat unworn faces
-        names.append("shape")
-    _draw(folder / "interface.png", data, names)
+    data = tables.read(folder / "interface.csv")
+    _draw(folder / "interface.png", data, list(chain.from_iterable(interface_panels(data))))
 
 
 def draw_wear_maps(folder: Path) -> None:
     """Draw ``wear.png``: wear depth of each body at the end of a transient analysis."""
-    if not (folder / "history.csv").is_file():
+    end = final_time(folder)
+    if end is None:
         return
-    data = tables.read(folder / "interface.csv", INTERFACE)
+    data = tables.read(folder / "interface.csv")
     names = [name for name in ("wear_1", "wear_2") if data[name].max() > 0]
     if not names:
         return
-    end = tables.read(folder / "history.csv", HISTORY)["time"][-1]
     _draw(folder / "wear.png", data, names, f"wear after {end:.4g} s")
 
 
-def _draw(path: Path, data: dict[str, np.ndarray], names: list[str], title: str = "") -> None:
+def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = "") -> None:
     """Draw a map of each quantity, two per row."""
-    x, y = (INTERFACE[axis].drawn(data[axis]) for axis in "xy")
+    x, y = map(data.drawn, "xy")
     triangles = triangulated(x, y)
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
@@ -65,8 +60,7 @@ def _draw(path: Path, data: dict[str, np.ndarray], names: list[str], title: str 
         figure = Figure(figsize=size, layout=layout, dpi=150)
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for axis, name in zip(axes, names, strict=False):
-            drawn, colors = INTERFACE[name].drawn(data[name]), COLORS[name.split("_")[0]]
-            _map(figure, axis, triangles, INTERFACE[name], drawn, colors)
+            _map(figure, axis, triangles, data, name)
         for axis in axes[len(names) :]:
             axis.set_visible(False)
         if title:
@@ -74,16 +68,17 @@ def _draw(path: Path, data: dict[str, np.ndarray], names: list[str], title: str 
         figure.savefig(path, bbox_inches="tight")
 
 
-def _map(figure, axis, triangles: Triangulation, quantity: Quantity, drawn, colors: str) -> None:
+def _map(figure, axis, triangles: Triangulation, data: tables.TableColumns, name: str) -> None:
     """Draw colours, with contour lines if the values differ."""
+    drawn, colors = data.drawn(name), COLORS[name.split("_")[0]]
     colored = axis.tripcolor(triangles, drawn, shading="gouraud", cmap=colors)
-    figure.colorbar(colored, ax=axis, label=quantity.axis, shrink=0.9)
+    figure.colorbar(colored, ax=axis, label=data.quantities[name].axis, shrink=0.9)
     if np.ptp(drawn) > 1e-6 * np.abs(drawn).max():
         lines = axis.tricontour(triangles, drawn, _LINES, colors="black", linewidths=0.6)
         axis.clabel(lines, fontsize=8)
     axis.set_aspect("equal")
-    axis.set_xlabel(INTERFACE["x"].axis)
-    axis.set_ylabel(INTERFACE["y"].axis)
+    axis.set_xlabel(data.quantities["x"].axis)
+    axis.set_ylabel(data.quantities["y"].axis)
 
 
 def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:

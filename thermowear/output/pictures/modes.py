@@ -12,9 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import tables
-from ..coordinates import model_of
-from ..quantities import INTERFACE, MODES
-from .curves import STYLE, abscissa
+from .curves import STYLE, abscissa, panels
 from .maps import is_surface, triangulated
 
 _TITLE = 38  # characters per line of a title
@@ -23,67 +21,61 @@ _LEVELS = np.linspace(-1.0, 1.0, 21)
 
 def draw_modes(folder: Path) -> None:
     """Draw ``mode.png``: the fastest growing mode, and the modes at critical speeds."""
-    if not (folder / "mode.csv").is_file():
-        return
-    data = tables.read(folder / "mode.csv", MODES)
-    numbers = np.unique(data["mode"])
-    modes = [{k: v[data["mode"] == number] for k, v in data.items()} for number in numbers]
-    if not modes:
-        return
-    with mpl.rc_context(STYLE):
-        figure = _maps(modes) if is_surface(folder) else _curves(modes, model_of(folder))
-        figure.savefig(folder / "mode.png")
+    data = tables.read(folder / "mode.csv")
+    modes = [data.rows(data["mode"] == number) for number in np.unique(data["mode"])]
+    if modes:
+        (_draw_maps if is_surface(folder) else _draw_curves)(modes, folder / "mode.png")
 
 
-def _curves(modes: list[dict], model: str) -> Figure:
+def _draw_curves(modes: list[tables.TableColumns], path: Path) -> None:
     growing = [[mode] for mode in modes if not _is_stationary(mode)]
     staying = [mode for mode in modes if _is_stationary(mode)]
     groups = [*growing, *([staying] if staying else [])]
-    figure = Figure(figsize=(6.4, 3.1 * len(groups)), layout="constrained", dpi=150)
-    axes = figure.subplots(len(groups), sharex=True, squeeze=False)[:, 0]
-    for axis, group in zip(axes, groups, strict=True):
-        for mode in group:
-            label, place = abscissa(mode, model)
-            axis.plot(place, mode["pressure"], label=_description(mode))
-            if mode["frequency"][0] > 0:
-                later = "a quarter period later"
-                axis.plot(place, -mode["pressure_imaginary"], "--", label=later)
-        axis.axhline(0.0, color="0.6", linewidth=0.8)
-        axis.set_ylabel(f"{MODES['pressure'].label}\n[{MODES['pressure'].unit}]")
-        axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), fontsize=9)
-    axes[-1].set_xlabel(label)
-    return figure
+    with panels(path, len(groups), (6.4, 3.1 * len(groups)), sharex=True) as axes:
+        for axis, group in zip(axes, groups, strict=True):
+            for mode in group:
+                label, place = abscissa(mode)
+                axis.plot(place, mode["pressure"], label=_description(mode))
+                if mode["frequency"][0] > 0:
+                    later = "a quarter period later"
+                    axis.plot(place, -mode["pressure_imaginary"], "--", label=later)
+            axis.axhline(0.0, color="0.6", linewidth=0.8)
+            axis.set_ylabel(group[0].quantities["pressure"].wrapped)
+            axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), fontsize=9)
+        axes[-1].set_xlabel(label)
 
 
-def _maps(modes: list[dict]) -> Figure:
+def _draw_maps(modes: list[tables.TableColumns], path: Path) -> None:
     """Draw a map of each mode, for 3D models."""
     columns = min(len(modes), 2)
     rows = -(-len(modes) // columns)
-    figure = Figure(figsize=(3.6 * columns, 3.2 * rows), layout="constrained", dpi=150)
-    axes = figure.subplots(rows, columns, squeeze=False).ravel()
-    for axis, mode in zip(axes, modes, strict=False):
-        drawn = _map(axis, mode)
-        axis.set_title(fill(_description(mode), _TITLE), fontsize=9)
-    for axis in axes[len(modes) :]:
-        axis.set_visible(False)
-    figure.colorbar(drawn, ax=axes, label=MODES["pressure"].label, shrink=0.6)
-    return figure
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(3.6 * columns, 3.2 * rows), layout="constrained", dpi=150)
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axis, mode in zip(axes, modes, strict=False):
+            drawn = _map(axis, mode)
+            axis.set_title(fill(_description(mode), _TITLE), fontsize=9)
+        for axis in axes[len(modes) :]:
+            axis.set_visible(False)
+        label = modes[0].quantities["pressure"].label
+        figure.colorbar(drawn, ax=axes, label=label, shrink=0.6)
+        figure.savefig(path)
 
 
-def _map(axis: Axes, mode: dict):
-    x, y = (INTERFACE[name].drawn(mode[name]) for name in ("x", "y"))
-    drawn = axis.tricontourf(triangulated(x, y), mode["pressure"], levels=_LEVELS, cmap="coolwarm")
+def _map(axis: Axes, mode: tables.TableColumns):
+    triangles = triangulated(mode.drawn("x"), mode.drawn("y"))
+    drawn = axis.tricontourf(triangles, mode["pressure"], levels=_LEVELS, cmap="coolwarm")
     axis.set_aspect("equal")
-    axis.set_xlabel(INTERFACE["x"].axis)
-    axis.set_ylabel(INTERFACE["y"].axis)
+    axis.set_xlabel(mode.quantities["x"].axis)
+    axis.set_ylabel(mode.quantities["y"].axis)
     return drawn
 
 
-def _is_stationary(mode: dict) -> bool:
+def _is_stationary(mode: tables.TableColumns) -> bool:
     return mode["growth_rate"][0] == 0 and mode["frequency"][0] == 0
 
 
-def _description(mode: dict) -> str:
+def _description(mode: tables.TableColumns) -> str:
     """Describe a mode: kind, and its growth rate or critical speed."""
     factor, rate, frequency = (mode[k][0] for k in ("speed_factor", "growth_rate", "frequency"))
     kind = (

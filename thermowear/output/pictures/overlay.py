@@ -8,21 +8,10 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 
+from ...results import TABLES
 from .. import tables
-from ..coordinates import model_of
-from ..quantities import INTERFACE, PROFILE, Quantity
-from .curves import STYLE, abscissa
-
-_FILES: dict[str, tuple[str, dict[str, Quantity]]] = {
-    **dict.fromkeys(PROFILE, ("profile.csv", PROFILE)),
-    **dict.fromkeys(INTERFACE, ("interface.csv", INTERFACE)),
-}
-
-_SINGULAR, _MOST = 3.0, 0.9
-"""Peaks are clipped if they exceed the first factor times the quantile of the second: pressure
-singularities at corners of unworn faces would hide all other values."""
+from .curves import abscissa, cut_singular, panels
 
 
 @dataclass(frozen=True)
@@ -32,7 +21,7 @@ class OverlayPanel:
     Attributes
     ----------
     quantity : str
-        Column of ``interface.csv`` or ``profile.csv``, by its name in `quantities`.
+        Column of ``interface.csv`` or ``profile.csv``, by the name of its field.
     title : str
     from_zero : bool
         True if the axis begins at zero.
@@ -43,38 +32,33 @@ class OverlayPanel:
     from_zero: bool = False
 
 
-def draw_overlay(runs: Mapping[str, Path], panels: Sequence[OverlayPanel], path: Path) -> None:
+def draw_overlay(runs: Mapping[str, Path], shown: Sequence[OverlayPanel], path: Path) -> None:
     """Draw quantities of several runs for comparison.
 
     Parameters
     ----------
     runs : dict of str to Path
         Results folders by their legend entry.
-    panels : sequence of OverlayPanel
+    shown : sequence of OverlayPanel
+        Panels, one above the other.
     path : Path
         Picture to write.
     """
     colors = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(runs)))
     styles = ("-", "--", "-.", ":")
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 2.6 * len(panels)), layout="constrained", dpi=150)
-        axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
-        for axis, panel in zip(axes, panels, strict=True):
-            name, table = _FILES[panel.quantity]
-            highest = []
+    with panels(path, len(shown), (6.4, 2.6 * len(shown)), sharex=True) as axes:
+        for axis, panel in zip(axes, shown, strict=True):
+            name, curves = panel.quantity, []
+            stem = "interface" if name in TABLES["interface"].columns else "profile"
             for k, (label, folder) in enumerate(runs.items()):
-                data = tables.read(folder / name, table)
-                where, place = abscissa(data, model_of(folder))
-                drawn = table[panel.quantity].drawn(data[panel.quantity])
-                axis.plot(place, drawn, styles[k % 4], color=colors[k], label=label)
-                highest.append((np.nanmax(drawn), np.nanquantile(drawn, _MOST)))
-            peak, usual = np.max(highest, axis=0)
-            if usual > 0 and peak > _SINGULAR * usual:
-                axis.set_ylim(top=1.5 * usual)
-            axis.set_ylabel(f"{table[panel.quantity].label}\n[{table[panel.quantity].unit}]")
+                data = tables.read(folder / f"{stem}.csv")
+                where, place = abscissa(data)
+                curves.append(data.drawn(name))
+                axis.plot(place, curves[-1], styles[k % 4], color=colors[k], label=label)
+            cut_singular(axis, *curves)
+            axis.set_ylabel(data.quantities[name].wrapped)
             axis.set_title(panel.title, fontsize="medium")
             if panel.from_zero:
                 axis.set_ylim(bottom=0)
         axes[0].legend()
         axes[-1].set_xlabel(where)
-        figure.savefig(path)

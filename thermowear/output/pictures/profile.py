@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 
 from .. import tables
-from ..coordinates import model_of
-from ..quantities import PROFILE
-from .curves import STYLE, abscissa
+from .curves import abscissa, panels
 
 _SAME = 1e-3
 """Relative difference below which both shapes coincide, as on a level face."""
@@ -25,24 +21,20 @@ _PAIRS = (
 
 def draw_profile(folder: Path) -> None:
     """Draw ``profile.png``: worn shape and wear rates of a face that is not level."""
-    if not (folder / "profile.csv").is_file():
-        return
-    data = tables.read(folder / "profile.csv", PROFILE)
+    data = tables.read(folder / "profile.csv")
     pairs = [pair for pair in _PAIRS if _differ(*(data[name] for name in pair[:2]))]
     if not pairs or not np.any(data["wear_rate"] > 0):
         return
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 2.6 * len(pairs)), layout="constrained", dpi=150)
-        axes = figure.subplots(len(pairs), sharex=True, squeeze=False)[:, 0]
-        label, place = abscissa(data, model_of(folder))
+    size = (6.4, 2.6 * len(pairs))
+    with panels(folder / "profile.png", len(pairs), size, sharex=True) as axes:
+        label, place = abscissa(data)
         for axis, (along_normal, along_press, what) in zip(axes, pairs, strict=True):
             kinds = ((along_normal, "-", "normal"), (along_press, "--", "load direction"))
             for name, line, how in kinds:
-                axis.plot(place, PROFILE[name].drawn(data[name]), line, label=f"along the {how}")
-            axis.set_ylabel(f"{what}\n[{PROFILE[along_normal].unit}]")
+                axis.plot(place, data.drawn(name), line, label=f"along the {how}")
+            axis.set_ylabel(f"{what}\n[{data.quantities[along_normal].unit}]")
         axes[0].legend()
         axes[-1].set_xlabel(label)
-        figure.savefig(folder / "profile.png")
 
 
 def _differ(along_normal: np.ndarray, along_press: np.ndarray) -> bool:

@@ -10,36 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import CaseError
-from .columns import Table, output_times, read_columns, shown_table
+from ...results import TABLES
+from ..names import PICTURES
+from ..tables import read
+from .columns import AT_TIMES, ShownTable, output_times, shown_table
 from .figures import BalanceFigure, Figure, balances, key_figures
 from .glance import table_lines
 from .verdict import Verdict, verdict
 
-CAPTIONS = {
-    "bodies": "Von Mises stress of the bodies, and their temperature if the case has heat.",
-    "deformed": "Deformed bodies, displacements magnified.",
-    "interface": "Pressure, temperatures and shape of the worn face along the contact.",
-    "profile": "Worn shape.",
-    "wear": "Pressure and wear depth along the contact at the output times and at the end.",
-    "track": "Wear depths of both bodies along x, body 1 in the middle of its stroke.",
-    "history": "Largest pressure and worn volume over time.",
-    "heat": "Surface temperatures of both bodies, friction power and largest pressure over time.",
-    "friction": "Shear traction with its Coulomb limits, and slip, at the output times.",
-    "loads": "Tangential force over displacement, and dissipated energy over time.",
-    "cycles": "Largest wear depth and worn volume over the cycles.",
-    "mode": "Pressure perturbations: the fastest growing mode and the modes at critical speeds.",
-}
-TABLES = {
-    "history": "History, one row per step",
-    "heat": "Heat, one row per step",
-    "cycles": "Cycles, one row per computed cycle",
-    "loads": "Load history, one row per increment",
-    "interface": "Contact at the end",
-    "profile": "Worn shape at the end",
-    "friction": "Friction at the end",
-    "track": "Track at the end",
-    "mode": "Pressure perturbations",
-}
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -65,7 +43,7 @@ class ReportContents:
     pictures : list of Picture
     drawable : bool
         True if there are results to draw pictures from.
-    tables : list of Table
+    tables : list of ShownTable
     case : list of tuple of str
         Name and content of each table of the case.
     case_text : str
@@ -81,7 +59,7 @@ class ReportContents:
     groups: dict[str, list[Figure]]
     pictures: list[Picture]
     drawable: bool
-    tables: list[Table]
+    tables: list[ShownTable]
     case: list[tuple[str, str]]
     case_text: str
     run: list[tuple[str, str]]
@@ -113,7 +91,7 @@ def read_contents(folder: Path) -> ReportContents:
             groups=key_figures(summary),
             pictures=list(_pictures(folder)),
             drawable=(folder / "interface.csv").is_file(),
-            tables=list(_tables(folder, summary, str(summary.get("model") or case.get("model")))),
+            tables=list(_tables(folder, summary)),
             case=table_lines(case, "case"),
             case_text=text,
             run=table_lines(run, "run"),
@@ -147,19 +125,20 @@ def _toml(path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def _pictures(folder: Path):
-    for name, caption in CAPTIONS.items():
+    for name, caption in PICTURES.items():
         path = folder / f"{name}.png"
         content = path.read_bytes() if path.is_file() else b""
         if content.startswith(_PNG):
             yield Picture(name, caption, base64.b64encode(content).decode("ascii"))
 
 
-def _tables(folder: Path, summary: dict[str, Any], model: str):
+def _tables(folder: Path, summary: dict[str, Any]):
     times = output_times(folder, summary.get("time_s"))
     if times:
         caption = "Output times: extremes and totals over the contact"
-        yield shown_table(caption, times, "the tables of each time", model)
-    for stem, caption in TABLES.items():
-        if (folder / f"{stem}.csv").is_file():
-            columns = read_columns(folder / f"{stem}.csv")
-            yield shown_table(caption, columns, f"{stem}.csv", model)
+        yield shown_table(caption, times, AT_TIMES, "the tables of each time")
+    for table in sorted(TABLES.values(), key=lambda table: not table.grows):
+        path = folder / f"{table.stem}.csv"
+        if path.is_file():
+            columns = read(path)
+            yield shown_table(table.caption, columns, columns.quantities, path.name)

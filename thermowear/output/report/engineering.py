@@ -6,48 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from ...results.units import multiple, split_key
+
 NOTHING = "–"
-
-_MULTIPLES: dict[str, tuple[tuple[float, str, float], ...]] = {
-    "Pa": ((1e10, "GPa", 1e-9), (0.0, "MPa", 1e-6)),
-    "N": ((1e3, "kN", 1e-3), (0.0, "N", 1.0)),
-    "N m": ((1e3, "kN m", 1e-3), (0.0, "N m", 1.0)),
-    "m": ((1e-3, "mm", 1e3), (0.0, "µm", 1e6)),
-    "m²": ((0.0, "mm²", 1e6),),
-    "m³": ((0.0, "mm³", 1e9),),
-    "m/s": ((1.0, "m/s", 1.0), (1e-3, "mm/s", 1e3), (1e-6, "µm/s", 1e6), (0.0, "nm/s", 1e9)),
-    "W": ((1e3, "kW", 1e-3), (0.0, "W", 1.0)),
-    "W/m²": ((1e3, "kW/m²", 1e-3), (0.0, "W/m²", 1.0)),
-    "J": ((1e3, "kJ", 1e-3), (1.0, "J", 1.0), (1e-3, "mJ", 1e3), (0.0, "µJ", 1e6)),
-    "rad": ((1.0, "rad", 1.0), (1e-3, "mrad", 1e3), (0.0, "µrad", 1e6)),
-    "rad/s": ((1e-3, "rad/s", 1.0), (0.0, "nrad/s", 1e9)),
-}
-"""Engineering units by SI unit: smallest size [SI], unit, and scale from the SI unit."""
-
-_IN_KEYS = {
-    **{unit: unit for unit in ("Pa", "N", "m", "s", "K", "W", "J", "rad", "Hz", "kg")},
-    **{"Nm": "N m", "m2": "m²", "m3": "m³"},
-}
-"""SI units by their spelling in the keys of results."""
-
-
-def split_key(key: str) -> tuple[str, str]:
-    """Name and SI unit of a key such as ``wear_rate_1_m_per_s``: ``wear rate 1`` and ``m/s``."""
-    *words, last = key.split("_")
-    unit = _IN_KEYS.get(last, "")
-    if unit and len(words) >= 2 and words[-1] == "per" and words[-2] in _IN_KEYS:
-        words, unit = words[:-2], f"{_IN_KEYS[words[-2]]}/{unit}"
-    if not unit or not words:
-        return key.replace("_", " "), ""
-    return " ".join(words), unit
-
-
-def multiple(si: str, size: float) -> tuple[str, float]:
-    """Engineering unit for numbers up to a size [SI], and its scale from the SI unit."""
-    for least, unit, scale in _MULTIPLES.get(si, ((0.0, si, 1.0),)):
-        if abs(size) >= least:
-            return unit, scale
-    return si, 1.0  # the size is not a number
 
 
 def number(value: float) -> str:

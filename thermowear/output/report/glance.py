@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from .engineering import quantity, split_key
+from ...results.units import split_key
+from .engineering import quantity
 
 _QUANTITY = re.compile(r"([-+]?[.\d]+(?:e[-+]?\d+)?) (\S+)")
 _POWERS = str.maketrans({"2": "²", "3": "³", "^": None})

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 import re
 import time
 from collections.abc import Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from ...errors import CaseError
-from ..folder import is_ours, versions
+from ..atomic_write import replacing
+from ..folder import now, versions
+from ..names import is_ours
 from .keys import Swept
 
-_OURS = re.compile(r"sweep\.csv|shapes\.png|sweep\.png|run\.json")
+_OURS = ("sweep.csv", "shapes.png", "sweep.png", "run.json")
 _VARIANT = re.compile(r"\d{3,}")
 _INTERVAL = 1.0  # seconds between two updates of the table on disk
 
@@ -50,7 +50,7 @@ class SweepFolder:
         self._written = 0.0
         self._run: dict[str, Any] = {
             "status": "running",
-            "started": datetime.now(UTC).isoformat(timespec="seconds"),
+            "started": now(),
             "over": over,
             "variants": self._count,
             "versions": versions(),
@@ -95,7 +95,7 @@ class SweepFolder:
         self._write_table()
         self._run |= {
             "status": status,
-            "finished": datetime.now(UTC).isoformat(timespec="seconds"),
+            "finished": now(),
             "seconds": round(seconds, 4),
             **({"message": message} if message else {}),
         }
@@ -106,7 +106,7 @@ class SweepFolder:
             raise CaseError(
                 f"-o {self.path}: exists and is not empty; use --overwrite or another folder"
             )
-        ours = [entry for entry in self.path.iterdir() if _OURS.fullmatch(entry.name)]
+        ours = [entry for entry in self.path.iterdir() if entry.name in _OURS]
         if not is_sweep(self.path) and ours:
             raise CaseError(
                 f"-o {self.path}: contains {ours[0].name} but is not a folder of a sweep; "
@@ -124,8 +124,8 @@ class SweepFolder:
     def _write_table(self) -> None:
         """Write ``sweep.csv``, one row per variant; unfinished variants have no numbers."""
         names = list(dict.fromkeys(name for _, row in self._rows.values() for name in row))
-        draft = self.path / ".sweep.csv.part"
-        with draft.open("w", encoding="utf-8", newline="") as file:
+        path = self.path / "sweep.csv"
+        with replacing(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(["variant", *(key.header for key in self._keys), "status", *names])
             for k in range(self._count):
@@ -133,13 +133,11 @@ class SweepFolder:
                 values = [key.values[k] for key in self._keys]
                 numbers = [row.get(name, float("nan")) for name in names]
                 writer.writerow([k + 1, *map(_cell, values), status, *map(_cell, numbers)])
-        os.replace(draft, self.path / "sweep.csv")
         self._written = time.monotonic()
 
     def _write_run(self) -> None:
-        draft = self.path / ".run.json.part"
-        draft.write_text(json.dumps(self._run, indent=2, ensure_ascii=False) + "\n", "utf-8")
-        os.replace(draft, self.path / "run.json")
+        with replacing(self.path / "run.json") as draft:
+            draft.write_text(json.dumps(self._run, indent=2, ensure_ascii=False) + "\n", "utf-8")
 
 
 def is_sweep(folder: Path) -> bool:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from .. import tables
 from ..pictures.curves import STYLE
 from ..pictures.maps import triangulated
-from ..quantities import INTERFACE
+from .layout import Layout
 from .record import VariantRecord
 
 _MOST = 12
@@ -21,14 +21,15 @@ _ACROSS = 4
 _LEVELS = 12
 
 
-def draw_shape_maps(record: VariantRecord, path: Path) -> None:
+def draw_shape_maps(layout: Layout, path: Path) -> None:
     """Draw maps of up to twelve variants with a common scale; of more, evenly spaced ones."""
+    record = layout.record
     count = min(len(record.folders), _MOST)
     chosen = np.unique(np.linspace(0, len(record.folders) - 1, count).round().astype(int))
-    data = [tables.read(record.folders[k] / "interface.csv", INTERFACE) for k in chosen]
+    data = [tables.read(record.folders[k] / "interface.csv") for k in chosen]
     name = "shape" if any(np.ptp(d["shape"]) > 0 for d in data) else "pressure"
-    quantity = INTERFACE[name]
-    drawn = [quantity.drawn(d[name]) for d in data]
+    quantities = data[0].quantities
+    drawn = [d.drawn(name) for d in data]
     low, high = min(map(np.min, drawn)), max(map(np.max, drawn))
     scale = ScalarMappable(Normalize(low, high), "cividis")
     across = min(_ACROSS, count)
@@ -38,7 +39,7 @@ def draw_shape_maps(record: VariantRecord, path: Path) -> None:
         figure = Figure(figsize=size, layout="constrained", dpi=150)
         axes = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
         for axis, k, table, values in zip(axes.ravel(), chosen, data, drawn, strict=False):
-            x, y = (INTERFACE[along].drawn(table[along]) for along in "xy")
+            x, y = map(table.drawn, "xy")
             levels = np.linspace(low, high, _LEVELS + 1)
             axis.tricontourf(
                 triangulated(x, y), values, levels=levels, cmap=scale.cmap, norm=scale.norm
@@ -48,10 +49,10 @@ def draw_shape_maps(record: VariantRecord, path: Path) -> None:
         for axis in axes.ravel()[count:]:
             axis.set_visible(False)
         for axis in axes[-1]:
-            axis.set_xlabel(INTERFACE["x"].axis)
+            axis.set_xlabel(quantities["x"].axis)
         for axis in axes[:, 0]:
-            axis.set_ylabel(INTERFACE["y"].axis)
-        figure.colorbar(scale, ax=axes, label=quantity.axis, pad=0.01)
+            axis.set_ylabel(quantities["y"].axis)
+        figure.colorbar(scale, ax=axes, label=quantities[name].axis, pad=0.01)
         figure.savefig(path)
 
 

@@ -8,10 +8,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from ...results.quantity import from_key
+from ...results.summary_keys import of_key
 from .. import tables
 from ..coordinates import in_model, model_of
 from ..pictures.curves import STYLE
-from ..quantities import INTERFACE, Quantity
 from .layout import LINES, Layout, is_wide
 from .legend import add_legend, tallest
 from .record import VariantRecord
@@ -20,35 +21,24 @@ _EQUAL = 1e-6
 """Relative difference below which numbers are considered equal."""
 _MARKED = 25
 _LISTED = 24  # entries of a legend
-_NUMBERS = {
-    "max_pressure_Pa": Quantity("", "largest pressure", "MPa", 1e-6),
-    "place": Quantity("", "position of the largest pressure, x", "mm", 1e3),
-    "max_temperature_K": Quantity("", "highest temperature", "°C", 1.0, -273.15),
-    "peak_temperature_K": Quantity("", "peak surface temperature", "°C", 1.0, -273.15),
-    "heat_carried_out_W": Quantity("", "heat removed by advection", "W"),
-    "shape_range_m": Quantity("", "peak-to-valley of the worn shape", "µm", 1e6),
-    "rigid_wear_velocity_m_per_s": Quantity("", "wear rate along the load direction", "nm/s", 1e9),
-    "friction_power_W": Quantity("", "friction power", "W"),
-    "wear_volume_1_m3": Quantity("", "worn volume, body 1", "mm³", 1e9),
-    "wear_volume_2_m3": Quantity("", "worn volume, body 2", "mm³", 1e9),
-    "contact_area_m2": Quantity("", "contact area", "mm²", 1e6),
-    "guide_force_N": Quantity("", "guide force", "N"),
-    "approach_m": Quantity("", "approach", "µm", 1e6),
-    "critical_speed_m_per_s": Quantity("", "critical speed", "m/s"),
-    "critical_speed_with_wear_m_per_s": Quantity("", "critical speed with wear", "m/s"),
-    "critical_angular_velocity_rad_per_s": Quantity("", "critical speed", "rad/s"),
-    "critical_angular_velocity_with_wear_rad_per_s": Quantity(
-        "", "critical speed with wear", "rad/s"
-    ),
-    "growth_rate_per_s": Quantity("", "growth rate", "1/s"),
-    "dissipated_energy_J": Quantity("", "dissipated energy", "mJ", 1e3),
-}
+_PLACE = from_key("x_m", "position of the largest pressure, x", "mm")
+_KEYS = (
+    *("max_pressure_Pa", _PLACE.header, "max_temperature_K", "peak_temperature_K"),
+    *("heat_carried_out_W", "shape_range_m", "rigid_wear_velocity_m_per_s", "friction_power_W"),
+    *("wear_volume_1_m3", "wear_volume_2_m3", "contact_area_m2", "guide_force_N", "approach_m"),
+    *("critical_speed_m_per_s", "critical_speed_with_wear_m_per_s"),
+    *("critical_angular_velocity_rad_per_s", "critical_angular_velocity_with_wear_rad_per_s"),
+    *("growth_rate_per_s", "dissipated_energy_J"),
+)
+_NUMBERS = {key: _PLACE if key == _PLACE.header else of_key(key) for key in _KEYS}
+"""Quantities that are drawn, by their columns."""
 
 
 def draw_numbers(layout: Layout, path: Path) -> None:
     """Draw the quantities that vary, and list those that do not in the title."""
     record, numbers = layout.record, _numbers(layout.record)
-    shown = {name: in_model(q, model_of(record.folders[0])) for name, q in _NUMBERS.items()}
+    model = model_of(record.folders[0])
+    shown = {name: in_model(quantity, model) for name, quantity in _NUMBERS.items()}
     varying = {name: values for name, values in numbers.items() if _varies(values)}
     same = {name: values[0] for name, values in numbers.items() if name not in varying}
     if not varying:
@@ -61,7 +51,7 @@ def draw_numbers(layout: Layout, path: Path) -> None:
         axes = figure.subplots(down, across, sharex=True, squeeze=False)
         for axis, (name, values) in zip(axes.ravel(), varying.items(), strict=False):
             _draw(axis, layout, shown[name].drawn(values))
-            axis.set_ylabel(f"{shown[name].label}\n[{shown[name].unit}]")
+            axis.set_ylabel(shown[name].wrapped)
         for axis in axes.ravel()[len(varying) :]:
             axis.set_visible(False)
         for axis in axes.ravel()[: len(varying)][-across:]:
@@ -114,7 +104,7 @@ def _others(layout: Layout) -> list[int]:
 
 def _numbers(record: VariantRecord) -> dict[str, np.ndarray]:
     """Numbers present in all variants, and the position of the largest pressure."""
-    found = record.numbers | {"place": np.array([_place(f) for f in record.folders])}
+    found = record.numbers | {_PLACE.header: np.array([_place(f) for f in record.folders])}
     known = {name: found[name] for name in _NUMBERS if name in found}
     return {
         name: values for name, values in known.items() if np.isfinite(values).all() and values.any()
@@ -122,7 +112,7 @@ def _numbers(record: VariantRecord) -> dict[str, np.ndarray]:
 
 
 def _place(folder: Path) -> float:
-    data = tables.read(folder / "interface.csv", INTERFACE)
+    data = tables.read(folder / "interface.csv")
     return float(data["x"][np.argmax(data["pressure"])])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..pictures.maps import is_surface
+from ..tables import MissingColumnError
 from .layout import lay_out
 from .maps import draw_shape_maps
 from .numbers import draw_numbers
@@ -28,10 +29,11 @@ def draw_sweep(folder: Path) -> list[str]:
     record = read_sweep(folder)
     if not record.folders:
         return [f"{folder}: no variant was completed, so nothing is drawn"]
-    layout = lay_out(record)
-    if is_surface(record.folders[0]):
-        draw_shape_maps(record, folder / "shapes.png")
-    else:
-        draw_shapes(layout, folder / "shapes.png")
-    draw_numbers(layout, folder / "sweep.png")
-    return []
+    layout, notes = lay_out(record), []
+    draw_contacts = draw_shape_maps if is_surface(record.folders[0]) else draw_shapes
+    for draw, name in ((draw_contacts, "shapes.png"), (draw_numbers, "sweep.png")):
+        try:
+            draw(layout, folder / name)
+        except MissingColumnError as reason:
+            notes.append(f"{folder}: no {name}, as {reason}")
+    return notes

@@ -10,21 +10,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .. import tables
-from ..coordinates import model_of
-from ..pictures.curves import STYLE, abscissa
-from ..quantities import INTERFACE
+from ..pictures.curves import STYLE, abscissa, cut_singular
 from .layout import LINES, Layout
 from .legend import add_legend, tallest
 
-_SINGULAR, _MOST = 3.0, 0.9
-"""Peaks are clipped if they exceed the first factor times the quantile of the second."""
 _EQUAL = 1e-6
 """Relative difference below which curves are considered identical."""
 
 
 def draw_shapes(layout: Layout, path: Path) -> None:
     """Draw shape and pressure of each variant."""
-    data = [tables.read(f / "interface.csv", INTERFACE) for f in layout.record.folders]
+    data = [tables.read(f / "interface.csv") for f in layout.record.folders]
     names = ["pressure", "shape"] if any(np.ptp(d["shape"]) > 0 for d in data) else ["pressure"]
     same = {name for name in names if alike([d[name] for d in data])}
     columns = len(layout.columns)
@@ -36,22 +32,23 @@ def draw_shapes(layout: Layout, path: Path) -> None:
         for column, (title, chosen) in enumerate(layout.columns):
             axes[0, column].set_title(title, fontsize="medium")
             for k in np.flatnonzero(chosen):
-                where, place = abscissa(data[k], model_of(layout.record.folders[k]))
+                where, place = abscissa(data[k])
                 places = layout.record.places[k]
                 for axis, name in zip(axes[:, column], names, strict=True):
                     axis.plot(
                         place,
-                        INTERFACE[name].drawn(data[k][name]),
+                        data[k].drawn(name),
                         "-" if name in same else layout.line(places),
                         color="0.3" if name in same else layout.color(places[layout.colored]),
                         linewidth=1.2,
                     )
             axes[-1, column].set_xlabel(where)
         for row, name in zip(axes, names, strict=True):
-            row[0].set_ylabel(f"{INTERFACE[name].label}\n[{INTERFACE[name].unit}]")
+            row[0].set_ylabel(data[0].quantities[name].wrapped)
             if name in same:
                 row[0].text(0.5, 0.05, "identical", ha="center", transform=row[0].transAxes)
-        _cut(axes[0, 0], [INTERFACE["pressure"].drawn(d["pressure"]) for d in data])
+        axes[0, 0].set_ylim(bottom=0)
+        cut_singular(axes[0, 0], *(d.drawn("pressure") for d in data))
         if layout.continuous:
             figure.colorbar(layout.scale(), ax=axes, label=layout.axis.label, pad=0.01)
         for side, (title, handles) in zip(("left", "right"), keys.items(), strict=False):
@@ -82,10 +79,3 @@ def alike(curves: list[np.ndarray]) -> bool:
         return False
     nearest = _EQUAL * np.nanmax(np.abs(first))
     return all(np.allclose(curve, first, 0.0, nearest, equal_nan=True) for curve in others)
-
-
-def _cut(axis, curves: list[np.ndarray]) -> None:
-    """Limit the axis to the usual values, as pressure is singular at corners of unworn faces."""
-    usual = max(float(np.nanquantile(curve, _MOST)) for curve in curves)
-    peak = max(float(np.nanmax(curve)) for curve in curves)
-    axis.set_ylim(bottom=0, top=1.5 * usual if usual > 0 and peak > _SINGULAR * usual else None)

@@ -29,11 +29,12 @@ from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
 from ...laws.principle.steady import steady_pressure
 from ...model.analyses import Analysis
+from ...results import InterfaceFields
 from ..interface.body_state import ContactState
-from ..model.building import sliding_of
-from ..model.conditions import InterfaceConditions
-from ..model.system import System
-from ..results.outcome import Outcome
+from ..results.recording import Snapshot
+from ..system.building import sliding_of
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
 from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
 
 _FOLLOWING = 1.5
@@ -87,43 +88,43 @@ class ErrorEstimates:
         )
 
 
-def estimate_errors(system: System, analysis: Analysis, outcome: Outcome) -> ErrorEstimates:
+def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     """Estimate the errors at the end of an analysis. Every rank calls."""
-    steady = analysis.type == "steady"
+    system, steady = end.system, analysis.type == "steady"
     missing: dict[str, str] = {}
-    warmer, why = _warmer(system, outcome)
-    temperature = None if warmer is None else _of_temperature(outcome, warmer)
+    warmer, why = _warmer(end)
+    temperature = None if warmer is None else _of_temperature(end, warmer)
     if temperature is None:
         missing["temperature"] = why or "no temperature differs from the ambient one"
     bodies = EnrichedBodies(system)
-    opened = bodies.opening(outcome.contact, outcome.state, warmer)
+    opened = bodies.opening(end.contact, end.bodies, warmer)
     shape = None
     if system.thermal is not None and warmer is None:
         missing["shape"] = f"temperature: {why}"
     else:
-        shape = _of_shape(system, outcome, opened, steady)
+        shape = _of_shape(end, opened, steady)
         if shape is None:
             missing["shape"] = "the faces have no shape by wear"
     pressure = largest = None
-    if not outcome.contact.pressure.any():
+    if not end.interface.pressure.any():
         missing["pressure"] = "nothing presses"
     else:
         try:
             if steady:
-                richer = _finer_principle(system, outcome.contact)
+                richer = _finer_principle(system, end.contact)
             else:
-                richer = _richer_pressure(system, outcome, bodies, opened)
-            pressure, largest = _of_pressure(system, outcome.contact.pressure, richer)
-            pressure = max(pressure, _of_edges(system, outcome))
+                richer = _richer_pressure(end, bodies, opened)
+            pressure, largest = _of_pressure(system, end.contact.pressure, richer)
+            pressure = max(pressure, _of_edges(system, end.interface))
         except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
             missing["pressure"] = str(error)
     return ErrorEstimates(pressure, largest, shape, temperature, missing)
 
 
-def _warmer(system: System, outcome: Outcome) -> tuple[WarmerFaces | None, str | None]:
+def _warmer(end: Snapshot) -> tuple[WarmerFaces | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
-    thermal, heat = system.thermal, system.model.heat
-    if thermal is None or heat is None or outcome.state.thermal is None:
+    thermal, heat = end.system.thermal, end.system.model.heat
+    if thermal is None or heat is None or end.bodies.thermal is None:
         return None, "isothermal"
     if heat.transient:
         return None, "not estimated where temperatures are followed in time"
@@ -133,20 +134,20 @@ def _warmer(system: System, outcome: Outcome) -> tuple[WarmerFaces | None, str |
         return None, "not estimated where conductivity or expansion change with temperature"
     if heat.advection != "none":
         return None, "not estimated where a body carries heat along"
-    return warmer_faces(system, heat, thermal, outcome.contact, outcome.state), None
+    return warmer_faces(end.system, heat, thermal, end.contact, end.bodies), None
 
 
-def _of_temperature(outcome: Outcome, warmer: WarmerFaces) -> float | None:
-    assert outcome.state.thermal is not None
-    largest = float(np.abs(outcome.state.thermal.rise).max())
+def _of_temperature(end: Snapshot, warmer: WarmerFaces) -> float | None:
+    assert end.bodies.thermal is not None
+    largest = float(np.abs(end.bodies.thermal.rise).max())
     return _FOLLOWING * float(np.abs(warmer.faces).max()) / largest if largest > 0 else None
 
 
-def _of_shape(system: System, outcome: Outcome, opened: np.ndarray, steady: bool) -> float | None:
-    interface = outcome.interface
+def _of_shape(end: Snapshot, opened: np.ndarray, steady: bool) -> float | None:
+    system, interface = end.system, end.interface
     worn = np.any([interface.wear_1, interface.wear_2]) or steady
     pressing, scale = interface.pressure > 0, float(np.ptp(interface.shape))
-    flat = scale <= _FLAT * np.abs(outcome.state.opening).max(initial=0.0)
+    flat = scale <= _FLAT * np.abs(end.bodies.opening).max(initial=0.0)
     if not worn or flat or not pressing.any():
         return None
     modes, change = system.holder.modes[pressing], opened[pressing]
@@ -155,16 +156,15 @@ def _of_shape(system: System, outcome: Outcome, opened: np.ndarray, steady: bool
     return _FOLLOWING * float(np.abs(change - modes @ amounts).max()) / scale
 
 
-def _of_edges(system: System, outcome: Outcome) -> float:
+def _of_edges(system: System, interface: InterfaceFields) -> float:
     """Mean error of a worn pressure by the position of its ends: half a contact point at each edge.
 
     Enrichment does not detect that error, as the worn gap is the same.
     """
-    interface, weights = outcome.interface, system.weights
-    side = system.pairing.sides[0]
+    weights, side = system.weights, system.pairing.sides[0]
     if isinstance(side.face, Surface) or not np.any([interface.wear_1, interface.wear_2]):
         return 0.0
-    pressure = outcome.contact.pressure
+    pressure = interface.pressure
     pressing = np.concatenate([[pressure[0] > 0.0], pressure > 0.0, [pressure[-1] > 0.0]])
     last = (pressure > 0.0) & ~(pressing[:-2] & pressing[2:])
     largest = np.zeros(side.facet.max() + 1)
@@ -179,34 +179,32 @@ def _of_pressure(system: System, pressure: np.ndarray, richer: np.ndarray) -> tu
     return _FOLLOWING * change / total, _FOLLOWING * peak / largest
 
 
-def _richer_pressure(
-    system: System, outcome: Outcome, bodies: EnrichedBodies, opened: np.ndarray
-) -> np.ndarray:
+def _richer_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray) -> np.ndarray:
     """Pressure of an enriched discretisation at the contact points, shape (n,) [Pa]."""
+    system, interface = end.system, end.interface
     if system.model.interface.pressure_degree == "lobatto":
         raise ComputationError('not estimated for contact.pressure_degree = "lobatto"')
-    interface, pressure = outcome.interface, outcome.contact.pressure
     return enriched_pressure(
         system.pairing,
         system.influence,
         system.model.pressure_degree,
         system.holder,
-        pressure,
+        interface.pressure,
         interface.gap + opened,
-        system.softness + _wear_per_pressure(system, outcome),
+        system.softness + _wear_per_pressure(system, interface),
         bodies.answer,
     )
 
 
-def _wear_per_pressure(system: System, outcome: Outcome) -> np.ndarray:
+def _wear_per_pressure(system: System, interface: InterfaceFields) -> np.ndarray:
     """Least wear depth on the facet of each point per mean pressure, shape (n,) [m/Pa].
 
     Wear acts as a local compliance against a persistent error of the pressure: the gap component
     orthogonal to the pressure space results from the wear by that error over the whole run. Where
     a part of the facet is unworn, the wear depth at the point itself is used.
     """
-    interface, pressing = outcome.interface, outcome.contact.pressure > 0
-    mean = np.average(outcome.contact.pressure[pressing], weights=system.weights[pressing])
+    pressing = interface.pressure > 0
+    mean = np.average(interface.pressure[pressing], weights=system.weights[pressing])
     facet = system.pairing.sides[0].facet
     least = np.full(facet.max() + 1, np.inf)
     depth = interface.wear_1 + interface.wear_2

@@ -9,8 +9,8 @@ from ...geometry.cad.design import Design
 from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state
 from ..interface.steady import steady_state
-from ..model.system import System
 from ..results.recording import along_press
+from ..system.system import System
 
 _SAME = 1e-9  # relative to the size of the face: closer points coincide
 

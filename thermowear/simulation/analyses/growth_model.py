@@ -20,8 +20,8 @@ from ...contact.operators.heat_condensation import condense_heat
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
 from ..heat.heat_operators import CondensedDistortion
-from ..model.conditions import InterfaceConditions
-from ..model.system import System
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
 
 _NEW = 1e-12
 """Smallest squared norm of the new part of a unit field that extends the space."""

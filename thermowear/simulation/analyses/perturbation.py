@@ -20,9 +20,9 @@ from ...laws.stability import (
     static_modes,
 )
 from ..heat.heat_operators import CondensedDistortion
-from ..model.building import build
-from ..model.conditions import InterfaceConditions
-from ..model.system import System
+from ..system.building import build
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
 from .growth_model import Growing, GrowthModel
 
 _KINDS = 24

@@ -6,9 +6,9 @@ import numpy as np
 
 from ...errors import ComputationError
 from ...model.analyses import Analysis
-from ..model.rigid_modes import applied
-from ..model.system import System
-from ..results.outcome import Outcome
+from ..results.recording import Snapshot
+from ..system.rigid_modes import applied
+from ..system.system import System
 
 _ANALYSES = ("initial", "transient", "fretting", "reciprocating")
 """Analyses with a defined holder position; a steady state has no history leading to one."""
@@ -18,7 +18,7 @@ _STEEP = -0.75
 """Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
 
 
-def went_back(system: System, analysis: Analysis, outcome: Outcome) -> ComputationError | None:
+def went_back(system: System, analysis: Analysis, end: Snapshot) -> ComputationError | None:
     """Error for a holder that has moved against its load; None if it has not.
 
     Without heat and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do positive work
@@ -29,10 +29,10 @@ def went_back(system: System, analysis: Analysis, outcome: Outcome) -> Computati
         return None
     if holder.force is None or system.worn is not None:
         return None
-    back = -applied(holder, outcome.motion) / holder.force
+    back = -applied(holder, end.motion) / holder.force
     if back <= _BACK * pairing.extent:
         return None
-    pressing = outcome.contact.pressure > 0
+    pressing = end.contact.pressure > 0
     overlap = -float(pairing.gap[pressing].min(initial=0.0))
     return ComputationError(
         f"contact: the holder ends {back:.3g} m behind where it was drawn, though it is pressed "

@@ -9,8 +9,8 @@ from ...errors import ComputationError
 from ...model.model import Model
 from ...timer import Phases
 from ..interface.factory import interface_problem
-from ..model.building import build
-from ..model.system import System
+from ..system.building import build
+from ..system.system import System
 
 _PASSES = 12
 _SETTLED = 0.1  # relative to the element at the edge

@@ -17,6 +17,7 @@ from ...model.analyses import (
     TransientAnalysis,
 )
 from ...model.model import Model
+from ...results import Result
 from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import fretting
@@ -24,21 +25,18 @@ from ..cycles.reciprocating import reciprocating
 from ..geometry_update.face_limits import outgrown
 from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
-from ..model.system import System
 from ..results.fields import sample
-from ..results.outcome import Outcome
-from ..results.recording import profile
-from ..results.result import BodyFields, Result
-from ..results.summary import summarise
+from ..results.recording import Snapshot
 from ..runtime.checkpoint_data import Saved, mesh_checksum
 from ..runtime.observer import Observer
+from ..system.system import System
 from .plausible import too_steep, went_back
 from .positioning import prepare
 from .small_wear_check import not_small
 from .stability import stability
 from .static import initial, steady, unworn
 from .transient import running_in
-from .untouched_contact import touching
+from .untouched_contact import untouched
 
 _UNPAIRED = 1e-6
 
@@ -82,18 +80,32 @@ def run(
         comm = MPI.COMM_WORLD
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
-    system = prepare(model, comm, phases)
-    outcome = analyse(system, analysis, observer, saved)
-    with phases("error estimate"):
-        outcome = estimated(system, analysis, outcome, observer)
-    with phases("fields"):
-        fields = sample(outcome.system or system, outcome.state, outcome.motion)
-    return conclude(system, analysis, outcome, fields)
+    _, result = solve(prepare(model, comm, phases), analysis, observer, saved)
+    return result
+
+
+def solve(
+    system: System, analysis: Analysis, observer: Observer, saved: Saved | None = None
+) -> tuple[Snapshot, Result]:
+    """Compute an analysis of a system, with error estimates and fields. Every rank calls.
+
+    Returns
+    -------
+    end : Snapshot
+        Contact, bodies and interface at the end, whose meshes may have been moved.
+    result : Result
+    """
+    end, result = analyse(system, analysis, observer, saved)
+    with system.phases("error estimate"):
+        result = _estimated(analysis, end, result, observer)
+    with system.phases("fields"):
+        fields = sample(end)
+    return end, replace(balanced(result), fields=fields)
 
 
 def analyse(
     system: System, analysis: Analysis, observer: Observer, saved: Saved | None = None
-) -> Outcome:
+) -> tuple[Snapshot, Result]:
     """Run an analysis of a system, and note implausible results. Every rank calls.
 
     Starts anew, or from the checkpoint of an analysis of the same system.
@@ -105,73 +117,52 @@ def analyse(
             "stays out of the contact"
         )
     if isinstance(analysis, StaticAnalysis):
-        outcome = _STATIC[analysis.type](system, observer)
+        end, result = _STATIC[analysis.type](system, observer)
     else:
         before = None if saved is None else saved.of(system)
-        outcome = _STEPPED[type(analysis)](system, analysis, observer, before)
-    if outgrown(outcome.system or system, outcome.contact.pressure):
+        end, result = _STEPPED[type(analysis)](system, analysis, observer, before)
+    if outgrown(end.system, end.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
-    outcome, apart = touching(system, outcome)
-    if apart is not None:
-        observer.note(apart)
-    steep = too_steep(outcome.system or system, outcome.contact.pressure)
-    if steep is not None:
-        observer.note(steep)
-    if outcome.stopped is None:
-        outcome = replace(outcome, stopped=went_back(system, analysis, outcome))
-    large = not_small(system, analysis, outcome.interface)
-    if large is not None:
-        observer.note(large)
+    found: list[ComputationError | str | None] = [
+        too_steep(end.system, end.contact.pressure),
+        not_small(system, analysis, end.interface),
+    ]
+    if result.stopped is None:
+        found = [untouched(system, end.interface), went_back(system, analysis, end), *found]
+    for note in (one for one in found if isinstance(one, str)):
+        observer.note(note)
+    errors = (one for one in found if isinstance(one, ComputationError))
+    stopped = result.stopped or next(errors, None)
     mesh = mesh_checksum(system)
-    return (
-        outcome if mesh is None else replace(outcome, extra=outcome.extra | {"mesh_sha256": mesh})
-    )
+    named = {"title": system.model.title, "analysis": analysis.type}
+    origin = {} if mesh is None else {"mesh_sha256": mesh}
+    return end, replace(result, summary=named | result.summary | origin, stopped=stopped)
 
 
-def estimated(system: System, analysis: Analysis, outcome: Outcome, observer: Observer) -> Outcome:
-    """Add discretisation error estimates to the summary of an outcome; note large ones.
-
-    Every rank calls.
-    """
-    if outcome.stopped is not None:
-        return outcome
+def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Observer) -> Result:
+    """Add discretisation error estimates to the summary; note large ones. Every rank calls."""
+    if result.stopped is not None:
+        return result
     try:
-        estimates = estimate_errors(outcome.system or system, analysis, outcome)
+        estimates = estimate_errors(analysis, end)
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
-        return replace(
-            outcome, extra=outcome.extra | {"error_estimate_missing": {"all": str(error)}}
-        )
+        missing = {"error_estimate_missing": {"all": str(error)}}
+        return replace(result, summary=result.summary | missing)
     warning = estimates.warning()
     if warning is not None:
         observer.note(warning)
-    return replace(outcome, extra=outcome.extra | estimates.summary())
+    return replace(result, summary=result.summary | estimates.summary())
 
 
-def conclude(
-    system: System, analysis: Analysis, outcome: Outcome, fields: BodyFields | None
-) -> Result:
-    """Result of a run; marked as failed if its balances do not hold."""
-    system = outcome.system or system
-    summary = summarise(system, analysis, outcome)
-    return Result(
-        outcome.interface,
-        profile(system, outcome.interface),
-        summary,
-        outcome.history,
-        outcome.outputs,
-        fields,
-        outcome.friction,
-        outcome.track,
-        outcome.stopped or judged(summary),
-        outcome.heat,
-        outcome.modes,
-    )
+def balanced(result: Result) -> Result:
+    """Mark a result as failed if its balances do not hold."""
+    return replace(result, stopped=result.stopped or judged(result.summary))
 
 
-def _stability(system: System, observer: Observer) -> Outcome:
+def _stability(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     """Stability of the steady state, or of the cold unworn contact if there is none."""
     free = system.holder.free
     if system.laws and len(free) and free.all():
@@ -180,12 +171,12 @@ def _stability(system: System, observer: Observer) -> Outcome:
     return stability(system, unworn(system, cold), observer)
 
 
-_STATIC: dict[str, Callable[[System, Observer], Outcome]] = {
+_STATIC: dict[str, Callable[[System, Observer], tuple[Snapshot, Result]]] = {
     "initial": initial,
     "steady": steady,
     "stability": _stability,
 }
-_STEPPED: dict[type, Callable[..., Outcome]] = {
+_STEPPED: dict[type, Callable[..., tuple[Snapshot, Result]]] = {
     TransientAnalysis: running_in,
     FrettingAnalysis: fretting,
     ReciprocatingAnalysis: reciprocating,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
+from ...results import InterfaceFields
 from ..geometry_update.gap_wear import GapWear
-from ..model.system import System
-from ..results.result import InterfaceFields
+from ..system.system import System
 
 
 def not_small(system: System, analysis: Analysis, interface: InterfaceFields) -> str | None:

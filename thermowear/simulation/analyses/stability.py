@@ -7,25 +7,27 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import ComputationError
-from ..model.system import System
-from ..results.outcome import Outcome
-from ..results.result import Modes
+from ...results import Modes, Result
+from ..results.recording import Snapshot
 from ..runtime.observer import Observer
+from ..system.system import System
 from .perturbation import Disturbance, DisturbedContact
 
 _SHOWN = 4
 """Number of static modes in the results."""
 
 
-def stability(system: System, base: Outcome, observer: Observer) -> Outcome:
+def stability(
+    system: System, base: tuple[Snapshot, Result], observer: Observer
+) -> tuple[Snapshot, Result]:
     """Thermoelastic stability analysis of a contact. Every rank calls.
 
     Parameters
     ----------
     system : System
         System with a thermal model.
-    base : Outcome
-        Outcome of the unperturbed contact.
+    base : tuple of Snapshot and Result
+        State and result of the unperturbed contact.
     observer : Observer
 
     Raises
@@ -33,7 +35,8 @@ def stability(system: System, base: Outcome, observer: Observer) -> Outcome:
     ComputationError
         If a body convects heat and the heat capacity of a body is not known.
     """
-    contact = DisturbedContact(system, base.contact.pressure, base.contact.conditions)
+    end, unperturbed = base
+    contact = DisturbedContact(system, end.contact.pressure, end.contact.conditions)
     if not contact.stores:
         if contact.carries:
             raise ComputationError(
@@ -51,7 +54,8 @@ def stability(system: System, base: Outcome, observer: Observer) -> Outcome:
         else:
             extra, modes = _keys(system, static[0] if static else None, None, None, None), []
     extra["static_speed_factors"] = [mode.factor for mode in static]
-    return replace(base, extra=base.extra | extra, modes=_table(system, modes + static))
+    summary = unperturbed.summary | extra
+    return end, replace(unperturbed, summary=summary, modes=_table(system, modes + static))
 
 
 def _static(contact: DisturbedContact) -> list[Disturbance]:

@@ -6,14 +6,15 @@ import numpy as np
 
 from ...laws.motions import combined
 from ...laws.principle.least_worn import least_worn
+from ...results import Result
 from ..interface.body_state import body_state
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.steady import steady_state
-from ..model.system import System
-from ..results.outcome import Outcome
-from ..results.recording import interface_at, record
+from ..results.recording import Snapshot, record, snapshot
+from ..results.summary import conclude
 from ..runtime.observer import Observer
+from ..system.system import System
 
 _VELOCITIES = {
     "z": "rigid_wear_velocity_m_per_s",
@@ -25,12 +26,12 @@ _VELOCITIES = {
 }
 
 
-def initial(system: System, observer: Observer) -> Outcome:
+def initial(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     """Contact of the unworn faces."""
     return unworn(system, interface_problem(system, observer.note))
 
 
-def unworn(system: System, problem: InterfaceProblem) -> Outcome:
+def unworn(system: System, problem: InterfaceProblem) -> tuple[Snapshot, Result]:
     """Contact of the unworn faces, from a given interface problem."""
     with system.phases("contact"):
         found = problem.unworn()
@@ -38,11 +39,11 @@ def unworn(system: System, problem: InterfaceProblem) -> Outcome:
         contact = problem.contact_state(found, 0.0)
         motion = combined(system.holder.motions, found.contact.motion)
         still = np.zeros((2, len(contact.pressure)))
-        state, interface = interface_at(system, contact, motion, still)
-    return Outcome(contact, motion, state, interface, {"steps": 0}, [], {})
+        end = snapshot(system, contact, motion, still)
+    return conclude(end, {"steps": 0})
 
 
-def steady(system: System, observer: Observer) -> Outcome:
+def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     """Steady state of wear, with faces worn to conformity."""
     with system.phases("steady principle"):
         found = steady_state(system)
@@ -56,9 +57,10 @@ def steady(system: System, observer: Observer) -> Outcome:
     amounts = least_worn(system.holder.modes, opening, system.weights, pressing)
     lost = system.holder.modes @ amounts - opening
     shape = lost[pressing].max() - lost
-    interface = record(
+    end = record(
         system,
         contact,
+        combined(system.holder.motions, amounts),
         state,
         gap=np.where(pressing, 0.0, np.nan),
         shape=shape,
@@ -69,8 +71,7 @@ def steady(system: System, observer: Observer) -> Outcome:
         **wear_velocity(system, wear.velocity),
         "wear_dissipation_W": wear.dissipation,
     }
-    motion = combined(system.holder.motions, amounts)
-    return Outcome(contact, motion, state, interface, extra, [], {})
+    return conclude(end, extra)
 
 
 def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:

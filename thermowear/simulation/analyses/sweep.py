@@ -7,14 +7,14 @@ from typing import Any
 
 from ...model.analyses import Analysis
 from ...model.model import Model
+from ...results import Result
 from ...timer import Phases
-from ..model.building import build
-from ..model.setup_cache import SetupCache, inputs
-from ..model.system import System
-from ..results.result import Result
 from ..runtime.observer import Observer
+from ..system.building import build
+from ..system.setup_cache import SetupCache, inputs
+from ..system.system import System
 from .positioning import prepare
-from .run import analyse, conclude
+from .run import analyse, balanced
 
 
 class Series:
@@ -51,7 +51,7 @@ class Series:
         """
         observer = observer or Observer()
         system = self._prepared(model, phases or Phases(observer.phase))
-        return conclude(system, analysis, analyse(system, analysis, observer), None)
+        return balanced(analyse(system, analysis, observer)[1])
 
     def _prepared(self, model: Model, phases: Phases) -> System:
         if model.discretisation.positioning:  # its mesh depends on the contact of this model

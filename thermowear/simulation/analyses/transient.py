@@ -7,14 +7,15 @@ from functools import partial
 
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
+from ...results import Result
 from ..geometry_update.face_limits import beyond
 from ..geometry_update.outer_loop import OuterLoop
 from ..interface.factory import interface_problem
 from ..interface.steady import SteadyState, steady_state
-from ..model.system import System
-from ..results.outcome import Outcome
+from ..results.recording import Snapshot
 from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
+from ..system.system import System
 from ..time.step_sizes import AnySize, FewSizes
 from ..time.time_loop import Moment, times_to_hit
 from .transient_history import TransientHistory
@@ -25,14 +26,14 @@ def running_in(
     settings: TransientAnalysis,
     observer: Observer,
     before: Progress | None = None,
-) -> Outcome:
+) -> tuple[Snapshot, Result]:
     """Follow contact in time, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept. The summary includes the wear velocities of
     the steady state that is approached.
     """
     history, passing = transient_history(system, settings, observer, before)
-    return history.outcome(history.follow("time stepping", passing))
+    return history.conclude(history.follow("time stepping", passing))
 
 
 def transient_history(

@@ -10,14 +10,14 @@ from ...balances import require
 from ...errors import ComputationError
 from ...laws.motions import combined
 from ...model.analyses import TransientAnalysis
+from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..interface.interface_problem import InterfaceProblem
-from ..model.conditions import InterfaceConditions
-from ..model.system import System
-from ..results.recording import interface_at
-from ..results.rows import HeatRow, HistoryRow
-from ..runtime.history import AnalysisHistory, Snapshot
+from ..results.recording import Snapshot, snapshot
+from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
 from ..time.time_loop import Moment
 from .static import wear_velocity
 
@@ -170,7 +170,7 @@ def snapshot_at(system: System, problem: InterfaceProblem, moment: Moment) -> Sn
     contact = problem.contact_state(moment.state, moment.time)
     motion = combined(system.holder.motions, moment.state.contact.motion)
     worn = _by_body(system, moment.state.worn)
-    return Snapshot(system, contact, motion, *interface_at(system, contact, motion, worn))
+    return snapshot(system, contact, motion, worn)
 
 
 def _by_body(system: System, worn: np.ndarray) -> np.ndarray:

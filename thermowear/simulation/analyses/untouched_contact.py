@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from ...errors import ComputationError
-from ..model.system import System
-from ..results.outcome import Outcome
+from ...results import InterfaceFields
+from ..system.system import System
 
 
-def touching(system: System, outcome: Outcome) -> tuple[Outcome, str | None]:
-    """Mark an outcome without contact as failed, or return a note on it. Every rank calls.
+def untouched(system: System, interface: InterfaceFields) -> ComputationError | str | None:
+    """Error or note for an analysis that ends without contact. Every rank calls.
 
     A constant pressing force must be carried, or the computation has failed. A given approach, a
     surface load or a load history may leave the faces apart, and wear may separate them: that is a
@@ -20,16 +18,15 @@ def touching(system: System, outcome: Outcome) -> tuple[Outcome, str | None]:
 
     Returns
     -------
-    outcome : Outcome
-    note : str or None
+    ComputationError, str or None
+        Error, note, or None with contact.
     """
-    if outcome.stopped is not None or outcome.contact.pressure.max() > 0.0:
-        return outcome, None
-    gap = np.nanmin(outcome.interface.gap, initial=np.inf)
+    if interface.pressure.max() > 0.0:
+        return None
+    gap = np.nanmin(interface.gap, initial=np.inf)
     apart = f"; the faces are {1e6 * gap:.4g} µm apart at least" if np.isfinite(gap) else ""
     holder = system.model.holder
     force = holder.force if holder.history is None else None
     if force is None:
-        return outcome, f"nothing touches at the end{apart}"
-    reason = ComputationError(f"nothing carries the pressing force of {force:.4g} N{apart}")
-    return replace(outcome, stopped=reason), None
+        return f"nothing touches at the end{apart}"
+    return ComputationError(f"nothing carries the pressing force of {force:.4g} N{apart}")

@@ -17,10 +17,11 @@ from ...errors import CaseError
 from ...laws.load_history import LoadHistory
 from ...model.analyses import FrettingAnalysis
 from ...model.holder import Holder
-from ..model.system import System
-from ..results.outcome import Outcome
+from ...results import Result
+from ..results.recording import Snapshot
 from ..runtime.checkpoint_data import Progress
 from ..runtime.observer import Observer
+from ..system.system import System
 from .cycle_jump import adaptive_jumps, fixed_jumps
 from .fretting_history import FrettingHistory
 from .increments import Increment, RestartPoint
@@ -34,7 +35,7 @@ def fretting(
     settings: FrettingAnalysis,
     observer: Observer,
     before: Progress | None = None,
-) -> Outcome:
+) -> tuple[Snapshot, Result]:
     """Follow the load history and its cycles, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept.
@@ -53,7 +54,7 @@ def fretting(
     profiles = tuple(profile(system.pairing, condensed.weighted, body) for body in system.laws)
     record = FrettingHistory(system, settings, observer, history.cycle, translations, profiles)
     path = _Path(system, settings, history, condensed, profiles)
-    return record.outcome(record.follow("load steps", path.increments(record.resume(before))))
+    return record.conclude(record.follow("load steps", path.increments(record.resume(before))))
 
 
 def _translations(holder: Holder, history: LoadHistory) -> np.ndarray:

@@ -10,13 +10,12 @@ from ...contact.friction.slip_wear import WornProfile
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...laws.motions import translation
 from ...model.analyses import FrettingAnalysis
+from ...results import CycleRow, FrictionInterface, LoadRow
 from ..interface.body_state import contact_state
-from ..model.system import System
-from ..results.recording import interface_at
-from ..results.result import FrictionInterface
-from ..results.rows import CycleRow, LoadRow
-from ..runtime.history import AnalysisHistory, Snapshot
+from ..results.recording import Snapshot, snapshot
+from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
+from ..system.system import System
 from .increments import Increment, Jump
 
 _SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips
@@ -95,10 +94,10 @@ class FrettingHistory(AnalysisHistory[Increment]):
         moved = translation(end.motion @ self._translations)
         rates = self._per_cycle / self._duration
         contact = contact_state(system, pressure, shear)
-        bodies, found = interface_at(system, contact, moved, self._depths(end), rates)
-        found = replace(found, gap=found.gap + system.basis @ self._slid_along(end))
-        friction = self._friction(end)
-        return Snapshot(system, contact, moved, bodies, found, friction)
+        found = snapshot(system, contact, moved, self._depths(end), rates)
+        gap = found.interface.gap + system.basis @ self._slid_along(end)
+        interface = replace(found.interface, gap=gap)
+        return replace(found, interface=interface, friction=self._friction(end))
 
     def summary(self) -> dict:
         last, cycles = self.table(LoadRow)[-1], self.table(CycleRow)

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...laws.motions import combined
 from ...model.analyses import ReciprocatingAnalysis
+from ...results import HistoryRow, Result, WornTrack
 from ..interface.body_state import contact_state
 from ..interface.factory import interface_problem
 from ..interface.sdirk import InterfaceState
-from ..model.system import System
-from ..results.outcome import Outcome
-from ..results.recording import interface_at
-from ..results.result import WornTrack
-from ..results.rows import HistoryRow
+from ..results.recording import Snapshot, snapshot
 from ..runtime.checkpoint_data import Progress
-from ..runtime.history import AnalysisHistory, Snapshot
+from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
+from ..system.system import System
 from ..time.step_sizes import AnySize
 from ..time.time_loop import Moment, moments
 from .reciprocating_problem import ReciprocatingProblem
@@ -28,7 +28,7 @@ def reciprocating(
     settings: ReciprocatingAnalysis,
     observer: Observer,
     before: Progress | None = None,
-) -> Outcome:
+) -> tuple[Snapshot, Result]:
     """Follow the cycle-averaged wear in time, from the start or from a checkpoint.
 
     Results computed before an error or Ctrl-C are kept.
@@ -37,7 +37,7 @@ def reciprocating(
     history = ReciprocatingHistory(system, settings, observer, problem)
     sizes = AnySize(settings.max_jump / settings.frequency)
     run = moments(problem, settings, None, sizes, history.resume(before))
-    return history.outcome(history.follow("time stepping", run))
+    return history.conclude(history.follow("time stepping", run))
 
 
 class ReciprocatingHistory(AnalysisHistory[Moment]):
@@ -85,12 +85,11 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         """Contact and bodies at mid-stroke of body 1, and the worn track; every rank calls."""
         system, state = self._system, moment.state
         worn, rates = (self._seen(v) for v in (state.worn, self._problem.rates(state.pressure)))
-        found = interface_problem(system).worn(worn.sum(axis=0))
-        motion = combined(system.holder.motions, found.motion)
-        contact = contact_state(system, found.pressure)
-        bodies, interface = interface_at(system, contact, motion, worn, rates)
-        track = self._worn_track(state)
-        return Snapshot(system, contact, motion, bodies, interface, track=track)
+        solution = interface_problem(system).worn(worn.sum(axis=0))
+        motion = combined(system.holder.motions, solution.motion)
+        contact = contact_state(system, solution.pressure)
+        found = snapshot(system, contact, motion, worn, rates)
+        return replace(found, track=self._worn_track(state))
 
     def _worn_track(self, state: InterfaceState) -> WornTrack:
         """Worn depths and wear rates along the face of body 2."""

@@ -33,7 +33,7 @@ from ...errors import ComputationError
 from ...laws.interfaces import Law, LocalState
 from ..interface.contact_solver import ContactSolution, Slope
 from ..interface.sdirk import InterfaceState, WearProblem
-from ..model.system import System
+from ..system.system import System
 from .stroke import Position, condensed, spreading
 
 _INNER = 0.9  # part of the faces that the distance from the steady state covers, without their ends

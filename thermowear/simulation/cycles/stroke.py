@@ -14,10 +14,10 @@ from ...contact.solvers.coupled_positions import CoupledContacts
 from ...contact.wear.track import StrokeGrid
 from ...errors import CaseError
 from ...model.analyses import ReciprocatingAnalysis
-from ..model.contact_points import contact_points
-from ..model.rigid_modes import rigid_modes
-from ..model.setup_cache import SetupCache
-from ..model.system import System
+from ..system.contact_points import contact_points
+from ..system.rigid_modes import rigid_modes
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 
 _UNPAIRED = 1e-6
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ...case.tables.schema import Case
+from ...results import Result
 from ...timer import Phases
 from ..analyses import run as analyses
-from ..results.result import Result
 from ..runtime.checkpoint_data import Saved
 from ..runtime.observer import Observer
 from .analysis import analysis_of

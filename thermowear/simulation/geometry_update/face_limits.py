@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.system import System
+from ..system.system import System
 
 
 def beyond(system: System) -> tuple[bool, bool]:

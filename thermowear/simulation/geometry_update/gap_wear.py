@@ -28,8 +28,8 @@ from ...geometry.moving.moved import MovableBody
 from ...geometry.moving.moved_solid import MovableSolid
 from ...laws.distribution import InPlace
 from ...parallel import on_root
-from ..model.system import System
-from ..model.worn_geometry import WornGeometry, along
+from ..system.system import System
+from ..system.worn_geometry import WornGeometry, along
 
 _STEEPEST = 0.2
 """Largest slope of groove walls in a mesh."""

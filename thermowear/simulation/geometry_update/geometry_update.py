@@ -22,10 +22,10 @@ from ...parallel import on_root
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
-from ..model.building import build
-from ..model.setup_cache import SetupCache
-from ..model.system import System
-from ..model.worn_geometry import WornGeometry, along
+from ..system.building import build
+from ..system.setup_cache import SetupCache
+from ..system.system import System
+from ..system.worn_geometry import WornGeometry, along
 from .gap_wear import GapWear, lacking_in_shape, movable_body
 from .remesh import FLOOR, carrying_error, improved, on_new_faces
 from .smooth_wear import worn_in

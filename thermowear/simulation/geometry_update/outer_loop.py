@@ -22,11 +22,11 @@ from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import advance_with_error
 from ..interface.steady import SteadyState
-from ..model.building import build
-from ..model.setup_cache import SetupCache
-from ..model.system import System
-from ..model.worn_geometry import WornGeometry
 from ..runtime.observer import Observer
+from ..system.building import build
+from ..system.setup_cache import SetupCache
+from ..system.system import System
+from ..system.worn_geometry import WornGeometry
 from ..time.step_sizes import StepSizes
 from ..time.time_loop import Moment, is_over, moments
 from .gap_wear import GapWear

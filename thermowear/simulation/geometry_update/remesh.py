@@ -16,8 +16,8 @@ from ...geometry.mesh.shapes import quality
 from ...geometry.mesh.tagged import TaggedMesh
 from ...geometry.moving.new_face import NewFace
 from ...geometry.moving.remeshed import meshed_anew
-from ..model.system import System
-from ..model.worn_geometry import WornGeometry, along
+from ..system.system import System
+from ..system.worn_geometry import WornGeometry, along
 
 FLOOR = 0.1
 """Smallest acceptable scaled Jacobian."""

@@ -9,8 +9,8 @@ from ...laws.distribution import InPlace
 from ...laws.motions import combined
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
-from ..model.system import System
-from ..results.recording import interface_at
+from ..results.recording import snapshot
+from ..system.system import System
 
 
 def worn_in(
@@ -30,7 +30,7 @@ def worn_in(
     both[list(system.laws)] = state.worn
     contact = problem.contact_state(state, time)
     motion = combined(system.holder.motions, state.contact.motion)
-    gap = interface_at(system, contact, motion, both)[1].gap
+    gap = snapshot(system, contact, motion, both).interface.gap
     weak = state.pressure > 0
     if state.pointwise is not None:
         weak &= ~state.pointwise  # there faces conform already, and the gap is resolved

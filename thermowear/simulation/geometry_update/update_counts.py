@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...serialise import serialisable
-from ..model.worn_geometry import WornGeometry
+from ..system.worn_geometry import WornGeometry
 
 
 @serialisable

@@ -11,8 +11,8 @@ from ...laws.distribution import InPlace
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
-from ..model.building import build
-from ..model.system import System
+from ..system.building import build
+from ..system.system import System
 from .face_limits import beyond
 
 Zone = tuple[float, float]

@@ -10,9 +10,9 @@ import numpy as np
 from ...balances import relative
 from ...contact.operators.heat import ThermalState
 from ...parallel import sum_over_ranks
-from ..model.conditions import InterfaceConditions
-from ..model.system import System
-from ..model.thermal_system import ThermalSystem
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
+from ..system.thermal_system import ThermalSystem
 from .heat_states import HeatBalance, StoredHeat, TemperatureField
 from .heat_steps import ConductingStep, InitialHeat
 from .linearisation import HeatSteps

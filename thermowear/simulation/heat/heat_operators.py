@@ -15,10 +15,10 @@ from ...contact.operators.heat_condensation import (
     ThermalDistortion,
     condense_distortion,
 )
-from ..model.conditions import InterfaceConditions
-from ..model.setup_cache import SetupCache
-from ..model.system import System
-from ..model.thermal_system import ThermalSystem
+from ..system.conditions import InterfaceConditions
+from ..system.setup_cache import SetupCache
+from ..system.system import System
+from ..system.thermal_system import ThermalSystem
 
 
 @dataclass(frozen=True, eq=False)

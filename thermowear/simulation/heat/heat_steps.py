@@ -9,8 +9,8 @@ import numpy as np
 
 from ...contact.operators.heat import BaselineResponse, ThermalState
 from ...errors import ComputationError
-from ..model.conditions import InterfaceConditions
-from ..model.thermal_loads import ThermalLoad
+from ..system.conditions import InterfaceConditions
+from ..system.thermal_loads import ThermalLoad
 from .heat_operators import HeatOperators
 from .heat_states import StoredHeat
 

@@ -14,9 +14,9 @@ import numpy as np
 
 from ...contact.operators.heat import BaselineResponse, baseline_response
 from ...contact.operators.heat_condensation import condense_heat
-from ..model.system import System
-from ..model.thermal_loads import ThermalLoad
-from ..model.thermal_system import ThermalSystem
+from ..system.system import System
+from ..system.thermal_loads import ThermalLoad
+from ..system.thermal_system import ThermalSystem
 from .heat_operators import CondensedDistortion, HeatOperators
 from .heat_states import StoredHeat
 from .heat_steps import ConductingStep, LinearHeatStep, NonlinearHeatStep

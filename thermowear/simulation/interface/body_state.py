@@ -17,8 +17,8 @@ from ...laws.motions import translation
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import friction_heat
 from ..heat.heat_states import TemperatureField
-from ..model.conditions import ConditionModel, InterfaceConditions
-from ..model.system import System
+from ..system.conditions import ConditionModel, InterfaceConditions
+from ..system.system import System
 
 _ROUNDING = 1e-11
 """Reactions at this fraction of the forces of constrained thermal expansion are rounding errors."""

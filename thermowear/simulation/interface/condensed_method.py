@@ -11,7 +11,7 @@ from ...contact.solvers.signorini import NoEquilibrium, SignoriniSolution, solve
 from ...contact.wear.implicit_step import newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
-from ..model.system import System
+from ..system.system import System
 from .contact_solver import ContactSolution, Slope, WearRates
 
 _ITERATIONS = 60

@@ -11,7 +11,7 @@ from ...laws.distribution import Distribution
 from ...laws.interfaces import Law
 from ...serialise import serialisable
 from ..heat.heat_steps import HeatStep
-from ..model.conditions import InterfaceConditions
+from ..system.conditions import InterfaceConditions
 
 
 @serialisable

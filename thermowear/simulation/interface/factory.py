@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..heat.friction_heat import friction_heat
-from ..model.system import System
+from ..system.system import System
 from .condensed_method import CondensedMethod
 from .contact_solver import ContactSolver
 from .full_method import FullMethod

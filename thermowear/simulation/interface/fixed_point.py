@@ -10,7 +10,7 @@ import numpy as np
 
 from ...contact.operators.heat import ThermalState
 from ...errors import ComputationError
-from ..model.conditions import ConditionModel, InterfaceConditions
+from ..system.conditions import ConditionModel, InterfaceConditions
 from .anderson import Mixing
 
 _DAMPED = 0.5

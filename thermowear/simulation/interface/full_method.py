@@ -17,8 +17,8 @@ from ...contact.operators.traction import normal_traction, thermal_traction
 from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..model.setup_cache import SetupCache
-from ..model.system import System
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 from .anderson import Mixing
 from .contact_solver import ContactSolution, WearRates
 

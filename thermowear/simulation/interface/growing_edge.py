@@ -21,7 +21,7 @@ import numpy as np
 
 from ...contact.wear.edge_times import closing_times
 from ...contact.wear.wear_edge import WearEdge
-from ..model.system import System
+from ..system.system import System
 from .contact_solver import ContactSolver
 from .sdirk import InterfaceState
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from ...contact.wear.implicit_step import newton_with_wear
 from ..heat.heat_steps import HeatStep
-from ..model.conditions import InterfaceConditions
-from ..model.system import System
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
 from .contact_solver import ContactSolution, ContactSolver, Slope, WearRates
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from ..heat.friction_heat import FrictionHeat
 from ..heat.heat_states import HeatBalance
 from ..heat.heat_steps import ConductingStep, InitialHeat
-from ..model.conditions import ConditionModel, InterfaceConditions
-from ..model.system import System
+from ..system.conditions import ConditionModel, InterfaceConditions
+from ..system.system import System
 from .body_state import ContactState
 from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent

@@ -9,8 +9,8 @@ import numpy as np
 from ...contact.operators.heat import ThermalState
 from ...laws.principle.steady import SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
-from ..model.conditions import ConditionModel, InterfaceConditions
-from ..model.system import System
+from ..system.conditions import ConditionModel, InterfaceConditions
+from ..system.system import System
 from .body_state import ContactState
 from .fixed_point import Trial, self_consistent
 

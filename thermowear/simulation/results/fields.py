@@ -10,14 +10,14 @@ from ...bulk.field import as_function
 from ...bulk.heat.varying import straining_rise
 from ...compat import evaluate
 from ...laws.motions import RigidMotion
-from ..interface.body_state import BodyState
-from ..model.system import System
-from .result import BodyFields
+from ...results import BodyFields
+from ..system.system import System
+from .recording import Snapshot
 
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
 
 
-def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields | None:
+def sample(snapshot: Snapshot) -> BodyFields | None:
     """Sample displacement (holder's motion included), temperature and von Mises stress.
 
     Body 1 is drawn at its position of the last mesh motion to the worn face: a body shortened by
@@ -25,6 +25,7 @@ def sample(system: System, state: BodyState, motion: RigidMotion) -> BodyFields 
 
     Every rank calls; ranks other than 0 return None. Cells are in the order of the mesh file.
     """
+    system, state, motion = snapshot.system, snapshot.bodies, snapshot.motion
     mesh, elastic = system.bodies.mesh, system.elastic
     n = max(system.model.discretisation.degree, 2)
     grid, pieces = _GRIDS[mesh.topology.cell_name()](n)

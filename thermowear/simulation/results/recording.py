@@ -2,24 +2,54 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...laws.motions import RigidMotion
+from ...results import FrictionInterface, InterfaceFields, Profile, WornTrack
 from ..interface.body_state import BodyState, ContactState, body_state
-from ..model.system import System
-from .result import InterfaceFields, Profile
+from ..system.system import System
 
 _STEEPEST = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
 
 
-def interface_at(
+@dataclass(frozen=True)
+class Snapshot:
+    """Contact, bodies and interface on one rank, in one state of an analysis.
+
+    Attributes
+    ----------
+    system : System
+        System in this state, whose meshes may have been moved.
+    contact : ContactState
+    motion : RigidMotion
+        Rigid motion of the holder.
+    bodies : BodyState
+    interface : InterfaceFields
+    friction : FrictionInterface or None
+        Stick-slip state of a fretting analysis.
+    track : WornTrack or None
+        Worn track of a reciprocating analysis.
+    """
+
+    system: System
+    contact: ContactState
+    motion: RigidMotion
+    bodies: BodyState
+    interface: InterfaceFields
+    friction: FrictionInterface | None = None
+    track: WornTrack | None = None
+
+
+def snapshot(
     system: System,
     contact: ContactState,
     motion: RigidMotion,
     worn: np.ndarray,
     rates: np.ndarray | None = None,
-) -> tuple[BodyState, InterfaceFields]:
+) -> Snapshot:
     """Solve the bodies and record the interface. Every rank calls.
 
     Parameters
@@ -33,22 +63,30 @@ def interface_at(
     rates : ndarray, shape (2, n), optional
         Wear rates, see `record` [m/s].
     """
-    state = body_state(system, contact)
+    bodies = body_state(system, contact)
     lost = system.pairing.gap + worn.sum(axis=0)
     moved = motion.at(system.pairing.on_body_1)
     gap = (
         lost
         + system.softness * contact.pressure
-        + state.opening
+        + bodies.opening
         - np.einsum("ni,ni->n", system.pairing.normals, moved)
     )
-    return state, record(system, contact, state, gap, lost.max() - lost, worn, rates)
+    shape = lost.max() - lost
+    return record(system, contact, motion, bodies, gap, shape, worn, rates)
 
 
 def record(
-    system: System, contact: ContactState, state: BodyState, gap, shape, worn, rates=None
-) -> InterfaceFields:
-    """Interface record for output from arrays of shape (n,) and `worn` of shape (2, n).
+    system: System,
+    contact: ContactState,
+    motion: RigidMotion,
+    bodies: BodyState,
+    gap: np.ndarray,
+    shape: np.ndarray,
+    worn: np.ndarray,
+    rates: np.ndarray | None = None,
+) -> Snapshot:
+    """Record the interface of solved bodies from arrays of shape (n,) and `worn` of shape (2, n).
 
     Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
     """
@@ -58,11 +96,11 @@ def record(
     rates = _local_rates(system, contact) if rates is None else rates
     temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
     fluxes = temperatures
-    if state.thermal is not None and system.thermal is not None:
-        T1, T2 = state.thermal.rise
+    if bodies.thermal is not None and system.thermal is not None:
+        T1, T2 = bodies.thermal.rise
         temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
-        fluxes = state.thermal.flux
-    return InterfaceFields(
+        fluxes = bodies.thermal.flux
+    interface = InterfaceFields(
         x=points[:, 0],
         y=points[:, 1],
         z=points[:, 2] if points.shape[1] == 3 else np.zeros(len(pressure)),
@@ -80,6 +118,7 @@ def record(
         heat_flux_1=fluxes[0],
         heat_flux_2=fluxes[1],
     )
+    return Snapshot(system, contact, motion, bodies, interface)
 
 
 def _local_rates(system: System, contact: ContactState) -> np.ndarray:
@@ -90,8 +129,9 @@ def _local_rates(system: System, contact: ContactState) -> np.ndarray:
     return rates
 
 
-def profile(system: System, interface: InterfaceFields) -> Profile:
+def profile(end: Snapshot) -> Profile:
     """Worn shape of an interface, along its normals and along the load direction."""
+    system, interface = end.system, end.interface
     normals = np.zeros((len(interface.s), 3))
     normals[:, : len(system.load_direction)] = system.pairing.normals
     along = along_press(system)

@@ -7,12 +7,10 @@ import numpy as np
 from ...bulk.field import total
 from ...contact.search.zones import contact_zones
 from ...laws.coefficients.constant import Constant
-from ...model.analyses import Analysis
-from ..model.rigid_modes import applied, guides
-from ..model.system import System
-from ..model.thermal_loads import ThermalLoad
-from ..model.thermal_system import ThermalSystem
-from .outcome import Outcome
+from ...results import Result
+from ..system.rigid_modes import applied, guides
+from ..system.system import System
+from .recording import Snapshot, profile
 
 _GUIDES = {
     "x": "guide_force_N",
@@ -32,10 +30,17 @@ _ROTATIONS = {
 """Keys of the holder rotations, in the order of the components of a rotation vector."""
 
 
-def summarise(system: System, analysis: Analysis, outcome: Outcome) -> dict:
-    """All numbers of ``summary.json`` except timings. Quantities that do not exist are None."""
+def summarise(end: Snapshot, time: float) -> dict:
+    """Numbers of ``summary.json`` of any analysis. Quantities that do not exist are None.
+
+    Parameters
+    ----------
+    end : Snapshot
+    time : float
+        Time at the end, or zero [s].
+    """
+    system, contact, interface = end.system, end.contact, end.interface
     model, w = system.model, system.weights
-    contact, interface = outcome.contact, outcome.interface
     p, sliding = contact.pressure, system.slides is not None
     friction = sliding * contact.conditions.friction * p  # at rest there is none
     system = system.rubbing(contact.conditions.friction)
@@ -43,8 +48,6 @@ def summarise(system: System, analysis: Analysis, outcome: Outcome) -> dict:
     worn = interface.pressure > 0
     volumes = system.worn_volumes(np.array([interface.wear_1, interface.wear_2]))
     summary = {
-        "title": model.title,
-        "analysis": analysis.type,
         "model": model.kinematics,
         "method": model.interface.method.name,
         "dofs_displacement": total(system.elastic.space),
@@ -61,14 +64,12 @@ def summarise(system: System, analysis: Analysis, outcome: Outcome) -> dict:
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": float(
-            outcome.motion.at(np.array(model.holder.pivot)) @ system.load_direction
-        ),
-        "max_temperature_K": _number(outcome.state.hottest),
+        "approach_m": float(end.motion.at(np.array(model.holder.pivot)) @ system.load_direction),
+        "max_temperature_K": _number(end.bodies.hottest),
         "friction_power_W": float(w @ (contact.conditions.heating * p)),
-        **_conducted(system, outcome),
-        "heat_balance_relative_error": _number(outcome.state.heat_error),
-        "equilibrium_relative_error": outcome.state.force_error,
+        **_conducted(end, time),
+        "heat_balance_relative_error": _number(end.bodies.heat_error),
+        "equilibrium_relative_error": end.bodies.force_error,
         "rigid_wear_velocity_m_per_s": None,
         "wear_dissipation_W": float(w @ (p * rates)),
         "wear_volume_1_m3": float(volumes[0]),
@@ -79,16 +80,16 @@ def summarise(system: System, analysis: Analysis, outcome: Outcome) -> dict:
             if wear.per is not None
         },
     }
-    about = _passing(system, outcome) | _guide_reactions(system, p) | _rotations(system, outcome)
-    return summary | about | _friction(system, outcome) | outcome.extra
+    about = _passing(end, time) | _guide_reactions(system, p) | _rotations(end)
+    return summary | about | _friction(end)
 
 
-def _friction(system: System, outcome: Outcome) -> dict[str, float]:
+def _friction(end: Snapshot) -> dict[str, float]:
     """Range of the coefficient of friction in contact and its force-weighted mean, if varying."""
-    pressure = outcome.contact.pressure
+    system, pressure = end.system, end.contact.pressure
     if not system.model.interface.friction_varies or not pressure.any():
         return {}
-    friction, carries = outcome.contact.conditions.friction, pressure > 0
+    friction, carries = end.contact.conditions.friction, pressure > 0
     return {
         "friction_mean": float(np.average(friction, weights=system.weights * pressure)),
         "friction_min": float(friction[carries].min()),
@@ -96,39 +97,52 @@ def _friction(system: System, outcome: Outcome) -> dict[str, float]:
     }
 
 
-def _conducted(system: System, outcome: Outcome) -> dict[str, float]:
+def _conducted(end: Snapshot, time: float) -> dict[str, float]:
     """Heat into both bodies: at the contact, and through surfaces with a given flux or power."""
-    thermal, faces = system.thermal, outcome.state.thermal
+    system, faces = end.system, end.bodies.thermal
+    thermal = system.thermal
     if thermal is None or faces is None:
         return {}
     into = (float(system.weights @ flux) for flux in faces.flux)
     found = {f"contact_heat_{body}_W": heat for body, heat in enumerate(into, 1)}
-    load = _thermal_load(thermal, outcome)
+    load = thermal.loads.at(time)
     return found | ({"prescribed_heat_W": load.prescribed} if load.magnitude > 0.0 else {})
 
 
-def _thermal_load(thermal: ThermalSystem, outcome: Outcome) -> ThermalLoad:
-    """Thermal loads at the end of the analysis."""
-    return thermal.loads.at(outcome.history[-1].time if outcome.history else 0.0)
-
-
-def _passing(system: System, outcome: Outcome) -> dict:
+def _passing(end: Snapshot, time: float) -> dict:
     """Advection of heat by a body 2 passing under body 1, and heat losses of the bodies."""
-    thermal, rise, heat = system.thermal, outcome.state.rise, system.model.heat
-    if thermal is None or rise is None or heat is None or not system.model.motion.passes:
+    thermal, rise, heat = end.system.thermal, end.bodies.rise, end.system.model.heat
+    if thermal is None or rise is None or heat is None or not end.system.model.motion.passes:
         return {}
     advection = thermal.conduction.advection
     stabilised = advection is not None and advection.stabilised
-    ambient = _thermal_load(thermal, outcome).ambient
+    ambient = thermal.loads.at(time).ambient
     still = np.zeros(len(rise))
     cooled, _, carried = thermal.conduction.losses(rise, still, ambient=ambient)
-    leaves = advection is not None and system.model.motion.center is None
+    leaves = advection is not None and end.system.model.motion.center is None
     return {
         "heat_advection": "stabilised" if stabilised else heat.advection,
         "max_cell_peclet_number": None if advection is None else advection.peclet,
         "heat_cooled_W": float(cooled),
         "heat_carried_out_W": float(carried) if leaves else None,
     }
+
+
+def conclude(end: Snapshot, extra: dict, time: float = 0.0, **recorded) -> tuple[Snapshot, Result]:
+    """State at the end and result of an analysis, with profile and summary. Every rank calls.
+
+    Parameters
+    ----------
+    end : Snapshot
+    extra : dict
+        Entries that the analysis adds to the summary.
+    time : float, optional
+        Time at the end [s].
+    **recorded
+        Further attributes of the result, such as its histories.
+    """
+    summary = summarise(end, time) | extra
+    return end, Result(end.interface, profile(end), summary, **recorded)
 
 
 def _torque(system: System, friction: np.ndarray) -> float | None:
@@ -158,10 +172,11 @@ def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
     return reactions
 
 
-def _rotations(system: System, outcome: Outcome) -> dict[str, float]:
+def _rotations(end: Snapshot) -> dict[str, float]:
     """Rotation of the holder about each of its free axes [rad]."""
-    turned = zip(_ROTATIONS.items(), outcome.motion.rotation, strict=True)
-    return {key: float(angle) for (name, key), angle in turned if name in system.model.holder.free}
+    turned, free = end.motion.rotation, end.system.model.holder.free
+    pairs = zip(_ROTATIONS.items(), turned, strict=True)
+    return {key: float(angle) for (name, key), angle in pairs if name in free}
 
 
 def _thermal_dofs(system: System) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import CaseError, other_mesh
 from ...serialise import serialisable
-from ..model.system import System
+from ..system.system import System
 
 _ROUNDING = 1e-9  # relative to the contact's length
 

@@ -5,27 +5,26 @@ from __future__ import annotations
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from ...errors import ComputationError, UnwritableError
-from ...laws.motions import RigidMotion
 from ...model.analyses import SteppedAnalysis
-from ..interface.body_state import BodyState, ContactState
-from ..model.system import System
-from ..results.fields import sample
-from ..results.outcome import Outcome
-from ..results.result import (
+from ...results import (
+    CycleRow,
     Frame,
     FrictionHistory,
-    FrictionInterface,
-    InterfaceFields,
+    HeatRow,
+    HistoryRow,
+    LoadRow,
+    Result,
     TrackHistory,
-    WornTrack,
 )
-from ..results.rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from ..results.fields import sample
+from ..results.recording import Snapshot
+from ..results.summary import conclude
+from ..system.system import System
 from .checkpoint_data import Progress, Saved
 from .frames import spacing
 from .observer import Observer
@@ -37,33 +36,6 @@ Row = TypeVar("Row", bound=AnyRow)
 
 State = TypeVar("State", bound=Any)
 """Accepted state of an analysis, with a `time` [s], and `is_output` true at an output time."""
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """Contact and bodies in one state of an analysis.
-
-    Attributes
-    ----------
-    system : System
-    contact : ContactState
-    motion : RigidMotion
-        Rigid motion of the holder.
-    bodies : BodyState
-    interface : InterfaceFields
-    friction : FrictionInterface or None
-        Stick-slip state of a fretting analysis.
-    track : WornTrack or None
-        Worn track of a reciprocating analysis.
-    """
-
-    system: System
-    contact: ContactState
-    motion: RigidMotion
-    bodies: BodyState
-    interface: InterfaceFields
-    friction: FrictionInterface | None = None
-    track: WornTrack | None = None
 
 
 class AnalysisHistory(ABC, Generic[State]):
@@ -229,8 +201,8 @@ class AnalysisHistory(ABC, Generic[State]):
         rows = {kind: self._tables[kind][:count] for kind, count in counts.items()}
         return Progress(state, rows, own)
 
-    def outcome(self, stopped: BaseException | None) -> Outcome:
-        """Outcome of the analysis at the last state; every rank calls."""
+    def conclude(self, stopped: BaseException | None) -> tuple[Snapshot, Result]:
+        """State at the end and result of the analysis; every rank calls."""
         with self._system.phases("bodies"):
             end = self.snapshot(self.last)
         interfaces, frictions, tracks = (
@@ -242,19 +214,16 @@ class AnalysisHistory(ABC, Generic[State]):
             friction = FrictionHistory(loads, cycles, end.friction, frictions)
         if end.track is not None:
             track = TrackHistory(end.track, tracks)
-        return Outcome(
-            contact=end.contact,
-            motion=end.motion,
-            state=end.bodies,
-            interface=end.interface,
-            extra=self.summary(),
+        return conclude(
+            end,
+            self.summary(),
+            self.last.time,
             history=self.table(HistoryRow),
             outputs=interfaces,
             friction=friction,
             track=track,
             heat=self.table(HeatRow),
             stopped=stopped,
-            system=end.system,
         )
 
     def _mark_restart(self, state: State) -> None:
@@ -281,6 +250,5 @@ class AnalysisHistory(ABC, Generic[State]):
             return
         with self._system.phases("frames"):
             now = self.snapshot(state)
-            fields = sample(now.system, now.bodies, now.motion)
-            frame = Frame(number, every, state.time, now.interface, fields, now.track)
+            frame = Frame(number, every, state.time, now.interface, sample(now), now.track)
             self._observer.frame(frame)

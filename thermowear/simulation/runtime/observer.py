@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..results.result import Frame, FrictionInterface, InterfaceFields, WornTrack
-from ..results.rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from ...results import (
+    CycleRow,
+    Frame,
+    FrictionInterface,
+    HeatRow,
+    HistoryRow,
+    InterfaceFields,
+    LoadRow,
+    WornTrack,
+)
 from .checkpoint_data import Saved
 
 

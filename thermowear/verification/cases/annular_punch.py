@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...reference import annular_punch as reference
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, along, compare
 from ..starter import run_starter
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...reference.beam import EXAMPLE, PLACES, TABLE, BeamState, WornBeam
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare, compare_worst
 from ..starter import run_starter
 

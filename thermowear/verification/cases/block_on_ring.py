@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...reference.growing_contact import GrowingContact, growing_line
-from ...simulation.results.result import InterfaceFields
+from ...results import InterfaceFields
 from ..check import Check, compare
 from ..starter import run_starter
 from .growing import ARCHARD, RIGID, SPEED, worn_half_width

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...reference.braking import highest_rise, surface_rise
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from ..computed import computed
 from ..starter import run_starter, starter

@@ -11,7 +11,7 @@ from math import log2, pi
 
 import numpy as np
 
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, along, compare
 from ..starter import run_starter
 

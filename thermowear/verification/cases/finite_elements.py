@@ -12,7 +12,7 @@ import numpy as np
 
 from ...case.tables.schema import Case
 from ...laws.motions import RigidMotion, rotation, translation
-from ...simulation import Result
+from ...results import Result
 from ...simulation.from_case import model_of
 from ..check import Check, compare
 from ..computed import computed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...simulation import CycleRow, Result
+from ...results import CycleRow, Result
 from ..check import Check, compare
 from ..starter import run_starter
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ...reference.growing_contact import growing_line
 from ...reference.hertz import contact_modulus
-from ...simulation import CycleRow, Result
+from ...results import CycleRow, Result
 from ..check import Check, compare
 from ..starter import run_starter
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...reference.hertz import contact_modulus
 from ...reference.mindlin import MindlinLine
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, along, compare
 from ..starter import run_starter
 

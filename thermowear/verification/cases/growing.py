@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...reference.growing_contact import GrowingContact
-from ...simulation import Result
-from ...simulation.results.result import InterfaceFields
+from ...results import InterfaceFields, Result
 from ..check import Check, compare
 from ..starter import run_starter
 

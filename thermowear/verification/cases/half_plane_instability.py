@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...reference.half_plane_instability import ConductorOnInsulator
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from . import insulated
 

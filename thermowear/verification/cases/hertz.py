@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...reference.hertz import contact_modulus
-from ...simulation import Result
+from ...results import Result
 
 STEEL = (210e9, 0.3)
 MODULUS = contact_modulus(STEEL, STEEL)

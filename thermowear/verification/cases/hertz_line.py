@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import pi, sqrt
 
 from ...reference.hertz import contact_modulus, line_contact
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from ..starter import run_starter
 from .hertz import MODULUS, half_width

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...reference.elastic_sphere import sphere_on_half_space
 from ...reference.hertz import point_contact
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from ..starter import run_starter
 from .hertz import MODULUS, STEEL, half_width

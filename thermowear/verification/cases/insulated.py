@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ... import geometry  # noqa: F401  (makes the geometries known)
 from ...case import load
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from ..computed import computed
 

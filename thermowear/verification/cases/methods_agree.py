@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare, compare_worst
 from ..starter import run_starter
 

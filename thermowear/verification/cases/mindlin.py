@@ -8,7 +8,7 @@ import numpy as np
 
 from ...reference.hertz import contact_modulus
 from ...reference.mindlin import MindlinLine
-from ...simulation import FrictionInterface, Result
+from ...results import FrictionInterface, Result
 from ..check import Check, compare, compare_worst
 from ..starter import run_starter
 

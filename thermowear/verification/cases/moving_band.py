@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...reference.moving_band import PEAKS, MovingBand
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare, compare_worst
 from ..starter import run_starter
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...case.tables.schema import Case
 from ...geometry.cad.design import Design, write_table
-from ...simulation import Result
+from ...results import Result
 from ...simulation.analyses.design import steady_design
 from ...simulation.analyses.positioning import prepare
 from ...simulation.from_case import model_of

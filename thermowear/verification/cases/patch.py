@@ -11,7 +11,7 @@ from ...case import load
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...geometry.mesh.gmsh_session import gmsh_model, tagged_mesh
 from ...geometry.meshing.blocks import Interval, add_grid
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare, compare_worst
 from ..computed import computed
 

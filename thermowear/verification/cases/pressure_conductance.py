@@ -8,7 +8,7 @@ import numpy as np
 
 from ...reference.pressure_conductance import block_temperatures
 from ...reference.slabs import contact_temperatures
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare_worst
 from ..starter import run_starter
 

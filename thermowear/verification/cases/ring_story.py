@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ...reference.annular_punch import steady_pressure
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from ..computed import computed
 from ..starter import starter

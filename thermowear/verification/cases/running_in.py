@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...reference import annular_punch as reference
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, along, compare
 from ..starter import run_starter
 

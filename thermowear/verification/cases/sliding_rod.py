@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ...reference.sliding_rod import SlidingRod
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare
 from . import insulated
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...case.tables.schema import Case
 from ...reference.step_flux import HalfSpace, surface_rises
-from ...simulation import Result
+from ...results import Result
 from ...simulation.analyses.positioning import prepare
 from ...simulation.from_case import model_of
 from ...simulation.interface.factory import interface_problem

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...case.tables.schema import Case
 from ...laws import LocalState
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare, compare_worst
 from ..computed import computed
 from ..starter import starter

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import inf, sqrt
 
 from ...reference.slabs import contact_temperatures
-from ...simulation import Result
+from ...results import Result
 from ..check import Check, compare_worst
 from ..starter import run_starter
 

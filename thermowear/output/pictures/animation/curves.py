@@ -7,8 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ...quantities import HISTORY, INTERFACE, Quantity
-from ..curves import BODIES, abscissa, wrapped
+from ..curves import BODIES, abscissa
 from .states import Film, FrameState
 
 _AXIS_END = 1.06  # end of an axis relative to the largest value
@@ -35,8 +34,9 @@ class PressureCurve:
         (self._line,) = axis.plot(*self._curve(states[0]), color="tab:red", label="now")
         axis.set_ylim(0.0, _AXIS_END * max(top(self._curve(state)[1]) for state in states))
         axis.set_xlim(_span(self._curve(state)[0] for state in states))
-        axis.set_ylabel(wrapped(INTERFACE["pressure"]))
-        axis.set_xlabel(abscissa(states[-1].interface, self._film.model)[0])
+        last = states[-1].interface
+        axis.set_ylabel(last.quantities["pressure"].wrapped)
+        axis.set_xlabel(abscissa(last)[0])
         _legend(axis)
 
     def show(self, state: FrameState) -> None:
@@ -77,8 +77,9 @@ class WearCurves:
         deepest = max(v.max() for v in values)
         axis.set_ylim(_AXIS_END * deepest, (1 - _AXIS_END) * deepest)
         axis.set_xlim(_span(places))
-        axis.set_ylabel(f"wear depth\n[{INTERFACE['wear_1'].unit}]")
-        axis.set_xlabel(abscissa(states[-1].interface, self._film.model)[0])
+        last = states[-1].interface
+        axis.set_ylabel(last.quantities["wear_1"].of_both.wrapped)
+        axis.set_xlabel(abscissa(last)[0])
         _legend(axis)
 
     def show(self, state: FrameState) -> None:
@@ -97,23 +98,22 @@ class TimeCurve:
 
     def __init__(self, film: Film):
         self._name = "max_temperature" if _is_hot(film) else "max_pressure"
-        self._time, self._values = film.course["time"], film.course[self._name]
         self._even = film.even
-        if not film.even:  # a logarithmic axis cannot start at zero
-            self._time, self._values = self._time[1:], self._values[1:]
+        # a logarithmic axis cannot start at zero
+        self._course = film.course if film.even else film.course.rows(np.s_[1:])
+        self._time, self._drawn = self._course["time"], self._course.drawn(self._name)
 
     def prepare(self, _, axis) -> None:
         """Draw the static elements."""
-        quantity: Quantity = HISTORY[self._name]
-        self._drawn = quantity.drawn(self._values)
+        shown = self._course.quantities
         axis.plot(self._time, self._drawn, color="0.45")
         if not self._even:
             axis.set_xscale("log")
         axis.set_xlim(self._time[0], self._time[-1])
         if self._name == "max_pressure":
             axis.set_ylim(0.0, _AXIS_END * self._drawn.max())
-        axis.set_xlabel(HISTORY["time"].axis + ("" if self._even else ", logarithmic"))
-        axis.set_ylabel(wrapped(quantity))
+        axis.set_xlabel(shown["time"].axis + ("" if self._even else ", logarithmic"))
+        axis.set_ylabel(shown[self._name].wrapped)
         self._mark = axis.axvline(self._time[0], color="tab:red", linewidth=1.2)
         (self._dot,) = axis.plot([], [], "o", color="tab:red", markersize=6, clip_on=False)
 
@@ -146,19 +146,14 @@ def _is_hot(film: Film) -> bool:
 
 def _along(name: str) -> Curve:
     """Column of ``interface.csv`` along the contact, in the units of plots."""
-    quantity = INTERFACE[name]
-    return lambda state: (
-        abscissa(state.interface)[1],
-        quantity.drawn(state.interface[name]),
-    )
+    return lambda state: (abscissa(state.interface)[1], state.interface.drawn(name))
 
 
 def _wear_of_body_2(state: FrameState) -> tuple[np.ndarray, np.ndarray]:
     """Wear depths of body 2 along the contact, or along the track if body 1 reciprocates."""
     if state.track is None:
         return _along("wear_2")(state)
-    x, depth = (INTERFACE[name].drawn(state.track[name]) for name in ("x", "wear_2"))
-    return x, depth
+    return state.track.drawn("x"), state.track.drawn("wear_2")
 
 
 def _span(places) -> tuple[float, float]:

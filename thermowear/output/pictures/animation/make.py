@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 from ....errors import CaseError
-from ...frames import FRAMES, frame_files
+from ...frames import frame_files
+from ...names import FRAMES
 from ..maps import is_surface
 from .curves import PressureCurve, TimeCurve, WearCurves
 from .palette import common_palette

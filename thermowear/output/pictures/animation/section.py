@@ -9,10 +9,8 @@ from matplotlib.colors import Normalize
 from matplotlib.tri import Triangulation
 from scipy.spatial import cKDTree
 
-from ...coordinates import in_model
-from ...quantities import INTERFACE
 from ..windows import Extent, around_contact, common_limits, is_small, whole, within
-from .states import Film, FrameState, field_of, read_fields
+from .states import Film, FrameState, read_fields, shown_field
 
 _SCALE = 0.05  # width of the colour bar relative to the panel
 _SAME = 1e-5  # tolerance for identical points, relative to the size of the bodies
@@ -38,7 +36,7 @@ class SectionPanel:
         self.limits = common_limits(seen)
         self._over = max(values.max() for values in seen) > self.limits[1] * (1 + 1e-9)
         self.colors = "inferno" if film.hot else "viridis"
-        self._axes = [in_model(INTERFACE[name], film.model).axis for name in "xy"]
+        self._axes = [film.states[-1].interface.quantities[name].axis for name in "xy"]
         self._drawn: list = []
 
     @property
@@ -59,7 +57,7 @@ class SectionPanel:
         figure.colorbar(
             ScalarMappable(Normalize(*self.limits), self.colors),
             cax=axis.inset_axes([1.03, 0.0, _SCALE * min(1.0, self.shape), 1.0]),
-            label=field_of(self._hot)[0],
+            label=shown_field(self._hot).axis,
             extend="max" if self._over else "neither",
         )
 

@@ -7,12 +7,11 @@ import pyvista
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from ...quantities import INTERFACE
 from ..maps import COLORS, triangulated
 from ..solids import PIXELS, cut, render
 from ..windows import common_limits, whole
 from .scene import ScenePanel
-from .states import Film, FrameState, field_of
+from .states import Film, FrameState, shown_field
 
 
 class Solid:
@@ -28,7 +27,7 @@ class Solid:
     def __init__(self, film: Film):
         self._hot = film.hot
         self.colors = "inferno" if film.hot else "viridis"
-        y = INTERFACE["y"].drawn(film.states[-1].interface["y"])
+        y = film.states[-1].interface.drawn("y")
         self._middle = float((y.min() + y.max()) / 2)
         surfaces = (self._surfaces(state) for state in film.states)
         self.limits = common_limits(
@@ -41,7 +40,7 @@ class Solid:
         figure.colorbar(
             ScalarMappable(Normalize(*self.limits), self.colors),
             ax=axis,
-            label=field_of(self._hot)[0],
+            label=shown_field(self._hot).axis,
             shrink=0.8,
         )
         blank = np.full((PIXELS[1], PIXELS[0], 3), 255, dtype=np.uint8)
@@ -53,9 +52,9 @@ class Solid:
 
     def _surfaces(self, state: FrameState) -> list:
         grid = pyvista.read(state.file)
-        _, name, scale, offset = field_of(self._hot)
+        shown = shown_field(self._hot)
         grid.points = 1e3 * grid.points
-        grid["shown"] = scale * grid[name] + offset
+        grid["shown"] = shown.drawn(grid[shown.header])
         return cut(grid, self._middle)
 
 
@@ -64,9 +63,10 @@ class FaceMap:
 
     def __init__(self, film: Film, name: str):
         self._name = name
-        values = [state.interface[name] for state in film.states]
-        self._limits = (0.0, max(float(INTERFACE[name].drawn(v).max()) for v in values))
-        x, y = (INTERFACE[axis].drawn(film.states[0].interface[axis]) for axis in "xy")
+        highest = max(float(state.interface.drawn(name).max()) for state in film.states)
+        self._limits = (0.0, highest)
+        self._shown = film.states[-1].interface.quantities
+        x, y = map(film.states[0].interface.drawn, "xy")
         self._window = whole(np.stack([x, y], axis=1))
         self._drawn: list = []
 
@@ -77,16 +77,16 @@ class FaceMap:
         axis.set_xlim(self._window[:2])
         axis.set_ylim(self._window[2:])
         axis.grid(visible=False)
-        axis.set_xlabel(INTERFACE["x"].axis)
-        axis.set_ylabel(INTERFACE["y"].axis)
+        axis.set_xlabel(self._shown["x"].axis)
+        axis.set_ylabel(self._shown["y"].axis)
         scale = ScalarMappable(Normalize(*self._limits), COLORS[self._name.split("_")[0]])
-        figure.colorbar(scale, ax=axis, label=INTERFACE[self._name].axis.replace(" [", "\n["))
+        figure.colorbar(scale, ax=axis, label=self._shown[self._name].wrapped)
 
     def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
         while self._drawn:
             self._drawn.pop().remove()
-        x, y, values = (INTERFACE[q].drawn(state.interface[q]) for q in ("x", "y", self._name))
+        x, y, values = map(state.interface.drawn, ("x", "y", self._name))
         colors, norm = COLORS[self._name.split("_")[0]], Normalize(*self._limits)
         self._drawn.append(
             self._axis.tripcolor(

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
 import meshio
 import numpy as np
 
+from ....results import FIELDS
+from ....results.quantity import Quantity
 from ... import tables
-from ...coordinates import model_of
-from ...frames import FRAMES, frame_files
-from ...quantities import CYCLES, HISTORY, INTERFACE, LOADS, TRACK
+from ...coordinates import read_summary
+from ...frames import frame_files
+from ...names import FRAMES
 
 _CORNERS = {"triangle": [[0, 1, 2]], "quad": [[0, 1, 2], [0, 2, 3]]}
 _STEADY = 1e-2  # distance from the steady state up to which the final state is called steady
@@ -26,17 +27,17 @@ class FrameState:
     ----------
     time : float
         Time [s].
-    interface : dict of str to ndarray
+    interface : TableColumns
         Columns of ``interface.csv``.
-    track : dict of str to ndarray or None
+    track : TableColumns or None
         Columns of ``track.csv``, in reciprocating analyses.
     file : Path
         File of the fields.
     """
 
     time: float
-    interface: dict[str, np.ndarray]
-    track: dict[str, np.ndarray] | None
+    interface: tables.TableColumns
+    track: tables.TableColumns | None
     file: Path
 
 
@@ -49,9 +50,7 @@ class Film:
     states : list of FrameState
     title : str
         Title of the case.
-    model : str
-        Kinematic model of the case.
-    course : dict of str to ndarray
+    course : TableColumns
         Columns of ``history.csv``, or of ``cycles.csv`` or ``loads.csv``.
     even : bool
         True for a linear time axis, with prescribed loads or temperatures in time; running-in
@@ -64,8 +63,7 @@ class Film:
 
     states: list[FrameState]
     title: str
-    model: str
-    course: dict[str, np.ndarray]
+    course: tables.TableColumns
     even: bool
     hot: bool
     ends_steady: bool
@@ -80,20 +78,21 @@ def read_film(folder: Path) -> Film:
         If a file does not have the expected columns.
     """
     states = [
-        FrameState(f.time, tables.read(f.interface, INTERFACE), _track(f.track), f.fields)
+        FrameState(
+            f.time, tables.read(f.file("interface")), _track(f.file("track")), f.file("fields")
+        )
         for f in frame_files(folder / FRAMES)
     ]
-    name, table = next((n, t) for n, t in _COURSES.items() if (folder / n).is_file())
-    course = tables.read(folder / name, table)
+    name = next(name for name in _COURSES if (folder / name).is_file())
+    course = tables.read(folder / name)
     end = float(course["time"][-1])
     states = [state for state in states if state.time < end]
-    last = tables.read(folder / "interface.csv", INTERFACE)
+    last = tables.read(folder / "interface.csv")
     states.append(FrameState(end, last, _track(folder / "track.csv"), folder / "fields.vtu"))
-    distance = _json(folder / "summary.json").get("distance_from_steady")
+    distance = read_summary(folder).get("distance_from_steady")
     return Film(
         states=states,
         title=_title(folder),
-        model=model_of(folder),
         course=course,
         even=name != "history.csv" or (folder / "heat.csv").is_file(),
         hot=bool(np.isfinite(last["temperature_1"]).all()),
@@ -110,34 +109,28 @@ def read_fields(
     -------
     tuple of ndarray
         Displaced points, shape (n, 2) [mm]; triangles, shape (m, 3); body of each triangle, shape
-        (m,); values at the points, see `field_of`.
+        (m,); values at the points, see `shown_field`.
     """
     mesh = meshio.read(state.file)
     block, body = mesh.cells[0], mesh.cell_data["body"][0]
     corners = np.array(_CORNERS[block.type])
     triangles = block.data[:, corners].reshape(-1, 3)
     points = 1e3 * (mesh.points + mesh.point_data["displacement_m"])[:, :2]
-    name, scale, offset = field_of(hot)[1:]
-    values = scale * mesh.point_data[name] + offset
+    shown = shown_field(hot)
+    values = shown.drawn(mesh.point_data[shown.header])
     return points, triangles, np.repeat(body, len(corners)), values
 
 
-def field_of(hot: bool) -> tuple[str, str, float, float]:
-    """Label, name, scale and offset of the displayed field."""
-    if hot:
-        return "temperature [°C]", "temperature_K", 1.0, -273.15
-    return "von Mises stress [MPa]", "von_mises_Pa", 1e-6, 0.0
+def shown_field(hot: bool) -> Quantity:
+    """Displayed field: the temperature if there is one, else the stress."""
+    return FIELDS["temperature" if hot else "von_mises"]
 
 
-_COURSES = {"history.csv": HISTORY, "cycles.csv": CYCLES, "loads.csv": LOADS}
+_COURSES = ("history.csv", "cycles.csv", "loads.csv")
 
 
-def _track(path: Path) -> dict[str, np.ndarray] | None:
-    return tables.read(path, TRACK) if path.is_file() else None
-
-
-def _json(path: Path) -> dict:
-    return json.loads(path.read_text("utf-8")) if path.is_file() else {}
+def _track(path: Path) -> tables.TableColumns | None:
+    return tables.read(path) if path.is_file() else None
 
 
 def _title(folder: Path) -> str:

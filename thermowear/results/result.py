@@ -1,79 +1,15 @@
-"""Result of a run: interface, profile, summary, histories and fields."""
+"""Result of an analysis: interface, profile, summary, histories and fields."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack
+from .quantity import TABLES, from_key, table_of
 from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
-
-
-@dataclass(frozen=True)
-class InterfaceFields:
-    """State of the interface, one entry per contact point; names, units as in ``interface.csv``.
-
-    Without ``[heat]`` temperatures and fluxes are NaN. Temperatures are absolute.
-    """
-
-    x: np.ndarray
-    y: np.ndarray
-    z: np.ndarray
-    s: np.ndarray
-    weight: np.ndarray
-    pressure: np.ndarray
-    gap: np.ndarray
-    shape: np.ndarray
-    wear_1: np.ndarray
-    wear_2: np.ndarray
-    wear_rate_1: np.ndarray
-    wear_rate_2: np.ndarray
-    temperature_1: np.ndarray
-    temperature_2: np.ndarray
-    heat_flux_1: np.ndarray
-    heat_flux_2: np.ndarray
-
-    def columns(self) -> list[np.ndarray]:
-        return [getattr(self, field.name) for field in fields(self)]
-
-
-@dataclass(frozen=True)
-class Profile:
-    """Worn shape, one entry per contact point; names and units as in ``profile.csv``.
-
-    The shape is the height of the unloaded face above its deepest worn point, along the normal and
-    along the load direction; the wear rates are sums over both bodies along the same directions.
-    """
-
-    x: np.ndarray
-    y: np.ndarray
-    z: np.ndarray
-    s: np.ndarray
-    normal_x: np.ndarray
-    normal_y: np.ndarray
-    normal_z: np.ndarray
-    shape: np.ndarray
-    shape_along_press: np.ndarray
-    wear_rate: np.ndarray
-    wear_rate_along_press: np.ndarray
-
-
-@dataclass(frozen=True)
-class FrictionInterface:
-    """Stick-slip state at the contact points; names and units as in ``friction.csv``.
-
-    Signs as in `thermowear.contact.operators.tangential`.
-    """
-
-    x: np.ndarray
-    y: np.ndarray
-    s: np.ndarray
-    weight: np.ndarray
-    pressure: np.ndarray
-    shear: np.ndarray
-    slip: np.ndarray
-    dissipated: np.ndarray
-    status: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -98,15 +34,6 @@ class FrictionHistory:
 
 
 @dataclass(frozen=True)
-class WornTrack:
-    """Wear of body 2 along its track in reciprocating sliding; names, units as in ``track.csv``."""
-
-    x: np.ndarray
-    wear_2: np.ndarray
-    wear_rate_2: np.ndarray
-
-
-@dataclass(frozen=True)
 class TrackHistory:
     """Results of a reciprocating analysis beside the interface.
 
@@ -120,27 +47,6 @@ class TrackHistory:
 
     last: WornTrack
     outputs: dict[float, WornTrack]
-
-
-@dataclass(frozen=True)
-class Modes:
-    """Pressure perturbation modes, one entry per contact point and mode; as in ``mode.csv``.
-
-    The largest value of each is 1. The first is the fastest growing mode at the given speed, if any
-    grows; then follows the critical mode, if oscillatory; then the stationary modes of zero growth
-    rate, each at its own speed.
-    """
-
-    mode: np.ndarray
-    speed_factor: np.ndarray
-    growth_rate: np.ndarray
-    frequency: np.ndarray
-    x: np.ndarray
-    y: np.ndarray
-    z: np.ndarray
-    s: np.ndarray
-    pressure: np.ndarray
-    pressure_imaginary: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -165,6 +71,14 @@ class BodyFields:
     displacement: np.ndarray
     temperature: np.ndarray | None
     von_mises: np.ndarray
+
+
+FIELDS = {
+    "displacement": from_key("displacement_m"),
+    "temperature": from_key("temperature_K", unit="°C"),
+    "von_mises": from_key("von_mises_Pa", "von Mises stress", "MPa"),
+}
+"""Quantities of ``fields.vtu`` by the names of the fields."""
 
 
 @dataclass(frozen=True)
@@ -196,7 +110,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Result:
-    """Result of a finished (or interrupted) run.
+    """Result of a finished (or interrupted) analysis.
 
     Attributes
     ----------
@@ -209,28 +123,47 @@ class Result:
         Steps of a transient analysis.
     outputs : dict of float to InterfaceFields
         Interface at the output times, by time [s].
-    fields : BodyFields or None
-        Fields of the bodies, on rank 0 only.
     friction : FrictionHistory or None
         Results of a fretting analysis.
     track : TrackHistory or None
         Results of a reciprocating analysis.
-    stopped : BaseException or None
-        Exception that stopped the run early.
     heat : list of HeatRow
         Heat history in transient conduction.
     modes : Modes or None
         Results of a stability analysis.
+    stopped : BaseException or None
+        Exception that stopped the run early.
+    fields : BodyFields or None
+        Fields of the bodies, on rank 0 only.
     """
 
     interface: InterfaceFields
     profile: Profile
     summary: dict
-    history: list[HistoryRow]
-    outputs: dict[float, InterfaceFields]
-    fields: BodyFields | None
+    history: list[HistoryRow] = field(default_factory=list)
+    outputs: dict[float, InterfaceFields] = field(default_factory=dict)
     friction: FrictionHistory | None = None
     track: TrackHistory | None = None
-    stopped: BaseException | None = None
     heat: list[HeatRow] = field(default_factory=list)
     modes: Modes | None = None
+    stopped: BaseException | None = None
+    fields: BodyFields | None = None
+
+    def tables(self) -> dict[str, Any]:
+        """Tables by the names of their files without ``.csv``: points at the end, or rows."""
+        found: list = [self.interface, self.profile, self.history, self.heat, self.modes]
+        if self.friction is not None:
+            found += [self.friction.last, self.friction.rows, self.friction.cycles]
+        if self.track is not None:
+            found.append(self.track.last)
+        return {table_of(content).stem: content for content in found if content}
+
+    def columns(self, name: str) -> dict[str, np.ndarray]:
+        """Columns of a table in SI by their names in files, as `pandas.DataFrame` takes them.
+
+        Parameters
+        ----------
+        name : str
+            Name of the file without ``.csv``, such as "interface" or "history".
+        """
+        return TABLES[name].arrays(self.tables()[name])

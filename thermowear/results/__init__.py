@@ -1,0 +1,25 @@
+"""Results of a run: tables and summary, and the name, label and unit of each quantity."""
+
+from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack
+from .quantity import TABLES
+from .result import FIELDS, BodyFields, Frame, FrictionHistory, Result, TrackHistory
+from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
+
+__all__ = [
+    "FIELDS",
+    "TABLES",
+    "BodyFields",
+    "CycleRow",
+    "Frame",
+    "FrictionHistory",
+    "FrictionInterface",
+    "HeatRow",
+    "HistoryRow",
+    "InterfaceFields",
+    "LoadRow",
+    "Modes",
+    "Profile",
+    "Result",
+    "TrackHistory",
+    "WornTrack",
+]

@@ -1,0 +1,101 @@
+"""Rows of the history tables that grow during a run."""
+
+from __future__ import annotations
+
+from .quantity import as_in, column, table
+
+
+@table(
+    "history", "History, one row per step", "one row per time step of a transient run", grows=True
+)
+class HistoryRow:
+    """Step of a running-in."""
+
+    time: float = column("time", "s")
+    sliding_distance: float = column("sliding distance", "m", meaning="at the mean speed")
+    max_pressure: float = column("largest pressure", "Pa", "MPa")
+    contact_area: float = column("contact area", "m²", "mm²", "sum over the points in contact")
+    wear_volume_1: float = column("worn volume, body 1", "m³", "mm³")
+    wear_volume_2: float = column("worn volume, body 2", "m³", "mm³")
+    max_temperature: float = column("highest temperature", "K", "°C")
+    approach: float = column("approach", "m", "µm", "of the holder along the load direction")
+    step: float = column("time step", "s")
+    error: float = column("time step error", meaning="relative")
+
+
+@table(
+    "heat",
+    "Heat, one row per step",
+    "transient temperatures: one row per time step with speed, force, friction power, heat and "
+    "temperatures of both faces",
+    grows=True,
+)
+class HeatRow:
+    """Step of an analysis with transient conduction.
+
+    Heat is cumulated from the start; temperatures are those of the faces, means are taken over
+    their area.
+    """
+
+    time: float = as_in(HistoryRow)
+    speed: float = column("sliding speed", "m/s")
+    normal_force: float = column("normal force", "N", meaning="along the load direction")
+    friction_power: float = column("friction power", "W", "kW")
+    heat_in: float = column("heat input", "J", "kJ", "since the start")
+    heat_stored: float = column("heat stored", "J", "kJ", "since the start")
+    heat_lost: float = column("heat lost", "J", "kJ", "since the start")
+    balance_error: float = column("heat balance error", header="balance_relative_error")
+    max_temperature_1: float = column("largest surface temperature, body 1", "K", "°C")
+    max_temperature_2: float = column("largest surface temperature, body 2", "K", "°C")
+    mean_temperature_1: float = column("mean surface temperature, body 1", "K", "°C")
+    mean_temperature_2: float = column("mean surface temperature, body 2", "K", "°C")
+
+
+@table(
+    "cycles",
+    "Cycles, one row per computed cycle",
+    "fretting with wear: one row per computed cycle, with length and error of the cycle jump",
+    grows=True,
+)
+class CycleRow:
+    """Cycle of a load history at its end.
+
+    Area and largest pressure are those of the whole cycle. ``jump`` is the length in cycles of the
+    cycle jump that it ends, ``error`` relative to the largest wear depth; NaN if not estimated.
+    """
+
+    cycle: int = column("cycle")
+    time: float = as_in(HistoryRow)
+    wear_volume_1: float = as_in(HistoryRow)
+    wear_volume_2: float = as_in(HistoryRow)
+    dissipated: float = column("dissipated energy", "J", "mJ", "since the start")
+    max_wear_1: float = column("largest wear depth, body 1", "m", "µm")
+    max_wear_2: float = column("largest wear depth, body 2", "m", "µm")
+    contact_area: float = as_in(HistoryRow)
+    max_pressure: float = as_in(HistoryRow)
+    jump: int = column("cycle-jump length", meaning="in cycles")
+    error: float = column("cycle-jump error", meaning="relative to the largest wear depth")
+
+
+@table(
+    "loads",
+    "Load history, one row per increment",
+    "fretting: one row per increment with forces and displacements",
+    grows=True,
+)
+class LoadRow:
+    """Increment of a load history."""
+
+    time: float = as_in(HistoryRow)
+    normal_force: float = as_in(HeatRow)
+    approach: float = as_in(HistoryRow)
+    tangential_force: float = column("tangential force", "N", meaning="of the holder, along +x")
+    tangential_displacement: float = column("tangential displacement", "m", "µm", "along +x")
+    max_pressure: float = as_in(HistoryRow)
+    contact_area: float = as_in(HistoryRow)
+    stick_area: float = column("stick area", "m²", "mm²")
+    dissipated: float = as_in(CycleRow)
+    iterations: int = column("Newton iterations")
+    cycle: int = as_in(CycleRow)
+    wear_volume_1: float = as_in(HistoryRow)
+    wear_volume_2: float = as_in(HistoryRow)

@@ -236,7 +236,7 @@ def solution_of(system, contact) -> Solution:
 
 def carried_by(system, contact) -> float:
     """Force against the approach [N]."""
-    (force,) = system.holder.carried(contact.pressure, system.weights)
+    (force,) = system.holder.force_response.T @ (contact.pressure * system.weights)
     return float(force)
 
 
@@ -252,7 +252,7 @@ def by_thermowear(case, mesh) -> Outcome:
     clock.part("contact")
     further = Clock()
     for step in range(1, STEPS + 1):
-        lowered = -step * INCREMENT * system.holder.closing[:, 0]
+        lowered = -step * INCREMENT * system.holder.closure[:, 0]
         states.append(problem.worn(lowered, states[-1]))
     further.part("steps")
     forces = [carried_by(system, state) for state in states[1:]]

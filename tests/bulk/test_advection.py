@@ -63,8 +63,8 @@ def test_velocity_is_that_of_a_rigid_body(center):
         velocity = (-3.0 * (HEIGHT / 2 - center[1]), 3.0 * (LENGTH / 2 - center[0]))
     for axis, mean in enumerate(velocity):
         rise = interpolated(moving.space, lambda x, axis=axis: x[axis])
-        coming_in = times(moving.carried, np.ones(len(rise))) * rise  # not inside: 1 has no slope
-        carried = total(times(moving.carried, rise) - coming_in)
+        coming_in = times(moving.advective, np.ones(len(rise))) * rise  # not inside: 1 has no slope
+        carried = total(times(moving.advective, rise) - coming_in)
         assert carried == pytest.approx(C * mean * LENGTH * HEIGHT, abs=1e-9 * C * LENGTH * HEIGHT)
 
 
@@ -81,7 +81,7 @@ def test_what_a_strip_carries_out(degree, bend, speed):
     normal = ufl.FacetNormal(moving.space.mesh)[0]
     out = fem.assemble_scalar(fem.form(C * speed * ufl.max_value(normal, 0) * field * ds))
     out = total(out)
-    carried = times(moving.carried, rise)
+    carried = times(moving.advective, rise)
     assert total(carried) == pytest.approx(out, abs=1e-12 * C * speed * HEIGHT)
 
 
@@ -91,10 +91,10 @@ def test_a_ring_loses_and_makes_nothing(degree, speed):
     """requirement: heat is conserved on curved cells to 1e-12, stabilised or not."""
     moving = conducting(ring(), degree, turning(speed))
     rise = random_rise(moving)
-    carried = times(moving.carried, rise)
+    carried = times(moving.advective, rise)
     assert abs(total(carried)) < 1e-12 * C * speed * OUTER**2
     assert abs(total(carried)) < 1e-11 * total(np.abs(carried))
-    assert largest(times(moving.carried, np.ones(len(rise)))) < 1e-11 * largest(carried)
+    assert largest(times(moving.advective, np.ones(len(rise)))) < 1e-11 * largest(carried)
 
 
 def test_a_ring_that_turns_keeps_what_is_even_round_it():
@@ -115,7 +115,7 @@ def test_a_ring_that_turns_keeps_what_is_even_round_it():
         ψ.interpolate(turning(1.0).stream(moving.space.mesh))
         even = ψ.x.array[: len(rise)] ** 2 / OUTER**4
         if not moving.advection.stabilised:  # upwinding asks what is conducted too
-            assert largest(times(moving.carried, even)) < 1e-13 * C * speed * OUTER**2
+            assert largest(times(moving.advective, even)) < 1e-13 * C * speed * OUTER**2
 
 
 def test_heat_goes_where_the_body_goes():
@@ -150,8 +150,8 @@ def test_upwind_only_where_cells_are_too_large():
     assert fast.advection.stabilised
     for moving in (slow, fast):  # whatever goes round, none of it adds to T² but the upwinding
         rise = random_rise(moving)
-        work = total(rise * times(moving.carried, rise))
-        size = total(np.abs(rise * times(moving.carried, rise)))
+        work = total(rise * times(moving.advective, rise))
+        size = total(np.abs(rise * times(moving.advective, rise)))
         assert (abs(work) > 1e-3 * size) == moving.advection.stabilised
 
 
@@ -188,8 +188,8 @@ def test_order_of_convergence(degree, cells, fast, step):
         ).array
         if step is not None:
             exact_now = interpolated(space, lambda x: np.exp(-α * x[0]) * np.cos(β * x[1]))
-            heat = heat + moving.stored(exact_now * (1 + step * growth)) / step
-            moving = moving.storing(step)
+            heat = heat + moving.stored_heat(exact_now * (1 + step * growth)) / step
+            moving = moving.implicit_euler(step)
         rise = as_function(space, moving.respond(heat), "rise")
         dx = ufl.Measure("dx", metadata={"quadrature_degree": 2 * degree + 6})
         errors.append(fem.assemble_scalar(fem.form((rise - exact) ** 2 * dx)) ** 0.5)
@@ -206,12 +206,14 @@ def test_what_is_sensed_is_the_adjoint(speed, step):
     """requirement: `sense` is the adjoint of `respond`."""
     moving = conducting(ring(), 3, turning(speed), {"ring_bore": 5.0}, {"ring_rim": 1e3})
     assert moving.advection.stabilised == (speed == 10.0)
-    moving = moving if step is None else moving.storing(step)
+    moving = moving if step is None else moving.implicit_euler(step)
     heat = np.column_stack([random_rise(moving, seed) for seed in range(3)])
     weights = np.column_stack([random_rise(moving, seed) for seed in range(5, 9)])
     forward = total_product(weights, moving.respond(heat))
-    np.testing.assert_allclose(total_product(moving.sense(weights), heat), forward, rtol=1e-10)
-    assert largest(moving.sense(weights) - moving.respond(weights)) > 1e-4 * largest(
+    np.testing.assert_allclose(
+        total_product(moving.adjoint_response(weights), heat), forward, rtol=1e-10
+    )
+    assert largest(moving.adjoint_response(weights) - moving.respond(weights)) > 1e-4 * largest(
         moving.respond(weights)
     )
 
@@ -230,7 +232,7 @@ def test_bodies_that_stay_are_left_alone():
     block = np.unique(still.space.dofmap.list[bodies.cell_tags.find(bodies.body_tag("block"))])
     rise = np.zeros(owned(still.space))
     rise[block] = random_rise(still)[block]
-    np.testing.assert_array_equal(times(moving.carried, rise), 0.0)
+    np.testing.assert_array_equal(times(moving.advective, rise), 0.0)
     for name in ("conductivity", "capacity"):
         before, after = (times(getattr(found, name), rise) for found in (still, moving))
         np.testing.assert_allclose(after, before, rtol=0, atol=1e-14 * largest(before))

@@ -71,14 +71,16 @@ def test_a_strip_that_runs_fast():
 
 def test_what_is_sensed_and_stored():
     """requirement: adjoint solution; heat of a time step equals storage plus cooling."""
-    even = conducting(ring(), 4, FAST, {}, {"ring_bore": 1e3}).storing(0.2)
+    even = conducting(ring(), 4, FAST, {}, {"ring_bore": 1e3}).implicit_euler(0.2)
     rng = np.random.default_rng(3)
     heat, weights = rng.normal(size=(2, owned(even.space), 3))
     forward = COMM.allreduce(weights.T @ even.respond(heat))
-    np.testing.assert_allclose(COMM.allreduce(even.sense(weights).T @ heat), forward, rtol=1e-9)
+    np.testing.assert_allclose(
+        COMM.allreduce(even.adjoint_response(weights).T @ heat), forward, rtol=1e-9
+    )
     one = spot(even)
     rise = even.respond(one)
-    kept = total(even.stored(rise)) / 0.2
+    kept = total(even.stored_heat(rise)) / 0.2
     x, y = places(even)
     cooled = 1 - kept
     bore = rise[np.hypot(x, y) < INNER * (1 + 1e-6)]

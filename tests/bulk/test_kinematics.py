@@ -174,7 +174,7 @@ def test_sliding_across_a_section(model):
     assert moved == pytest.approx(np.array([[0.0, 0.0, -0.05]] * 2))
     slides = sliding(moved, normals, (0.0, -1.0))
     assert slides.speed == pytest.approx(0.05)
-    np.testing.assert_array_equal(slides.pull(normals, 0.3, 0.0), normals)
+    np.testing.assert_array_equal(slides.traction_direction(normals, 0.3, 0.0), normals)
 
 
 @pytest.mark.parametrize("turning", ["2 rad/s", "-2 rad/s"])
@@ -188,7 +188,8 @@ def test_sliding_over_a_turning_disk(turning):
     slides = sliding(velocity, -outward, (0.0, -1.0))
     assert slides.speed == pytest.approx(0.6)
     assert (slides.along * outward).sum(axis=1) == pytest.approx(0.0)
-    dragged = -slides.pull(-outward, 0.3, 0.0) - outward  # friction's part of the traction
+    # friction's part of the traction
+    dragged = -slides.traction_direction(-outward, 0.3, 0.0) - outward
     assert np.sign(dragged[:, 0]) == pytest.approx(-np.sign(motion.angular_velocity))
     assert np.linalg.norm(dragged, axis=1) == pytest.approx(0.3)
 
@@ -197,5 +198,6 @@ def test_transverse_friction_holds_back_on_a_cone():
     """requirement: across the sliding, friction carries part of the load of a conical face."""
     normals = np.array([[0.6, -0.8], [0.0, -1.0], [-0.6, -0.8]])
     velocity = np.tile([0.0, 0.0, 3.0], (3, 1))
-    pull = sliding(velocity, normals, (0.0, -1.0)).pull(normals, 0.25, 0.1)
-    assert pull @ [0.0, -1.0] == pytest.approx([0.8 + 0.1 * 0.6, 1.0, 0.8 + 0.1 * 0.6])
+    slides = sliding(velocity, normals, (0.0, -1.0))
+    down = slides.traction_direction(normals, 0.25, 0.1) @ [0.0, -1.0]
+    assert down == pytest.approx([0.8 + 0.1 * 0.6, 1.0, 0.8 + 0.1 * 0.6])

@@ -7,9 +7,10 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.mechanics.surface_load import surface_pressure
+from thermowear.bulk.mechanics.surface_load import pressure_work
 from thermowear.geometry.meshing.hexes import Lattice, level, mesh_lattice
 from thermowear.geometry.meshing.quads import tagged_bodies
 
@@ -31,7 +32,9 @@ def test_layers_in_series():
     bodies = distribute(bar() if COMM.rank == 0 else None, COMM)
     materials = {"bar": ElasticMaterial(2e9, 0.0), "core": ElasticMaterial(5e10, 0.0)}
     elastic = elasticity(bodies, Spatial(), 2, materials, ["bar_bottom"])
-    u = elastic.solve(surface_pressure(elastic, "bar_top", 3e6)).reshape(-1, 3)
+    u = elastic.solve(nodal_loads(elastic.space, pressure_work(elastic, "bar_top", 3e6))).reshape(
+        -1, 3
+    )
     top = np.abs(elastic.nodes()[:, 2] - 0.04) < 1e-12
     np.testing.assert_allclose(u[top, 2], -3e6 * (0.02 / 2e9 + 0.02 / 5e10), rtol=1e-9)
     parts = bodies.parts_of_cells(np.arange(bodies.mesh.topology.index_map(3).size_local))

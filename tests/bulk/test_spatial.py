@@ -122,6 +122,6 @@ def test_a_turning_disk_drags_the_pad_along(turning):
     normals = np.array([[0.0, 0.0, -1.0]] * 2)
     slides = sliding(Spatial().sliding(points, motion, center), normals, (0.0, 0.0, -1.0))
     np.testing.assert_allclose(slides.speed, [0.6, 1.0])
-    dragged = -(slides.pull(normals, 0.3, 0.0) - normals)
+    dragged = -(slides.traction_direction(normals, 0.3, 0.0) - normals)
     sense = np.sign(motion.angular_velocity)
     np.testing.assert_allclose(dragged, sense * 0.3 * np.array([[0, 1, 0], [-1, 0, 0]]), atol=1e-12)

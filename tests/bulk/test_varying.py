@@ -60,7 +60,7 @@ def test_tangent_is_the_derivative():
     rise, change = 80 + 500 * x[:, 1], 1e-3 * np.sin(40 * x[:, 0])
 
     def flows(values):
-        held = conducting.remainder(values, rise)
+        held = conducting.linearisation_error(values, rise)
         left, right = tangent.conductivity.createVecs()
         left.setArray(values)
         tangent.conductivity.mult(left, right)
@@ -81,13 +81,13 @@ def test_heat_balances():
     conducting = varying()
     free = ~conducting.fixed
     heat = np.where(free, 0.02, 0.0)
-    rise = conducting.given
+    rise = conducting.prescribed
     for _ in range(30):
         tangent = conducting.tangent(rise)
-        rise = tangent.solve(heat + conducting.remainder(rise, rise))
+        rise = tangent.solve(heat + conducting.linearisation_error(rise, rise))
     put_in = conducting.space.mesh.comm.allreduce(heat.sum())
     assert sum(conducting.losses(rise, heat)) == pytest.approx(put_in, rel=1e-10)
-    assert conducting.turnover(rise, heat) == pytest.approx(put_in, rel=1e-10)
+    assert conducting.exchanged_heat(rise, heat) == pytest.approx(put_in, rel=1e-10)
 
 
 @pytest.mark.parametrize("rise", [60.0, 150.0, 400.0])

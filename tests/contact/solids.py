@@ -88,13 +88,13 @@ def elastic_bodies(bodies, degree, poisson_ratio=0.0, expansion=0.0, **supports)
     return elasticity(bodies, Spatial(), degree, materials, ["upper_end", "lower_end"], **supports)
 
 
-def condensed(tagged, degree, poisson_ratio=0.0, force=1.0, drives=None, **supports):
+def condensed(tagged, degree, poisson_ratio=0.0, force=1.0, rigid_modes=None, **supports):
     """The pairing, the holder and the condensed contact of two bodies pressed on each other."""
     bodies, faces = gathered(tagged)
     elastic = elastic_bodies(bodies, degree, poisson_ratio, **supports)
     pairing = pair(*faces, Spatial(), degree + 2)
     trace = gap_trace(elastic.space, pairing)
     basis = pressure_basis(pairing, max(degree - 1, 1))
-    drives = drives or [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
-    holder = hold(pairing, pairing.normals, drives)
+    rigid_modes = rigid_modes or [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
+    holder = hold(pairing, pairing.normals, rigid_modes)
     return pairing, holder, condense(elastic, pairing, trace, trace, basis, holder)

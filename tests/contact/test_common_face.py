@@ -22,7 +22,7 @@ def arc(begin, end, body_inside, softness=1.0, radius=RADIUS, middle=(0.0, RADIU
     nobody = np.zeros(facets, dtype=int)
     outward = np.full(facets, onward if body_inside else -onward)
     soft = np.full(facets, softness)
-    return Face(nodes, outward, nobody, count, nobody, np.zeros(facets, dtype=bool), soft)
+    return Face(nodes, outward, nobody, count, nobody, np.zeros(facets, dtype=bool), softness=soft)
 
 
 def flat(softness):
@@ -32,7 +32,9 @@ def flat(softness):
     nodes[:, :, 0] = np.column_stack([ends[:-1], ends[1:]])
     nobody = np.zeros(10, dtype=int)
     straight = np.zeros(10, dtype=bool)
-    return Face(nodes, -np.ones(10), nobody, np.arange(10), nobody, straight, np.full(10, softness))
+    return Face(
+        nodes, -np.ones(10), nobody, np.arange(10), nobody, straight, softness=np.full(10, softness)
+    )
 
 
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.8, 1.0])

@@ -10,9 +10,9 @@ from thermowear.contact.solvers.lemke import lemke
 from thermowear.contact.solvers.signorini import (
     NoEquilibrium,
     SignoriniSolution,
-    _checked,
     _pressing_by_lemke,
     _Problem,
+    _verified,
     solve_contact,
 )
 
@@ -116,10 +116,10 @@ def test_every_wrong_pressure_is_caught(wrong):
         load = load * (1 + 1e-6)
     solution = SignoriniSolution(λ, np.array([d]), λ != 0)
     with pytest.raises(ComputationError):
-        _checked(_Problem(compliance, gap, modes, load, modes), solution)
+        _verified(_Problem(compliance, gap, modes, load, modes), solution)
     right = SignoriniSolution(np.ones(3), np.array([1.0]), np.ones(3, dtype=bool))
     problem = _Problem(compliance, np.zeros(3), modes, np.array([3.0]), modes)
-    assert _checked(problem, right) is not None
+    assert _verified(problem, right) is not None
 
 
 def test_nearly_parallel_modes_from_a_start_that_cannot_carry():

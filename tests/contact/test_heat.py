@@ -13,7 +13,7 @@ from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators.condensation import influence
-from thermowear.contact.operators.heat import at_rest
+from thermowear.contact.operators.heat import baseline_response
 from thermowear.contact.operators.heat_condensation import (
     bath_matrix,
     condense_distortion,
@@ -52,7 +52,7 @@ def interface(degree, columns, partition=0.5, given=None, cooling=None):
     basis = pressure_basis(pairing, max(degree - 1, 1))
     face = condense_heat(conducting, pairing.weights, basis, traces, shift, partition)
     still = conducting.solve(np.zeros(len(conducting.fixed)))
-    return bodies, pairing, conducting, basis, face, at_rest(still, traces, COMM)
+    return bodies, pairing, conducting, basis, face, baseline_response(still, traces, COMM)
 
 
 def everywhere(pairing, conductance):
@@ -91,7 +91,7 @@ def test_given_end_temperatures():
         face.nodal_heat(state, bath=False),
     )
     cooled, held, carried = conducting.losses(rise, heat)
-    turnover = conducting.turnover(rise, heat)
+    turnover = conducting.exchanged_heat(rise, heat)
     assert abs(held) < 1e-10 * turnover
     assert cooled == carried == 0.0
     through = abs(fluxes[0]) * pairing.weights.sum()
@@ -141,9 +141,12 @@ def test_condensed_distortion_equals_the_bodies_own():
     contact, (per_rise,) = answers.condensed(trace, holder), answers.per_rise
     distortion = condense_distortion(conducting, per_rise, face)
     still = conducting.solve(np.zeros(len(conducting.fixed)))
-    rest = at_rest(still, face.traces, COMM, per_rise)
+    rest = baseline_response(still, face.traces, COMM, per_rise)
     exchange = face.exchange(np.where(pairing.points[:, 0] < 0.08, 3e3, 0.0))
-    per_heat, resting = distortion.per_friction_heat(exchange), distortion.at_rest(exchange, rest)
+    per_heat, resting = (
+        distortion.per_friction_heat(exchange),
+        distortion.baseline_gap(exchange, rest),
+    )
     q = 1e5 * np.exp(-pairing.points[:, 0] / 0.05)
     rise = conducting.solve(face.nodal_heat(exchange.state(q, rest), bath=True))
     right, forces = load.createVecs()

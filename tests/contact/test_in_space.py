@@ -9,7 +9,7 @@ from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators.condensation import condense
-from thermowear.contact.operators.heat import at_rest
+from thermowear.contact.operators.heat import baseline_response
 from thermowear.contact.operators.heat_condensation import bath_matrix, condense_heat
 from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
@@ -93,7 +93,7 @@ def test_uniform_pressure_through_distorted_faces_that_do_not_match(
     assert approach < allowed / 10
 
 
-def plane_contact(model, inner, columns, degree, gap, drives):
+def plane_contact(model, inner, columns, degree, gap, rigid_modes):
     """x, pressure and motion of two blocks in a plane model."""
     tagged = two_blocks(
         inner=inner,
@@ -108,7 +108,7 @@ def plane_contact(model, inner, columns, degree, gap, drives):
     faces = (gather_face(bodies, f"{name}_face") for name in MODULI)
     pairing = pair(*faces, model, degree + 2)
     trace, basis = gap_trace(elastic.space, pairing), pressure_basis(pairing, degree - 1)
-    holder = hold(pairing, pairing.normals, drives)
+    holder = hold(pairing, pairing.normals, rigid_modes)
     contact = condense(elastic, pairing, trace, trace, basis, holder)
     x = pairing.points[:, 0]
     return x, *solved(pairing, holder, contact, gap(x))
@@ -126,11 +126,11 @@ def test_a_slab_between_walls_is_in_plane_strain():
     down.append(RigidMode(rotation((0.0, 0.0, -1.0), (middle, 0.0)), load=moment))
     model = PlaneStrain(SIZE[1])
     x, expected, motion = plane_contact(model, 0.0, 6, 3, gap, down)
-    drives = [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
-    drives.append(RigidMode(rotation((0.0, 1.0, 0.0), (middle, 0.0, 0.0)), load=moment))
+    rigid_modes = [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
+    rigid_modes.append(RigidMode(rotation((0.0, 1.0, 0.0), (middle, 0.0, 0.0)), load=moment))
     walls = tuple(f"{name}_{end}_y" for name in MODULI for end in ("low", "high"))
     tagged = solids(((6, 1, 3), (6, 1, 3)))
-    pairing, holder, contact = condensed(tagged, 3, 0.3, drives=drives, rollers=walls)
+    pairing, holder, contact = condensed(tagged, 3, 0.3, rigid_modes=rigid_modes, rollers=walls)
     found, moved = solved(pairing, holder, contact, gap(pairing.points[:, 0]))
     assert 0.2 < (expected > 0).mean() < 0.9
     nearest = np.abs(pairing.points[:, :1] - x).argmin(axis=1)
@@ -181,7 +181,7 @@ def test_two_slabs_with_friction_heat(h, divisions, place):
     conducting = conduction(bodies, Spatial(), space, materials, {}, cold, bath)
     basis = pressure_basis(pairing, 1)
     face = condense_heat(conducting, pairing.weights, basis, traces, shift, 0.3)
-    resting = at_rest(np.zeros(len(conducting.fixed)), traces, bodies.mesh.comm)
+    resting = baseline_response(np.zeros(len(conducting.fixed)), traces, bodies.mesh.comm)
     made = np.full(len(pairing.weights), 1e5)
     state = face.exchange(np.full(len(made), h)).state(made, resting)
     slab = HEIGHTS, (50.0, 15.0), (0.0, 0.0)

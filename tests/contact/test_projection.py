@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.search.face import Face
-from thermowear.contact.search.projection import ahead, beside, project
+from thermowear.contact.search.projection import overhang, project, ray_intersections
 from thermowear.contact.search.refinement import rule
 
 
@@ -28,7 +28,7 @@ def test_the_way_straight_ahead(height):
     """Above the face and behind it, on its walls and past its kinks: along x nothing changes."""
     x = np.linspace(0.05, 3.95, 40)
     points = np.column_stack([x, np.full(40, height)])
-    facet, t, way = ahead(WALLS, points, np.repeat(DOWN, 40, axis=0))
+    facet, t, way = ray_intersections(WALLS, points, np.repeat(DOWN, 40, axis=0))
     y = np.interp(x, [0.0, 1.0, 3.0, 4.0], [0.0, -0.5, -0.5, 0.0])
     assert way == pytest.approx(height - y, abs=1e-12)
     assert WALLS.points(facet, t) == pytest.approx(np.column_stack([x, y]), abs=1e-12)
@@ -36,7 +36,7 @@ def test_the_way_straight_ahead(height):
 
 def test_the_face_goes_on_straight_beyond_its_ends():
     level = chain([0.0, 1.0], [0.0, 0.0])
-    facet, t, way = ahead(level, np.array([[1.2, 0.1]]), DOWN)
+    facet, t, way = ray_intersections(level, np.array([[1.2, 0.1]]), DOWN)
     assert (facet[0], t[0]) == (0, 1.0)
     assert way == pytest.approx([0.1])
 
@@ -45,7 +45,7 @@ def test_only_the_ends_of_a_face_have_something_beside_them():
     """A point behind a kink is nearest to the kink itself, and yet the face is opposite it."""
     ridge = chain([0.0, 1.0, 2.0], [0.0, 0.5, 0.0])
     points = np.array([[1.0, 0.9], [-0.2, 0.0], [2.0, -0.2]])
-    off = beside(ridge, *project(ridge, points))
+    off = overhang(ridge, *project(ridge, points))
     assert off[0] == 0.0
     assert np.all(off[1:] > 0.05)
 

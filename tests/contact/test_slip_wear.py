@@ -213,14 +213,14 @@ def test_profiles_slide_along_and_lose_no_volume():
     """requirement: W1(x - s), by linear interpolation, and its adjoint with areas."""
     places, areas = np.array([0.0, 1.0, 1.5, 3.0]), np.array([0.5, 0.75, 1.0, 0.75])
     own = WornProfile(places, areas, True)
-    np.testing.assert_allclose(own.seen(0.5) @ (2 * places + 1), [1.0, 2.0, 3.0, 6.0])
+    np.testing.assert_allclose(own.interpolation(0.5) @ (2 * places + 1), [1.0, 2.0, 3.0, 6.0])
     for slip in (0.0, 0.3, -0.7, 10.0):
-        seen, lost = own.seen(slip), own.lost(slip)
+        seen, lost = own.interpolation(slip), own.wear_transfer(slip)
         np.testing.assert_allclose(seen.sum(axis=1), 1.0)
         assert np.all(seen >= 0)
         np.testing.assert_allclose(areas @ lost, areas)
     still = WornProfile(places, areas, False)
-    np.testing.assert_array_equal(still.seen(0.5), np.eye(4))
+    np.testing.assert_array_equal(still.interpolation(0.5), np.eye(4))
 
 
 def test_nothing_wears_in_no_time():

@@ -20,7 +20,7 @@ from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.friction import stick_slip
 from thermowear.contact.friction.loads import Loads
 from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
-from thermowear.contact.friction.stick_slip_state import Status, stored_energy, unloaded
+from thermowear.contact.friction.stick_slip_state import Status, unloaded
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.tangential import condense_tangential
 from thermowear.contact.search.face import gather_face
@@ -151,6 +151,12 @@ def test_loss_is_the_work_of_a_cycle(mindlin):
     fine_lost = contact.weighted.sum(axis=1) @ (fine[-1].dissipated - closed[0].dissipated)
     assert fine_lost == pytest.approx(lost, rel=1e-9)  # constant pressure: the steps do not matter
     assert work([closed[0], *fine]) == pytest.approx(lost, rel=3e-3)
+
+
+def stored_energy(contact, state):
+    """Elastic energy of both bodies."""
+    x = contact.stack(state.pressure, state.shear)
+    return float(x @ contact.compliance @ x) / 2
 
 
 def shears(state):

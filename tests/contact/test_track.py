@@ -73,7 +73,7 @@ def stacked(contacts, start, gains):
     """Coupled contacts stacked into one large contact problem."""
     count, m, k = contacts.modes.shape
     size, motions = count * m, count * k
-    seen = contacts.seen.reshape(size, -1)
+    seen = contacts.gap_per_depth.reshape(size, -1)
     compliance = seen @ gains.transpose(1, 0, 2).reshape(-1, size)
     modes, force_modes = np.zeros((size, motions)), np.zeros((size, motions))
     for j in range(count):

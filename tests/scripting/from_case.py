@@ -83,7 +83,7 @@ def python_model(name, *overrides, apart=False, backwards=False):
         for key in ("cooling", "temperature", "flux", "power"):
             by_name[key] = {surface(s): value for s, value in by_name[key].items()}
         heat = tw.Heat(**by_name)
-    loads = {f.name: getattr(holder, f.name) for f in fields(holder) if f.name != "press"}
+    loads = {f.name: getattr(holder, f.name) for f in fields(holder) if f.name != "load_direction"}
     model = tw.Model(
         [face],
         [tw.Holder(surface(case.geometry.held), **loads)],

@@ -41,17 +41,17 @@ def test_no_wrong_pressure_is_returned(tables, method):
     nothing, everywhere = np.zeros(len(system.weights)), np.ones(len(system.weights), dtype=bool)
     for _ in range(TRIES):
         gap, force = random_problem(system, rng)
-        object.__setattr__(system.holder.drives[0], "load", force)
+        object.__setattr__(system.holder.rigid_modes[0], "load", force)
         conditions = ConditionModel(system).at(0.0, nothing, None, everywhere)
         found = interface_problem(system)._method.solve(
             gap, Slope.diagonal(nothing), None, conditions, None
         )
         p, w = found.pressure, system.weights
         assert p.min() >= 0
-        assert system.holder.carried(p, w)[0] == pytest.approx(force, rel=1e-8)
+        assert system.holder.force_response[:, 0] @ (w * p) == pytest.approx(force, rel=1e-8)
         deflection = system.elastic.solve(system.traction @ (w * p))
         opened = sum_over_ranks(system.comm, system.trace.T @ deflection)
-        left = gap + opened - system.holder.closing @ found.motion
+        left = gap + opened - system.holder.closure @ found.motion
         assert not violated(system, method, p, left, np.ptp(gap) + np.abs(opened).max())
 
 

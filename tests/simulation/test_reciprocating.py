@@ -80,9 +80,9 @@ def test_a_moved_body_is_where_it_should_be():
         assert there.pairing.points[0, 0] == close(-3e-3)
         assert there.pairing.points[-1, 0] == close(7e-3)
         assert there.weights.sum() == close(2 * HALF * THICKNESS)
-        assert there.pull[:, 0] == close(0.2 * way)
-        assert there.pull[:, 1] == close(-1.0)
-        ends = there.holder.closing[[0, -1], 1]
+        assert there.traction_direction[:, 0] == close(0.2 * way)
+        assert there.traction_direction[:, 1] == close(-1.0)
+        ends = there.holder.closure[[0, -1], 1]
         assert np.abs(ends) == close(HALF, rel=1e-12)
         assert there.holder.load == close(system.holder.load)
 

@@ -48,6 +48,10 @@ class Bodies:
         """Local indices of the facets of a surface, ghosts included."""
         return self.facet_tags.find(self.surface_tag(surface))
 
+    def cells(self, *parts: str) -> np.ndarray:
+        """Local indices of the cells of parts of bodies, ghosts included."""
+        return np.concatenate([self.cell_tags.find(self.body_tag(part)) for part in parts])
+
     def surface_measure(self, *surfaces: str) -> ufl.Measure:
         """Measure of integration over surfaces; they share the compiled kernels of a form."""
         facets = np.concatenate([self.facets(surface) for surface in surfaces])
@@ -64,8 +68,7 @@ class Bodies:
         space = fem.functionspace(self.mesh, ("Discontinuous Lagrange", 0))
         function = fem.Function(space)
         for name, value in values.items():
-            cells = self.cell_tags.find(self.body_tag(name))
-            function.x.array[space.dofmap.list[cells].ravel()] = value
+            function.x.array[space.dofmap.list[self.cells(name)].ravel()] = value
         return function
 
 

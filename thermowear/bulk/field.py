@@ -5,6 +5,7 @@ from __future__ import annotations
 import basix
 import basix.ufl
 import numpy as np
+import scipy.sparse as sp
 from dolfinx import fem
 
 from ..compat import coordinate_element
@@ -59,3 +60,12 @@ def as_function(space: fem.FunctionSpace, values: np.ndarray, name: str) -> fem.
     function.x.array[: len(values)] = values
     function.x.scatter_forward()
     return function
+
+
+def without_fixed(loads, fixed: np.ndarray):
+    """Copy of dense or sparse loads, (n_owned,) or (n_owned, m), with zeros in the fixed rows."""
+    if sp.issparse(loads):
+        return (sp.diags(~fixed, dtype=float) @ loads).tocsr()
+    result = np.array(loads, dtype=float)
+    result[fixed] = 0.0
+    return result

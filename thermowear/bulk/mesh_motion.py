@@ -9,11 +9,10 @@ import dolfinx
 import numpy as np
 import ufl
 from dolfinx import fem
-from dolfinx.fem.petsc import assemble_matrix
 
 from ..compat import geometry_dofmap
 from .bodies import created_mesh, in_dolfinx_order
-from .compiled import compiled
+from .compiled import assembled_matrix, multiply
 from .direct_solver import DirectSolver
 from .field import geometry_space, owned
 
@@ -66,13 +65,8 @@ class HarmonicExtension:
             return result
         prescribed = given[self._number]
         prescribed[self._free] = 0.0
-        x, load = self._rows.createVecs()
-        loads = np.empty((len(self._free), given.shape[1]))
-        for column, values in zip(loads.T, prescribed.T, strict=True):
-            x.setArray(values)
-            self._rows.mult(x, load)
-            column[:] = -load.getArray()
-        found = self._solver.solve(loads)
+        loads = [-multiply(self._rows, values) for values in prescribed.T]
+        found = self._solver.solve(np.column_stack(loads))
         for points, values in self._comm.allgather((self._number[self._free], found)):
             result[points] = values
         return result
@@ -123,6 +117,4 @@ def _laplacian(space: fem.FunctionSpace) -> PETSc.Mat:
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     degree = 2 * space.ufl_element().degree + 3
     measure = ufl.dx(metadata={"quadrature_degree": degree})
-    matrix = assemble_matrix(compiled(ufl.inner(ufl.grad(u), ufl.grad(v)) * measure))
-    matrix.assemble()
-    return matrix
+    return assembled_matrix(ufl.inner(ufl.grad(u), ufl.grad(v)) * measure)

@@ -13,11 +13,11 @@ from ..lagrange import equispaced, tabulated
 from .bodies import Bodies
 from .field import as_function, reference_element
 
-_NEWTON_STEPS = 20
+_MAX_NEWTON_STEPS = 20
 _CONTROL_POINT = 0.76
 """Position of the control point, as a fraction of the way from a cell's first corner to its
 midpoint."""
-_LARGEST_BLOCK = 2_000_000
+_BLOCK_SIZE = 2_000_000
 """Largest number of point-cell pairs searched at once."""
 _TOLERANCE = 1e-6
 """Tolerance of the bounding-box search, relative to the size of a cell."""
@@ -120,7 +120,7 @@ class _Field:
 
     def at(self, cells: _Cells, points: np.ndarray) -> np.ndarray:
         """Values at points, evaluated in the containing (or else the nearest) cell."""
-        chunk = max(1, _LARGEST_BLOCK // len(cells.nodes))
+        chunk = max(1, _BLOCK_SIZE // len(cells.nodes))
         parts = [self._at(cells, points[i : i + chunk]) for i in range(0, len(points), chunk)]
         return np.concatenate([np.empty(0), *parts])
 
@@ -147,7 +147,7 @@ class _Field:
     def _places(self, nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Reference coordinates of points in one cell each, by Newton's method."""
         place = np.tile(self._middle, (len(points), 1))
-        for _ in range(_NEWTON_STEPS if len(points) else 0):
+        for _ in range(_MAX_NEWTON_STEPS if len(points) else 0):
             table = tabulated(self._geometry, place, 1)
             off = np.einsum("nk,nki->ni", table[0], nodes) - points
             tangents = np.einsum("dnk,nki->nid", table[1:], nodes)
@@ -167,7 +167,7 @@ class _Field:
 
 def _cells_of(bodies: Bodies, parts: tuple[str, ...]) -> np.ndarray:
     """Cells of a body owned by this rank."""
-    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
+    cells = bodies.cells(*parts)
     return cells[cells < bodies.mesh.topology.index_map(bodies.mesh.topology.dim).size_local]
 
 

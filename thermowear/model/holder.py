@@ -14,7 +14,7 @@ class Holder:
 
     Attributes
     ----------
-    press : tuple of float
+    load_direction : tuple of float
         Unit vector of the load direction, towards body 2.
     pivot : tuple of float
         Centre of rotation [m].
@@ -41,7 +41,7 @@ class Holder:
         Pressures on surfaces of either body, towards the body, constant in time [Pa].
     """
 
-    press: tuple[float, ...]
+    load_direction: tuple[float, ...]
     pivot: tuple[float, ...]
     point: tuple[float, ...]
     free: tuple[str, ...] = ("z",)

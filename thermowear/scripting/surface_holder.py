@@ -68,7 +68,7 @@ class SurfaceHolder:
             in_python(units.SignedMoment, moment, "Holder.moments") for moment in self.moments
         )
         return Holder(
-            press=(0.0,) * (dim - 1) + (-1.0,),
+            load_direction=(0.0,) * (dim - 1) + (-1.0,),
             pivot=pivot,
             point=point,
             free=tuple(self.free),

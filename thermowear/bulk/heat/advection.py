@@ -18,7 +18,7 @@ from ..bodies import Bodies
 from ..field import geometry_space, reference_element
 from ..kinematics import Kinematics, section_measure
 
-_RESOLVED_PECLET = 1.0
+_MAX_RESOLVED_PECLET = 1.0
 """Largest cell Péclet number at which no stabilisation is needed."""
 
 
@@ -42,10 +42,6 @@ class Passage:
     center: tuple[float, float] | None
     speed: float
     spread: bool
-
-    def cells(self, bodies: Bodies) -> np.ndarray:
-        """Local cells of the body, ghosts included."""
-        return np.concatenate([bodies.cell_tags.find(bodies.body_tag(p)) for p in self.parts])
 
     def stream(self, mesh) -> fem.Function:
         """Stream function ψ with ``v = (∂ψ/∂y, -∂ψ/∂x)``, at unit speed."""
@@ -81,7 +77,7 @@ class Advection:
     @property
     def stabilised(self) -> bool:
         """True if some cells exceed the Péclet number that needs no stabilisation."""
-        return self.peclet > _RESOLVED_PECLET
+        return self.peclet > _MAX_RESOLVED_PECLET
 
 
 def advection(
@@ -121,7 +117,7 @@ def advection(
 
     upwind = 0 * δT
     flow = ρc * ufl.dot(v, ufl.grad(T))
-    if peclet > _RESOLVED_PECLET:  # the stabilisation vanishes with the cell Péclet number
+    if peclet > _MAX_RESOLVED_PECLET:  # the stabilisation vanishes with the cell Péclet number
         delay = crossing / (2 * degree) * ufl.min_value(1, number / 3)
         upwind = delay * ufl.dot(v, ufl.grad(δT))
         flow = flow * δT + (flow - k * ufl.div(ufl.grad(T))) * upwind
@@ -149,7 +145,7 @@ def _transit_time(mesh, v):
 
 def _largest(bodies: Bodies, passage: Passage, number) -> float:
     """Largest value of an expression at the midpoints of the moving cells."""
-    mesh, cells = bodies.mesh, passage.cells(bodies)
+    mesh, cells = bodies.mesh, bodies.cells(*passage.parts)
     middle = reference_element(mesh, 1).points.mean(axis=0, keepdims=True)
     expression = fem.Expression(number, middle)
     values = evaluate(expression, mesh, cells) if len(cells) else np.zeros(1)

@@ -16,7 +16,9 @@ from dolfinx import fem
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
+from ..compiled import multiply
 from ..direct_solver import DirectSolver
+from ..field import without_fixed
 from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
 
@@ -37,7 +39,7 @@ class Conduction:
         Conduction, cooling and advection, without given temperatures and without `bath` [W/K].
     cooling : petsc4py.PETSc.Mat
         Cooling term alone: its row sums times the rise give the heat removed [W/K].
-    carried : petsc4py.PETSc.Mat or None
+    advective : petsc4py.PETSc.Mat or None
         Advection term alone, likewise [W/K].
     capacity : petsc4py.PETSc.Mat or None
         Heat capacity matrix, if given by the materials [J/K].
@@ -45,11 +47,11 @@ class Conduction:
         See `conduction`.
     fixed : ndarray of bool, shape (n_owned,)
         Mask of prescribed temperatures.
-    given : ndarray, shape (n_owned,)
+    prescribed : ndarray, shape (n_owned,)
         Prescribed rise in the fixed values, zero elsewhere [K].
     factor : DirectSolver or EvenFactor
         Factorisation of conductivity plus bath, with prescribed temperatures eliminated.
-    lifted : ndarray, shape (n_owned,)
+    prescribed_load : ndarray, shape (n_owned,)
         Nodal heat on the free values equivalent to the prescribed temperatures [W].
     advection : Advection or None
     even : EvenPaths or None
@@ -61,13 +63,13 @@ class Conduction:
     space: fem.FunctionSpace
     conductivity: PETSc.Mat
     cooling: PETSc.Mat
-    carried: PETSc.Mat | None
+    advective: PETSc.Mat | None
     capacity: PETSc.Mat | None
     bath: PETSc.Mat
     fixed: np.ndarray
-    given: np.ndarray
+    prescribed: np.ndarray
     factor: DirectSolver | EvenFactor
-    lifted: np.ndarray
+    prescribed_load: np.ndarray
     advection: Advection | None
     even: EvenPaths | None
     symmetric: bool
@@ -76,7 +78,7 @@ class Conduction:
         """Rise [K] due to nodal heat [W] alone, homogeneous in prescribed values; by columns."""
         return self.factor.solve(self._free(heat))
 
-    def sense(self, weights: np.ndarray) -> np.ndarray:
+    def adjoint_response(self, weights: np.ndarray) -> np.ndarray:
         """Adjoint of `respond` by columns: ``sense(w)·q = w·respond(q)`` for any heat q."""
         if self.symmetric:
             return self.respond(weights)
@@ -84,24 +86,26 @@ class Conduction:
 
     def solve(self, heat: np.ndarray) -> np.ndarray:
         """Rise [K] due to nodal heat [W] and prescribed temperatures."""
-        return self.given + self.respond(heat + self.lifted)
+        return self.prescribed + self.respond(heat + self.prescribed_load)
 
-    def holding(self, given: np.ndarray | None) -> Conduction:
+    def with_prescribed(self, prescribed: np.ndarray | None) -> Conduction:
         """Copy with other prescribed rises (n_owned,), zero in the free values; None: as is [K]."""
-        if given is None:
+        if prescribed is None:
             return self
-        return replace(self, given=given, lifted=-multiply(self.conductivity, given))
+        return replace(
+            self, prescribed=prescribed, prescribed_load=-multiply(self.conductivity, prescribed)
+        )
 
     def per_ambient(self) -> np.ndarray:
         """Nodal heat per rise of ambient and of entering material, (n_owned,) [W/K]."""
         ones = np.ones(len(self.fixed))
         heat = multiply(self.cooling, ones)
-        return heat if self.carried is None else heat + multiply(self.carried, ones)
+        return heat if self.advective is None else heat + multiply(self.advective, ones)
 
-    def storing(self, step: float) -> Conduction:
+    def implicit_euler(self, step: float) -> Conduction:
         """Conduction at the end of an implicit Euler step of time [s].
 
-        Its nodal heat is that of the bodies plus `stored` of the previous state divided by the
+        Its nodal heat is that of the bodies plus `stored_heat` of the previous state divided by the
         step.
 
         Raises
@@ -111,34 +115,34 @@ class Conduction:
         """
         if self.capacity is None:
             raise ComputationError("heat: density and specific heat of the bodies are not given")
-        return self.plus(self.capacity, 1 / step, self.symmetric)
+        return self.with_added(self.capacity, 1 / step, self.symmetric)
 
     def tangent(self, rise: np.ndarray, step: float | None = None) -> Conduction:
         """Linearised conduction at a rise (n_owned,), within a time step [s] if one is given."""
-        return self if step is None else self.storing(step)
+        return self if step is None else self.implicit_euler(step)
 
-    def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray | float:
+    def linearisation_error(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray | float:
         """Difference of tangent (at a reference) and nonlinear conduction of a rise [W]."""
         return 0.0
 
-    def plus(self, matrix: PETSc.Mat, times: float, symmetric: bool) -> Conduction:
+    def with_added(self, matrix: PETSc.Mat, times: float, symmetric: bool) -> Conduction:
         """Add a multiple of a matrix of the same pattern to the conductivity, and factorise."""
-        sum_ = self.conductivity.copy()
-        sum_.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+        total = self.conductivity.copy()
+        total.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         return replace(
             self,
-            conductivity=sum_,
-            factor=factorised(self.space, sum_, self.bath, self.fixed, symmetric, self.even),
-            lifted=-multiply(sum_, self.given),
+            conductivity=total,
+            factor=factorised(self.space, total, self.bath, self.fixed, symmetric, self.even),
+            prescribed_load=-multiply(total, self.prescribed),
             symmetric=symmetric,
         )
 
-    def stored(self, rise: np.ndarray) -> np.ndarray:
+    def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None
         return multiply(self.capacity, rise)
 
-    def rounding(self, rise: np.ndarray) -> float:
+    def balance_scale(self, rise: np.ndarray) -> float:
         """Smallest meaningful scale of the heat balance of a rise (n_owned,) [W].
 
         In bodies of uniform temperature all heat flows are rounding errors.
@@ -147,20 +151,15 @@ class Conduction:
         return _BALANCE_FLOOR * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
 
     def losses(
-        self,
-        rise: np.ndarray,
-        heat: np.ndarray,
-        storage: np.ndarray | None = None,
-        ambient: float = 0.0,
+        self, rise: np.ndarray, heat: np.ndarray, ambient: float = 0.0
     ) -> tuple[float, float, float]:
         """Heat removed by cooling, by prescribed temperatures, and by advection [W].
 
         Parameters
         ----------
         rise, heat : ndarray, shape (n_owned,)
-            A state and its nodal heat, from the contact and from `per_ambient`.
-        storage : ndarray, shape (n_owned,), optional
-            Rate of the nodal stored heat, see `stored` [W].
+            A state and its nodal heat, from the contact and from `per_ambient`, less the rate of
+            the nodal stored heat.
         ambient : float, optional
             Rise of the ambient temperature [K].
 
@@ -169,35 +168,29 @@ class Conduction:
         tuple of float
             Sums over all ranks.
         """
-        cooled, carried = self._per_rise
-        left = self._into_given(rise, heat if storage is None else heat - storage)
-        above = rise - ambient
-        parts = np.array([cooled @ above, left.sum(), carried @ above])
+        cooling_per_rise, advective = self._per_rise
+        excess = rise - ambient
+        into_prescribed = self._into_prescribed(rise, heat).sum()
+        parts = np.array([cooling_per_rise @ excess, into_prescribed, advective @ excess])
         return tuple(sum_over_ranks(self.space.mesh.comm, parts))
 
-    def turnover(
-        self,
-        rise: np.ndarray,
-        heat: np.ndarray,
-        storage: np.ndarray | None = None,
-        ambient: float = 0.0,
-    ) -> float:
+    def exchanged_heat(self, rise: np.ndarray, heat: np.ndarray, ambient: float = 0.0) -> float:
         """Sum of the magnitudes of heat through cooled and prescribed-temperature surfaces [W].
 
         Parameters as in `losses`.
         """
         size = np.abs(multiply(self.cooling, rise - ambient)).sum()
-        size += np.abs(self._into_given(rise, heat if storage is None else heat - storage)).sum()
+        size += np.abs(self._into_prescribed(rise, heat)).sum()
         return float(sum_over_ranks(self.space.mesh.comm, size))
 
-    def _into_given(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
+    def _into_prescribed(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
         """Heat into the values with a prescribed temperature [W]."""
-        if not self._holds:
+        if not self._has_prescribed:
             return np.zeros(0)
         return (heat - multiply(self.conductivity, rise))[self.fixed]
 
     @cached_property
-    def _holds(self) -> bool:
+    def _has_prescribed(self) -> bool:
         """True if any rank has a prescribed temperature. Every rank calls."""
         return any(self.space.mesh.comm.allgather(bool(self.fixed.any())))
 
@@ -207,16 +200,12 @@ class Conduction:
         nothing = np.zeros(len(self.fixed))
         return (
             _column_sums(self.cooling),
-            nothing if self.carried is None else _column_sums(self.carried),
+            nothing if self.advective is None else _column_sums(self.advective),
         )
 
     def _free(self, heat):
         """Nodal heat with zeros in the values with a prescribed temperature."""
-        if sp.issparse(heat):
-            return (sp.diags(~self.fixed, dtype=float) @ heat).tocsr()
-        free = np.array(heat, dtype=float)
-        free[self.fixed] = 0.0
-        return free
+        return without_fixed(heat, self.fixed)
 
 
 def factorised(
@@ -244,10 +233,3 @@ def _column_sums(matrix: PETSc.Mat) -> np.ndarray:
     ones.set(1.0)
     matrix.multTranspose(ones, sums)
     return sums.getArray().copy()
-
-
-def multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:
-    x, y = matrix.createVecs()
-    x.setArray(values)
-    matrix.mult(x, y)
-    return y.getArray().copy()

@@ -38,7 +38,7 @@ class EvenPaths:
 
     def __init__(self, bodies: Bodies, space: fem.FunctionSpace, passage: Passage):
         self._comm, self._dim, count = bodies.mesh.comm, bodies.mesh.topology.dim, owned(space)
-        dofs = np.unique(space.dofmap.list[passage.cells(bodies)])
+        dofs = np.unique(space.dofmap.list[bodies.cells(*passage.parts)])
         self._passing = dofs[dofs < count]
         self._others = np.setdiff1d(np.arange(count), self._passing)
         ψ = fem.Function(space)

@@ -10,14 +10,13 @@ from petsc4py import PETSc
 import numpy as np
 import ufl
 from dolfinx import default_scalar_type, fem
-from dolfinx.fem.petsc import assemble_matrix
 
 from ..bodies import Bodies
-from ..compiled import compiled
+from ..compiled import assembled_matrix, multiply
 from ..field import owned
 from ..kinematics import Kinematics, section_measure
 from .advection import Passage, advection
-from .conduction import Conduction, factorised, multiply
+from .conduction import Conduction, factorised
 from .even_paths import EvenPaths
 
 
@@ -75,22 +74,19 @@ def conduction(
     elif passage is not None:
         moving = advection(bodies, kinematics, space, passage, conductivities, capacities)
     measure = section_measure(mesh, degree)
-    conductivity = _assembled(conducting(bodies, kinematics, conductivities, degree)(T, δT))
-    cooled = conductivity.duplicate()
-    cooled.zeroEntries()
-    for form in transferring(bodies, kinematics, cooling):
-        assemble_matrix(cooled, compiled(form(T, δT)), [])  # type: ignore[arg-type]  # dispatches on it
-    cooled.assemble()
+    conductivity = assembled_matrix(conducting(bodies, kinematics, conductivities, degree)(T, δT))
+    transfers = [form(T, δT) for form in transferring(bodies, kinematics, cooling)]
+    cooled = assembled_matrix(*transfers, pattern=conductivity)
     structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
     conductivity.axpy(1.0, cooled, structure)
     carried, test = None, δT
     if moving is not None:
-        carried, test = _assembled(moving.carried), δT + moving.upwind
+        carried, test = assembled_matrix(moving.carried), δT + moving.upwind
         conductivity.axpy(1.0, carried, structure)
     capacity = None
     if len(capacities) == len(materials):
         density = bodies.per_body(capacities) * T * test
-        capacity = _assembled(kinematics.integral(mesh, density, measure))
+        capacity = assembled_matrix(kinematics.integral(mesh, density, measure))
 
     fixed, values = given_rises(bodies, space, given, even)
     factor = factorised(space, conductivity, bath, fixed, carried is None, even)
@@ -110,12 +106,6 @@ def conduction(
         even,
         symmetric=carried is None,
     )
-
-
-def _assembled(form) -> PETSc.Mat:
-    matrix = assemble_matrix(compiled(form))
-    matrix.assemble()
-    return matrix
 
 
 def conducting(

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import ufl
 from dolfinx import default_scalar_type, fem
 
 from ..bodies import Bodies
-from ..compiled import assembled, compiled
+from ..compiled import nodal_loads
 from ..kinematics import Kinematics
 
 
@@ -28,6 +27,8 @@ def surface_heat(
     flux : float
         Heat flux into the body [W/m²].
     """
-    δT, q = ufl.TestFunction(space), fem.Constant(bodies.mesh, default_scalar_type(flux))
-    form = kinematics.integral(bodies.mesh, q * δT, bodies.surface_measure(surface))
-    return assembled(compiled(form))
+    q, measure = (
+        fem.Constant(bodies.mesh, default_scalar_type(flux)),
+        bodies.surface_measure(surface),
+    )
+    return nodal_loads(space, lambda δT: kinematics.integral(bodies.mesh, q * δT, measure))

@@ -18,17 +18,16 @@ from petsc4py import PETSc
 import numpy as np
 import ufl
 from dolfinx import fem
-from dolfinx.fem.petsc import assemble_matrix
 
 from ..bodies import Bodies
-from ..compiled import compiled
+from ..compiled import assembled_matrix, multiply
 from ..field import as_function
 from ..kinematics import Kinematics, section_measure
 from ..mechanics.elasticity import Elasticity
 from .conduction import Conduction
 from .heat_equation import ThermalMaterial
 
-_SAME = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+_SAME_PATTERN = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
 
 
 class PropertyMultiplier(Protocol):
@@ -42,21 +41,28 @@ class PropertyMultiplier(Protocol):
 
 
 @dataclass(frozen=True)
-class VaryingConductivity:
-    """Temperature-dependent conductivity of one part of a body.
+class VaryingProperty:
+    """Temperature-dependent property of one part of a body.
 
     Attributes
     ----------
+    part : str
     matrix : petsc4py.PETSc.Mat
-        Conductivity matrix of the part at its constant conductivity [W/K].
+        Matrix of the part at its constant property: conductivity [W/K], or nodal forces of thermal
+        expansion [N/K].
     factor : PropertyMultiplier
     ambient : float
         Ambient temperature [K].
     """
 
+    part: str
     matrix: PETSc.Mat
     factor: PropertyMultiplier
     ambient: float
+
+
+class VaryingConductivity(VaryingProperty):
+    """Temperature-dependent conductivity of one part of a body."""
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
         """``Θ - T`` at the nodes, for their rise (n_owned,) [K]."""
@@ -67,24 +73,8 @@ class VaryingConductivity:
         return self.factor.value(self.ambient + rise) - 1
 
 
-@dataclass(frozen=True)
-class VaryingExpansion:
-    """Temperature-dependent thermal expansion of one part of a body.
-
-    Attributes
-    ----------
-    part : str
-    matrix : petsc4py.PETSc.Mat
-        Matrix of nodal forces of the part at its constant expansion [N/K].
-    factor : PropertyMultiplier
-    ambient : float
-        Ambient temperature [K].
-    """
-
-    part: str
-    matrix: PETSc.Mat
-    factor: PropertyMultiplier
-    ambient: float
+class VaryingExpansion(VaryingProperty):
+    """Temperature-dependent thermal expansion of one part of a body."""
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
         """Additional rise at the nodes that causes the same strain at constant expansion [K]."""
@@ -111,21 +101,21 @@ class VaryingConduction(Conduction):
         change = self.conductivity.duplicate()
         change.zeroEntries()
         for part in self.parts:
-            change.axpy(1.0, _columns(part.matrix, part.slope(rise)), _SAME)
+            change.axpy(1.0, _columns(part.matrix, part.slope(rise)), _SAME_PATTERN)
         if step is not None:
             assert self.capacity is not None
-            change.axpy(1 / step, self.capacity, _SAME)
-        return self.plus(change, 1.0, symmetric=not self.parts and self.symmetric)
+            change.axpy(1 / step, self.capacity, _SAME_PATTERN)
+        return self.with_added(change, 1.0, symmetric=not self.parts and self.symmetric)
 
-    def remainder(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    def linearisation_error(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:
         tangents = ((p.matrix, p.slope(reference) * rise - p.excess(rise)) for p in self.parts)
         return _products(len(rise), tangents)
 
-    def losses(self, rise, heat, storage=None, ambient=0.0):
-        return super().losses(rise, heat + self._excess_flow(rise), storage, ambient)
+    def losses(self, rise, heat, ambient=0.0):
+        return super().losses(rise, heat + self._excess_flow(rise), ambient)
 
-    def turnover(self, rise, heat, storage=None, ambient=0.0):
-        return super().turnover(rise, heat + self._excess_flow(rise), storage, ambient)
+    def exchanged_heat(self, rise, heat, ambient=0.0):
+        return super().exchanged_heat(rise, heat + self._excess_flow(rise), ambient)
 
     def _excess_flow(self, rise: np.ndarray) -> np.ndarray:
         """Negative of the nodal heat flow in excess of that at constant conductivity [W]."""
@@ -148,9 +138,8 @@ def varying_conduction(
     for name, factor in factors.items():
         alone = {part: (part == name) * m.conductivity for part, m in materials.items()}
         flow = bodies.per_body(alone) * ufl.inner(ufl.grad(T), ufl.grad(δT))
-        matrix = assemble_matrix(compiled(kinematics.integral(mesh, flow, measure)))
-        matrix.assemble()
-        parts.append(VaryingConductivity(matrix, factor, ambient))
+        matrix = assembled_matrix(kinematics.integral(mesh, flow, measure))
+        parts.append(VaryingConductivity(name, matrix, factor, ambient))
     constant = {field.name: getattr(conducting, field.name) for field in fields(Conduction)}
     return VaryingConduction(**constant, parts=tuple(parts))
 
@@ -202,8 +191,5 @@ def _products(rows: int, pairs: Iterable[tuple[PETSc.Mat, np.ndarray]]) -> np.nd
     """Sum of matrix-vector products, owned rows."""
     result = np.zeros(rows)
     for matrix, values in pairs:
-        x, y = matrix.createVecs()
-        x.setArray(values)
-        matrix.mult(x, y)
-        result += y.getArray()
+        result += multiply(matrix, values)
     return result

@@ -11,12 +11,11 @@ import scipy.sparse as sp
 import ufl
 from dolfinx import fem
 from dolfinx import mesh as dmesh
-from dolfinx.fem.petsc import assemble_matrix
 
 from ..bodies import Bodies
-from ..compiled import compiled
+from ..compiled import assembled_matrix, multiply
 from ..direct_solver import DirectSolver
-from ..field import lagrange_space, owned
+from ..field import lagrange_space, owned, without_fixed
 from ..kinematics import Kinematics, section_measure
 
 
@@ -80,18 +79,11 @@ class Elasticity:
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
-        if sp.issparse(loads):
-            return self.factor.solve((sp.diags(~self.fixed, dtype=float) @ loads).tocsr())
-        supported = np.array(loads, dtype=float)
-        supported[self.fixed] = 0.0
-        return self.factor.solve(supported)
+        return self.factor.solve(without_fixed(loads, self.fixed))
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Support reactions [N], owned rows; zero in the free values."""
-        x, y = self.stiffness.createVecs()
-        x.setArray(displacement)
-        self.stiffness.mult(x, y)
-        return np.where(self.fixed, y.getArray() - loads, 0.0)
+        return np.where(self.fixed, multiply(self.stiffness, displacement) - loads, 0.0)
 
     def compressibility(self) -> float:
         """Smallest ``1 - 2 ν = μ / (λ + μ)`` of the bodies; every rank calls."""
@@ -100,9 +92,7 @@ class Elasticity:
 
     def owned_by(self, *parts: str) -> np.ndarray:
         """Mask of the owned nodes that belong to parts of bodies, shape (n_owned / gdim,)."""
-        tags = self.bodies.cell_tags
-        cells = np.concatenate([tags.find(self.bodies.body_tag(part)) for part in parts])
-        nodes = np.unique(self.space.dofmap.list[cells])
+        nodes = np.unique(self.space.dofmap.list[self.bodies.cells(*parts)])
         belongs = np.zeros(self.space.dofmap.index_map.size_local, dtype=bool)
         belongs[nodes[nodes < len(belongs)]] = True
         return belongs
@@ -119,17 +109,11 @@ class Elasticity:
 
         Over all bodies, or over the part `only`.
         """
-        mesh, modulus = self.bodies.mesh, self.lame[2]
-        if only is not None:
-            modulus = self.bodies.per_body({only: 1.0})
-            modulus.x.array[:] *= self.lame[2].x.array
         rise, δu = ufl.TrialFunction(temperature_space), ufl.TestFunction(self.space)
-        ε = self.kinematics.strain(mesh, δu)
-        measure = section_measure(mesh, temperature_space.ufl_element().degree)
-        form = self.kinematics.integral(mesh, modulus * rise * ufl.tr(ε), measure)
-        matrix = assemble_matrix(compiled(form))
-        matrix.assemble()
-        return matrix
+        if only is not None:
+            rise = self.bodies.per_body({only: 1.0}) * rise
+        degree = temperature_space.ufl_element().degree
+        return assembled_matrix(self.thermal_work(rise, δu, degree))
 
 
 def elasticity(
@@ -163,8 +147,7 @@ def elasticity(
     lame = _lame(bodies, kinematics, materials)
     u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
     form = _virtual_work(mesh, kinematics, lame, u, δu, section_measure(mesh, degree))
-    stiffness = assemble_matrix(compiled(form))
-    stiffness.assemble()
+    stiffness = assembled_matrix(form)
     fixed = fixed_values(bodies, kinematics, space, clamped, {0: symmetric, 1: rollers})
     factor = DirectSolver(supported(stiffness, fixed), dim=mesh.topology.dim)
     return Elasticity(bodies, kinematics, space, stiffness, fixed, factor, lame)

@@ -16,10 +16,9 @@ from petsc4py import PETSc
 import numpy as np
 import ufl
 from dolfinx import fem
-from dolfinx.fem.petsc import assemble_matrix
 
 from ...parallel import sum_over_ranks
-from ..compiled import assembled, compiled
+from ..compiled import assembled, assembled_matrix, compiled, multiply, nodal_loads
 from ..direct_solver import DirectSolver
 from ..field import owned
 from .elasticity import supported
@@ -84,8 +83,7 @@ class EnrichedProblem:
 
     def loads(self, form: Callable) -> np.ndarray:
         """Load vector of a linear form, given as a function of its test function."""
-        tests = ufl.TestFunction(self.space), ufl.TestFunction(self.surplus)
-        return np.concatenate([assembled(compiled(form(test))) for test in tests])
+        return np.concatenate([nodal_loads(space, form) for space in (self.space, self.surplus)])
 
     def residual(self, field: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Residual of a field under loads, zero in fixed values."""
@@ -143,11 +141,7 @@ class _SurplusBlock:
     """Sum of bilinear forms on the surplus; solved directly in 2D, iteratively in 3D."""
 
     def __init__(self, forms: Sequence, fixed: np.ndarray, dim: int):
-        matrix = assemble_matrix(compiled(forms[0]))
-        for form in forms[1:]:
-            assemble_matrix(matrix, compiled(form), [])  # type: ignore[arg-type]  # dispatches on it
-        matrix.assemble()
-        self._matrix = supported(matrix, fixed)
+        self._matrix = supported(assembled_matrix(*forms), fixed)
         self._factor = DirectSolver(self._matrix, dim=dim) if dim == 2 else None
         self._iteration = None if dim == 2 else _conjugate_gradients(self._matrix)
 
@@ -163,10 +157,7 @@ class _SurplusBlock:
 
     def forces(self, surplus: np.ndarray) -> np.ndarray:
         """Forces of a surplus that vanishes in fixed values. Every rank calls."""
-        x, b = self._matrix.createVecs()
-        x.setArray(surplus)
-        self._matrix.mult(x, b)
-        return b.getArray().copy()
+        return multiply(self._matrix, surplus)
 
 
 def _conjugate_gradients(matrix: PETSc.Mat) -> PETSc.KSP:

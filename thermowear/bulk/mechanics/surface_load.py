@@ -1,4 +1,4 @@
-"""Uniformly distributed forces and pressures on named surfaces."""
+"""Uniformly distributed forces and pressures on named surfaces, for `compiled.nodal_loads`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from ..compiled import assembled, compiled
 from ..surface_area import surface_area
 from .elasticity import Elasticity
 
@@ -36,15 +35,3 @@ def pressure_work(elastic: Elasticity, surface: str, pressure: float) -> Callabl
     mesh, measure = elastic.bodies.mesh, elastic.bodies.surface_measure(surface)
     traction = -fem.Constant(mesh, PETSc.ScalarType(pressure)) * ufl.FacetNormal(mesh)
     return lambda δu: elastic.kinematics.integral(mesh, ufl.inner(traction, δu), measure)
-
-
-def surface_load(elastic: Elasticity, surface: str, force: np.ndarray) -> np.ndarray:
-    """Nodal loads of a force on a surface [N], owned rows; see `surface_work`. Every rank calls."""
-    work = surface_work(elastic, surface, force)
-    return assembled(compiled(work(ufl.TestFunction(elastic.space))))
-
-
-def surface_pressure(elastic: Elasticity, surface: str, pressure: float) -> np.ndarray:
-    """Nodal loads of a pressure [Pa], along the inward normal [N], owned rows. Every rank calls."""
-    work = pressure_work(elastic, surface, pressure)
-    return assembled(compiled(work(ufl.TestFunction(elastic.space))))

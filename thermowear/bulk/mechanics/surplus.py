@@ -17,14 +17,15 @@ import basix.ufl
 import numpy as np
 from dolfinx import fem
 
+from ..field import reference_element
+
 _LEGENDRE = basix.PolynomialType.legendre
-_ZERO = 1e-10
+_RANK_TOLERANCE = 1e-10
 
 
 def surplus_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
     """Surplus space over `field.lagrange_space` of a degree, scalar or vector-valued."""
-    cell = mesh.basix_cell()
-    element = _element(basix.CellType[cell] if isinstance(cell, str) else cell, degree)
+    element = _element(reference_element(mesh, 1).cell_type, degree)
     if components:
         element = basix.ufl.blocked_element(element, shape=(components,))
     return fem.functionspace(mesh, element)
@@ -79,7 +80,7 @@ def _vanishing(cell: basix.CellType, degree: int, inside: bool) -> np.ndarray:
         nodes = np.vstack([nodes, np.asarray(high.points)[boundary]])
     values = np.asarray(basix.tabulate_polynomials(_LEGENDRE, cell, degree + 1, nodes))
     left, sizes, _ = np.linalg.svd(values)
-    return left[:, np.count_nonzero(sizes > _ZERO * sizes[0]) :].T
+    return left[:, np.count_nonzero(sizes > _RANK_TOLERANCE * sizes[0]) :].T
 
 
 @cache

@@ -10,10 +10,10 @@ from ...errors import ComputationError
 from ..solvers.lemke import lemke
 from .coulomb import CoulombProblem, CoulombSolution, jacobian, residual, scales, violated
 
-_ITERATIONS = 30
-_CONVERGED = 1e-12
-_SPRINGS = (1e-3, 1e-2, 1e-1, 1.0)  # relative to the contact stiffness, tried in turn
-_SPRUNG_SOLUTIONS = 20
+_MAX_ITERATIONS = 30
+_TOLERANCE = 1e-12
+_SPRING_RATIOS = (1e-3, 1e-2, 1e-1, 1.0)  # relative to the contact stiffness, tried in turn
+_MAX_SPRING_UPDATES = 20
 
 
 def solve_directly(
@@ -68,9 +68,9 @@ def _from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
 
 
 def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> CoulombSolution | None:
-    for iteration in range(_ITERATIONS + 1):
+    for iteration in range(_MAX_ITERATIONS + 1):
         error = residual(problem, unknowns)
-        small = np.all(np.abs(error) <= _CONVERGED * scales(problem, unknowns))
+        small = np.all(np.abs(error) <= _TOLERANCE * scales(problem, unknowns))
         if small and iteration > 0:  # at least one step: only rounding errors remain
             pressure, shear, sticking = problem.projection(unknowns)
             motion = unknowns[len(problem.offset) :]
@@ -117,7 +117,7 @@ def _sticking(problem: CoulombProblem, closed: np.ndarray) -> np.ndarray | None:
 
 
 def _better_starts(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]:
-    for part in _SPRINGS:
+    for part in _SPRING_RATIOS:
         yield from _sprung(problem, closed, part)
     start = _complementary(problem)
     if start is not None:
@@ -136,7 +136,7 @@ def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterato
     spring = part * np.diag(modes.T @ np.linalg.solve(problem.compliance, modes))
     softer = problem.compliance + modes / spring @ modes.T
     anchor, start = np.zeros(len(force)), None
-    for _ in range(_SPRUNG_SOLUTIONS):
+    for _ in range(_MAX_SPRING_UPDATES):
         offset = problem.offset - modes @ (anchor + force / spring)
         sprung = CoulombProblem(softer, offset, modes[:, :0], force[:0], problem.friction)
         start = _sticking(sprung, closed) if start is None else start

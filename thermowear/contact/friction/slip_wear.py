@@ -36,20 +36,20 @@ class WornProfile:
         Positions of the basis functions, arc length along the face, which runs along +x [m].
     areas : ndarray, shape (m,)
         Areas of the basis functions [m²].
-    moves : float
+    shift_per_slip : float
         Displacement along the common face per unit slip.
     """
 
     places: np.ndarray
     areas: np.ndarray
-    moves: float
+    shift_per_slip: float
 
-    def seen(self, slip: float) -> np.ndarray:
+    def interpolation(self, slip: float) -> np.ndarray:
         """Matrix L: coefficients at the contact from those of the profile at a slip [m], (m, m)."""
         m = len(self.places)
-        if self.moves * slip == 0.0:
+        if self.shift_per_slip * slip == 0.0:
             return np.eye(m)
-        places, at = self.places, self.places - self.moves * slip
+        places, at = self.places, self.places - self.shift_per_slip * slip
         upper = np.clip(np.searchsorted(places, at), 1, m - 1)
         part = (at - places[upper - 1]) / (places[upper] - places[upper - 1])
         part = np.clip(part, 0.0, 1.0)
@@ -57,9 +57,9 @@ class WornProfile:
         result[rows, upper - 1], result[rows, upper] = 1 - part, part
         return result
 
-    def lost(self, slip: float) -> np.ndarray:
+    def wear_transfer(self, slip: float) -> np.ndarray:
         """Coefficients of the profile from the depths worn at the contact, shape (m, m)."""
-        return self.seen(slip).T * self.areas / self.areas[:, None]
+        return self.interpolation(slip).T * self.areas / self.areas[:, None]
 
 
 def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> WornProfile:
@@ -75,8 +75,8 @@ def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> WornProfile:
     """
     areas = weighted.sum(axis=0)
     share = float(pairing.weights @ pairing.share / pairing.weights.sum())
-    moves = 1.0 - share if body == 0 else -share
-    return WornProfile((pairing.position @ weighted) / areas, areas, moves)
+    shift_per_slip = 1.0 - share if body == 0 else -share
+    return WornProfile((pairing.position @ weighted) / areas, areas, shift_per_slip)
 
 
 @dataclass(frozen=True)
@@ -103,11 +103,11 @@ class SlipWear:
     duration: float
     repeats: int = 1
 
-    def seen(self, worn: np.ndarray, slid: float) -> np.ndarray:
+    def depth_at_contact(self, worn: np.ndarray, displacement: float) -> np.ndarray:
         """Total worn depth at the contact from the profiles, shape (n_wearing, m) to (m,) [m]."""
         depth = np.zeros(worn.shape[1])
         for own, profile in zip(worn, self.profiles, strict=True):
-            depth += profile.seen(slid) @ own
+            depth += profile.interpolation(displacement) @ own
         return depth
 
     def depths(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
@@ -152,43 +152,49 @@ class IncrementWear:
         State at the start of the increment.
     areas : ndarray, shape (m,)
         Areas of the basis functions [m²].
-    lost : ndarray, shape (n_wearing, m, m)
+    wear_transfer : ndarray, shape (n_wearing, m, m)
         Coefficients in the profile of each body from its depth worn at the contact.
-    opens : ndarray, shape (n_wearing, m, m)
+    depth_per_wear : ndarray, shape (n_wearing, m, m)
         Depth of the profile at the contact from the depth worn at the contact.
     """
 
     wear: SlipWear
     before: StickSlipState
     areas: np.ndarray
-    lost: np.ndarray
-    opens: np.ndarray
+    wear_transfer: np.ndarray
+    depth_per_wear: np.ndarray
 
     @classmethod
     def at(
-        cls, wear: SlipWear, before: StickSlipState, areas: np.ndarray, slid: float
+        cls, wear: SlipWear, before: StickSlipState, areas: np.ndarray, displacement: float
     ) -> IncrementWear:
         """Wear of an increment that ends at a displacement of body 1 along +x [m]."""
         m = len(areas)
-        lost = np.reshape([profile.lost(slid) for profile in wear.profiles], (-1, m, m))
-        seen = np.reshape([profile.seen(slid) for profile in wear.profiles], (-1, m, m))
-        return cls(wear, before, areas, lost, seen @ lost)
+        wear_transfer = np.reshape(
+            [profile.wear_transfer(displacement) for profile in wear.profiles], (-1, m, m)
+        )
+        interpolation = np.reshape(
+            [profile.interpolation(displacement) for profile in wear.profiles], (-1, m, m)
+        )
+        return cls(wear, before, areas, wear_transfer, interpolation @ wear_transfer)
 
     def value(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
         """Depth at the contact, shape (m,) [m]."""
         depths = self.wear.depths(pressure, self._slip(last))
-        return np.einsum("bmn,bn->m", self.opens, depths)
+        return np.einsum("bmn,bn->m", self.depth_per_wear, depths)
 
     def slope(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
         """Derivative of the depth, shape (m, m) [m/Pa]."""
         slopes = self.wear.slopes(pressure, self._slip(last))
-        return np.einsum("bmn,bn->mn", self.opens, slopes)
+        return np.einsum("bmn,bn->mn", self.depth_per_wear, slopes)
 
     def profiles(self, after: StickSlipState) -> np.ndarray:
         """Worn coefficients in the profile of each body, shape (n_wearing, m) [m]."""
         depths = self.wear.depths(after.pressure, self._slip(after))
-        return np.einsum("bmn,bn->bm", self.lost, depths)
+        return np.einsum("bmn,bn->bm", self.wear_transfer, depths)
 
     def _slip(self, after: StickSlipState) -> np.ndarray:
         """Magnitude of the weighted mean slip of the increment, shape (m,) [m]."""
-        return after.moves * np.linalg.norm(after.slip - self.before.slip, axis=1) / self.areas
+        return (
+            after.not_sticking * np.linalg.norm(after.slip - self.before.slip, axis=1) / self.areas
+        )

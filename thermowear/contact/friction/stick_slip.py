@@ -23,9 +23,9 @@ from .loads import Loads
 from .slip_wear import IncrementWear, SlipWear
 from .stick_slip_state import Status, StickSlipState, unloaded
 
-_HALVINGS = 6
-_SETTLED = 1e-6  # of the depth worn in the increment
-_UNSETTLED = (
+_MAX_HALVINGS = 6
+_WEAR_TOLERANCE = 1e-6  # of the depth worn in the increment
+_NOT_CONVERGED = (
     "contact: the iteration for slip and wear of an increment did not converge; take smaller "
     "increments, or let each computed cycle stand for fewer (analysis.jump)"
 )
@@ -64,8 +64,10 @@ def advance(
         raise ValueError(f"loads: the holder has {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
     mean = contact.weighted.T @ contact.basis  # mass matrix: weak values from coefficients
-    slid = _slid(state, loads)
-    worn = state.worn.sum(axis=0) if wear is None else wear.seen(state.worn, slid)
+    displacement = _tangential_displacement(state, loads)
+    worn = (
+        state.worn.sum(axis=0) if wear is None else wear.depth_at_contact(state.worn, displacement)
+    )
 
     def solve(lost: np.ndarray, slope: np.ndarray, guess: StickSlipState) -> StickSlipState:
         """Solve contact with the worn depths ``lost + slope λ``."""
@@ -74,19 +76,19 @@ def advance(
         compliance[: len(slope), : len(slope)] += mean @ slope
         return _solved(contact, friction, state, guess, loads, compliance, gap)
 
-    nothing = np.zeros_like(mean)
-    after = solve(nothing[0], nothing, state)
+    no_slope = np.zeros_like(mean)
+    after = solve(no_slope[0], no_slope, state)
     if wear is None:
         return after
-    by_slip = IncrementWear.at(wear, state, mean.sum(axis=1), slid)
+    by_slip = IncrementWear.at(wear, state, mean.sum(axis=1), displacement)
     if by_slip.value(after.pressure, after).any():
-        after = newton_with_wear(solve, by_slip, after, _SETTLED, _UNSETTLED)
+        after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
     depths = by_slip.profiles(after)
     lost = wear.repeats * (after.dissipated - state.dissipated)
     return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
 
 
-def _slid(state: StickSlipState, loads: Loads) -> float:
+def _tangential_displacement(state: StickSlipState, loads: Loads) -> float:
     """Tangential displacement of the holder: given at the end, or the current one if free [m]."""
     if len(state.motion) < 2:
         return 0.0
@@ -189,7 +191,7 @@ def follow(
         origin = state
         for step in range(1, increments + 1):
             loads = corner.after(origin.force, origin.motion, step / increments)
-            state = _halving(contact, friction, state, loads, wear, _HALVINGS)
+            state = _halving(contact, friction, state, loads, wear, _MAX_HALVINGS)
             yield state
 
 

@@ -60,7 +60,7 @@ class StickSlipState:
     iterations: int = 0
 
     @property
-    def moves(self) -> np.ndarray:
+    def not_sticking(self) -> np.ndarray:
         """True for coefficients that slipped or were open in the last increment, shape (m,)."""
         return self.status != Status.STICK
 
@@ -74,9 +74,3 @@ def unloaded(contact: FrictionalContact, wearing: int = 0) -> StickSlipState:
     return StickSlipState(
         np.zeros(m), coefficients, coefficients, still, still, free, points, np.zeros(n), worn
     )
-
-
-def stored_energy(contact: FrictionalContact, state: StickSlipState) -> float:
-    """Elastic energy ``xᵀ A x / 2`` of both bodies [J]."""
-    x = contact.stack(state.pressure, state.shear)
-    return float(x @ contact.compliance @ x) / 2

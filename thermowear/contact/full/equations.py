@@ -23,6 +23,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import block_diag
 
+from ...bulk.compiled import multiply
+from ...bulk.field import without_fixed
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
@@ -62,7 +64,7 @@ class _Motions:
 
     Attributes
     ----------
-    modes, carried : ndarray, shape (n, k)
+    modes, weighted_force_modes : ndarray, shape (n, k)
         Modes R, and w T.
     springs : ndarray, shape (k, k)
         Spring stiffness; zero for the holder.
@@ -70,7 +72,7 @@ class _Motions:
     """
 
     modes: np.ndarray
-    carried: np.ndarray
+    weighted_force_modes: np.ndarray
     springs: np.ndarray
     load: np.ndarray
 
@@ -119,7 +121,7 @@ class ContactEquations:
         self.elastic, self.pairing = elastic, pairing
         self.modes, self.stiffness = modes, stiffness
         self.nitsche, self.theta = stress is not None, theta if stress is not None else 0
-        self.carried = pairing.weights[:, None] * force_modes
+        self.weighted_force_modes = pairing.weights[:, None] * force_modes
         symmetry = "none"
         if traction is trace and (theta == 1 or not self.nitsche):
             symmetry = "symmetric" if self.nitsche else "definite"
@@ -143,40 +145,26 @@ class ContactEquations:
 
     def residual(self, loading: Loading, displacement: np.ndarray, motion: np.ndarray) -> Residual:
         """Residual of both equations, and the pressure."""
-        at, moving = self._at_points(displacement), self._motions(loading)
-        stress = at.stress + loading.thermal_traction
-        opening = at.closing + self.stiffness * (loading.gap - moving.modes @ motion)
+        point_values, motions = self._at_points(displacement), self._motions(loading)
+        stress = point_values.stress + loading.thermal_traction
+        opening = point_values.closing + self.stiffness * (loading.gap - motions.modes @ motion)
         trial = -self._softening(loading) * (opening + loading.thermal_traction)
         pressure = np.maximum(trial, 0.0)
         contact = self._work @ (self._scale * pressure)
         contact += self.theta * (self._stress @ (self._scale * stress))
         elastic = self.elastic_forces(displacement)
-        loads = np.where(self.elastic.fixed, 0.0, loading.nodal_loads)
+        loads = without_fixed(loading.nodal_loads, self.elastic.fixed)
         forces = elastic - contact - loads
-        balance = moving.carried.T @ pressure + moving.springs @ motion - moving.load
+        balance = (
+            motions.weighted_force_modes.T @ pressure + motions.springs @ motion - motions.load
+        )
         size = self._largest(elastic, contact, loads)
-        carried = np.abs(moving.carried).T @ pressure + np.abs(moving.load)
+        carried = np.abs(motions.weighted_force_modes).T @ pressure + np.abs(motions.load)
         own = slice(len(loading.load), None)
         carried[own] = carried[own].max(initial=0.0)  # some of them carry no force
         relative = self._largest(forces) / size if size != 0.0 else 0.0
         off = np.divide(np.abs(balance), carried, out=np.zeros(len(balance)), where=carried > 0)
         return Residual(trial, forces, balance, float(np.max([relative, *off])))
-
-    def jacobian(
-        self,
-        loading: Loading,
-        active: np.ndarray,
-        displacement: np.ndarray,
-        motion: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Directional derivative of both residuals, for given active points."""
-        at, moving = self._at_points(displacement), self._motions(loading)
-        change = self.stiffness * (moving.modes @ motion) - at.closing
-        pressure = active * self._softening(loading) * change
-        contact = self._work @ (self._scale * pressure)
-        contact += self.theta * (self._stress @ (self._scale * at.stress))
-        balance = moving.carried.T @ pressure + moving.springs @ motion
-        return self.elastic_forces(displacement) - contact, balance
 
     def newton_step(
         self, loading: Loading, residual: Residual, active: np.ndarray
@@ -190,25 +178,29 @@ class ContactEquations:
         ComputationError
             If the symmetric variant of Nitsche's method is found unstable.
         """
-        pressing, moving = active * self._softening(loading), self._motions(loading)
-        column = -self._work @ (pressing[:, None] * self.pairing.weights[:, None] * moving.modes)
+        pressing, motions = active * self._softening(loading), self._motions(loading)
+        column = -self._work @ (pressing[:, None] * self.pairing.weights[:, None] * motions.modes)
         factor = self._matrix.factor(self._scale * pressing)
         # residual with pressure at exactly the active points, tension included
-        switched = np.where(active, residual.pressure, 0.0) - np.maximum(residual.pressure, 0.0)
-        forces = residual.forces - self._work @ (self._scale * switched)
-        balance = residual.balance + moving.carried.T @ switched
+        tension = np.where(active, residual.pressure, 0.0) - np.maximum(residual.pressure, 0.0)
+        forces = residual.forces - self._work @ (self._scale * tension)
+        balance = residual.balance + motions.weighted_force_modes.T @ tension
         solved = factor.solve(np.column_stack([-forces, column]))
         step, column = solved[:, 0], solved[:, 1:]
-        if moving.modes.shape[1] == 0:
+        if motions.modes.shape[1] == 0:
             return step, np.zeros(0)
-        per_motion = pressing[:, None] * (self.stiffness[:, None] * moving.modes)
-        row = -moving.carried.T * pressing
-        seen = self._sum(self._closing.T @ solved)
-        schur = moving.carried.T @ per_motion + moving.springs - row @ seen[:, 1:]
+        per_motion = pressing[:, None] * (self.stiffness[:, None] * motions.modes)
+        row = -motions.weighted_force_modes.T * pressing
+        closing_response = self._sum(self._closing.T @ solved)
+        schur = (
+            motions.weighted_force_modes.T @ per_motion
+            + motions.springs
+            - row @ closing_response[:, 1:]
+        )
         size = np.sqrt(np.abs(np.diag(schur)))
         if size.min() == 0.0 or np.linalg.cond(schur / np.outer(size, size)) > 1e12:
             return None
-        motion = np.linalg.solve(schur, -balance - row @ seen[:, 0])
+        motion = np.linalg.solve(schur, -balance - row @ closing_response[:, 0])
         return step - column @ motion, motion
 
     def along(self, loading: Loading, residual: Residual, step: np.ndarray, motion: np.ndarray):
@@ -221,30 +213,27 @@ class ContactEquations:
         factors, pressure, change : ndarray, shape (n,)
             ``factors · max(0, pressure + length * change)`` is the rest.
         """
-        at, moving = self._at_points(step), self._motions(loading)
-        change = self.stiffness * (moving.modes @ motion) - at.closing
+        point_values, motions = self._at_points(step), self._motions(loading)
+        change = self.stiffness * (motions.modes @ motion) - point_values.closing
         change *= self._softening(loading)
-        factors = moving.carried @ motion - self._scale * at.work
+        factors = motions.weighted_force_modes @ motion - self._scale * point_values.work
         now = np.maximum(residual.pressure, 0.0)
         constant = self._sum(step @ residual.forces) + motion @ residual.balance - factors @ now
-        slope = self._sum(step @ self.elastic_forces(step)) + motion @ moving.springs @ motion
-        slope -= self.theta * (at.stress @ (self._scale * at.stress))
+        slope = self._sum(step @ self.elastic_forces(step)) + motion @ motions.springs @ motion
+        slope -= self.theta * (point_values.stress @ (self._scale * point_values.stress))
         return constant, slope, factors, residual.pressure, change
 
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Elastic nodal forces K u, zero at supported degrees of freedom."""
-        x, y = self.elastic.stiffness.createVecs()
-        x.setArray(displacement)
-        self.elastic.stiffness.mult(x, y)
-        return np.where(self.elastic.fixed, 0.0, y.getArray())
+        return without_fixed(multiply(self.elastic.stiffness, displacement), self.elastic.fixed)
 
     def _motions(self, loading: Loading) -> _Motions:
         own, k = loading.deflection, len(loading.load)
         if own is None:
-            return _Motions(self.modes, self.carried, np.zeros((k, k)), loading.load)
+            return _Motions(self.modes, self.weighted_force_modes, np.zeros((k, k)), loading.load)
         return _Motions(
             np.hstack([self.modes, own.modes]),
-            np.hstack([self.carried, self.pairing.weights[:, None] * own.modes]),
+            np.hstack([self.weighted_force_modes, self.pairing.weights[:, None] * own.modes]),
             block_diag(np.zeros((k, k)), own.stiffness),
             np.concatenate([loading.load, np.zeros(own.modes.shape[1])]),
         )
@@ -266,7 +255,7 @@ class ContactEquations:
 
 def _held(elastic: Elasticity, matrix: sp.csr_matrix) -> sp.csr_matrix:
     """Transposed trace without supported rows and without rounding noise."""
-    held = sp.csr_matrix(sp.diags((~elastic.fixed).astype(float)) @ matrix)
+    held = without_fixed(matrix, elastic.fixed)
     held.data[np.abs(held.data) < 1e-14 * np.abs(held.data).max(initial=0.0)] = 0.0
     held.eliminate_zeros()
     return held

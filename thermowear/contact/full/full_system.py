@@ -20,19 +20,19 @@ from .equations import ContactEquations
 from .loading import Loading
 
 _TOLERANCE = 1e-10
-_LOOSE = 1e-8
+_STAGNATION_TOLERANCE = 1e-8
 """Relative residual accepted when rounding prevents a further reduction."""
-_ITERATIONS = 25
-_SMALLEST_STEP = 1 / 16
-_COARSE = 24
+_MAX_ITERATIONS = 25
+_MIN_LOAD_STEP = 1 / 16
+_COARSE_FUNCTIONS = 24
 """Number of pressure functions of the coarse problem that gives the initial guess."""
-_ZOOMS, _ENOUGH = 3, 5
+_MAX_REFINEMENTS, _MIN_FUNCTIONS = 3, 5
 """Largest number of coarse refinements, and functions across the contact that suffice."""
-_INNER = 0.15
+_ACTIVE_PRESSURE_RATIO = 0.15
 """Fraction of the coarse peak pressure above which points are active at first: too small a contact
 gains all penetrating points at once, while too large a contact loses only its outermost points in
 each iteration."""
-_SLACK = 0.9
+_MAX_WORK_RATIO = 0.9
 """Largest ratio of the residual work at the end of a full step to that at its start."""
 
 
@@ -111,13 +111,13 @@ class FullContact(ContactEquations):
         if self._sum(wrong):
             raise ComputationError("contact: gap, loads or temperatures are not finite")
         if np.any(loading.load != 0.0):
-            scale = np.abs(self.carried).sum(axis=0)
+            scale = np.abs(self.weighted_force_modes).sum(axis=0)
             scale[scale == 0.0] = 1.0
-            forces, target = self.carried / scale, loading.load / scale
+            forces, target = self.weighted_force_modes / scale, loading.load / scale
             # nnls treats small columns as zero: only their directions matter
             size = np.linalg.norm(forces, axis=1, keepdims=True)
             directions = forces[size[:, 0] > 0] / size[size[:, 0] > 0]
-            if nnls(directions.T, target / np.linalg.norm(target))[1] > _LOOSE:
+            if nnls(directions.T, target / np.linalg.norm(target))[1] > _STAGNATION_TOLERANCE:
                 raise ComputationError("contact: the load cannot be carried by the contact zone")
 
     def _guess(self, loading: Loading) -> FullSolution:
@@ -125,11 +125,11 @@ class FullContact(ContactEquations):
         own = self.elastic.solve(loading.nodal_loads)
         s = self.pairing.position
         start, end = s[0], s[-1]
-        for _ in range(_ZOOMS):
+        for _ in range(_MAX_REFINEMENTS):
             found = self._coarse(loading, own, start, end)
             pressing = s[found.active]
-            width = (end - start) / _COARSE
-            if np.ptp(pressing) > _ENOUGH * width:
+            width = (end - start) / _COARSE_FUNCTIONS
+            if np.ptp(pressing) > _MIN_FUNCTIONS * width:
                 break
             start, end = pressing.min() - width, pressing.max() + width
         return found
@@ -151,14 +151,14 @@ class FullContact(ContactEquations):
                 weighted.T @ self.gap(loading, own),
                 weighted.T @ self.modes,
                 loading.load,
-                force_modes=hats.T @ self.carried,
+                force_modes=hats.T @ self.weighted_force_modes,
             )
         except ComputationError:  # Newton's method reports the cause, if any
             return FullSolution(own, np.zeros(len(loading.load)), everywhere, 0)
         pressure = hats @ coarse.coefficients
         if not pressure.any():
             return FullSolution(own, coarse.motion, everywhere, 0)
-        inner = np.maximum(pressure - _INNER * pressure.max(), 0.0)
+        inner = np.maximum(pressure - _ACTIVE_PRESSURE_RATIO * pressure.max(), 0.0)
         return FullSolution(own + fields @ coarse.coefficients, coarse.motion, inner, 0)
 
     def _held(self, loading: Loading, displacement: np.ndarray) -> np.ndarray:
@@ -167,10 +167,13 @@ class FullContact(ContactEquations):
         Newton's method from all springs closed: with one motion each step ends at or beyond the
         solution, so convergence is monotonic.
         """
-        gap, springs = self.gap(loading, displacement), self.carried * self.stiffness[:, None]
+        gap, springs = (
+            self.gap(loading, displacement),
+            self.weighted_force_modes * self.stiffness[:, None],
+        )
         closed: np.ndarray = np.ones(len(gap), dtype=bool)
         motion = np.zeros(len(loading.load))
-        for _ in range(_ITERATIONS):
+        for _ in range(_MAX_ITERATIONS):
             matrix, right = springs[closed].T @ self.modes[closed], springs[closed].T @ gap[closed]
             motion = np.linalg.lstsq(matrix, loading.load + right, rcond=None)[0]
             pressing = self.modes @ motion > gap
@@ -184,10 +187,10 @@ class FullContact(ContactEquations):
         own = 0 if loading.deflection is None else loading.deflection.modes.shape[1]
         u, d = start.displacement, np.append(start.motion, np.zeros(own))
         before = np.inf
-        for iteration in range(_ITERATIONS):
+        for iteration in range(_MAX_ITERATIONS):
             residual = self.residual(loading, u, d)
             stuck = iteration > 0 and residual.relative > 0.1 * before
-            if residual.relative <= (_LOOSE if stuck else _TOLERANCE):
+            if residual.relative <= (_STAGNATION_TOLERANCE if stuck else _TOLERANCE):
                 pressure = np.maximum(residual.pressure, 0.0)
                 held = d[: len(loading.load)]
                 return FullSolution(u, held, pressure, iteration), iteration
@@ -201,11 +204,11 @@ class FullContact(ContactEquations):
                 continue
             length = step_length(*self.along(loading, residual, *step))
             u, d = u + length * step[0], d + length * step[1]
-        return None, _ITERATIONS
+        return None, _MAX_ITERATIONS
 
     def _in_steps(self, loading: Loading) -> FullSolution:
         """Apply the load in steps, halved where Newton's method fails."""
-        share, step, spent = 0.0, 0.5, _ITERATIONS
+        share, step, spent = 0.0, 0.5, _MAX_ITERATIONS
         solution = None
         while share < 1.0:
             part = loading.part(min(1.0, share + step))
@@ -213,12 +216,12 @@ class FullContact(ContactEquations):
             spent += iterations
             if found is not None:
                 solution, share, step = found, min(1.0, share + step), 2 * step
-            elif step < _SMALLEST_STEP:
+            elif step < _MIN_LOAD_STEP:
                 raise ComputationError(self._advice())
             else:
                 step /= 2
         assert solution is not None
-        return FullSolution(solution.displacement, solution.motion, solution.pressure, spent)
+        return replace(solution, iterations=spent)
 
     def _advice(self) -> str:
         change = "make contact.penalty smaller"
@@ -233,7 +236,7 @@ class FullContact(ContactEquations):
 def _hats(position: np.ndarray, start: float, end: float) -> np.ndarray:
     """Piecewise linear functions of equal width on part of the face, shape (n, m)."""
     count = int(np.sum((position >= start) & (position <= end)))
-    knots = np.linspace(start, end, max(2, min(_COARSE, count // 3)))
+    knots = np.linspace(start, end, max(2, min(_COARSE_FUNCTIONS, count // 3)))
     distance = np.abs(position[:, None] - knots) / (knots[1] - knots[0])
     hats = np.maximum(1.0 - distance, 0.0)
     return hats[:, hats.sum(axis=0) > 0.5]  # some may contain too few points
@@ -255,7 +258,7 @@ def step_length(
         return constant + slope * a + pressing @ factors
 
     start, whole = work(np.array([0.0, 1.0]))
-    if start >= 0.0 or whole <= _SLACK * abs(start):
+    if start >= 0.0 or whole <= _MAX_WORK_RATIO * abs(start):
         return 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
         kinks = -pressure / change

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,11 +39,10 @@ class Loading:
     def part(self, share: float) -> Loading:
         """Scaled loading; for a given approach the faces are in first contact at share 0."""
         lift = 0.0 if len(self.load) else max(0.0, -float(self.gap.min()))
-        return Loading(
-            self.gap + (1 - share) * lift,
-            share * self.load,
-            self.compliance,
-            share * self.nodal_loads,
-            share * self.thermal_traction,
-            self.deflection,
+        return replace(
+            self,
+            gap=self.gap + (1 - share) * lift,
+            load=share * self.load,
+            nodal_loads=share * self.nodal_loads,
+            thermal_traction=share * self.thermal_traction,
         )

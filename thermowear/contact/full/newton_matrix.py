@@ -12,9 +12,9 @@ from ...bulk.mechanics.elasticity import Elasticity, supported
 from ...errors import ComputationError
 from ..operators.traces import distributed
 
-_SAME = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
-_SUBSET = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
-_DIFFERENT = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
+_SAME_PATTERN = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+_SUBSET_PATTERN = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
+_DIFFERENT_PATTERN = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
 
 
 class NewtonMatrix:
@@ -49,16 +49,16 @@ class NewtonMatrix:
             columns = distributed(elastic.space, stress)
             rows = _transposed(columns)
             _scale_rows(rows, subtracted)
-            fixed.axpy(-1.0, columns.matMult(rows), _DIFFERENT)
+            fixed.axpy(-1.0, columns.matMult(rows), _DIFFERENT_PATTERN)
         self._columns = distributed(elastic.space, work)
         self._rows = _transposed(distributed(elastic.space, closing))
         self._weighted_rows = self._rows.copy()
         self._product = self._columns.matMult(self._weighted_rows)
         self._matrix = fixed.copy()
-        self._matrix.axpy(1.0, self._product, _DIFFERENT)
+        self._matrix.axpy(1.0, self._product, _DIFFERENT_PATTERN)
         self._constant = self._matrix.copy()
         self._constant.zeroEntries()
-        self._constant.axpy(1.0, fixed, _SUBSET)
+        self._constant.axpy(1.0, fixed, _SUBSET_PATTERN)
         self._factor: DirectSolver | None = None
         self._factors = np.zeros(0)
 
@@ -72,11 +72,11 @@ class NewtonMatrix:
         """
         if self._factor is not None and np.array_equal(self._factors, factors):
             return self._factor
-        self._rows.copy(self._weighted_rows, _SAME)
+        self._rows.copy(self._weighted_rows, _SAME_PATTERN)
         _scale_rows(self._weighted_rows, factors)
         self._columns.matMult(self._weighted_rows, self._product)
-        self._constant.copy(self._matrix, _SAME)
-        self._matrix.axpy(1.0, self._product, _SUBSET)
+        self._constant.copy(self._matrix, _SAME_PATTERN)
+        self._matrix.axpy(1.0, self._product, _SUBSET_PATTERN)
         if self._factor is None:
             self._factor = DirectSolver(self._matrix, self._symmetry)
         else:

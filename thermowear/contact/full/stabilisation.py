@@ -24,8 +24,8 @@ over degrees 1 to 8, both cell types and all models."""
 PENALTY = 10.0
 """Default penalty, on the scale of γ0: approach and mean pressures of a cylinder are then within
 2e-3 (degree 1) to 1e-4 (degree 8) of the limit, and degree 1 does not yet oscillate."""
-_TOO_STIFF = 1e4
-_RIGID = 1e-9
+_MAX_STABILITY_MARGIN = 1e4
+_REGULARISATION = 1e-9
 
 
 def nitsche_stiffness(elastic: Elasticity, pairing: Pairing, gamma: float = GAMMA) -> np.ndarray:
@@ -81,7 +81,7 @@ def nitsche_warning(stiffness: np.ndarray, limit: np.ndarray, theta: int) -> str
             f"contact.gamma is {1 / margin.min():.2g} times too small: Nitsche's method may be "
             f"unstable. Multiply it by {2 / margin.min():.2g} or more, or set contact.theta = -1"
         )
-    if margin.max() > _TOO_STIFF:
+    if margin.max() > _MAX_STABILITY_MARGIN:
         return (
             f"contact.gamma is {margin.max():.1g} times what stability needs: the method acts like "
             "a stiff penalty and the equations are ill conditioned. Make it smaller"
@@ -141,7 +141,7 @@ def _cell_stiffness(elastic: Elasticity, cell: int) -> np.ndarray:
     trace = (np.sqrt(λ * weights)[:, None, None] * divergence).reshape(len(weights), -1)
     strain = strain.reshape(-1, trace.shape[1])
     stiffness = strain.T @ strain + trace.T @ trace
-    stiffness[np.diag_indices_from(stiffness)] += _RIGID * stiffness.max()
+    stiffness[np.diag_indices_from(stiffness)] += _REGULARISATION * stiffness.max()
     return stiffness
 
 

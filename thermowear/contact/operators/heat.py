@@ -19,10 +19,10 @@ from ...serialise import serialisable
 _REGULARITY = 1e-12
 """Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux
 functions independent that differ only where no heat crosses."""
-_DIRECT = 10.0
+_MAX_DIRECT_RATIO = 10.0
 """Largest conductance treated point by point, relative to that of a layer of the bodies as thick as
 the support of a basis function."""
-_NO_WAY_OUT = (
+_NO_HEAT_SINK = (
     "heat: a body is heated that nothing cools and that touches nothing, so that it has no steady "
     "temperature; give it heat.cooling, heat.temperature, or heat.gap_conductance"
 )
@@ -113,13 +113,13 @@ class InterfaceHeat:
             If a heated body has no heat sink.
         """
         n, s, (Θ1, Θ2) = len(self.weights), self.shift, self.response
-        own = _DIRECT * s * self.basis.shape[1]
-        direct = np.minimum(conductance, own)
-        passing, held_back = _parts(own, conductance - direct)
-        resisting = held_back * (passing + _REGULARITY * held_back) / own
-        crossing = passing[:, None] * self.basis
+        limit = _MAX_DIRECT_RATIO * s * self.basis.shape[1]
+        direct = np.minimum(conductance, limit)
+        passing_fraction, blocked_fraction = _parts(limit, conductance - direct)
+        resistance = blocked_fraction * (passing_fraction + _REGULARITY * blocked_fraction) / limit
+        crossing = passing_fraction[:, None] * self.basis
         jump = crossing.T * self.weights
-        resisted = (self.basis.T * (self.weights * resisting)) @ self.basis
+        resisted = (self.basis.T * (self.weights * resistance)) @ self.basis
         sizes = np.sqrt(np.diag(resisted) + np.einsum("in,nm,mi->i", jump, Θ1 + Θ2, crossing))
         crossing, jump = crossing / sizes, jump / sizes[:, None]
         identity, count = np.eye(n), len(sizes)
@@ -133,7 +133,7 @@ class InterfaceHeat:
         try:
             rise = np.linalg.solve(matrix, np.eye(2 * n + count, 2 * n))
         except np.linalg.LinAlgError:
-            raise ComputationError(_NO_WAY_OUT) from None
+            raise ComputationError(_NO_HEAT_SINK) from None
         across = direct[:, None] * (rise[n : 2 * n] - rise[:n]) + crossing @ rise[2 * n :]
         return HeatExchange(self, rise[: 2 * n], across)
 
@@ -164,36 +164,36 @@ class HeatExchange:
     rise: np.ndarray
     crossing: np.ndarray
 
-    def state(self, friction_heat: np.ndarray, resting: BaselineResponse) -> ThermalState:
+    def state(self, friction_heat: np.ndarray, baseline: BaselineResponse) -> ThermalState:
         """Temperatures and fluxes due to friction heat [W/m²] at the points, shape (n,)."""
-        alone = self._alone @ friction_heat + np.concatenate(resting.rise)
-        T1, T2 = np.split(self.rise @ alone, 2)
-        crossing = self.crossing @ alone
+        uncoupled_rise = self._uncoupled_per_heat @ friction_heat + np.concatenate(baseline.rise)
+        T1, T2 = np.split(self.rise @ uncoupled_rise, 2)
+        crossing = self.crossing @ uncoupled_rise
         f = self.interface.partition
         return ThermalState(
             (T1, T2), (f * friction_heat + crossing, (1 - f) * friction_heat - crossing)
         )
 
-    def into_bath(self, alone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def into_bath(self, uncoupled_rise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Exchanged heat and heat of the bath, into both bodies, from rises without exchange."""
-        T1, T2 = np.split(self.rise @ alone, 2)
-        crossing, s = self.crossing @ alone, self.interface.shift
+        T1, T2 = np.split(self.rise @ uncoupled_rise, 2)
+        crossing, s = self.crossing @ uncoupled_rise, self.interface.shift
         return crossing + s * T1, s * T2 - crossing
 
     @cached_property
     def crossing_per_friction_heat(self) -> np.ndarray:
         """Heat from body 2 to body 1 per friction heat, shape (n, n)."""
-        return self.crossing @ self._alone
+        return self.crossing @ self._uncoupled_per_heat
 
     @cached_property
     def per_friction_heat(self) -> tuple[np.ndarray, np.ndarray]:
         """Heat into both bodies per friction heat, bath included, shape (n, n)."""
-        first, second = self.into_bath(self._alone)
+        first, second = self.into_bath(self._uncoupled_per_heat)
         f, identity = self.interface.partition, np.eye(len(self.interface.weights))
         return f * identity + first, (1 - f) * identity + second
 
     @cached_property
-    def _alone(self) -> np.ndarray:
+    def _uncoupled_per_heat(self) -> np.ndarray:
         """Rises of both faces without exchange per friction heat, shape (2 n, n)."""
         f, (Θ1, Θ2) = self.interface.partition, self.interface.response
         return np.vstack([f * Θ1, (1 - f) * Θ2])
@@ -216,21 +216,21 @@ class ThermalDistortion:
         first, second = exchange.per_friction_heat
         return self.per_flux[0] @ first + self.per_flux[1] @ second
 
-    def at_rest(self, exchange: HeatExchange, resting: BaselineResponse) -> np.ndarray:
+    def baseline_gap(self, exchange: HeatExchange, baseline: BaselineResponse) -> np.ndarray:
         """Weak gap of coupled faces without friction heat, shape (m,)."""
-        assert resting.opening is not None
-        first, second = exchange.into_bath(np.concatenate(resting.rise))
-        return self.per_flux[0] @ first + self.per_flux[1] @ second + resting.opening
+        assert baseline.opening is not None
+        first, second = exchange.into_bath(np.concatenate(baseline.rise))
+        return self.per_flux[0] @ first + self.per_flux[1] @ second + baseline.opening
 
 
-def _parts(own: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _parts(limit: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Fractions ``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
     inverse = np.full(len(conductance), np.inf)
-    np.divide(own, conductance, out=inverse, where=conductance > 0)
-    return 1 / (1 + inverse), own / (own + conductance)
+    np.divide(limit, conductance, out=inverse, where=conductance > 0)
+    return 1 / (1 + inverse), limit / (limit + conductance)
 
 
-def at_rest(
+def baseline_response(
     rise: np.ndarray,
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     comm,

@@ -54,7 +54,7 @@ def condense_distortion(
     """
     mesh, found = conduction.space.mesh, []
     for columns in blocks(per_rise.shape[1], mesh.topology.dim):
-        adjoint = conduction.sense(per_rise[:, columns])
+        adjoint = conduction.adjoint_response(per_rise[:, columns])
         found.append([(trace.T @ adjoint).T * face.weights for trace in face.traces])
     first, second = (
         sum_over_ranks(mesh.comm, np.vstack(rows)) for rows in zip(*found, strict=True)

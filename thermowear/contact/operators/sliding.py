@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_LEVEL = 1e-9
+_ZERO_LENGTH = 1e-9
 """Relative length, by the largest vector, below which a vector is rounding noise."""
 
 
@@ -20,7 +20,7 @@ class Sliding:
     along : ndarray, shape (n, gdim)
         Unit sliding direction e of body 1, components in the section.
     across : ndarray, shape (n, gdim)
-        Unit tangent e_2 across the sliding, along which the press pushes body 1 down the face; zero
+        Unit tangent e_2 across the sliding, along which the load pushes body 1 down the face; zero
         where the face is level in that direction.
     """
 
@@ -28,7 +28,7 @@ class Sliding:
     along: np.ndarray
     across: np.ndarray
 
-    def pull(
+    def traction_direction(
         self, normals: np.ndarray, friction: float | np.ndarray, transverse: float
     ) -> np.ndarray:
         """Direction ``n + mu e + mu_d e_2``; the traction on body 1 is minus the pressure times it.
@@ -51,7 +51,9 @@ class Sliding:
         return normals + friction * self.along + transverse * self.across
 
 
-def sliding(velocity: np.ndarray, normals: np.ndarray, press: tuple[float, ...]) -> Sliding:
+def sliding(
+    velocity: np.ndarray, normals: np.ndarray, load_direction: tuple[float, ...]
+) -> Sliding:
     """Split the sliding velocity into speed and directions.
 
     Parameters
@@ -60,14 +62,14 @@ def sliding(velocity: np.ndarray, normals: np.ndarray, press: tuple[float, ...])
         Velocity of body 1 relative to body 2 [m/s], see `bulk.kinematics`.
     normals : ndarray, shape (n, gdim)
         Outward unit normals of body 1.
-    press : tuple of float
+    load_direction : tuple of float
         Unit vector of the load direction of body 1.
     """
     gdim = normals.shape[1]
     n = _spatial(normals)
     speed = np.linalg.norm(velocity, axis=1)
     along = _unit(_tangential(velocity, n), float(speed.max(initial=0.0)))
-    down = _tangential(np.broadcast_to(_spatial(np.array([press])), n.shape), n)
+    down = _tangential(np.broadcast_to(_spatial(np.array([load_direction])), n.shape), n)
     down = down - np.einsum("ni,ni->n", down, along)[:, None] * along
     return Sliding(speed, along[:, :gdim], _unit(down, 1.0)[:, :gdim])
 
@@ -83,5 +85,5 @@ def _tangential(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
 def _unit(vectors: np.ndarray, largest: float) -> np.ndarray:
     """Unit vectors; zero for those negligible against the largest one."""
     sizes = np.linalg.norm(vectors, axis=1, keepdims=True)
-    counts = sizes > _LEVEL * largest
+    counts = sizes > _ZERO_LENGTH * largest
     return np.divide(vectors, sizes, out=np.zeros_like(vectors), where=counts)

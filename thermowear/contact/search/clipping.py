@@ -13,19 +13,19 @@ from functools import lru_cache
 
 import numpy as np
 
-from .common_face import FACING, met
+from .common_face import MAX_FACING_COSINE, opposite_parameters
 from .projection import within
 from .surface import Surface
 
-_SAME = 1e-9
+_TOLERANCE = 1e-9
 """Relative size of a facet below which corners coincide with each other or with a side."""
-_STRAIGHT = 3e-3
+_MAX_EDGE_DEVIATION = 3e-3
 """Largest deviation, relative to a facet, of an edge that is treated as straight."""
-_AROUND = 0.1
+_MARGIN = 0.1
 """Margin round a facet, relative to it, in which outlines are resolved as finely as inside."""
-_STEPS = 4
+_EDGE_SEGMENTS = 4
 """Number of segments of a curved edge."""
-_RING = ((0, 0), (1, 0), (1, 1), (0, 1))
+_CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a facet in anticlockwise order."""
 
 
@@ -45,8 +45,8 @@ def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.nda
     """
     facets, parts, outlines = [], [], _outlines(face_2)
     for facet in range(len(face_1.nodes)):
-        facing = face_2.middle_normals @ face_1.middle_normals[facet] <= FACING
-        for ring in _drawn(face_1, facet, outlines.only(facing)):
+        facing = face_2.middle_normals @ face_1.middle_normals[facet] <= MAX_FACING_COSINE
+        for ring in _nearby_outlines(face_1, facet, outlines.only(facing)):
             pieces = _quadrilaterals(_clipped(ring))
             facets += [facet] * len(pieces)
             parts += pieces
@@ -60,34 +60,36 @@ class _Outlines:
     Attributes
     ----------
     points, normals : ndarray, shape (n, 4, steps + 1, 3)
-    soft : ndarray, shape (n, 4, steps + 1)
+    softness : ndarray, shape (n, 4, steps + 1)
         Softness of the body at the points [1/Pa].
     """
 
     points: np.ndarray
     normals: np.ndarray
-    soft: np.ndarray
+    softness: np.ndarray
 
     def only(self, chosen: np.ndarray) -> _Outlines:
-        return _Outlines(self.points[chosen], self.normals[chosen], self.soft[chosen])
+        return _Outlines(self.points[chosen], self.normals[chosen], self.softness[chosen])
 
 
 def _outlines(face: Surface) -> _Outlines:
-    ring = np.array(_RING, dtype=float)
-    part = np.arange(_STEPS + 1)[:, None] / _STEPS
+    ring = np.array(_CORNERS, dtype=float)
+    part = np.arange(_EDGE_SEGMENTS + 1)[:, None] / _EDGE_SEGMENTS
     t = ring[:, None] + part * (np.roll(ring, -1, axis=0) - ring)[:, None]
-    shape, places = (len(face.nodes), 4, _STEPS + 1), t.reshape(-1, 2)
+    shape, places = (len(face.nodes), 4, _EDGE_SEGMENTS + 1), t.reshape(-1, 2)
     facet, at = np.repeat(np.arange(shape[0]), len(places)), np.tile(places, (shape[0], 1))
     points, normals = face.points(facet, at), face.smooth_normals(facet, at)[0]
     return _Outlines(
-        points.reshape(*shape, 3), normals.reshape(*shape, 3), face.soft(facet).reshape(shape)
+        points.reshape(*shape, 3),
+        normals.reshape(*shape, 3),
+        face.softness_at(facet).reshape(shape),
     )
 
 
-def _drawn(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]:
+def _nearby_outlines(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]:
     """Outlines near a facet of body 1 in its parameters, without redundant points, each (n, 2)."""
     flat = face_1.flattened.only(facet)
-    t = flat.parameters(outlines.points.reshape(-1, 3)).reshape(outlines.soft.shape + (2,))
+    t = flat.parameters(outlines.points.reshape(-1, 3)).reshape(outlines.softness.shape + (2,))
     parallel = face_1.flat[facet] and _level(outlines.normals, face_1.middle_normals[facet])
     margin = 0.0 if parallel else 0.5
     near = (t.min(axis=(1, 2)) < 1 + margin) & (t.max(axis=(1, 2)) > -margin)
@@ -97,8 +99,8 @@ def _drawn(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]
         close = np.all((t > -1) & (t < 2), axis=-1)  # points farther away need no accuracy
         t[close] = _opposite_within(face_1, facet, outlines, close)
     for side in (0.0, 1.0):
-        t[np.abs(t - side) < _SAME] = side
-    kept = _needed(t)
+        t[np.abs(t - side) < _TOLERANCE] = side
+    kept = _necessary_points(t)
     rings = [edges[:, :-1][chosen] for edges, chosen in zip(t, kept, strict=True)]
     # seen from body 1 the facets of body 2 have either orientation
     return [ring if _area(ring) > 0 else ring[::-1] for ring in rings]
@@ -106,7 +108,7 @@ def _drawn(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]
 
 def _level(normals: np.ndarray, against: np.ndarray) -> bool:
     """Test whether all normals are opposite to a given one."""
-    return bool(np.abs(normals + against).max(initial=0.0) < _SAME)
+    return bool(np.abs(normals + against).max(initial=0.0) < _TOLERANCE)
 
 
 def _opposite_within(
@@ -119,18 +121,18 @@ def _opposite_within(
         start = face_1.flattened.only(facet).parameters(points)[:, 0]
         return on[which], within(face_1, points, on[which], start, bounds=(-np.inf, np.inf))
 
-    columns = outlines.points[chosen], outlines.normals[chosen], outlines.soft[chosen]
-    return met(*columns, face_1, *locate(columns[0], np.arange(len(on))), locate)[1]
+    columns = outlines.points[chosen], outlines.normals[chosen], outlines.softness[chosen]
+    return opposite_parameters(*columns, face_1, *locate(columns[0], np.arange(len(on))), locate)[1]
 
 
-def _needed(edges: np.ndarray) -> np.ndarray:
+def _necessary_points(edges: np.ndarray) -> np.ndarray:
     """Mask of the outline points (n, 4, steps + 1, 2) to keep, shape (n, 4, steps).
 
     For each edge: its first corner, the points next to its intersections with the unit square, and
     the points inside if it is curved. Two facets with a common edge keep the same points.
     """
     low, high = (bound(edges[:, :, :-1], edges[:, :, 1:]) for bound in (np.minimum, np.maximum))
-    enters = np.all((low < 1 + _AROUND) & (high > -_AROUND), axis=-1)
+    enters = np.all((low < 1 + _MARGIN) & (high > -_MARGIN), axis=-1)
     steps = enters.shape[-1]
     first, last = enters.argmax(axis=-1), steps - enters[..., ::-1].argmax(axis=-1)
     start, end = (np.take_along_axis(edges, k[..., None, None], axis=2) for k in (first, last))
@@ -138,8 +140,8 @@ def _needed(edges: np.ndarray) -> np.ndarray:
     off = along[..., 0] * from_start[..., 1] - along[..., 1] * from_start[..., 0]
     k = np.arange(steps + 1)
     inside = (k > first[..., None]) & (k < last[..., None])
-    length = np.maximum(np.linalg.norm(along, axis=-1), _SAME)
-    bent = np.max(inside * np.abs(off) / length, axis=-1) > _STRAIGHT
+    length = np.maximum(np.linalg.norm(along, axis=-1), _TOLERANCE)
+    bent = np.max(inside * np.abs(off) / length, axis=-1) > _MAX_EDGE_DEVIATION
     crossed = enters.any(axis=-1)
     ends = crossed[..., None] & ((k == first[..., None]) | (k == last[..., None]))
     return ((k == 0) | ends | (crossed & bent)[..., None] & inside)[..., :-1]
@@ -159,7 +161,7 @@ def _clipped(ring: np.ndarray) -> np.ndarray:
             ring = _cut(ring, sense * (ring[:, axis] - side))
     while len(ring) > 2:
         turn = np.abs(_turns(ring))
-        if turn.min() > _SAME:
+        if turn.min() > _TOLERANCE:
             return ring
         ring = np.delete(ring, turn.argmin(), axis=0)
     return ring[:0]
@@ -170,7 +172,7 @@ def _turns(ring: np.ndarray) -> np.ndarray:
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
     across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     longer = np.maximum(np.hypot(*before.T), np.hypot(*after.T))
-    return across / np.maximum(longer, _SAME)
+    return across / np.maximum(longer, _TOLERANCE)
 
 
 def _cut(ring: np.ndarray, height: np.ndarray) -> np.ndarray:

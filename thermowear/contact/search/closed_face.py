@@ -31,28 +31,26 @@ def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
         return face
     offsets = project(other, face.nodes[:, 0])[2]
     first = int(np.linalg.norm(offsets, axis=1).argmax())
-    rolled = _taken(face, np.roll(np.arange(len(face.nodes)), -first))
+    rolled = _reordered(face, np.roll(np.arange(len(face.nodes)), -first))
     position = np.concatenate([[0.0], np.cumsum(rolled.sizes)])
     middle = int(np.searchsorted(position, position[-1] / 2, side="right")) - 1
     onward = (rolled.nodes[middle, -1] - rolled.nodes[middle, 0]) @ ONWARD
-    return rolled if onward > 0 else _turned_round(rolled)
+    return rolled if onward > 0 else _reversed(rolled)
 
 
-def _taken(face: Face, order: np.ndarray) -> Face:
+def _reordered(face: Face, order: np.ndarray) -> Face:
     """Face with its facets in another order."""
-    return replace(
-        face,
-        nodes=face.nodes[order],
-        outward=face.outward[order],
-        rank=face.rank[order],
-        cell=face.cell[order],
-        local_facet=face.local_facet[order],
-        reversed=face.reversed[order],
-        softness=np.broadcast_to(face.softness, len(order))[order],
-    )
+    names = ("nodes", "outward", "rank", "cell", "local_facet", "reversed")
+    columns = {name: getattr(face, name)[order] for name in names}
+    return replace(face, **columns, softness=face.softness_at(order))
 
 
-def _turned_round(face: Face) -> Face:
+def _reversed(face: Face) -> Face:
     """Face with reversed direction."""
-    back = _taken(face, np.arange(len(face.nodes))[::-1])
-    return replace(back, nodes=back.nodes[:, ::-1], outward=-back.outward, reversed=~back.reversed)
+    backward = _reordered(face, np.arange(len(face.nodes))[::-1])
+    return replace(
+        backward,
+        nodes=backward.nodes[:, ::-1],
+        outward=-backward.outward,
+        reversed=~backward.reversed,
+    )

@@ -28,19 +28,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from .face import Face
-from .projection import beside, project
+from .projection import overhang, project
 from .surface import Surface
 
-FACING = -0.5
+MAX_FACING_COSINE = -0.5
 """Largest cosine between the outward normals of points that can meet."""
-_FLATTEST = 0.3
+_MIN_COSINE = 0.3
 """Smallest magnitude of the cosine between a line and the normal of the face that it meets."""
-_BEHIND = 0.25
+_MAX_PENETRATION = 0.25
 """Largest overlap of points, relative to the face; beyond it they are on far sides of bodies."""
-_PASSES = 40
-_SETTLED = 1e-13
+_MAX_ITERATIONS = 40
+_TOLERANCE = 1e-13
 """Convergence tolerance of points, relative to the size of the face."""
-_NONE = 0.1
+_MIN_SUM_LENGTH = 0.1
 """Smallest length of a sum of unit normals that defines a direction."""
 
 
@@ -61,7 +61,7 @@ class Opposite:
         Share s of the first body.
     cosine : ndarray, shape (n,)
         Cosine between the outward normals of both faces.
-    beside : ndarray, shape (n,)
+    overhang : ndarray, shape (n,)
         Tangential distance of the points from their closest ones, positive beyond the edge of the
         other face, which is extrapolated linearly beyond its edges [m].
     """
@@ -72,25 +72,25 @@ class Opposite:
     offset: np.ndarray
     share: np.ndarray
     cosine: np.ndarray
-    beside: np.ndarray
+    overhang: np.ndarray
 
     @property
     def gap(self) -> np.ndarray:
         """Normal component of the offsets, shape (n,) [m]."""
         return np.einsum("ni,ni->n", self.offset, self.normals)
 
-    def meets(self, size: float, allowed: float) -> np.ndarray:
+    def meets(self, size: float, max_overhang: float) -> np.ndarray:
         """True for points that can meet those opposite.
 
         Parameters
         ----------
         size : float
             Size of the face [m].
-        allowed : float
+        max_overhang : float
             Largest tangential distance from the other face, relative to the size.
         """
-        inside = (self.beside <= allowed * size) & (self.gap >= -_BEHIND * size)
-        return (self.cosine <= FACING) & inside
+        inside = (self.overhang <= max_overhang * size) & (self.gap >= -_MAX_PENETRATION * size)
+        return (self.cosine <= MAX_FACING_COSINE) & inside
 
 
 @dataclass(frozen=True)
@@ -129,17 +129,19 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     def locate(points: np.ndarray, _) -> tuple[np.ndarray, np.ndarray]:
         return project(other, points)[:2]
 
-    points, out = face.points(facet, t), face.smooth_normals(facet, t)[0]
+    points, outward = face.points(facet, t), face.smooth_normals(facet, t)[0]
     closest, at, offset = project(other, points)
-    off = beside(other, closest, at, offset)
-    facet, t, line = met(points, out, face.soft(facet), other, closest, at, locate)
-    return Opposite(facet, t, line.normals, line.offset, line.share, line.cosine, off)
+    overhangs = overhang(other, closest, at, offset)
+    facet, t, line = opposite_parameters(
+        points, outward, face.softness_at(facet), other, closest, at, locate
+    )
+    return Opposite(facet, t, line.normals, line.offset, line.share, line.cosine, overhangs)
 
 
-def met(
+def opposite_parameters(
     points: np.ndarray,
-    out: np.ndarray,
-    soft: np.ndarray,
+    outward: np.ndarray,
+    softness: np.ndarray,
     other: Face | Surface,
     facet: np.ndarray,
     t: np.ndarray,
@@ -152,9 +154,9 @@ def met(
 
     Parameters
     ----------
-    points, out : ndarray, shape (n, gdim)
+    points, outward : ndarray, shape (n, gdim)
         Points [m] and outward normals of the body.
-    soft : ndarray, shape (n,)
+    softness : ndarray, shape (n,)
         Softness c of the body at the points [1/Pa].
     other : Face or Surface
     facet, t : ndarray
@@ -164,18 +166,18 @@ def met(
         the points.
     """
     facet, t = facet.copy(), t.copy()
-    found = other.points(facet, t)
+    opposite_points = other.points(facet, t)
     moving = np.arange(len(points))
-    for _ in range(_PASSES):
+    for _ in range(_MAX_ITERATIONS):
         now = slice(None) if len(moving) == len(points) else moving
-        line = _line(points[now], out[now], soft[now], other, facet[now], t[now])
+        line = _line(points[now], outward[now], softness[now], other, facet[now], t[now])
         facet[now], t[now] = locate(points[now] + line.offset, moving)
-        before, found[now] = found[now].copy(), other.points(facet[now], t[now])
-        missed = np.linalg.norm(found[now] - before, axis=1)
-        moving = moving[missed > _SETTLED * other.extent]
+        before, opposite_points[now] = opposite_points[now].copy(), other.points(facet[now], t[now])
+        change = np.linalg.norm(opposite_points[now] - before, axis=1)
+        moving = moving[change > _TOLERANCE * other.extent]
         if not len(moving):
             break
-    return facet, t, _line(points, out, soft, other, facet, t)
+    return facet, t, _line(points, outward, softness, other, facet, t)
 
 
 def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs: Opposite):
@@ -206,15 +208,15 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     return np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
 
 
-def _line(points, out, soft, other, facet, t) -> NormalLines:
-    against, softer = other.smooth_normals(facet, t)[0], other.soft(facet)
-    share = soft / (soft + softer)
-    normals, _ = _direction((1 - share)[:, None] * out - share[:, None] * against, out)
+def _line(points, outward, softness, other, facet, t) -> NormalLines:
+    against, other_softness = other.smooth_normals(facet, t)[0], other.softness_at(facet)
+    share = softness / (softness + other_softness)
+    normals, _ = _direction((1 - share)[:, None] * outward - share[:, None] * against, outward)
     a_1, a_2 = _parts(share, other)
-    along, _ = _direction(a_1 * out - a_2 * against, out)
-    steep = np.minimum(np.einsum("ni,ni->n", along, against), -_FLATTEST)
+    along, _ = _direction(a_1 * outward - a_2 * against, outward)
+    steep = np.minimum(np.einsum("ni,ni->n", along, against), -_MIN_COSINE)
     to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
-    cosine = np.einsum("ni,ni->n", out, against)
+    cosine = np.einsum("ni,ni->n", outward, against)
     return NormalLines(normals, to_plane[:, None] * along, share, cosine)
 
 
@@ -227,8 +229,10 @@ def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndar
 def _direction(vectors: np.ndarray, otherwise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Unit vectors (n, gdim), substitutes for near-zero vectors, and lengths (n,)."""
     length = np.linalg.norm(vectors, axis=1)
-    unit = vectors / np.maximum(length, _NONE)[:, None]
-    return np.where(length[:, None] > _NONE, unit, otherwise), np.maximum(length, _NONE)
+    unit = vectors / np.maximum(length, _MIN_SUM_LENGTH)[:, None]
+    return np.where(length[:, None] > _MIN_SUM_LENGTH, unit, otherwise), np.maximum(
+        length, _MIN_SUM_LENGTH
+    )
 
 
 def _across(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:

@@ -16,76 +16,29 @@ from ...bulk.bodies import Bodies
 from ...compat import entities_to_geometry_layout, geometry_dofmap
 from ...errors import CaseError
 from ...lagrange import lobatto, on_lattice
-from .facets import owned_facets, softness_behind
-from .smooth_normals import corner_corrections, smooth_normals
+from .facets import FacetSet, cell_softness, gathered, owned_facets
 from .surface import Surface, gather_surface
 
 ONWARD = (1.0, 0.3)
 """Direction of a chain: along x; upright faces begin at the lower end, also if slightly worn."""
 
 
-@dataclass(frozen=True)
-class Face:
+@dataclass(frozen=True, eq=False)
+class Face(FacetSet):
     """Chain of facets in order along the face; the parameter t of a facet runs 0…1 along it.
 
     Attributes
     ----------
-    nodes : ndarray, shape (n_facets, order + 1, 2) [m]
-        Geometry nodes of each facet, at equal steps of t.
-    outward : ndarray, shape (n_facets,)
-        +1 where the outward normal is the tangent turned clockwise, -1 otherwise.
-    rank, cell, local_facet : ndarray of int, shape (n_facets,)
-        Rank that owns the cell of the facet, local cell index, and local facet index.
     reversed : ndarray of bool, shape (n_facets,)
         True if t is opposite to the direction of the facet in its cell.
-    softness : float or ndarray, shape (n_facets,)
-        ``(1 - ν²) / E`` of the material at each facet [1/Pa]; only its ratio to that of the other
-        face matters.
-    name : str
-        Name of the surface.
-    wears : bool
-        True if the softness is that of wear, see `common_face`.
     """
 
-    nodes: np.ndarray
-    outward: np.ndarray
-    rank: np.ndarray
-    cell: np.ndarray
-    local_facet: np.ndarray
     reversed: np.ndarray
-    softness: float | np.ndarray = 1.0
-    name: str = "the contact face"
-    wears: bool = False
-
-    def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Coordinates at parameters t of facets, shape (n, 2) [m]."""
-        return np.einsum("nk,nki->ni", on_lattice(self._order, t)[0], self.nodes[facet])
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along t, shape (n, 2) [m]."""
         slopes = on_lattice(self._order, t, 1)[1]
         return np.einsum("nk,nki->ni", slopes, self.nodes[facet])
-
-    def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Outward unit normals, shape (n, 2)."""
-        tangent = self.tangents(facet, t)
-        normal = np.column_stack([tangent[:, 1], -tangent[:, 0]]) * self.outward[facet, None]
-        return normal / np.linalg.norm(normal, axis=1, keepdims=True)
-
-    def smooth_normals(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Normals that are continuous across facets, and their derivatives along t.
-
-        Shapes (n, 2) and (n, 1, 2).
-        """
-        return smooth_normals(self.nodes, self.outward, self._corrections, facet, t[:, None])
-
-    def soft(self, facet: np.ndarray) -> np.ndarray:
-        """Softness at facets, shape (n,) [1/Pa]."""
-        return np.broadcast_to(self.softness, len(self.nodes))[facet]
-
-    def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Arc length per parameter, shape (n,) [m]."""
-        return np.linalg.norm(self.tangents(facet, t), axis=1)
 
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Arc length along the face from its first end, shape (n,) [m]."""
@@ -107,25 +60,18 @@ class Face:
         """True if the chain is a closed curve."""
         return bool(np.all(self.nodes[0, 0] == self.nodes[-1, -1]))
 
-    @property
-    def extent(self) -> float:
-        """Size of the face [m]."""
-        return float(np.ptp(self.nodes.reshape(-1, 2), axis=0).max())
-
     def numbers(self, degree: int) -> np.ndarray:
         """Coefficient numbers of continuous polynomials, shape (n_facets, degree + 1)."""
         return np.arange(len(self.nodes))[:, None] * degree + np.arange(degree + 1)
 
     @property
-    def _order(self) -> int:
-        return self.nodes.shape[1] - 1
-
-    @cached_property
-    def _corrections(self) -> np.ndarray:
+    def corner_numbers(self) -> np.ndarray:
         corners = np.arange(len(self.nodes))[:, None] + np.arange(2)
-        if self.closed:
-            corners %= len(self.nodes)
-        return corner_corrections(self.nodes, self.outward, corners)
+        return corners % len(self.nodes) if self.closed else corners
+
+    def _area_vectors(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        tangent = self.tangents(facet, t)
+        return np.column_stack([tangent[:, 1], -tangent[:, 0]])
 
     def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Arc length of each facet from its start to t [m]."""
@@ -153,12 +99,9 @@ def gather_face(
 def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -> Face:
     mesh = bodies.mesh
     local = _local_facets(bodies, surface)
-    parts = mesh.comm.allgather((*local, softness_behind(local[4], softness)))
-    nodes, ends, inside, rank, cell, local_facet, soft = (
-        np.concatenate([part[k] for part in parts]) for k in range(7)
+    nodes, ends, inside, rank, cell, local_facet, facet_softness = gathered(
+        mesh.comm, surface, *local, cell_softness(local[4], softness)
     )
-    if len(nodes) == 0:
-        raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
     order, flip = _chain(ends, nodes, surface)
     nodes, flip = nodes[order], flip[order]
     nodes[flip] = nodes[flip, ::-1]
@@ -166,7 +109,7 @@ def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -
     inward = inside[order] - nodes.mean(axis=1)
     turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
     owner = rank[order], cell[order], local_facet[order]
-    return Face(nodes, -np.sign(turned), *owner, flip, soft[order], surface)
+    return Face(nodes, -np.sign(turned), *owner, flip, softness=facet_softness[order], name=surface)
 
 
 def _local_facets(bodies: Bodies, surface: str):
@@ -199,7 +142,7 @@ def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarra
             at[vertex].append(facet)
     loose = [v for v, facets in enumerate(at) if len(facets) == 1]
     if len(loose) not in (0, 2) or max(len(facets) for facets in at) > 2:
-        raise CaseError(_not_one(surface))
+        raise CaseError(_disconnected_message(surface))
     where = {v: nodes[at[v][0], 0 if ends[at[v][0], 0] == v else -1] for v in loose or (0,)}
     vertex = min(where, key=lambda v: float(where[v] @ ONWARD))
     order, flip, facet = [], np.zeros(len(ends), dtype=bool), at[vertex][0]
@@ -212,11 +155,11 @@ def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarra
             break
         facet = following[0]
     if len(order) < len(ends):
-        raise CaseError(_not_one(surface))
+        raise CaseError(_disconnected_message(surface))
     return np.array(order), flip
 
 
-def _not_one(surface: str) -> str:
+def _disconnected_message(surface: str) -> str:
     return (
         f"geometry: the contact face {surface} is not one connected curve, open or closed; give "
         "each part that touches a run of its own, or name one part only"

@@ -1,11 +1,116 @@
-"""Facets of a contact face that a rank owns, and the softness behind them."""
+"""Curved facets of a contact face: geometry, and the facets that a rank owns."""
 
 from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
 
 import numpy as np
 from dolfinx import fem
 
 from ...bulk.bodies import Bodies
+from ...errors import CaseError
+from ...lagrange import on_lattice
+from .smooth_normals import corner_corrections, smooth_normals
+
+
+@dataclass(frozen=True, eq=False)
+class FacetSet(ABC):
+    """Curved facets with parameters t that run 0…1, replicated on all ranks.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n_facets, order + 1, …, gdim) [m]
+        Geometry nodes of each facet, at equal steps of one or two parameters.
+    outward : ndarray, shape (n_facets,)
+        Sign of the outward normal: +1 along the tangent turned clockwise or the cross product of
+        both tangents, -1 opposite to it.
+    rank, cell, local_facet : ndarray of int, shape (n_facets,)
+        Rank that owns the cell of the facet, local cell index, and local facet index.
+    softness : float or ndarray, shape (n_facets,)
+        ``(1 - ν²) / E`` of the material at each facet [1/Pa]; only its ratio to that of the other
+        face matters.
+    name : str
+        Name of the surface.
+    wears : bool
+        True if the softness is that of wear, see `common_face`.
+    """
+
+    nodes: np.ndarray
+    outward: np.ndarray
+    rank: np.ndarray
+    cell: np.ndarray
+    local_facet: np.ndarray
+    _: KW_ONLY
+    softness: float | np.ndarray = 1.0
+    name: str = "the contact face"
+    wears: bool = False
+
+    @abstractmethod
+    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Derivatives of the coordinates along the parameters [m]."""
+
+    @abstractmethod
+    def _area_vectors(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Normals of the length of `stretch`, outward or inward, shape (n, gdim)."""
+
+    @property
+    @abstractmethod
+    def corner_numbers(self) -> np.ndarray:
+        """Corner numbers shared by adjacent facets, shape (n_facets, 2) or (n_facets, 2, 2)."""
+
+    def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Coordinates at parameters t of facets, shape (n, gdim) [m]."""
+        return np.einsum("nk,nki->ni", on_lattice(self._order, t)[0], self._listed[facet])
+
+    def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Outward unit normals, shape (n, gdim)."""
+        normal = self._area_vectors(facet, t) * self.outward[facet, None]
+        return normal / np.linalg.norm(normal, axis=1, keepdims=True)
+
+    def smooth_normals(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Normals that are continuous across facets, and their derivatives along t.
+
+        Shapes (n, gdim) and (n, gdim - 1, gdim).
+        """
+        t = t.reshape(len(t), self.nodes.ndim - 2)
+        return smooth_normals(self.nodes, self.outward, self._corrections, facet, t)
+
+    def softness_at(self, facet: np.ndarray) -> np.ndarray:
+        """Softness at facets, shape (n,) [1/Pa]."""
+        return np.broadcast_to(self.softness, len(self.nodes))[facet]
+
+    def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Length per parameter or area per parameter area, shape (n,) [m or m²]."""
+        return np.linalg.norm(self._area_vectors(facet, t), axis=1)
+
+    @property
+    def extent(self) -> float:
+        """Size of the face [m]."""
+        return float(np.ptp(self.nodes.reshape(-1, self.nodes.shape[-1]), axis=0).max())
+
+    @property
+    def _order(self) -> int:
+        return self.nodes.shape[1] - 1
+
+    @property
+    def _listed(self) -> np.ndarray:
+        """Nodes of each facet in one list, shape (n_facets, n_nodes, gdim) [m]."""
+        return self.nodes.reshape(len(self.nodes), -1, self.nodes.shape[-1])
+
+    @cached_property
+    def _corrections(self) -> np.ndarray:
+        return corner_corrections(self.nodes, self.outward, self.corner_numbers)
+
+
+def gathered(comm, surface: str, *columns: np.ndarray) -> list[np.ndarray]:
+    """Gather columns of values, one row per facet of this rank, from all ranks."""
+    parts = comm.allgather(columns)
+    result = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    if len(result[0]) == 0:
+        raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
+    return result
 
 
 def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
@@ -30,7 +135,7 @@ def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
     return cells, local
 
 
-def softness_behind(cells: np.ndarray, softness: fem.Function | None) -> np.ndarray:
+def cell_softness(cells: np.ndarray, softness: fem.Function | None) -> np.ndarray:
     """Softness of cells of this rank, by default 1, shape (n,) [1/Pa]."""
     if softness is None:
         return np.ones(len(cells))

@@ -28,12 +28,12 @@ from ...bulk.kinematics import Kinematics
 from ...errors import CaseError
 from .common_face import opposite, stretch
 from .face import Face
-from .refinement import BESIDE, SLIVER, Rule, folded, rule
+from .refinement import OVERHANG_TOLERANCE, SLIVER, Rule, ambiguity_message, rule
 from .surface import Surface
 
-_SAME = 1e-10
+_COINCIDENCE_TOLERANCE = 1e-10
 """Largest distance of coincident points, relative to the size of the face."""
-_TWICE = 1e-3
+_MAX_OVERLAP = 1e-3
 """Fraction of a facet that may be covered twice, by rounding and curved edges."""
 
 
@@ -118,7 +118,7 @@ def pair(
     order: int,
     refine: bool = True,
     sliver: float = SLIVER,
-    beside: float = BESIDE,
+    max_overhang: float = OVERHANG_TOLERANCE,
 ) -> Pairing:
     """Pair two faces on their common refinement.
 
@@ -136,7 +136,7 @@ def pair(
         False: no cuts, one rule per facet of body 1.
     sliver : float
         Smallest distance of a cut from the ends of a facet, relative to it; plane models only.
-    beside : float
+    max_overhang : float
         Linear extrapolation of body 2 beyond its ends, relative to the face; plane models only.
 
     Raises
@@ -144,7 +144,7 @@ def pair(
     CaseError
         If no point of body 1 faces body 2, or it is not clear which points meet.
     """
-    pieces = rule(face_1, face_2, order, refine, sliver, beside)
+    pieces = rule(face_1, face_2, order, refine, sliver, max_overhang)
     if len(pieces.facet) == 0:
         raise CaseError(
             f"geometry.contact: {face_1.name} and {face_2.name} do not lie opposite each other; "
@@ -164,13 +164,13 @@ def paired(
     on_common = on_face + pairs.share[:, None] * pairs.offset
     weights *= np.maximum(kinematics.area_factor(on_common), 0.0)  # rounding on the axis
     covered = np.bincount(facet, pieces.weight, minlength=len(face_1.sizes))
-    if covered.max() > 1.0 + _TWICE:
-        raise CaseError(folded(face_1, face_2))
+    if covered.max() > 1.0 + _MAX_OVERLAP:
+        raise CaseError(ambiguity_message(face_1, face_2))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
     position = face_1.position(facet, t)
     # on a curve by arc length: both ends of a closed one coincide in space
     places = on_face if isinstance(face_1, Surface) else position[:, None]
-    group, first = _groups(places, _SAME * face_1.extent)
+    group, first = _groups(places, _COINCIDENCE_TOLERANCE * face_1.extent)
     summed = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
     normals = summed / np.linalg.norm(summed, axis=1, keepdims=True)
     sides = (

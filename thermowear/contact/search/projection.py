@@ -7,16 +7,16 @@ import numpy as np
 from .face import Face
 from .surface import Surface
 
-_STEPS = 30
-_SETTLED = 1e-13
+_MAX_NEWTON_STEPS = 30
+_TOLERANCE = 1e-13
 _ROUNDING = 1e-15
 """Convergence tolerance of a parameter."""
-_TRIALS = 4
+_CANDIDATES = 4
 """Number of candidate facets per point in space: the nearest ones in flat approximation."""
-_AT_ONCE = 1_000_000
+_BLOCK_SIZE = 1_000_000
 """Number of point-facet pairs processed at once."""
-_PASSES = 10
-_FLATTEST = 0.3
+_MAX_ITERATIONS = 10
+_MIN_COSINE = 0.3
 """Smallest magnitude of the cosine between a ray and the normal of the face that it meets."""
 
 
@@ -39,7 +39,7 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
     return facet, t, face.points(facet, t) - points
 
 
-def ahead(
+def ray_intersections(
     face: Face | Surface, points: np.ndarray, directions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intersections of a face with lines through given points, forward or backward.
@@ -57,22 +57,22 @@ def ahead(
     -------
     facet : ndarray, shape (n,)
     t : ndarray, shape (n,) or (n, 2)
-    way : ndarray, shape (n,)
+    distance : ndarray, shape (n,)
         Signed distance along the directions, negative backward [m].
     """
-    way = np.zeros(len(points))
-    for _ in range(_PASSES):
-        facet, t, offset = project(face, points + way[:, None] * directions)
+    distance = np.zeros(len(points))
+    for _ in range(_MAX_ITERATIONS):
+        facet, t, offset = project(face, points + distance[:, None] * directions)
         normals = face.normals(facet, t)
-        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_FLATTEST)
-        missed = np.einsum("ni,ni->n", offset, normals) / against
-        way += missed
-        if np.abs(missed).max() <= _SETTLED * face.extent:
+        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_MIN_COSINE)
+        change = np.einsum("ni,ni->n", offset, normals) / against
+        distance += change
+        if np.abs(change).max() <= _TOLERANCE * face.extent:
             break
-    return facet, t, way
+    return facet, t, distance
 
 
-def beside(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
+def overhang(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
     """Tangential distance of points from their projections, positive beyond the edge [m]."""
     tangents = face.tangents(facet, t).reshape(len(facet), -1, offset.shape[1])
     across = np.linalg.qr(np.moveaxis(tangents, 1, 2))[0]
@@ -98,8 +98,8 @@ def _on_chain(face: Face, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _best(face, points: np.ndarray, trials: list[tuple[np.ndarray, np.ndarray]]):
     """Candidate with the smallest distance, point by point."""
-    far = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
-    best, every = np.argmin(far, axis=0), np.arange(len(points))
+    distances = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
+    best, every = np.argmin(distances, axis=0), np.arange(len(points))
     facet, t = (np.array([trial[k] for trial in trials])[best, every] for k in (0, 1))
     return facet, t
 
@@ -113,14 +113,14 @@ def _along(face: Face, points: np.ndarray, facet: np.ndarray) -> np.ndarray:
     for _ in range(0 if face.nodes.shape[1] == 2 else 20):
         offset, tangent = face.points(facet, t) - points, face.tangents(facet, t)
         step = (offset * tangent).sum(axis=1) / (tangent**2).sum(axis=1)
-        before, t = t, np.clip(t - step, 0.0, 1.0)
-        if np.abs(t - before).max(initial=0.0) <= _ROUNDING:
+        last, t = t, np.clip(t - step, 0.0, 1.0)
+        if np.abs(t - last).max(initial=0.0) <= _ROUNDING:
             break
     return t
 
 
 def _on_surface(face: Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    chunk = max(1, _AT_ONCE // len(face.nodes))
+    chunk = max(1, _BLOCK_SIZE // len(face.nodes))
     parts = [_in_chunk(face, points[i : i + chunk]) for i in range(0, len(points), chunk)]
     facet, t = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     return facet, t
@@ -130,7 +130,7 @@ def _in_chunk(face: Surface, points: np.ndarray):
     flat = face.flattened
     t = np.clip(flat.parameters(points), 0.0, 1.0)
     distance = np.linalg.norm(flat.points(t) - points[:, None], axis=2)
-    count = min(_TRIALS, distance.shape[1])
+    count = min(_CANDIDATES, distance.shape[1])
     facets = np.argpartition(distance, count - 1, axis=1)[:, :count]
     facets = np.sort(facets, axis=1)
     starts = np.take_along_axis(t, facets[:, :, None], axis=1)
@@ -161,7 +161,7 @@ def within(
         Bounds of both parameters; a parameter is fixed at a bound that a step would cross.
     """
     t, moving = start.copy(), np.arange(len(start))
-    for _ in range(_STEPS):
+    for _ in range(_MAX_NEWTON_STEPS):
         now, on = t[moving], facet[moving]
         offset, tangents = face.points(on, now) - points[moving], face.tangents(on, now)
         slope = np.einsum("nki,ni->nk", tangents, offset)
@@ -170,7 +170,7 @@ def within(
         matrix = np.einsum("nki,nli->nkl", tangents, tangents) + held[:, :, None] * np.eye(2)
         step = np.linalg.solve(matrix, np.where(held, 0.0, slope)[:, :, None])[:, :, 0]
         t[moving] = np.clip(now - step, *bounds)
-        moving = moving[np.abs(t[moving] - now).max(axis=1) > _SETTLED]
+        moving = moving[np.abs(t[moving] - now).max(axis=1) > _TOLERANCE]
         if not len(moving):
             break
     return t

@@ -13,18 +13,18 @@ import numpy as np
 from ...errors import CaseError
 from ...lagrange import gauss, lobatto, on_lattice
 from .clipping import parts_opposite
-from .common_face import FACING, Opposite, opposite
+from .common_face import MAX_FACING_COSINE, Opposite, opposite
 from .face import Face
 from .surface import Surface
 
-BESIDE = 1e-9
+OVERHANG_TOLERANCE = 1e-9
 """Largest tangential distance from body 2, relative to the face, of paired points."""
 
 SLIVER = 1e-9
 """Smallest distance of a cut from the ends of a facet, relative to the facet."""
-_BACK = 2.0
+_MAX_BACKWARD_RATIO = 2.0
 """Largest backward step of consecutive opposite points, relative to their gap."""
-_SAME = 1e-6
+_BACKWARD_TOLERANCE = 1e-6
 """Largest backward step by rounding, relative to the length of the face."""
 
 
@@ -52,18 +52,18 @@ def rule(
     order: int,
     refine: bool,
     sliver: float,
-    beside: float = BESIDE,
+    max_overhang: float = OVERHANG_TOLERANCE,
 ) -> Rule:
     """Quadrature rule on the common refinement; parameters as in `pairing.pair`."""
     if isinstance(face_1, Surface):
         assert isinstance(face_2, Surface)
         return _on_parts(face_1, face_2, order) if refine else _on_facets(face_1, face_2, order)
     assert isinstance(face_2, Face)
-    return _on_pieces(face_1, face_2, order, refine, sliver, beside)
+    return _on_pieces(face_1, face_2, order, refine, sliver, max_overhang)
 
 
 def _on_pieces(
-    face_1: Face, face_2: Face, order: int, refine: bool, sliver: float, beside: float
+    face_1: Face, face_2: Face, order: int, refine: bool, sliver: float, max_overhang: float
 ) -> Rule:
     """Gauss-Lobatto rule on each piece of the facets of a chain."""
     whole = [np.array([0.0, 1.0])] * len(face_1.nodes)
@@ -76,7 +76,7 @@ def _on_pieces(
     pieces = Rule(np.repeat(facet, order), t, (size[:, None] * w).ravel())
     # ends do not count: the end of an outer piece is a point of the next inner one
     inner = np.arange(1, order - 1) if order > 2 else np.arange(order)
-    return _facing(face_1, face_2, pieces, order, inner, beside)
+    return _facing(face_1, face_2, pieces, order, inner, max_overhang)
 
 
 def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
@@ -85,7 +85,7 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
     pairs = opposite(
         face_2, np.append(np.arange(count), count - 1), np.append(np.zeros(count), 1.0), face_1
     )
-    meeting = pairs.meets(face_1.extent, BESIDE)
+    meeting = pairs.meets(face_1.extent, OVERHANG_TOLERANCE)
     facet, t = pairs.facet[meeting], pairs.t[meeting]
     cuts = []
     for f in range(len(face_1.nodes)):
@@ -125,17 +125,19 @@ def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
     whole = Rule(facet, np.tile(places, (count, 1)), np.tile(weights, count))
     within = np.flatnonzero(np.all((places > 0) & (places < 1), axis=1))
     inner = within if len(within) else np.arange(len(weights))
-    return _facing(face_1, face_2, whole, len(weights), inner, BESIDE)
+    return _facing(face_1, face_2, whole, len(weights), inner, OVERHANG_TOLERANCE)
 
 
-def _facing(face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, allowed: float) -> Rule:
+def _facing(
+    face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, max_overhang: float
+) -> Rule:
     """Pieces, of `count` points each, with all inner points opposite to body 2."""
     pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
-    meeting = pairs.meets(face_1.extent, allowed).reshape(-1, count)[:, inner]
+    meeting = pairs.meets(face_1.extent, max_overhang).reshape(-1, count)[:, inner]
     whole = meeting.all(axis=1)
     kept = np.repeat(whole, count)
     if isinstance(face_1, Face):
-        facing = (pairs.cosine <= FACING).reshape(-1, count)[:, inner].all(axis=1)
+        facing = (pairs.cosine <= MAX_FACING_COSINE).reshape(-1, count)[:, inner].all(axis=1)
         _check_order(face_1, face_2, pairs, whole, facing & ~whole)
     return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])
 
@@ -149,19 +151,21 @@ def _check_order(face_1: Face, face_2: Face, pairs: Opposite, kept: np.ndarray, 
     if len(between) == 0:
         return
     if lost[between[0] : between[-1]].any():
-        raise CaseError(folded(face_1, face_2))
+        raise CaseError(ambiguity_message(face_1, face_2))
     chosen = np.repeat(kept, len(pairs.gap) // len(kept))
     s, apart = face_2.position(pairs.facet, pairs.t)[chosen], np.abs(pairs.gap[chosen])
     step, length = np.diff(s), face_2.sizes.sum()
     if face_2.closed:
         step = (step + length / 2) % length - length / 2
     step = step * np.sign(np.median(step))
-    allowed = _BACK * np.maximum(apart[1:], apart[:-1]) + _SAME * length
-    if np.any(step < -allowed):
-        raise CaseError(folded(face_1, face_2))
+    max_overhang = (
+        _MAX_BACKWARD_RATIO * np.maximum(apart[1:], apart[:-1]) + _BACKWARD_TOLERANCE * length
+    )
+    if np.any(step < -max_overhang):
+        raise CaseError(ambiguity_message(face_1, face_2))
 
 
-def folded(face_1: Face | Surface, face_2: Face | Surface) -> str:
+def ambiguity_message(face_1: Face | Surface, face_2: Face | Surface) -> str:
     """Message for faces with ambiguous pairs of opposite points."""
     return (
         f"geometry.contact: it is not clear which points of {face_1.name} and {face_2.name} meet, "

@@ -21,11 +21,11 @@ from numpy.polynomial import Legendre
 
 from ...lagrange import on_lattice
 
-_SHARP = np.cos(np.radians(20.0))
+_MIN_SMOOTH_COSINE = np.cos(np.radians(20.0))
 """Cosine between facet normal and mean normal at a corner, below which it is a sharp edge."""
-_SLIGHT = 0.02
+_MAX_END_ERROR = 0.02
 """Largest error of a unit normal at the ends of curved or short facets."""
-_SECOND = {1: [[2]], 2: [[3, 4], [4, 5]]}
+_SECOND_DERIVATIVES = {1: [[2]], 2: [[3, 4], [4, 5]]}
 """Indices of the second derivatives of `on_lattice` by the number of parameters."""
 
 
@@ -57,12 +57,12 @@ def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarr
     summed = np.column_stack([np.bincount(number, weight * component) for component in own.T])
     mean = summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300)
     sharp = np.zeros(len(mean), dtype=bool)
-    sharp[number[np.einsum("ni,ni->n", own, mean[number]) < _SHARP]] = True
+    sharp[number[np.einsum("ni,ni->n", own, mean[number]) < _MIN_SMOOTH_COSINE]] = True
     correction = np.where(sharp[number, None], 0.0, mean[number] - own)
     correction = correction.reshape(len(nodes), len(ends), -1)
     if dim == 1:  # on an arc the error at an end of the face is minus that of the other facet end
         free = (np.bincount(number) == 1)[number].reshape(-1, 2)
-        slight = np.linalg.norm(correction, axis=2).max(axis=1) < _SLIGHT
+        slight = np.linalg.norm(correction, axis=2).max(axis=1) < _MAX_END_ERROR
         mirrored = free & slight[:, None]
         correction[mirrored] = -correction[:, ::-1][mirrored]
     return correction
@@ -99,7 +99,7 @@ def _raw(nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
     on = nodes[facet].reshape(len(facet), -1, nodes.shape[-1])
     table = on_lattice(order, t, 2)
     tangents = np.einsum("kna,nai->nki", table[1 : 1 + dim], on)
-    bent = np.einsum("klna,nai->nkli", table[_SECOND[dim]], on)
+    bent = np.einsum("klna,nai->nkli", table[_SECOND_DERIVATIVES[dim]], on)
     if dim == 1:
         across = _turned(tangents[:, 0])
         changing = _turned(bent[:, 0, 0])[:, None]

@@ -15,12 +15,10 @@ from dolfinx import fem
 from ...bulk.bodies import Bodies
 from ...bulk.field import reference_element
 from ...compat import coordinate_element, geometry_dofmap
-from ...errors import CaseError
 from ...lagrange import equispaced, gauss, lattice, matching, on_lattice
-from .facets import owned_facets, softness_behind
-from .smooth_normals import corner_corrections, smooth_normals
+from .facets import FacetSet, cell_softness, gathered, owned_facets
 
-_FLAT = 1e-9
+_FLATNESS_TOLERANCE = 1e-9
 """Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
 
 
@@ -56,66 +54,21 @@ class Parallelograms:
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class Surface(FacetSet):
     """Surface of facets with two parameters t that run 0…1 along their edges, as in the cells.
 
     Attributes
     ----------
-    nodes : ndarray, shape (n_facets, order + 1, order + 1, 3) [m]
-        Geometry nodes of each facet, at equal steps of the first and of the second parameter.
     corners : ndarray of int, shape (n_facets, 2, 2)
         Corner numbers by both parameters, shared by adjacent facets.
-    outward : ndarray, shape (n_facets,)
-        +1 if the outward normal is the cross product of both tangents, -1 if it is the opposite.
-    rank, cell, local_facet : ndarray of int, shape (n_facets,)
-        Rank that owns the cell of the facet, local cell index, and local facet index.
-    softness : float or ndarray, shape (n_facets,)
-        ``(1 - ν²) / E`` of the material at each facet [1/Pa]; only its ratio to that of the other
-        face matters.
-    name : str
-        Name of the surface.
-    wears : bool
-        True if the softness is that of wear, see `common_face`.
     """
 
-    nodes: np.ndarray
     corners: np.ndarray
-    outward: np.ndarray
-    rank: np.ndarray
-    cell: np.ndarray
-    local_facet: np.ndarray
-    softness: float | np.ndarray = 1.0
-    name: str = "the contact face"
-    wears: bool = False
-
-    def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Coordinates at parameters t of shape (n, 2) of facets, shape (n, 3) [m]."""
-        return np.einsum("nk,nki->ni", on_lattice(self._order, t)[0], self._listed[facet])
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along both parameters, shape (n, 2, 3) [m]."""
         slopes = on_lattice(self._order, t, 1)[1:]
         return np.einsum("dnk,nki->ndi", slopes, self._listed[facet])
-
-    def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Outward unit normals, shape (n, 3)."""
-        normal = self._across(facet, t) * self.outward[facet, None]
-        return normal / np.linalg.norm(normal, axis=1, keepdims=True)
-
-    def smooth_normals(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Normals that are continuous across facets, and their derivatives along t.
-
-        Shapes (n, 3) and (n, 2, 3).
-        """
-        return smooth_normals(self.nodes, self.outward, self._corrections, facet, t)
-
-    def soft(self, facet: np.ndarray) -> np.ndarray:
-        """Softness at facets, shape (n,) [1/Pa]."""
-        return np.broadcast_to(self.softness, len(self.nodes))[facet]
-
-    def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Area per parameter area, shape (n,) [m²]."""
-        return np.linalg.norm(self._across(facet, t), axis=1)
 
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """NaN: points of a surface have no order."""
@@ -146,18 +99,13 @@ class Surface:
         """True for facets that are parallelograms, shape (n_facets,)."""
         as_flat = self.flattened.points(lattice(self._order, dim=2)[:, None])
         off = np.abs(as_flat.swapaxes(0, 1) - self._listed).max(axis=(1, 2))
-        return off < _FLAT * np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
+        return off < _FLATNESS_TOLERANCE * np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
 
     @cached_property
     def middle_normals(self) -> np.ndarray:
         """Outward unit normals in the middle of the facets, shape (n_facets, 3)."""
         every = np.arange(len(self.nodes))
         return self.normals(every, np.full((len(every), 2), 0.5))
-
-    @property
-    def extent(self) -> float:
-        """Size of the face [m]."""
-        return float(np.ptp(self.nodes.reshape(-1, 3), axis=0).max())
 
     def numbers(self, degree: int) -> np.ndarray:
         """Coefficient numbers of continuous polynomials.
@@ -184,19 +132,10 @@ class Surface:
         return result
 
     @property
-    def _order(self) -> int:
-        return self.nodes.shape[1] - 1
+    def corner_numbers(self) -> np.ndarray:
+        return self.corners
 
-    @property
-    def _listed(self) -> np.ndarray:
-        """Nodes of each facet in one list, shape (n_facets, (order + 1)², 3) [m]."""
-        return self.nodes.reshape(len(self.nodes), -1, 3)
-
-    @cached_property
-    def _corrections(self) -> np.ndarray:
-        return corner_corrections(self.nodes, self.outward, self.corners)
-
-    def _across(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+    def _area_vectors(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         return np.cross(*np.moveaxis(self.tangents(facet, t), 1, 0))
 
 
@@ -207,23 +146,18 @@ def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None =
     of_cells = geometry_dofmap(mesh)[cells]
     of_facets = np.take_along_axis(of_cells, _grids(mesh)[local], axis=1)
     numbers = np.asarray(mesh.geometry.input_global_indices)
-    x = mesh.geometry.x
-    part = (
+    original, nodes, numbers, inside, rank, cells, local, facet_softness = gathered(
+        mesh.comm,
+        surface,
         mesh.topology.original_cell_index[cells],
-        x[of_facets],
+        mesh.geometry.x[of_facets],
         numbers[of_facets],
-        x[of_cells].mean(axis=1),
+        mesh.geometry.x[of_cells].mean(axis=1),
         np.full(len(cells), mesh.comm.rank),
         cells,
         local,
-        softness_behind(cells, softness),
+        cell_softness(cells, softness),
     )
-    parts = mesh.comm.allgather(part)
-    original, nodes, numbers, inside, rank, cells, local, soft = (
-        np.concatenate([part[k] for part in parts]) for k in range(len(part))
-    )
-    if len(nodes) == 0:
-        raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
     order = np.lexsort((local, original))
     n = int(np.sqrt(nodes.shape[1]))
     nodes = nodes[order].reshape(-1, n, n, 3)
@@ -232,7 +166,7 @@ def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None =
     from_inside = nodes.mean(axis=(1, 2)) - inside[order]
     outward = np.sign(np.einsum("fi,fi->f", np.cross(first, second), from_inside))
     owner = rank[order], cells[order], local[order]
-    return Surface(nodes, corners, outward, *owner, soft[order], surface)
+    return Surface(nodes, outward, *owner, corners, softness=facet_softness[order], name=surface)
 
 
 def _grids(mesh) -> np.ndarray:

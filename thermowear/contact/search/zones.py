@@ -7,10 +7,10 @@ import numpy as np
 from .pairing import Pairing
 from .surface import Surface
 
-_NOTHING = 1e-9  # of the largest pressure
-_OUTER = 0.8  # fraction of half a zone used to fit its edge
+_ZERO_PRESSURE = 1e-9  # of the largest pressure
+_FIT_FRACTION = 0.8  # fraction of half a zone used to fit its edge
 _DEGREE = 2
-_LEFT_OUT = 2  # number of elements next to the edge
+_SKIPPED_ELEMENTS = 2  # number of elements next to the edge
 
 
 def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, float]]:
@@ -28,7 +28,7 @@ def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, f
     """
     if isinstance(pairing.sides[0].face, Surface):
         return []
-    pressing = pressure > _NOTHING * pressure.max(initial=0.0)
+    pressing = pressure > _ZERO_PRESSURE * pressure.max(initial=0.0)
     change = np.flatnonzero(np.diff(pressing.astype(int), prepend=0, append=0))
     zones = []
     for first, after in change.reshape(-1, 2):
@@ -48,9 +48,9 @@ def _edge(pairing: Pairing, pressure: np.ndarray, zone: np.ndarray, part: float)
     """Position of the edge beyond the last point of a zone."""
     s, facet = pairing.position[zone], pairing.sides[0].facet[zone]
     distance = np.abs(s - s[-1])
-    last = np.unique(np.abs(facet - facet[-1]))[:_LEFT_OUT]
+    last = np.unique(np.abs(facet - facet[-1]))[:_SKIPPED_ELEMENTS]
     chosen = ~np.isin(np.abs(facet - facet[-1]), last)
-    chosen &= distance <= _OUTER * part * distance[0]
+    chosen &= distance <= _FIT_FRACTION * part * distance[0]
     if chosen.sum() <= 2 * _DEGREE:
         return float(s[-1])
     fit = np.polynomial.Polynomial.fit(distance[chosen], pressure[zone][chosen] ** 2, _DEGREE)

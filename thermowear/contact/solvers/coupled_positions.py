@@ -33,7 +33,7 @@ class CoupledContacts:
         Compliances A, symmetric or not.
     gap : ndarray, shape (J, m)
         Weak gaps g.
-    seen : ndarray, shape (J, m, N)
+    gap_per_depth : ndarray, shape (J, m, N)
         Weak gap S per worn depth.
     modes, force_modes : ndarray, shape (J, m, k)
         R and T.
@@ -43,7 +43,7 @@ class CoupledContacts:
 
     compliance: np.ndarray
     gap: np.ndarray
-    seen: np.ndarray
+    gap_per_depth: np.ndarray
     modes: np.ndarray
     force_modes: np.ndarray
     load: np.ndarray
@@ -88,16 +88,16 @@ def solve_coupled(
     ComputationError
         If there is no solution.
     """
-    met, expected = set(), active
-    while active.tobytes() not in met:
-        met.add(active.tobytes())
+    tried, expected = set(), active
+    while active.tobytes() not in tried:
+        tried.add(active.tobytes())
         solution = _with_active(contacts, start, gains, active)
         if solution is None:
             break
-        following = _pressing(contacts, solution)
-        if np.array_equal(following, active):
+        next_active = _pressing(contacts, solution)
+        if np.array_equal(next_active, active):
             return solution
-        active = following
+        active = next_active
     return _stacked(contacts, start, gains, expected)
 
 
@@ -106,12 +106,12 @@ def _stacked(
 ) -> CoupledSolution:
     """Solution of all contacts as one stacked Signorini problem."""
     count, m, k = contacts.modes.shape
-    seen = contacts.seen.reshape(count * m, -1)
+    gap_per_depth = contacts.gap_per_depth.reshape(count * m, -1)
     compliance = block_diag(*contacts.compliance)
-    compliance = compliance + seen @ gains.transpose(1, 0, 2).reshape(len(start), -1)
+    compliance = compliance + gap_per_depth @ gains.transpose(1, 0, 2).reshape(len(start), -1)
     solution = solve_contact(
         compliance,
-        contacts.gap.ravel() + seen @ start,
+        contacts.gap.ravel() + gap_per_depth @ start,
         block_diag(*contacts.modes),
         np.tile(contacts.load, count),
         active.ravel(),
@@ -128,11 +128,11 @@ def _with_active(
     """Solution with closed contact at the active coefficients; None if underconstrained."""
     if np.any(active.sum(axis=1) < len(contacts.load)):
         return None
-    free, by_depth = _eliminated(contacts, active)
+    at_zero_depth, per_depth = _eliminated(contacts, active)
     m = active.shape[1]
-    spread = np.eye(len(start)) - np.einsum("jnm,jmk->nk", gains, by_depth[:, :m])
-    depths = np.linalg.solve(spread, start + np.einsum("jnm,jm->n", gains, free[:, :m]))
-    unknowns = free + by_depth @ depths
+    spread = np.eye(len(start)) - np.einsum("jnm,jmk->nk", gains, per_depth[:, :m])
+    depths = np.linalg.solve(spread, start + np.einsum("jnm,jm->n", gains, at_zero_depth[:, :m]))
+    unknowns = at_zero_depth + per_depth @ depths
     return CoupledSolution(unknowns[:, :m], unknowns[:, m:], active, depths)
 
 
@@ -148,10 +148,10 @@ def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> tuple[np.ndarr
     matrix[:, np.arange(m), np.arange(m)] += ~active
     matrix[:, :m, m:] = -border / stretch
     matrix[:, m:, :m] = -rows.mT / stretch
-    right = np.zeros((count, m + k, 1 + contacts.seen.shape[2]))
+    right = np.zeros((count, m + k, 1 + contacts.gap_per_depth.shape[2]))
     right[:, :m, 0] = -contacts.gap * pressed
     right[:, m:, 0] = -contacts.load / stretch
-    right[:, :m, 1:] = -contacts.seen * pressed[..., None]
+    right[:, :m, 1:] = -contacts.gap_per_depth * pressed[..., None]
     unknowns = np.linalg.solve(matrix, right)
     unknowns[:, :m] *= pressed[..., None]
     unknowns[:, m:] /= stretch
@@ -161,9 +161,9 @@ def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> tuple[np.ndarr
 def _pressing(contacts: CoupledContacts, solution: CoupledSolution) -> np.ndarray:
     """Next active sets: active coefficients under pressure, and penetrating ones."""
     λ, y = solution.coefficients, solution.depths
-    opened, worn = np.einsum("jmn,jn->jm", contacts.compliance, λ), contacts.seen @ y
+    elastic, worn = np.einsum("jmn,jn->jm", contacts.compliance, λ), contacts.gap_per_depth @ y
     closing = np.einsum("jmk,jk->jm", contacts.modes, solution.motion)
-    residual = opened + contacts.gap + worn - closing
-    scale = sum(np.abs(part) for part in (opened, contacts.gap, worn, closing))
+    residual = elastic + contacts.gap + worn - closing
+    scale = sum(np.abs(part) for part in (elastic, contacts.gap, worn, closing))
     presses = solution.active & (λ > -_TOLERANCE * np.abs(λ).max(axis=1, keepdims=True))
     return presses | (~solution.active & (residual < -_TOLERANCE * scale))

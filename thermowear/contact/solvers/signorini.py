@@ -91,11 +91,11 @@ def _solve(problem: _Problem, start: np.ndarray | None) -> SignoriniSolution:
     for active in (everywhere,) if start is None else (start, everywhere):
         solution = _active_set(problem, active)
         if solution is not None:
-            return _checked(problem, solution)
+            return _verified(problem, solution)
     solution = _with_active(problem, _pressing_by_lemke(problem))
     if solution is None:
         raise NoEquilibrium("contact: the load cannot be carried by the contact zone")
-    return _checked(problem, solution)
+    return _verified(problem, solution)
 
 
 @dataclass(frozen=True)
@@ -119,17 +119,17 @@ class _Problem:
 
 def _active_set(problem: _Problem, active: np.ndarray) -> SignoriniSolution | None:
     """Primal-dual active set from a first guess; None if it cycles or becomes singular."""
-    seen = set()
+    tried = set()
     gap, held = problem.gap, len(problem.load) == 0
-    while active.tobytes() not in seen:
-        seen.add(active.tobytes())
+    while active.tobytes() not in tried:
+        tried.add(active.tobytes())
         solution = _with_active(problem, active)
         if solution is None:
             return None
-        following = _pressing(problem, solution)
-        if np.array_equal(following, active):
+        next_active = _pressing(problem, solution)
+        if np.array_equal(next_active, active):
             return solution
-        active = following if following.any() or held else active | (gap <= gap.min())
+        active = next_active if next_active.any() or held else active | (gap <= gap.min())
     return None
 
 
@@ -164,7 +164,7 @@ def _pressing(problem: _Problem, solution: SignoriniSolution) -> np.ndarray:
     return presses | (~solution.active & (residual < -_TOLERANCE * scales[1]))
 
 
-def _checked(problem: _Problem, solution: SignoriniSolution) -> SignoriniSolution:
+def _verified(problem: _Problem, solution: SignoriniSolution) -> SignoriniSolution:
     λ = solution.coefficients
     residual = problem.residual(solution)
     force_scale, gap_scale = problem.scales(solution)

@@ -15,7 +15,6 @@ from ...bulk.field import owned
 from ...bulk.heat.heat_equation import conducting, transferring
 from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
-from ...bulk.mechanics.surface_load import pressure_work, surface_work
 from ...bulk.mechanics.surplus import surplus_space
 from ...contact.operators.heat import BaselineResponse, InterfaceHeat
 from ...contact.operators.tangential import tangents
@@ -23,7 +22,7 @@ from ...contact.operators.traces import gap_trace, value_trace, vector_trace
 from ...model.heat import Heat
 from ...parallel import sum_over_ranks
 from ..interface.body_state import BodyState, ContactState
-from ..system.elastic_system import supports
+from ..system.elastic_system import supports, surface_loads
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 
@@ -104,8 +103,8 @@ class EnrichedBodies:
         """Nodal loads of the contact and of the surface loads in the enriched space."""
         system, problem = self._system, self._problem
         pairing = system.pairing
-        pull = system.rubbing(contact.conditions.friction).pull
-        traction = contact.pressure[:, None] * pull
+        traction_direction = system.rubbing(contact.conditions.friction).traction_direction
+        traction = contact.pressure[:, None] * traction_direction
         if contact.shear is not None:
             traction = traction - contact.shear[:, None] * tangents(pairing.normals)[0]
         loads = np.concatenate(
@@ -114,11 +113,8 @@ class EnrichedBodies:
                 for space in (problem.space, problem.surplus)
             ]
         )
-        holder, press = system.model.holder, system.press
-        for surface, force in holder.surface_forces.items():
-            loads = loads + problem.loads(surface_work(system.elastic, surface, force * press))
-        for given in holder.surface_pressures.items():
-            loads = loads + problem.loads(pressure_work(system.elastic, *given))
+        for work in surface_loads(system.model.holder, system.elastic):
+            loads = loads + problem.loads(work)
         return loads
 
 

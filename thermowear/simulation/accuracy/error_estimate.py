@@ -248,10 +248,15 @@ def _finer(system: System) -> System:
     slides = sliding_of(model, kinematics, pairing)
     assert slides is not None
     friction = system.friction, model.interface.transverse_friction
-    pull = slides.pull(pairing.normals, *friction)
-    holder = hold(pairing, pull, system.holder.drives)
+    traction_direction = slides.traction_direction(pairing.normals, *friction)
+    holder = hold(pairing, traction_direction, system.holder.rigid_modes)
     return replace(
-        system, pairing=pairing, slides=slides, pull=pull, speed=slides.speed, holder=holder
+        system,
+        pairing=pairing,
+        slides=slides,
+        traction_direction=traction_direction,
+        speed=slides.speed,
+        holder=holder,
     )
 
 

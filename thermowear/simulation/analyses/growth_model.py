@@ -15,7 +15,7 @@ from petsc4py import PETSc
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
-from ...contact.operators.heat import InterfaceHeat, at_rest
+from ...contact.operators.heat import InterfaceHeat, baseline_response
 from ...contact.operators.heat_condensation import condense_heat
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
@@ -131,7 +131,7 @@ class GrowthModel:
         if rate == 0.0:
             return steady, face
         with self._system.phases("condense conduction"):
-            growing = steady.storing(1 / rate)
+            growing = steady.implicit_euler(1 / rate)
             basis, traces = face.basis, face.traces
             alike = condense_heat(growing, face.weights, basis, traces, face.shift, face.partition)
         return growing, alike
@@ -142,14 +142,14 @@ class GrowthModel:
         conduction, X = thermal.conduction, self._fields
         assert X is not None
         assert conduction.capacity is not None
-        at = at_rest(X, thermal.face.traces, system.comm, self._distortion.per_rise)
+        at = baseline_response(X, thermal.face.traces, system.comm, self._distortion.per_rise)
         T1, T2 = at.rise
         weights = system.weights[:, None]
         f = np.reshape(thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # each field satisfies the interface heat law
         carried = np.zeros((X.shape[1],) * 2)
-        if conduction.carried is not None:
-            carried = self._product(conduction.carried, X)
+        if conduction.advective is not None:
+            carried = self._product(conduction.advective, X)
         return Disturbances(
             elastic=space(self._elastic),
             opening=space.gaps.T @ at.opening,

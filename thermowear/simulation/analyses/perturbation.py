@@ -84,7 +84,7 @@ class DisturbedContact:
     @property
     def carries(self) -> bool:
         """True if a body convects heat: perturbations then move, and no static modes exist."""
-        return self._bodies.conduction.carried is not None
+        return self._bodies.conduction.advective is not None
 
     @cached_property
     def static(self) -> StaticModes:

@@ -59,7 +59,7 @@ def fretting(
 
 def _translations(holder: Holder, history: LoadHistory) -> np.ndarray:
     """Unit holder translations: along the load, and tangential if the history prescribes it."""
-    directions = [holder.press]
+    directions = [holder.load_direction]
     if history.tangential:
         directions.append(_ACROSS)
     return np.array(directions)

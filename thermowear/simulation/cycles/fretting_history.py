@@ -123,7 +123,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
         if len(state.motion) < 2:
             return nothing
         pairs = zip(self._profiles, state.worn, strict=True)
-        return sum((own.seen(state.motion[1]) @ ω - ω for own, ω in pairs), start=nothing)
+        return sum((own.interpolation(state.motion[1]) @ ω - ω for own, ω in pairs), start=nothing)
 
     def _load_row(self, increment: Increment) -> LoadRow:
         """Load row at the end of an increment."""

@@ -96,7 +96,7 @@ class ReciprocatingProblem(WearProblem):
             np.array([getattr(solution, name) for solution in found])
             for name in ("coefficients", "motion", "active")
         )
-        nothing = np.zeros(all_of.seen.shape[2])
+        nothing = np.zeros(all_of.gap_per_depth.shape[2])
         contact = self._contact(CoupledSolution(λ, motion, active, nothing))
         return InterfaceState(np.zeros_like(self.rates(contact.pressure)), contact)
 
@@ -178,7 +178,7 @@ class ReciprocatingProblem(WearProblem):
         return newton_with_wear(solve, self._local, guess)
 
     def _contact(self, solution: CoupledSolution) -> ContactSolution:
-        motion = np.array([self._holder.amounts(d) for d in solution.motion])
+        motion = np.array([self._holder.amplitudes(d) for d in solution.motion])
         return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
 
 

@@ -15,7 +15,7 @@ from ...contact.wear.track import StrokeGrid
 from ...errors import CaseError
 from ...model.analyses import ReciprocatingAnalysis
 from ..system.contact_points import contact_points
-from ..system.rigid_modes import drives
+from ..system.rigid_modes import rigid_modes
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 
@@ -89,9 +89,9 @@ def moved(system: System, offset: float, direction: int) -> System:
             "body 2 is needed (geometry.stroke)"
         )
     velocity = direction * kinematics.sliding(pairing.points, model.motion)
-    slides = sliding(velocity, pairing.normals, model.holder.press)
+    slides = sliding(velocity, pairing.normals, model.holder.load_direction)
     friction = system.friction, model.interface.transverse_friction
-    pull = slides.pull(pairing.normals, *friction)
+    traction_direction = slides.traction_direction(pairing.normals, *friction)
     on_1, on_2 = pairing.sides
     in_place = replace(pairing, sides=(replace(on_1, face=system.pairing.sides[0].face), on_2))
     return replace(
@@ -101,11 +101,11 @@ def moved(system: System, offset: float, direction: int) -> System:
         basis=basis,
         holder=hold(
             in_place,
-            pull,
-            drives(model.holder, in_place, lambda motion: system.dead_resultant(motion)[0]),
+            traction_direction,
+            rigid_modes(model.holder, in_place, lambda motion: system.dead_resultant(motion)[0]),
         ),
         slides=slides,
-        pull=pull,
+        traction_direction=traction_direction,
         speed=slides.speed,
         parts=SetupCache(),  # other contact points: no cached condensation applies
     )
@@ -125,7 +125,7 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
     return CoupledContacts(
         compliance=np.array(compliances),
         gap=np.array(gaps),
-        seen=np.array(seen),
+        gap_per_depth=np.array(seen),
         modes=np.array([contact.modes for contact in contacts]),
         force_modes=np.array([contact.force_modes for contact in contacts]),
         load=systems[0].holder.load + systems[0].holder.dead,
@@ -134,8 +134,8 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
 
 def spreading(contacts: CoupledContacts, grid: StrokeGrid, shares: np.ndarray) -> np.ndarray:
     """Operators from local wear rates to cycle-averaged rates of depths, shape (2, J, N, m)."""
-    count, m, total = contacts.seen.shape
+    count, m, total = contacts.gap_per_depth.shape
     result = np.zeros((2, count, total, m))
     result[0, :, :m] = np.eye(m)
-    result[1, :, m:] = contacts.seen[:, :, m:].mT / grid.areas[:, None]
+    result[1, :, m:] = contacts.gap_per_depth[:, :, m:].mT / grid.areas[:, None]
     return shares[:, None, None] * result

@@ -21,7 +21,7 @@ def holder(case: Case) -> Holder:
         point[: len(load.point)] = load.point
     about_x, about_y = load.moments or (0.0, 0.0)
     return Holder(
-        press=geometry.press_direction,
+        load_direction=geometry.press_direction,
         pivot=tuple(map(float, pivot)),
         point=tuple(map(float, point)),
         free=free,

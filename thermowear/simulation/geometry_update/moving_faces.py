@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from ...bulk.mesh_motion import serial_extension
 from ...contact.search.pairing import Pairing
-from ...contact.search.projection import ahead
+from ...contact.search.projection import ray_intersections
 from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import (
     Paths,
@@ -135,7 +135,7 @@ def _along_ways(
     first, second = pairing.sides
     gone = np.isin([0, 1], bodies or [0, 1]).astype(float)
     ways = ways_between(pairing.sides, directions, gone)
-    facet, t, way = ahead(second.face, first.face.points(first.facet, first.t), ways)
+    facet, t, way = ray_intersections(second.face, first.face.points(first.facet, first.t), ways)
     gap = way * np.einsum("ni,ni->n", pairing.normals, ways)
     return replace(pairing, sides=(first, replace(second, facet=facet, t=t))), gap
 

@@ -100,10 +100,12 @@ class FrictionHeat:
     def frozen(self) -> InitialHeat:
         """Initial temperatures, before any friction heat has flowed; every rank calls."""
         conduction = self._thermal.conduction
-        rise = np.where(conduction.fixed, conduction.given, self._thermal.initial)
+        rise = np.where(conduction.fixed, conduction.prescribed, self._thermal.initial)
         resting = self.steps.at_rest(rise)
         largest = max(float(np.abs(resting.rise).max()), self._largest(rise))
-        return InitialHeat(StoredHeat(rise, conduction.stored(rise), np.zeros(3), largest), resting)
+        return InitialHeat(
+            StoredHeat(rise, conduction.stored_heat(rise), np.zeros(3), largest), resting
+        )
 
     def at_moment(self, stored: StoredHeat) -> InitialHeat:
         """Known temperatures at a later time; every rank calls."""
@@ -123,7 +125,7 @@ class FrictionHeat:
         rise : ndarray, shape (n_owned,)
             Transferred temperature rise on this mesh [K].
         """
-        content = self._thermal.conduction.stored(rise)
+        content = self._thermal.conduction.stored_heat(rise)
         same = replace(stored, rise=rise, content=content)
         taken = former.balance(stored).stored - self.balance(same).stored
         return replace(same, turnover=stored.turnover + np.array([0.0, taken, abs(taken)]))
@@ -152,12 +154,11 @@ class FrictionHeat:
         """
         conduction, face, load = self._thermal.conduction, self._thermal.face, heat.load
         rise = heat.rise(faces)
-        content = conduction.stored(rise)
-        storage = (content - before.content) / step
-        nodal = face.nodal_heat(faces, bath=False) + load.heat
-        lost = sum(conduction.losses(rise, nodal, storage, load.ambient))
+        content = conduction.stored_heat(rise)
+        nodal = face.nodal_heat(faces, bath=False) + load.heat - (content - before.content) / step
+        lost = sum(conduction.losses(rise, nodal, load.ambient))
         made = float(face.weights @ friction_heat)
-        outside = conduction.turnover(rise, nodal, storage, load.ambient)
+        outside = conduction.exchanged_heat(rise, nodal, load.ambient)
         exchanged = made + load.magnitude + outside
         largest = max(before.largest, float(np.abs(faces.rise).max()), self._largest(rise))
         turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])
@@ -172,9 +173,9 @@ class FrictionHeat:
         heat = face.nodal_heat(faces, bath=False) + load.heat
         made = float(face.weights @ (conditions.heating * pressure))
         lost = sum(conduction.losses(rise, heat))
-        scale = max(made + load.magnitude, conduction.turnover(rise, heat))
+        scale = max(made + load.magnitude, conduction.exchanged_heat(rise, heat))
         if made + load.magnitude == 0.0:  # the turnover may be at rounding level
-            scale = max(scale, conduction.rounding(rise))
+            scale = max(scale, conduction.balance_scale(rise))
         return TemperatureField(faces, rise, relative(lost - made - load.prescribed, scale))
 
     def momentary(self, stored: StoredHeat, faces: ThermalState) -> TemperatureField:

@@ -114,7 +114,7 @@ class HeatOperators:
         """Weak gap by heat other than friction heat, shape (m,) [m³]."""
         last = self._opening
         if last is None or last[0] is not exchange or last[1] is not resting:
-            found = self.distortion.at_rest(exchange, resting)
+            found = self.distortion.baseline_gap(exchange, resting)
             last = self._opening = exchange, resting, found
         return last[2]
 
@@ -153,7 +153,7 @@ class LinearHeatStep:
     def rise(self, faces: ThermalState) -> np.ndarray:
         """Temperature rise of the bodies, shape (n_owned,) [K]."""
         heat = self.operators.face.nodal_heat(faces, bath=True) + self.supplied
-        return self.operators.conduction.holding(self.load.given).solve(heat)
+        return self.operators.conduction.with_prescribed(self.load.given).solve(heat)
 
     def coupling(
         self, conditions: InterfaceConditions, basis: np.ndarray

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...contact.operators.heat import BaselineResponse, ThermalState, at_rest
+from ...contact.operators.heat import BaselineResponse, ThermalState, baseline_response
 from ...contact.operators.heat_condensation import condense_heat
 from ...errors import ComputationError
 from ..system.conditions import InterfaceConditions
@@ -168,7 +168,7 @@ class HeatSteps:
     @cached_property
     def steady(self) -> ConductingStep:
         """Steady conduction."""
-        return self._steady_about(self._thermal.conduction.given)
+        return self._steady_about(self._thermal.conduction.prescribed)
 
     def after(self, before: StoredHeat, step: float, time: float) -> ConductingStep:
         """Conduction in an implicit Euler step that ends at a time [s]; every rank calls."""
@@ -214,13 +214,15 @@ class HeatSteps:
         """
         traces, comm, distortion = self._thermal.face.traces, self._system.comm, self._distortion
         if not self._distorts:
-            return at_rest(rise, traces, comm)
+            return baseline_response(rise, traces, comm)
         if not self.nonlinear:
-            return at_rest(rise, traces, comm, (operators or distortion).per_rise)
+            return baseline_response(rise, traces, comm, (operators or distortion).per_rise)
         if operators is None or about is None:
-            return at_rest(rise, traces, comm, distortion.per_rise, distortion.excess(rise))
+            return baseline_response(
+                rise, traces, comm, distortion.per_rise, distortion.excess(rise)
+            )
         excess = distortion.excess(about, operators.reference)
-        return at_rest(rise, traces, comm, operators.per_rise, excess)
+        return baseline_response(rise, traces, comm, operators.per_rise, excess)
 
     def _steady_about(self, rise: np.ndarray, change: float = np.inf) -> ConductingStep:
         """Steady conduction with an initial rise (n_owned,) and its last change."""
@@ -252,10 +254,10 @@ class HeatSteps:
     ) -> LinearHeatStep:
         """Heat linearised about a rise, with tangents of a nearby rise; every rank calls."""
         conduction = self._thermal.conduction
-        heat = supplied + conduction.remainder(rise, operators.reference)
+        heat = supplied + conduction.linearisation_error(rise, operators.reference)
 
         def alone() -> BaselineResponse:
-            held = operators.conduction.holding(load.given)
+            held = operators.conduction.with_prescribed(load.given)
             return self.at_rest(held.solve(heat), operators, rise)
 
         if operators.conduction is not conduction:  # of a time step, or a tangent

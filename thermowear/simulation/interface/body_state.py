@@ -122,32 +122,34 @@ def _force_error(system: System, contact: ContactState, displacement, loads, str
     apart, reactions are the rounding of the thermal forces ``strained`` (n_owned,), without their
     part that grows beyond bounds towards ν = 0.5.
     """
-    drives = [*_with_rotations(system), *_across(system)]
+    rigid_modes = [*_with_rotations(system), *_across(system)]
     nodes = system.elastic.nodes()
     reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
     upper = system.elastic.owned_by(*system.model.bodies[0].parts)
-    carried, borne_by_2 = (_work(system, contact, drives, side) for side in system.pairing.sides)
-    errors, scales = np.zeros(len(drives)), np.zeros(len(drives))
+    carried, borne_by_2 = (
+        _work(system, contact, rigid_modes, side) for side in system.pairing.sides
+    )
+    errors, scales = np.zeros(len(rigid_modes)), np.zeros(len(rigid_modes))
     strained = system.elastic.compressibility() * strained.reshape(nodes.shape)
     pressed = _part(contact.conditions.load - system.holder.dead, system.holder.load)
-    for k, (drive, share, other) in enumerate(zip(drives, carried, borne_by_2, strict=True)):
-        moved = drive.motion.at(nodes)
+    for k, (mode, share, other) in enumerate(zip(rigid_modes, carried, borne_by_2, strict=True)):
+        moved = mode.motion.at(nodes)
         work = (reactions * moved).sum(axis=1)
         magnitudes = np.abs(work).sum(), np.abs(strained * moved).sum()
         parts = np.array([work[upper].sum(), work[~upper].sum(), *magnitudes])
         held, supported, borne, thermal = sum_over_ranks(system.comm, parts)
-        given = system.dead_resultant(drive.motion)
+        given = system.dead_resultant(mode.motion)
         found = share.sum()
         # the load may be below the maximum of its history
         due = (
             found - given[0]
-            if drive.load is None or contact.shear is not None
-            else pressed * drive.load
+            if mode.load is None or contact.shear is not None
+            else pressed * mode.load
         )
         errors[k] = np.maximum(abs(held - due), abs(supported + given[1] + other.sum()))
         loaded = np.abs(share).sum() + np.abs(given).sum()
         scales[k] = max(loaded, borne, _ROUNDING / ALLOWED * thermal)
-    shifts = np.array([not drive.motion.rotation.any() for drive in drives])
+    shifts = np.array([not mode.motion.rotation.any() for mode in rigid_modes])
     scales[shifts] = scales[shifts].max()
     return max(relative(e, s) for e, s in zip(errors, scales, strict=True))
 
@@ -160,14 +162,14 @@ def _with_rotations(system: System) -> list[RigidMode]:
     """
     degree = system.model.discretisation.degree
     curved = coordinate_element(system.bodies.mesh).degree > degree
-    return [d for d in system.holder.drives if not (curved and d.motion.rotation.any())]
+    return [d for d in system.holder.rigid_modes if not (curved and d.motion.rotation.any())]
 
 
-def _work(system: System, contact: ContactState, drives, side: PairedFace) -> np.ndarray:
+def _work(system: System, contact: ContactState, rigid_modes, side: PairedFace) -> np.ndarray:
     """Work of the contact traction on motions of a body at the points of its face, (k, n)."""
     points = side.face.points(side.facet, side.t)
-    moved = np.array([drive.motion.at(points) for drive in drives])
-    traction = contact.pressure[:, None] * system.pull
+    moved = np.array([mode.motion.at(points) for mode in rigid_modes])
+    traction = contact.pressure[:, None] * system.traction_direction
     if contact.shear is not None:
         traction = traction - contact.shear[:, None] * tangents(system.pairing.normals)[0]
     return system.weights * np.einsum("kni,ni->kn", moved, traction)
@@ -176,8 +178,8 @@ def _work(system: System, contact: ContactState, drives, side: PairedFace) -> np
 def _across(system: System) -> list[RigidMode]:
     """Translations along the axes without a load, balanced independently of the holder."""
     gdim = system.pairing.points.shape[1]
-    axes = [system.press] if system.model.kinematics == "axisymmetric" else np.eye(gdim)
-    return [RigidMode(translation(axis), amount=0.0) for axis in axes]
+    axes = [system.load_direction] if system.model.kinematics == "axisymmetric" else np.eye(gdim)
+    return [RigidMode(translation(axis), amplitude=0.0) for axis in axes]
 
 
 def _part(load: np.ndarray, largest: np.ndarray) -> float:

@@ -46,7 +46,7 @@ class CondensedMethod:
         self._rubbing = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
         self._free = system.holder.free
-        self._given = system.holder.amounts(np.zeros(int(self._free.sum())))
+        self._given = system.holder.amplitudes(np.zeros(int(self._free.sum())))
         self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
         self._last_opening: tuple[CondensedContact | EdgeSpace, np.ndarray, np.ndarray] | None = (
             None

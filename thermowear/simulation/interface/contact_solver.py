@@ -21,7 +21,7 @@ class ContactSolution:
     Attributes
     ----------
     pressure : ndarray, shape (n,) [Pa]
-    motion : ndarray, shape (n_drives,)
+    motion : ndarray, shape (n_modes,)
         Amount of each rigid mode of the holder [m or rad].
     warm_start : object
         Solution to start the solver from.

@@ -122,7 +122,7 @@ class FullMethod:
         return self._contact.solve(gap, load, slope, nodal_loads, traction, start, edge)
 
     def _result(self, solution: FullSolution) -> ContactSolution:
-        motion = self._system.holder.amounts(solution.motion)
+        motion = self._system.holder.amplitudes(solution.motion)
         return ContactSolution(solution.pressure, motion, solution)
 
 

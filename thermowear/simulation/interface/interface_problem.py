@@ -213,7 +213,8 @@ class InterfaceProblem(WearProblem):
         """
         gap = self._gap + worn.sum(axis=0)
         if conditions.released:  # the holder stays where it is
-            motion = np.zeros(len(self._system.holder.drives)) if guess is None else guess.motion
+            rigid_modes = self._system.holder.rigid_modes
+            motion = np.zeros(len(rigid_modes)) if guess is None else guess.motion
             return ContactSolution(np.zeros(len(gap)), motion, None)
 
         def solve(opened, slope, last):

@@ -133,7 +133,7 @@ def profile(end: Snapshot) -> Profile:
     """Worn shape of an interface, along its normals and along the load direction."""
     system, interface = end.system, end.interface
     normals = np.zeros((len(interface.s), 3))
-    normals[:, : len(system.press)] = system.pairing.normals
+    normals[:, : len(system.load_direction)] = system.pairing.normals
     along = along_press(system)
     lost = system.pairing.gap + interface.wear_1 + interface.wear_2
     lost = (interface.shape.max() - interface.shape + lost.min()) / along
@@ -155,5 +155,5 @@ def profile(end: Snapshot) -> Profile:
 
 def along_press(system: System) -> np.ndarray:
     """Cosines between normals and load direction, shape (n,); NaN where the face is too steep."""
-    along = system.pairing.normals @ system.press
+    along = system.pairing.normals @ system.load_direction
     return np.where(along > _STEEPEST, along, np.nan)

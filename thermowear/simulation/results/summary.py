@@ -65,7 +65,7 @@ def summarise(end: Snapshot, time: float) -> dict:
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": float(end.motion.at(np.array(model.holder.pivot)) @ system.press),
+        "approach_m": float(end.motion.at(np.array(model.holder.pivot)) @ system.load_direction),
         "max_temperature_K": _number(end.bodies.hottest),
         "friction_power_W": float(w @ (contact.conditions.heating * p)),
         **_conducted(end, time),
@@ -166,7 +166,7 @@ def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
     reactions = {}
     for name, motion in guides(model).items():
         if name not in model.holder.free:
-            work = np.einsum("ni,ni->n", motion.at(points), system.pull)
+            work = np.einsum("ni,ni->n", motion.at(points), system.traction_direction)
             given = applied(model.holder, motion) + float(system.dead_resultant(motion)[0])
             reaction = float(system.weights @ (pressure * work)) - given
             reactions[_GUIDES[name]] = 0.0 if model.symmetry else reaction

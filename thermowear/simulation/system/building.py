@@ -20,7 +20,7 @@ from ...parallel import on_root
 from ...timer import Phases
 from .contact_points import contact_points, facing_parts, worn_contact_points
 from .elastic_system import dead_load, dead_resultant, elastic_system
-from .rigid_modes import drives
+from .rigid_modes import rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
 from .thermal_system import ThermalSystem, thermal_system
@@ -71,14 +71,15 @@ def build(
             lambda: elastic_system(model, kinematics, bodies, pairing),
         )
     slides = sliding_of(model, kinematics, pairing)
-    pull, speed = pairing.normals, np.zeros(len(pairing.weights))
+    traction_direction, speed = pairing.normals, np.zeros(len(pairing.weights))
     if slides is not None:
         friction = interface.nominal_friction, interface.transverse_friction
-        pull, speed = slides.pull(pairing.normals, *friction), slides.speed
+        traction_direction = slides.traction_direction(pairing.normals, *friction)
+        speed = slides.speed
     facing = facing_parts(bodies, pairing)
     dead = dead_load(model.holder, elastic)
     upper = model.bodies[0].parts
-    driven = drives(
+    driven = rigid_modes(
         model.holder, pairing, lambda motion: dead_resultant(elastic, upper, dead, motion)[0]
     )
     thermal = parts.get(
@@ -93,9 +94,9 @@ def build(
         elastic=elastic,
         trace=trace,
         basis=basis,
-        holder=hold(pairing, pull, driven),
+        holder=hold(pairing, traction_direction, driven),
         slides=slides,
-        pull=pull,
+        traction_direction=traction_direction,
         speed=speed,
         dead_load=dead,
         thermal=None if thermal is None else _exchanging(thermal, model, facing),
@@ -148,4 +149,4 @@ def sliding_of(model: Model, kinematics: Kinematics, pairing: Pairing) -> Slidin
     if motion.at_rest:
         return None
     velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
-    return sliding(velocity, pairing.normals, model.holder.press)
+    return sliding(velocity, pairing.normals, model.holder.load_direction)

@@ -11,8 +11,8 @@ from ...bulk.kinematics import Kinematics
 from ...contact.operators.pressure import pressure_basis
 from ...contact.search.face import Face
 from ...contact.search.pairing import Pairing, pair, paired
-from ...contact.search.projection import ahead
-from ...contact.search.refinement import BESIDE, SLIVER
+from ...contact.search.projection import ray_intersections
+from ...contact.search.refinement import OVERHANG_TOLERANCE, SLIVER
 from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import ways_between
 from ...laws.motions import RigidMotion
@@ -58,8 +58,8 @@ def worn_contact_points(
     motion = RigidMotion(moved, turned, np.zeros(3))
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
     if worn.pieces is None:
-        beside = _beside(worn, face_1)
-        pairing, basis = _points(model, kinematics, closer, face_2, _SLIVER, beside)
+        max_overhang = _max_overhang(worn, face_1)
+        pairing, basis = _points(model, kinematics, closer, face_2, _SLIVER, max_overhang)
     else:
         pairing = paired(closer, face_2, kinematics, worn.pieces)
         basis = pressure_basis(pairing, model.pressure_degree)
@@ -67,7 +67,7 @@ def worn_contact_points(
     on_face = face_1.points(first.facet, first.t)
     to = motion.at(on_face)
     ways = ways_between(pairing.sides, worn.directions, np.abs(worn.depth).max(axis=1))
-    facet, t, way = ahead(face_2, on_face + to, ways)
+    facet, t, way = ray_intersections(face_2, on_face + to, ways)
     between, apart = (np.einsum("ni,ni->n", pairing.normals, v) for v in (way[:, None] * ways, to))
     points = on_face + (pairing.share * between)[:, None] * pairing.normals
     sides = replace(first, face=face_1), replace(second, facet=facet, t=t)
@@ -88,14 +88,14 @@ def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
     return tuple(replace(face, softness=1.0 if wall else LEAST) for face, wall in pairs)
 
 
-def _beside(worn: WornGeometry, face_1: Face | Surface) -> float:
+def _max_overhang(worn: WornGeometry, face_1: Face | Surface) -> float:
     """Largest overhang of a face past the end of the other one, relative to its size.
 
     Rounding only if the unworn face overhangs already. Otherwise the holder's motion has moved it
     over a body that continues there.
     """
     opposite = worn.at[0] == 0.0 and worn.at[-1] == len(face_1.nodes)
-    return _ALONG if opposite else BESIDE
+    return _ALONG if opposite else OVERHANG_TOLERANCE
 
 
 def _points(
@@ -104,14 +104,14 @@ def _points(
     face_1,
     face_2,
     sliver: float = SLIVER,
-    beside: float = BESIDE,
+    max_overhang: float = OVERHANG_TOLERANCE,
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points of two faces, and pressure space Ψ."""
     degree = model.discretisation.degree
     if model.interface.pressure_degree == "lobatto":  # at the nodes of body 1's facets
         pairing = pair(face_1, face_2, kinematics, degree + 1, refine=False)
         return pairing, np.eye(len(pairing.weights))
-    pairing = pair(face_1, face_2, kinematics, degree + 2, sliver=sliver, beside=beside)
+    pairing = pair(face_1, face_2, kinematics, degree + 2, sliver=sliver, max_overhang=max_overhang)
     return pairing, pressure_basis(pairing, model.pressure_degree)
 
 

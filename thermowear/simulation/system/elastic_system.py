@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.sparse as sp
 
 from ...bulk.bodies import Bodies
+from ...bulk.compiled import nodal_loads
 from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
-from ...bulk.mechanics.surface_load import surface_load, surface_pressure
+from ...bulk.mechanics.surface_load import pressure_work, surface_work
 from ...contact.operators.traces import gap_trace
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion
@@ -47,13 +50,19 @@ def supports(model: Model) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]
 
 def dead_load(holder: Holder, elastic: Elasticity) -> np.ndarray | None:
     """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without surface loads."""
-    press = np.array(holder.press)
-    loads = [
-        surface_load(elastic, surface, force * press)
+    loads = [nodal_loads(elastic.space, work) for work in surface_loads(holder, elastic)]
+    return np.sum(loads, axis=0) if loads else None
+
+
+def surface_loads(holder: Holder, elastic: Elasticity) -> list[Callable]:
+    """Forms of the work of the loads on surfaces, see `bulk.mechanics.surface_load`."""
+    direction = np.array(holder.load_direction)
+    forces = [
+        surface_work(elastic, surface, force * direction)
         for surface, force in holder.surface_forces.items()
     ]
-    loads += [surface_pressure(elastic, *given) for given in holder.surface_pressures.items()]
-    return np.sum(loads, axis=0) if loads else None
+    pressures = holder.surface_pressures.items()
+    return forces + [pressure_work(elastic, *given) for given in pressures]
 
 
 def dead_resultant(

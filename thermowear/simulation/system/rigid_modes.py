@@ -16,13 +16,13 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
 _TURNS = {"rotation-x": (1.0, 0.0, 0.0), "rotation-y": (0.0, 1.0, 0.0)}
 
 
-def drives(
+def rigid_modes(
     holder: Holder, pairing: Pairing, dead: Callable[[RigidMotion], float]
 ) -> tuple[RigidMode, ...]:
     """Rigid modes of the holder, the load direction first, with the load or motion of each.
 
     A force acts along the load direction at the point of the load, so that its generalised force
-    on any motion m is ``F press·m(point)``; moments add their work on its rotation.
+    on a motion m is ``F e·m(point)``, e the load direction; moments add their work on its rotation.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def drives(
     """
     approach = holder.approach
     return tuple(
-        RigidMode(m, amount=approach, dead=float(dead(m)))
+        RigidMode(m, amplitude=approach, dead=float(dead(m)))
         if approach is not None and name == "z"
         else RigidMode(m, load=_load(holder, m), dead=float(dead(m)))
         for name, m in ((name, _motion(holder, name, pairing)) for name in holder.free)
@@ -58,7 +58,7 @@ def guides(model: Model) -> dict[str, RigidMotion]:
 
 def applied(holder: Holder, motion: RigidMotion) -> float:
     """Generalised force of the loads of the holder on a motion; moments by the right-hand rule."""
-    force = (holder.force or 0.0) * np.array(holder.press)
+    force = (holder.force or 0.0) * np.array(holder.load_direction)
     force[0] += holder.tangential_force
     work = force @ motion.at(np.array(holder.point)) + np.array(holder.moments) @ motion.rotation
     return float(work)
@@ -66,7 +66,7 @@ def applied(holder: Holder, motion: RigidMotion) -> float:
 
 def _motion(holder: Holder, name: str, pairing: Pairing) -> RigidMotion:
     if name == "z":
-        return translation(holder.press)
+        return translation(holder.load_direction)
     if name in _AXES:
         return translation(_AXES[name])
     pivot = np.array(holder.pivot)

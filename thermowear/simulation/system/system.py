@@ -47,7 +47,7 @@ class System:
     holder : RigidHolder
     slides : Sliding or None
         Sliding kinematics of body 1; None without motion.
-    pull : ndarray, shape (n, gdim)
+    traction_direction : ndarray, shape (n, gdim)
         Traction direction ``n + mu e``: the traction on body 1 is ``-p (n + mu e)``.
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
@@ -74,7 +74,7 @@ class System:
     basis: np.ndarray
     holder: RigidHolder
     slides: Sliding | None
-    pull: np.ndarray
+    traction_direction: np.ndarray
     speed: np.ndarray
     dead_load: np.ndarray | None
     thermal: ThermalSystem | None
@@ -110,19 +110,19 @@ class System:
         return facing_parts(self.bodies, self.pairing)
 
     @cached_property
-    def press(self) -> np.ndarray:
+    def load_direction(self) -> np.ndarray:
         """Load direction of body 1, a unit vector of shape (gdim,)."""
-        return np.array(self.model.holder.press)
+        return np.array(self.model.holder.load_direction)
 
     @cached_property
     def approaches(self) -> np.ndarray:
         """Displacement of the pivot along the load direction per mode of the holder, (n_modes,)."""
         pivot = np.array(self.model.holder.pivot)
-        return np.array([motion.at(pivot) @ self.press for motion in self.holder.motions])
+        return np.array([motion.at(pivot) @ self.load_direction for motion in self.holder.motions])
 
     def normal_force(self, pressure: np.ndarray) -> float:
         """Resultant of a pressure (n,) and its friction along the load direction [N]."""
-        return float(self.weights @ (pressure * (self.pull @ self.press)))
+        return float(self.weights @ (pressure * (self.traction_direction @ self.load_direction)))
 
     @cached_property
     def softness(self) -> float:
@@ -184,22 +184,29 @@ class System:
         if self.slides is None or np.all(friction == self.friction):
             return self
         transverse = self.model.interface.transverse_friction
-        pull = self.slides.pull(self.pairing.normals, friction[:, None], transverse)
-        return replace(self, holder=hold(self.pairing, pull, self.holder.drives), pull=pull)
+        traction_direction = self.slides.traction_direction(
+            self.pairing.normals, friction[:, None], transverse
+        )
+        return replace(
+            self,
+            holder=hold(self.pairing, traction_direction, self.holder.rigid_modes),
+            traction_direction=traction_direction,
+        )
 
     @cached_property
     def traction(self) -> sp.csr_matrix:
         """B_tᵀ, shape (n_owned, n), see `contact.search.pairing`; Bᵀ without in-plane friction."""
-        if np.array_equal(self.pull, self.pairing.normals):
+        if np.array_equal(self.traction_direction, self.pairing.normals):
             return self.trace
         along = self.parts.get("traces", self.inputs.elasticity, self._along_coordinates)
         first, *others = (
-            trace @ sp.diags(component) for trace, component in zip(along, self.pull.T, strict=True)
+            trace @ sp.diags(component)
+            for trace, component in zip(along, self.traction_direction.T, strict=True)
         )
         return sum(others, first)
 
     def _along_coordinates(self) -> list[sp.csr_matrix]:
         """Traces of the displacement along each coordinate, shape (n_owned, n) each."""
-        n, gdim = self.pull.shape
+        n, gdim = self.traction_direction.shape
         units = (np.tile(unit, (n, 1)) for unit in np.eye(gdim))
         return [vector_trace(self.elastic.space, self.pairing, unit) for unit in units]

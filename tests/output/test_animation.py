@@ -11,10 +11,11 @@ from thermowear import CaseError
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
 from thermowear.output.pictures.animation import make
+from thermowear.output.pictures.animation.bodies import SectionPanel
 from thermowear.output.pictures.animation.curves import top
 from thermowear.output.pictures.animation.scene import duration
-from thermowear.output.pictures.animation.section import SectionPanel, outline
 from thermowear.output.pictures.animation.states import read_film
+from thermowear.output.pictures.section import outline
 
 from ..conftest import COLD_RUNNING_IN
 
@@ -73,9 +74,11 @@ def test_axes_stand_still(folder):
 
 def test_colours_mean_the_same_in_all_frames(folder):
     """requirement: one colour range for all states, except few largest samples."""
-    section = SectionPanel(read_film(folder))
-    low, high = section.limits
-    for _, _, _, values in section._fields.values():
+    film = read_film(folder)
+    panel = SectionPanel(film)
+    low, high = panel.limits
+    for section in panel.sections.values():
+        values = section.fields[film.field]
         assert values.min() >= low
         assert np.mean(values <= high) >= 0.99
 
@@ -83,13 +86,11 @@ def test_colours_mean_the_same_in_all_frames(folder):
 def test_body_1_sinks_as_it_wears(folder):
     """requirement: bodies are drawn displaced, consistent with the approach."""
     film = read_film(folder)
-    section = SectionPanel(film)
     heights = []
-    for state in film.states:
-        points, triangles, body, _ = section._fields[id(state)]
-        heights.append(points[triangles[body == 1], 1].max())
+    for section in SectionPanel(film).sections.values():
+        heights.append(section.points[section.triangles[section.body == 1], 1].max())
     approach = np.interp(
-        [state.time for state in film.states], film.course["time"], film.course["approach"]
+        [state.time for state in film.states], film.history["time"], film.history["approach"]
     )
     fallen = heights[0] - np.array(heights)
     np.testing.assert_allclose(fallen, 1e3 * (approach - approach[0]), atol=2e-5)

@@ -55,6 +55,11 @@ class Quantity:
         """Axis label in two lines."""
         return f"{self.label}\n[{self.unit}]"
 
+    @property
+    def of_bodies(self) -> Quantity:
+        """Quantity of either body, for a label that names no body."""
+        return replace(self, label=self.label.removesuffix(", body 1").removesuffix(", body 2"))
+
     def drawn(self, values):
         """Convert SI values to the unit of plots."""
         scale, offset = scale_of(self.unit, self.si)

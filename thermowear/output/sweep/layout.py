@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
 
 from .keys import Axis
 from .record import VariantRecord
 
 LINES = ("-", "--", "-.", ":")
 _LEGEND_LIMIT = 6
+_LEGEND_LINE = 0.22  # height of a line of a legend [inches]
+_SHORT = 14  # characters of a legend entry, up to which several entries stand side by side
+_LEGEND_COLUMNS = 4
 _MOST_COLUMNS = 6
 _LOG_RATIO = 30.0
 """Smallest ratio of largest to smallest value for a logarithmic axis; the values must also be more
@@ -101,3 +107,19 @@ def is_wide(numbers) -> bool:
 
 def _named(axis: Axis, place: int) -> str:
     return f"{axis.key} = {axis.words[place]}"
+
+
+def add_legend(figure: Figure, place: str, title: str, handles: Sequence[Artist]) -> None:
+    """Add a legend below the panels."""
+    figure.legend(handles=handles, loc=place, title=title, ncols=_legend_columns(handles))
+
+
+def legend_height(handles: Sequence[Artist]) -> float:
+    """Height of a legend [inches]."""
+    lines = sum(1 + str(handle.get_label()).count("\n") for handle in handles)
+    return _LEGEND_LINE * (1.5 + -(-lines // _legend_columns(handles)))
+
+
+def _legend_columns(handles: Sequence[Artist]) -> int:
+    longest = max(len(str(handle.get_label())) for handle in handles)
+    return min(_LEGEND_COLUMNS, len(handles)) if longest <= _SHORT else 1

@@ -7,12 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ..curves import BODIES, abscissa
+from ..panels import BODIES, abscissa, clipped_top
 from .states import Film, FrameState
 
 _AXIS_END = 1.06  # end of an axis relative to the largest value
-_SINGULAR, _MOST = 3.0, 0.9
-"""Peaks are clipped if they exceed the first factor times the quantile of the second."""
 _FAINT = {"color": "0.6", "linewidth": 1.2}
 
 Curve = Callable[[FrameState], tuple[np.ndarray, np.ndarray]]
@@ -24,7 +22,7 @@ class PressureCurve:
     def __init__(self, film: Film):
         self._film = film
 
-    def prepare(self, _, axis) -> None:
+    def prepare(self, axis) -> None:
         """Draw the static elements."""
         states, self._curve = self._film.states, _along("pressure")
         ends = {"--": (states[0], "start"), "-": (states[-1], self._name_of_end())}
@@ -64,7 +62,7 @@ class WearCurves:
         """True if any body wears."""
         return bool(self._curves)
 
-    def prepare(self, _, axis) -> None:
+    def prepare(self, axis) -> None:
         """Draw the static elements."""
         states, values, places = self._film.states, [], []
         for (name, curve), (color, line) in zip(self._curves.items(), self._styles(), strict=True):
@@ -100,12 +98,12 @@ class TimeCurve:
         self._name = "max_temperature" if _is_hot(film) else "max_pressure"
         self._even = film.even
         # a logarithmic axis cannot start at zero
-        self._course = film.course if film.even else film.course.rows(np.s_[1:])
-        self._time, self._drawn = self._course["time"], self._course.drawn(self._name)
+        self._history = film.history if film.even else film.history.rows(np.s_[1:])
+        self._time, self._drawn = self._history["time"], self._history.drawn(self._name)
 
-    def prepare(self, _, axis) -> None:
+    def prepare(self, axis) -> None:
         """Draw the static elements."""
-        shown = self._course.quantities
+        shown = self._history.quantities
         axis.plot(self._time, self._drawn, color="0.45")
         if not self._even:
             axis.set_xscale("log")
@@ -129,8 +127,7 @@ def top(values: np.ndarray) -> float:
     pressed = values[values > 0]
     if not len(pressed):
         return 1.0
-    peak, usual = pressed.max(), np.quantile(pressed, _MOST)
-    return float(1.5 * usual if peak > _SINGULAR * usual else peak)
+    return clipped_top([pressed]) or float(pressed.max())
 
 
 def _legend(axis) -> None:
@@ -141,7 +138,7 @@ def _legend(axis) -> None:
 
 
 def _is_hot(film: Film) -> bool:
-    return bool(np.isfinite(film.course.get("max_temperature", np.array([np.nan]))).all())
+    return bool(np.isfinite(film.history.get("max_temperature", np.array([np.nan]))).all())
 
 
 def _along(name: str) -> Curve:

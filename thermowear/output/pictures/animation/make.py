@@ -9,10 +9,11 @@ from ....errors import CaseError
 from ...frames import frame_files
 from ...names import FRAMES
 from ..maps import is_surface
+from ..scales import COLORS
+from .bodies import SectionPanel, SolidPanel, face_maps
 from .curves import PressureCurve, TimeCurve, WearCurves
 from .palette import common_palette
 from .scene import Scene, ScenePanel
-from .section import SectionPanel
 from .states import Film, read_film
 from .writers import GIF, MP4, ffmpeg, write_gif, write_mp4
 
@@ -59,26 +60,24 @@ def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
         Frames per second.
     """
     film = read_film(folder)
-    scene = _in_space(film) if is_surface(folder) else _in_a_plane(film)
+    scene = _scene_of_solids(film) if is_surface(folder) else _scene_of_sections(film)
     states = film.states
     pictures = (scene.picture(state) for state in states)
     if path.suffix == MP4:
         write_mp4(path, pictures, fps)
         return
     some = [scene.picture(state) for state in (states[0], states[len(states) // 2], states[-1])]
-    write_gif(path, pictures, fps, common_palette(some, scene.colors))
+    write_gif(path, pictures, fps, common_palette(some, COLORS[film.field]))
 
 
-def _in_a_plane(film: Film) -> Scene:
+def _scene_of_sections(film: Film) -> Scene:
     wear = WearCurves(film)
-    beside: list[ScenePanel] = [PressureCurve(film)]
-    return Scene(film, SectionPanel(film), beside + [wear] * wear.shows_something, TimeCurve(film))
+    curves: list[ScenePanel] = [PressureCurve(film), *([wear] if wear.shows_something else [])]
+    return Scene(film, SectionPanel(film), curves, TimeCurve(film))
 
 
-def _in_space(film: Film) -> Scene:
-    from .solid import Solid, face_maps
-
-    return Scene(film, Solid(film), face_maps(film), TimeCurve(film))
+def _scene_of_solids(film: Film) -> Scene:
+    return Scene(film, SolidPanel(film), face_maps(film), TimeCurve(film))
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from PIL import Image
 
-from ..curves import BODIES
+from ..panels import BODIES
 
 _MOST = 255  # one more is reserved for unchanged pixels
 _LINES = ("black", "0.45", "0.6", "tab:red", *BODIES)

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from thermowear.output import tables
 from thermowear.output.coordinates import in_model, model_of
 from thermowear.output.pictures import bodies, panels
-from thermowear.output.pictures.section import Section
+from thermowear.output.pictures.section import BodySection
 from thermowear.output.report.columns import shown_table
 from thermowear.results import TABLES
 
@@ -51,7 +51,7 @@ def test_pictures_of_the_bodies(tmp_path, monkeypatch):
     (tmp_path / "summary.json").write_text('{"model": "axisymmetric"}', encoding="utf-8")
     points = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
     triangles, body = np.array([[0, 1, 2], [0, 2, 3]]), np.array([1, 2])
-    section = Section(points, 0 * points, triangles, body, {"von_mises": np.arange(4.0)})
+    section = BodySection(points, 0 * points, triangles, body, {"von_mises": np.arange(4.0)})
     monkeypatch.setattr(bodies, "read_section", lambda _: section)
     interface = dict.fromkeys(("x_m", "y_m", "s_m", "pressure_Pa"), np.array([1e-3, 2e-3]))
     monkeypatch.setattr(tables, "read", lambda path: tables.TableColumns(path, interface))

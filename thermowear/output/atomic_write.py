@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def atomic_write(path: Path) -> Iterator[Path]:
     """Write to a draft beside a file and rename it to the file at the end.
 
     Until then the file remains unchanged, even if the process is killed; after an error, such as a

@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from math import pi
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -85,33 +86,37 @@ class ConsoleProgress:
             self._unsaid = ""
 
 
+_PLAIN: dict[str, Any] = {"box": None, "padding": (0, 2, 0, 0)}
 _SMALLEST_SHOWN = 1e-3
 """Smallest error estimate shown as a number [%]; errors of quadrature are far below."""
 
 
 def print_summary(console: Console, summary: dict, seconds: dict[str, float]) -> None:
     """Print the main results and the wall time by phase."""
-    numbers = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    numbers = Table(show_header=False, **_PLAIN)
     for label, value in _highlights(summary):
         numbers.add_row(label, value)
     console.print(numbers)
-    times = Table(box=None, padding=(0, 2, 0, 0))
-    times.add_column("phase")
-    times.add_column("seconds", justify="right")
+    times = _table("phase", "seconds")
     for name, value in seconds.items():
         times.add_row(PHASES.get(name, name), f"{value:.3f}")
     times.add_row("total", f"{sum(seconds.values()):.3f}")
     console.print(times)
 
 
+def _table(label: str, *columns: str) -> Table:
+    """Table without lines: labels in the first column, numbers in the others."""
+    table = Table(label, **_PLAIN)
+    for name in columns:
+        table.add_column(name, justify="right")
+    return table
+
+
 def print_discretisations(console: Console, summary: dict, keys: tuple[str, ...]) -> None:
     """Print results on a coarser, the given and a finer discretisation side by side."""
     coarser, finer = (summary[f"{name}_discretisation"] for name in ("coarser", "finer"))
     shown = {"coarser": coarser, "this case": summary, "finer": finer}
-    table = Table(box=None, padding=(0, 2, 0, 0))
-    table.add_column("quantity")
-    for name in shown:
-        table.add_column(name, justify="right")
+    table = _table("quantity", *shown)
     for key in keys:
         values = [numbers.get(key) for numbers in shown.values()]
         if any(value is not None for value in values):

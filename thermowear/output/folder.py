@@ -19,7 +19,7 @@ from .. import __version__
 from ..errors import CaseError
 from ..results import TABLES
 from ..results.quantity import table_of
-from .atomic_write import final_name, replacing
+from .atomic_write import atomic_write, final_name
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .frames import remove_frames, write_frame
 from .lock import Lock
@@ -156,7 +156,7 @@ class ResultsFolder:
         self._write(name, f"{text}\n")
 
     def _write(self, name: str, text: str) -> None:
-        with replacing(self.path / name) as draft:
+        with atomic_write(self.path / name) as draft:
             draft.write_text(text, "utf-8")
 
 

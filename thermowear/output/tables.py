@@ -12,7 +12,7 @@ import numpy as np
 
 from ..results import TABLES
 from ..results.quantity import Quantity, Table, table_of, unknown
-from .atomic_write import replacing
+from .atomic_write import atomic_write
 from .coordinates import in_model, model_of
 from .names import stem_and_time
 
@@ -114,7 +114,7 @@ class RowWriter:
 
 
 def _write(path: Path, table: Table, rows: Iterable) -> None:
-    with replacing(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
+    with atomic_write(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(quantity.header for quantity in table.columns.values())
         writer.writerows(map(_texts, rows))

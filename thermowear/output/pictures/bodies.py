@@ -21,7 +21,7 @@ from .scales import (
     proportion,
     whole,
 )
-from .section import Section, read_section
+from .section import BodySection, read_section
 
 _DEFORMED_SIZE = 0.06  # largest displacement drawn, relative to the size of the bodies
 _FLAT = 0.55
@@ -48,7 +48,7 @@ def _draw_sections(folder: Path) -> None:
 
 def _draw_windows(
     path: Path,
-    section: Section,
+    section: BodySection,
     interface: tables.TableColumns,
     windows: list[Extent],
     title: str = "",

@@ -22,7 +22,7 @@ _SAME = 1e-5  # tolerance for identical points, relative to the size of the bodi
 
 
 @dataclass(frozen=True)
-class Section:
+class BodySection:
     """Fields of 2D bodies on triangles; triangles of different cells share no points.
 
     Attributes
@@ -41,7 +41,7 @@ class Section:
     body: np.ndarray
     fields: dict[str, np.ndarray]
 
-    def displaced(self, factor: float = 1.0) -> Section:
+    def displaced(self, factor: float = 1.0) -> BodySection:
         """Deformed section, with magnified displacements."""
         return replace(self, points=self.points + factor * self.displacement)
 
@@ -69,12 +69,12 @@ class Section:
         return drawn
 
 
-def read_section(path: Path) -> Section:
+def read_section(path: Path) -> BodySection:
     """Read the file of the fields of 2D bodies."""
     mesh = meshio.read(path)
     block, body = mesh.cells[0], mesh.cell_data["body"][0]
     corners = np.array(_CORNERS[block.type])
-    return Section(
+    return BodySection(
         points=1e3 * mesh.points[:, :2],
         displacement=1e3 * mesh.point_data["displacement_m"][:, :2],
         triangles=block.data[:, corners].reshape(-1, 3),

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import CaseError
-from ..atomic_write import replacing
+from ..atomic_write import atomic_write
+from ..coordinates import read_object
 from ..folder import now, versions
 from ..names import is_ours
 from .keys import Swept
@@ -125,7 +126,7 @@ class SweepFolder:
         """Write ``sweep.csv``, one row per variant; unfinished variants have no numbers."""
         names = list(dict.fromkeys(name for _, row in self._rows.values() for name in row))
         path = self.path / "sweep.csv"
-        with replacing(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
+        with atomic_write(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(["variant", *(key.header for key in self._keys), "status", *names])
             for k in range(self._count):
@@ -136,17 +137,13 @@ class SweepFolder:
         self._written = time.monotonic()
 
     def _write_run(self) -> None:
-        with replacing(self.path / "run.json") as draft:
+        with atomic_write(self.path / "run.json") as draft:
             draft.write_text(json.dumps(self._run, indent=2, ensure_ascii=False) + "\n", "utf-8")
 
 
 def is_sweep(folder: Path) -> bool:
     """Test whether a folder contains a sweep."""
-    try:
-        run = json.loads((folder / "run.json").read_text("utf-8"))
-    except (OSError, ValueError):
-        return False
-    return isinstance(run, dict) and "over" in run
+    return "over" in (read_object(folder / "run.json") or {})
 
 
 def _cell(value: float | str) -> str:

@@ -35,12 +35,6 @@ class VariantRecord:
     folders: list[Path]
     numbers: dict[str, np.ndarray]
 
-    def only(self, chosen: np.ndarray) -> VariantRecord:
-        """Subset of the variants by a mask."""
-        folders = [folder for folder, takes in zip(self.folders, chosen, strict=True) if takes]
-        numbers = {name: values[chosen] for name, values in self.numbers.items()}
-        return VariantRecord(self.axes, self.places[chosen], folders, numbers)
-
 
 def read_sweep(folder: Path) -> VariantRecord:
     """Read the completed variants of a sweep.
@@ -61,15 +55,13 @@ def read_sweep(folder: Path) -> VariantRecord:
             axis(key, written, _different(rows, k + 1, places[:, k]), keys[k])
             for k, (key, written) in enumerate(over.items())
         )
-        done = np.array([row[status] == "done" for row in rows])
-        numbers = {
-            name: np.array([float(row[k]) for row in rows])
-            for k, name in enumerate(header)
-            if k > status
-        }
-        folders = [folder / f"{int(row[0]):03d}" for row in rows]
-        return VariantRecord(axes, places, folders, numbers).only(done)
-    except (IndexError, KeyError) as error:
+        done = [row for row in rows if row[status] == "done"]
+        cells = zip(header, *done, strict=True)
+        numbers = {name: np.array(column, dtype=float) for name, *column in [*cells][status + 1 :]}
+        variants = [int(row[0]) for row in done]
+        folders = [folder / f"{number:03d}" for number in variants]
+        return VariantRecord(axes, places[np.array(variants, dtype=int) - 1], folders, numbers)
+    except (IndexError, KeyError, ValueError) as error:
         raise ValueError(f"{folder}: run.json and sweep.csv are not of the same sweep") from error
 
 

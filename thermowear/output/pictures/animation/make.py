@@ -11,10 +11,10 @@ from ...names import FRAMES
 from ..maps import is_surface
 from ..scales import COLORS
 from .bodies import SectionPanel, SolidPanel, face_maps
-from .curves import PressureCurve, TimeCurve, WearCurves
+from .curves import TimeCurve, contact_curves
 from .palette import common_palette
-from .scene import Scene, ScenePanel
-from .states import Film, read_film
+from .scene import Scene
+from .states import read_film
 from .writers import GIF, MP4, ffmpeg, write_gif, write_mp4
 
 FPS = 8.0
@@ -60,7 +60,10 @@ def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
         Frames per second.
     """
     film = read_film(folder)
-    scene = _scene_of_solids(film) if is_surface(folder) else _scene_of_sections(film)
+    if is_surface(folder):
+        scene = Scene(film, SolidPanel(film), face_maps(film), TimeCurve(film))
+    else:
+        scene = Scene(film, SectionPanel(film), contact_curves(film), TimeCurve(film))
     states = film.states
     pictures = (scene.picture(state) for state in states)
     if path.suffix == MP4:
@@ -68,16 +71,6 @@ def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
         return
     some = [scene.picture(state) for state in (states[0], states[len(states) // 2], states[-1])]
     write_gif(path, pictures, fps, common_palette(some, COLORS[film.field]))
-
-
-def _scene_of_sections(film: Film) -> Scene:
-    wear = WearCurves(film)
-    curves: list[ScenePanel] = [PressureCurve(film), *([wear] if wear.shows_something else [])]
-    return Scene(film, SectionPanel(film), curves, TimeCurve(film))
-
-
-def _scene_of_solids(film: Film) -> Scene:
-    return Scene(film, SolidPanel(film), face_maps(film), TimeCurve(film))
 
 
 if __name__ == "__main__":

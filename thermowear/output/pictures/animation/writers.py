@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 
 from ....errors import CaseError
-from ...atomic_write import replacing
+from ...atomic_write import atomic_write
 
 GIF, MP4 = ".gif", ".mp4"
 _LAST_DURATION = 1.5  # duration of the last frame [s]
@@ -53,7 +53,7 @@ def write_gif(path: Path, pictures: Iterator[np.ndarray], fps: float, palette: n
         for picture in pictures
     ]
     shown = [1 / fps] * (len(frames) - 1) + [max(_LAST_DURATION, 1 / fps)]
-    with replacing(path) as draft:
+    with atomic_write(path) as draft:
         frames[0].save(
             draft,
             format="GIF",
@@ -87,7 +87,7 @@ def write_mp4(path: Path, pictures: Iterator[np.ndarray], fps: float) -> None:
         "-f",
         "mp4",
     ]
-    with replacing(path) as draft, TemporaryFile() as said:
+    with atomic_write(path) as draft, TemporaryFile() as said:
         command = [ffmpeg(), "-y", "-loglevel", "error", *stream, *rest, str(draft)]
         encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said)
         assert encoder.stdin is not None

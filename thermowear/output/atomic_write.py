@@ -24,6 +24,12 @@ def atomic_write(path: Path) -> Iterator[Path]:
         raise
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, atomically."""
+    with atomic_write(path) as draft:
+        draft.write_text(text, "utf-8")
+
+
 def final_name(path: Path) -> str:
     """Name of the file that a draft will become; the name itself if the path is no draft."""
     name = path.name

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from ...errors import CaseError
-from ..atomic_write import atomic_write
+from ..atomic_write import write_text
 from ..names import is_report
 from .contents import ReportContents, read_contents
 from .unit_format import NOTHING
@@ -40,8 +40,7 @@ def write_report(folder: Path) -> Path:
             f"{path}: exists and is not a report of this program; move it away or rename it"
         )
     try:
-        with atomic_write(path) as draft:
-            draft.write_text(text, encoding="utf-8")
+        write_text(path, text)
     except OSError as error:
         raise CaseError(f"{path}: cannot be written: {error.strerror}") from None
     return path

@@ -12,10 +12,9 @@ from ..maps import is_surface
 from ..scales import COLORS
 from .bodies import SectionPanel, SolidPanel, face_maps
 from .curves import TimeCurve, contact_curves
-from .palette import common_palette
 from .scene import Scene
 from .states import read_film
-from .writers import GIF, MP4, ffmpeg, write_gif, write_mp4
+from .writers import GIF, MP4, common_palette, ffmpeg, write_gif, write_mp4
 
 FPS = 8.0
 

@@ -33,7 +33,7 @@ NOT_ALLOWED = {
     "laws": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "pydantic", "pint"},
     "model": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
     "reference": {"dolfinx", "gmsh", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
-    "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl", "basix"},
+    "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl"},
     "results": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "matplotlib"},
     "output": {"dolfinx", "petsc4py", "ufl", "basix", "gmsh"},
     "app": {"dolfinx", "ufl", "basix", "gmsh"},

@@ -17,7 +17,7 @@ from functools import cache
 import numpy as np
 
 from thermowear.reference.hertz import contact_modulus, line_contact
-from thermowear.simulation import Result
+from thermowear.results import Result
 from thermowear.verification.starter import run_starter
 
 NEGLIGIBLE = 1e-4

@@ -1,9 +1,10 @@
-"""Areas and shapes of curved cells, for tests of meshes."""
+"""Areas and shapes of curved cells, and moved meshes, for tests of meshes."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.geometry.mesh.nodes import reference_nodes
 
 
@@ -12,18 +13,26 @@ def _powers(order: int, triangle: bool) -> list[tuple[int, int]]:
     return [(i, j) for i in n for j in n if not triangle or i + j <= order]
 
 
-def _tangents(mesh, x, y):
-    """Derivatives of the coordinates along both reference directions, (n_cells, n_points, 2)."""
+def _polynomials(mesh, x, y):
+    """Lagrange polynomials and their slopes along both directions, (n_points, n_nodes) each."""
     triangle = mesh.cell_type == "triangle"
     order = mesh.facets.shape[1] - 1
     nodes = reference_nodes(mesh.cell_type, order)
     powers = _powers(order, triangle)
     matrix = np.stack([nodes[:, 0] ** i * nodes[:, 1] ** j for i, j in powers], axis=1)
     inverse = np.linalg.inv(matrix)
-    along = np.stack([i * x ** max(i - 1, 0) * y**j for i, j in powers], axis=1) @ inverse
-    across = np.stack([j * x**i * y ** max(j - 1, 0) for i, j in powers], axis=1) @ inverse
+    values = np.stack([x**i * y**j for i, j in powers], axis=1)
+    along = np.stack([i * x ** max(i - 1, 0) * y**j for i, j in powers], axis=1)
+    across = np.stack([j * x**i * y ** max(j - 1, 0) for i, j in powers], axis=1)
+    return values @ inverse, along @ inverse, across @ inverse
+
+
+def _tangents(mesh, x, y):
+    """Derivatives of the coordinates along both reference directions, (n_cells, n_points, 2)."""
     places = mesh.points[mesh.cells]
-    return tuple(np.einsum("qk,nki->nqi", slopes, places) for slopes in (along, across))
+    return tuple(
+        np.einsum("qk,nki->nqi", slopes, places) for slopes in _polynomials(mesh, x, y)[1:]
+    )
 
 
 def _determinants(tangents):
@@ -31,16 +40,35 @@ def _determinants(tangents):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-def areas(mesh, body: str) -> np.ndarray:
-    """Area of each cell of a body, by quadrature that is exact for its polynomial [m²]."""
+def _rule(triangle: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points x, y and weights of a quadrature rule."""
     t, w = np.polynomial.legendre.leggauss(8)
     t, w = (t + 1) / 2, w / 2
     x, y = (v.ravel() for v in np.meshgrid(t, t, indexing="ij"))
     weights = np.outer(w, w).ravel()
-    if mesh.cell_type == "triangle":
-        weights, y = weights * (1 - x), y * (1 - x)
+    return (x, y * (1 - x), weights * (1 - x)) if triangle else (x, y, weights)
+
+
+def areas(mesh, body: str) -> np.ndarray:
+    """Area of each cell of a body, by quadrature that is exact for its polynomial [m²]."""
+    x, y, weights = _rule(mesh.cell_type == "triangle")
     cells = mesh.cell_tags == mesh.bodies.index(body) + 1
     return _determinants(_tangents(mesh, x, y))[cells] @ weights
+
+
+def volume(mesh, body: str, factor) -> float:
+    """Volume of a plane body, with a factor from area to volume at points (n, 2) [m³]."""
+    x, y, weights = _rule(mesh.cell_type == "triangle")
+    cells = mesh.cell_tags == mesh.bodies.index(body) + 1
+    values, _, _ = _polynomials(mesh, x, y)
+    points = np.einsum("qk,nki->nqi", values, mesh.points[mesh.cells])[cells]
+    sizes = _determinants(_tangents(mesh, x, y))[cells] * weights
+    return float(sizes.ravel() @ factor(points.reshape(-1, 2)))
+
+
+def followed(mesh, outlined) -> np.ndarray:
+    """Points of a mesh whose boundary has been displaced [m]."""
+    return mesh.points + serial_extension(mesh, mesh.cell_type, mesh.cells)(outlined)
 
 
 def scaled_jacobians(mesh) -> np.ndarray:

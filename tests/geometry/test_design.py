@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.errors import CaseError
 from thermowear.geometry.cad.design import HEADERS, Design, add_table, from_table, read_table
 from thermowear.geometry.cad.design import write_table as write
@@ -192,7 +193,7 @@ def test_the_ring_loses_what_is_worn(degree):
     """requirement: the area that the design takes off, sides upright, back where it was."""
     mesh, face = body_of(STEADY, changes={"mesh.degree": degree, "mesh.elements": 24})
     design = flat()
-    moved = replace(mesh, points=moved_body(mesh, design, face))
+    moved = replace(mesh, points=moved_body(mesh, design, face, serial_extension))
     off = np.linalg.norm(moved.points - mesh.points, axis=1)
     assert off.max() == pytest.approx(waves(np.pi / 120), rel=2e-2)
     on_top = np.abs(mesh.points[:, 1] - HEIGHT) < 1e-12
@@ -205,7 +206,7 @@ def test_the_ring_loses_what_is_worn(degree):
 def test_ends_of_an_arc_slide_along_the_sides():
     """requirement: upright sides stay upright though the face is worn along slanting normals."""
     mesh, face = body_of("block-on-disk")
-    moved = replace(mesh, points=moved_body(mesh, round_one(), face))
+    moved = replace(mesh, points=moved_body(mesh, round_one(), face, serial_extension))
     side = RADIUS * np.sin(ARC)
     at_side = np.abs(np.abs(mesh.points[:, 0]) - side) < 1e-12
     assert np.abs(moved.points[at_side, 0]) == pytest.approx(side, abs=1e-15)
@@ -226,7 +227,7 @@ def test_a_prism_in_space_sinks():
     out, nothing = np.tile([0.0, 0.0, -1.0], (169, 1)), np.full(169, np.nan)
     depth = 1e-5 * (1 + x / 0.03)
     design = Design(1, np.column_stack([x, y, 0 * x]), nothing, out, nothing, nothing, depth)
-    moved = moved_body(mesh, design, "punch_face")
+    moved = moved_body(mesh, design, "punch_face", serial_extension)
     bottom, top = mesh.points[:, 2] < 1e-12, mesh.points[:, 2] > 0.05 - 1e-12
     sunk = 1e-5 * (1 + mesh.points[bottom, 0] / 0.03)
     assert moved[bottom, 2] == pytest.approx(sunk, abs=1e-11)
@@ -238,7 +239,7 @@ def test_mesh_files(tmp_path, ending):
     """requirement: quadratic at least, with how far each node was moved."""
     mesh, face = body_of(STEADY, changes={"mesh.degree": 1})
     file = tmp_path / f"ring{ending}"
-    write_design_mesh(mesh, flat(), face, file)
+    write_design_mesh(mesh, flat(), face, file, serial_extension)
     add_table(flat(), file)
     found = meshio.read(file)
     assert found.cells[0].type == "quad9"

@@ -9,7 +9,7 @@ from tests.conftest import two_blocks
 from thermowear.geometry.mesh.shapes import scaled_jacobians
 from thermowear.geometry.moving.moved import MovableBody
 
-from .measure import areas
+from .measure import areas, followed
 from .measure import scaled_jacobians as measured
 
 
@@ -25,7 +25,7 @@ def upper(order=1, triangles=False):
 @pytest.mark.parametrize(("order", "triangles"), [(1, False), (2, False), (3, False), (2, True)])
 def test_a_level_face_squeezes_the_body_evenly(order, triangles):
     body, face, mesh = upper(order, triangles)
-    points = body.displaced(np.tile((0.0, 5e-3), (len(face), 1)))
+    points = followed(mesh, body.outlined(np.tile((0.0, 5e-3), (len(face), 1))))
     above = np.unique(mesh.cells[mesh.cell_tags == 1])
     x, y = mesh.points[above].T
     assert points[above] == pytest.approx(np.column_stack([x, 5e-3 + 0.75 * y]), abs=1e-12)
@@ -39,7 +39,7 @@ def test_the_volume_lost_is_that_of_the_mesh(order):
     body, face, mesh = upper(order)
     bulge = np.column_stack([0 * face[:, 0], 2e-3 * np.sin(60 * face[:, 0]) + 3e-3])
     outlined = body.outlined(bulge)
-    after = replace(mesh, points=body.followed(outlined))
+    after = replace(mesh, points=followed(mesh, outlined))
     flat = areas(mesh, "upper").sum() - areas(after, "upper").sum()
     assert body.lost(outlined, lambda p: np.ones(len(p))) == pytest.approx(flat, rel=1e-10)
     assert flat > 0.0
@@ -73,7 +73,7 @@ def test_nodes_of_a_face_do_not_cross():
     directions, held = body.ways(normals)
     assert not held.any()
     assert directions == pytest.approx(np.tile((0.0, -1.0), (len(face), 1)), abs=1e-3)
-    moved = replace(mesh, points=body.displaced(-3e-3 * directions))
+    moved = replace(mesh, points=followed(mesh, body.outlined(-3e-3 * directions)))
     assert scaled_jacobians(moved).min() > 0.7
 
 
@@ -82,5 +82,6 @@ def test_shapes_of_cells(triangles):
     """Against an independent formula, before and after a face has become slanted."""
     body, face, mesh = upper(2, triangles)
     slanted = np.column_stack([0 * face[:, 0], 0.3 * (face[:, 0] - face[0, 0])])
-    for shape in (mesh, replace(mesh, points=body.displaced(slanted))):
+    moved = replace(mesh, points=followed(mesh, body.outlined(slanted)))
+    for shape in (mesh, moved):
         assert scaled_jacobians(shape) == pytest.approx(measured(shape), abs=1e-12)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from tests.contact.solids import HEIGHTS, SIZE, bent, skewed, straight, turned, two_solids
+from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.geometry.mesh.shapes import scaled_jacobians
 from thermowear.geometry.moving.moved_solid import MovableSolid
 
-from .measure import volumes
+from .measure import followed, volumes
 
 HEIGHT = HEIGHTS[0]
 MAPS = {"straight": straight, "skewed": skewed, "turned": turned, "bent": bent}
@@ -20,7 +21,7 @@ def upper(order=1, place=straight, divisions=(3, 3, 2)):
     mesh = two_solids((divisions, (2, 2, 2)), order, (place, straight))
     facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index("upper_face") + 1]
     face = mesh.points[np.unique(facets)]
-    return MovableSolid(mesh, ("upper",), face), face, mesh
+    return MovableSolid(mesh, ("upper",), face, serial_extension), face, mesh
 
 
 @pytest.mark.parametrize("place", [straight, skewed, turned])
@@ -28,7 +29,7 @@ def upper(order=1, place=straight, divisions=(3, 3, 2)):
 def test_a_level_face_squeezes_the_body_evenly(order, place):
     """Sides, edges and inner nodes alike; the other body stays."""
     body, face, mesh = upper(order, place)
-    points = body.displaced(np.tile((0.0, 0.0, 5e-3), (len(face), 1)))
+    points = followed(mesh, body.outlined(np.tile((0.0, 0.0, 5e-3), (len(face), 1))))
     above = np.unique(mesh.cells[mesh.cell_tags == 1])
     expected = mesh.points[above] + np.outer(5e-3 * (1 - mesh.points[above, 2] / HEIGHT), (0, 0, 1))
     assert points[above] == pytest.approx(expected, abs=1e-12)
@@ -44,7 +45,7 @@ def test_the_volume_lost_is_that_of_the_mesh(order, name):
     x, y, _ = face.T
     bulge = np.outer(2e-3 * np.sin(60 * x) * np.cos(40 * y) + 3e-3, (0, 0, 1))
     outlined = body.outlined(bulge)
-    after = replace(mesh, points=body.followed(outlined))
+    after = replace(mesh, points=followed(mesh, outlined))
     lost = volumes(mesh, "upper").sum() - volumes(after, "upper").sum()
     assert body.lost(outlined, lambda p: np.ones(len(p))) == pytest.approx(lost, rel=1e-10)
     assert lost > 0.0
@@ -67,7 +68,7 @@ def test_the_rim_goes_along_the_sides():
     along = -np.array((0.5, -0.25, 1.0)) / np.linalg.norm((0.5, -0.25, 1.0))
     assert directions[rim] == pytest.approx(np.tile(along, (rim.sum(), 1)), abs=1e-12)
     assert np.array_equal(directions[~rim], normals[~rim])
-    points = body.displaced(-4e-3 * directions)
+    points = followed(mesh, body.outlined(-4e-3 * directions))
     side = mesh.facets[mesh.facet_tags == mesh.surfaces.index("upper_low_x") + 1]
     assert points[side][..., 0] == pytest.approx(0.5 * points[side][..., 2], abs=1e-12)
 
@@ -77,10 +78,10 @@ def test_a_face_within_a_level_boundary_keeps_its_rim():
     mesh = two_solids()
     face = np.unique(mesh.facets[mesh.facet_tags == mesh.surfaces.index("lower_face") + 1])
     part = mesh.points[face][mesh.points[face, 0] < 0.7 * SIZE[0]]
-    body = MovableSolid(mesh, ("lower",), part)
+    body = MovableSolid(mesh, ("lower",), part, serial_extension)
     _, held = body.ways(np.tile((0.0, 0.0, 1.0), (len(part), 1)))
     assert np.array_equal(held, part[:, 0] > 0.6 * SIZE[0])
-    points = body.displaced(np.where(held[:, None], 0.0, (0.0, 0.0, -1e-3)))
+    points = followed(mesh, body.outlined(np.where(held[:, None], 0.0, (0.0, 0.0, -1e-3))))
     beyond = mesh.points[:, 0] > 0.6 * SIZE[0]
     level = np.abs(mesh.points[:, 2]) < 1e-9
     assert np.array_equal(points[beyond & level], mesh.points[beyond & level])

@@ -7,6 +7,7 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
+from thermowear.bulk.mesh_motion import HarmonicExtension
 from thermowear.simulation.geometry_update.gap_wear import GapWear, movable_body
 from thermowear.simulation.model.building import build
 from thermowear.simulation.model.setup_cache import SetupCache
@@ -36,7 +37,8 @@ def grooved(depth):
     kept = GapWear(system)
     face, body = kept.faces[1], movable_body(system, kept.geometry.mesh, 1)
     amounts = face.amounts(depth(system.pairing.points[:, 0]))
-    points = body.followed(body.outlined(face.displacement(amounts)))
+    outlined = body.outlined(face.displacement(amounts))
+    points = kept.geometry.mesh.points + HarmonicExtension(system.bodies.mesh)(outlined)
     worn = replace(
         kept.geometry,
         mesh=replace(kept.geometry.mesh, points=points),

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from thermowear.errors import ComputationError
-from thermowear.simulation.interface.steady import least_worn
 
 from ..case.starter import GONE, solved
 
@@ -113,22 +112,6 @@ def test_a_leading_shoe_brakes_more_than_a_trailing_one():
     exact = (normal + of_friction) / (normal - of_friction)
     assert leading / trailing == pytest.approx(exact, rel=1e-3)
     assert leading > trailing
-
-
-@pytest.mark.parametrize("modes", [1, 2])
-def test_least_worn(modes):
-    """requirement: nowhere is material added, and no less could be taken off."""
-    rng = np.random.default_rng(3)
-    x = np.linspace(-1.0, 1.0, 41)
-    R = np.column_stack([np.ones_like(x), x])[:, :modes]
-    opening, weights = rng.normal(size=41), rng.uniform(0.5, 1.0, 41)
-    d = least_worn(R, opening, weights, np.ones(41, dtype=bool))
-    lost = R @ d - opening
-    assert lost.min() == pytest.approx(0.0, abs=1e-9)
-    assert np.sum(lost < 1e-9) == modes
-    for _ in range(200):
-        other = R @ (d + 0.3 * rng.normal(size=modes)) - opening
-        assert other.min() < 0 or weights @ other >= weights @ lost - 1e-9
 
 
 def test_a_block_that_is_pushed_in_place_of_guided():

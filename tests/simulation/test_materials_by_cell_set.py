@@ -7,6 +7,7 @@ import pytest
 import tomli_w
 
 import thermowear as tw
+from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.case.tables.schema import as_plain
 from thermowear.errors import CaseError
 from thermowear.geometry.moving.remeshed import meshed_anew
@@ -213,7 +214,9 @@ def test_a_body_meshed_anew_keeps_its_layers(layers):
     nodes = np.unique(mesh.facets[mesh.facet_tags == mesh.surfaces.index("FACE") + 1])
     face = nodes[np.argsort(mesh.points[nodes, 0])]
     sizes = np.diff(mesh.points[face, 0])
-    anew, _ = meshed_anew(mesh, parts, face, sizes, lambda points: np.ones(len(points)))
+    anew, _ = meshed_anew(
+        mesh, parts, face, sizes, lambda points: np.ones(len(points)), serial_extension
+    )
     for part, span in {"pad.LINING": (0.0, 0.01), "pad.BACKING": (0.01, 0.015)}.items():
         cells = anew.cells[anew.cell_tags == anew.bodies.index(part) + 1]
         y = anew.points[cells, 1]

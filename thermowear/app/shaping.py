@@ -120,7 +120,9 @@ def write_shape(shaped: Shaped, path: Path) -> None:
     face = geometry.contact[design.body - 1]
     mesh = only_body(case.tagged_mesh(), geometry.parts_of(shaped.body))
     if path.suffix != ".step":
-        write_design_mesh(mesh, design, face, path)
+        from ..bulk.mesh_motion import serial_extension
+
+        write_design_mesh(mesh, design, face, path, serial_extension)
     elif case.model == "3d":
         write_prism(mesh, design, face, path)
     elif case.model == "axisymmetric":

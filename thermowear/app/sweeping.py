@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .. import load
 from ..case import Case, as_plain
@@ -21,11 +21,9 @@ from ..interrupts import DeferredSignals
 from ..output.console import Terminal
 from ..output.folder import ResultsFolder
 from ..output.sweep import SweepFolder, draw_sweep, swept
+from ..results import Result
 from .variants import Variant, parse_over, variants, written
 from .workers import start_petsc, work_off
-
-if TYPE_CHECKING:
-    from ..simulation import Result
 
 
 def sweep(

@@ -12,6 +12,7 @@ import ufl
 from dolfinx import fem, io
 
 from ..compat import exterior_facet_domain
+from ..lagrange import equispaced, matching
 
 
 @dataclass(frozen=True)
@@ -92,19 +93,16 @@ def distribute(tagged, comm) -> Bodies:
         )
     )
     kind, facet_kind, order, gdim, names, surfaces, checksum = head
-    cell_nodes, facet_nodes = _nodes(kind, order), _nodes(facet_kind, order)
     if comm.rank == 0:
-        cells = tagged.cells[:, _matching(cell_nodes, tagged.node_places(kind))]
-        facets = tagged.facets[:, _matching(facet_nodes, tagged.node_places(facet_kind))]
+        cells = in_dolfinx_order(tagged, kind, tagged.cells)
+        facets = in_dolfinx_order(tagged, facet_kind, tagged.facets)
         points, cell_tags, facet_tags = tagged.points, tagged.cell_tags, tagged.facet_tags
     else:
-        cells, points = np.empty((0, len(cell_nodes)), dtype=np.int64), np.empty((0, gdim))
-        facets = np.empty((0, len(facet_nodes)), dtype=np.int64)
+        cells = np.empty((0, equispaced(kind, order).dim), dtype=np.int64)
+        facets = np.empty((0, equispaced(facet_kind, order).dim), dtype=np.int64)
+        points = np.empty((0, gdim))
         cell_tags, facet_tags = np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32)
-    element = basix.ufl.element(
-        "Lagrange", kind, order, shape=(gdim,), lagrange_variant=basix.LagrangeVariant.equispaced
-    )
-    mesh = dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element)
+    mesh = created_mesh(comm, kind, order, cells, points)
     tdim = mesh.topology.dim
     return Bodies(
         mesh=mesh,
@@ -116,16 +114,22 @@ def distribute(tagged, comm) -> Bodies:
     )
 
 
-def _nodes(kind: str, order: int) -> np.ndarray:
-    """Reference coordinates of a cell's nodes in the order of dolfinx, shape (n_nodes, dim)."""
-    variant = basix.LagrangeVariant.equispaced
-    element = basix.create_element(basix.ElementFamily.P, basix.CellType[kind], order, variant)
-    return np.asarray(element.points)
+def in_dolfinx_order(tagged, kind: str, cells: np.ndarray) -> np.ndarray:
+    """Nodes of cells, facets or edges of a tagged mesh in the order of dolfinx."""
+    nodes = equispaced(kind, tagged.order).points
+    return cells[:, matching(nodes, tagged.node_places(kind))]
 
 
-def _matching(wanted: np.ndarray, listed: np.ndarray) -> np.ndarray:
-    """Index in `listed` of each of the `wanted` points."""
-    return np.array([np.abs(listed - place).sum(axis=1).argmin() for place in wanted])
+def created_mesh(comm, kind: str, order: int, cells: np.ndarray, points: np.ndarray):
+    """Mesh of dolfinx from the nodes of cells in its order. Every rank calls."""
+    element = basix.ufl.element(
+        "Lagrange",
+        kind,
+        order,
+        shape=points.shape[1:],
+        lagrange_variant=basix.LagrangeVariant.equispaced,
+    )
+    return dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element)
 
 
 def _tags(mesh, dim: int, entities: np.ndarray, values: np.ndarray):

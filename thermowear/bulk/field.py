@@ -7,11 +7,24 @@ import basix.ufl
 import numpy as np
 from dolfinx import fem
 
+from ..compat import coordinate_element
+
 
 def lagrange_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
     """Continuous Lagrange space (Gauss-Lobatto-Legendre warped nodes), scalar or vector-valued."""
     shape = (components,) if components else None
     element = basix.ufl.element("Lagrange", mesh.basix_cell(), degree, shape=shape)
+    return fem.functionspace(mesh, element)
+
+
+def geometry_space(mesh) -> fem.FunctionSpace:
+    """Continuous scalar space whose nodes are the points of the mesh."""
+    element = basix.ufl.element(
+        "Lagrange",
+        mesh.basix_cell(),
+        coordinate_element(mesh).degree,
+        lagrange_variant=basix.LagrangeVariant.equispaced,
+    )
     return fem.functionspace(mesh, element)
 
 

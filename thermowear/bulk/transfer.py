@@ -9,6 +9,7 @@ import numpy as np
 from dolfinx import fem
 
 from ..compat import coordinate_element, geometry_dofmap
+from ..lagrange import equispaced, tabulated
 from .bodies import Bodies
 from .field import as_function, reference_element
 
@@ -106,19 +107,15 @@ class _Field:
         mesh = space.mesh
         self._element = reference_element(mesh, space.ufl_element().degree)
         kind = self._element.cell_type
-        self._geometry = basix.create_element(
-            basix.ElementFamily.P,
-            kind,
-            coordinate_element(mesh).degree,
-            basix.LagrangeVariant.equispaced,
-        )
+        self._geometry = equispaced(kind.name, coordinate_element(mesh).degree)
         self._middle = np.asarray(basix.geometry(kind)).mean(axis=0)
         self._simplex = kind in (basix.CellType.triangle, basix.CellType.tetrahedron)
 
     def between_nodes(self, cells: _Cells) -> tuple[np.ndarray, np.ndarray]:
         """Control point of each cell, not a node for any degree, and the values there."""
         place = _CONTROL_POINT * self._middle[None]
-        shape, values = (e.tabulate(0, place)[0, 0, :, 0] for e in self._elements)
+        elements = self._geometry, self._element
+        shape, values = (tabulated(element, place)[0, 0] for element in elements)
         return np.einsum("k,cki->ci", shape, cells.nodes), cells.values @ values
 
     def at(self, cells: _Cells, points: np.ndarray) -> np.ndarray:
@@ -144,18 +141,14 @@ class _Field:
         order = np.lexsort((outside, which))
         _, first = np.unique(which[order], return_index=True)
         best = order[first]
-        values = self._element.tabulate(0, inside[best])[0, :, :, 0]
+        values = tabulated(self._element, inside[best])[0]
         return np.einsum("nk,nk->n", values, cells.values[cell[best]])
-
-    @property
-    def _elements(self):
-        return self._geometry, self._element
 
     def _places(self, nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Reference coordinates of points in one cell each, by Newton's method."""
         place = np.tile(self._middle, (len(points), 1))
         for _ in range(_NEWTON_STEPS if len(points) else 0):
-            table = np.asarray(self._geometry.tabulate(1, place))[..., 0]
+            table = tabulated(self._geometry, place, 1)
             off = np.einsum("nk,nki->ni", table[0], nodes) - points
             tangents = np.einsum("dnk,nki->nid", table[1:], nodes)
             step = np.linalg.solve(tangents, off[..., None])[..., 0]

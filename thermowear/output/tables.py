@@ -54,6 +54,11 @@ class TableColumns(dict[str, np.ndarray]):
         """Column in the unit of plots."""
         return self.quantities[name].drawn(self[name])
 
+    @property
+    def is_ours(self) -> bool:
+        """True if the program declares any of the columns, or no table of that name."""
+        return not self._known or not self._known.keys().isdisjoint(self)
+
     def rows(self, chosen: np.ndarray | slice) -> TableColumns:
         """Columns of some of the rows, chosen by a mask or a slice."""
         return TableColumns(self._path, {self._header(name): v[chosen] for name, v in self.items()})
@@ -68,16 +73,19 @@ def read(path: Path) -> TableColumns:
     Raises
     ------
     ValueError
-        If the file is not a table of numbers.
+        If the file is not a table of numbers, or one of another program.
     """
     try:
         text = path.read_text(encoding="utf-8")
         head, *rows = csv.reader(text[: text.rfind("\n") + 1].splitlines())
         values = np.array([[float(cell) for cell in row] for row in rows])
         columns = values.reshape(len(rows), len(head)).T
-        return TableColumns(path, dict(zip(head, columns, strict=True)))
+        found = TableColumns(path, dict(zip(head, columns, strict=True)))
     except ValueError:
         raise ValueError(f"{path}: is not a table of numbers with headers") from None
+    if not found.is_ours:
+        raise ValueError(f"{path}: has none of the columns that this program writes")
+    return found
 
 
 def write_points(path: Path, points) -> None:

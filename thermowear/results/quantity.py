@@ -9,6 +9,7 @@ writes ``film.csv`` with the column ``thickness_m``, drawn in µm.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar, dataclass_transform
@@ -56,9 +57,9 @@ class Quantity:
         return f"{self.label}\n[{self.unit}]"
 
     @property
-    def of_bodies(self) -> Quantity:
-        """Quantity of either body, for a label that names no body."""
-        return replace(self, label=self.label.removesuffix(", body 1").removesuffix(", body 2"))
+    def of_both(self) -> Quantity:
+        """Quantity of both bodies in one plot: the label without the number of the body."""
+        return replace(self, label=re.sub(", body [12]$", "", self.label))
 
     def drawn(self, values):
         """Convert SI values to the unit of plots."""

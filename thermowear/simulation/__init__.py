@@ -1,7 +1,6 @@
 """Simulation: initial contact, steady state, transient, fretting, reciprocating, stability."""
 
-from ..results import Result
 from .from_case import run
 from .runtime.observer import Observer
 
-__all__ = ["Observer", "Result", "run"]
+__all__ = ["Observer", "run"]

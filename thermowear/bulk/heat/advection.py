@@ -9,15 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import basix
-import basix.ufl
 import numpy as np
 import ufl
 from dolfinx import fem
 
-from ...compat import coordinate_element, evaluate
+from ...compat import evaluate
 from ..bodies import Bodies
-from ..field import reference_element
+from ..field import geometry_space, reference_element
 from ..kinematics import Kinematics, section_measure
 
 _RESOLVED_PECLET = 1.0
@@ -51,13 +49,7 @@ class Passage:
 
     def stream(self, mesh) -> fem.Function:
         """Stream function ψ with ``v = (∂ψ/∂y, -∂ψ/∂x)``, at unit speed."""
-        element = basix.ufl.element(
-            "Lagrange",
-            mesh.basix_cell(),
-            coordinate_element(mesh).degree,
-            lagrange_variant=basix.LagrangeVariant.equispaced,  # the nodes of the mesh
-        )
-        ψ = fem.Function(fem.functionspace(mesh, element))
+        ψ = fem.Function(geometry_space(mesh))
         ψ.interpolate(self._stream)
         return ψ
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...bulk.field import reference_element
 from ...bulk.mechanics.elasticity import Elasticity
+from ...lagrange import lobatto
 from ...parallel import sum_over_ranks
 from ..operators.traction import (
     at_points,
@@ -16,7 +17,6 @@ from ..operators.traction import (
     on_every_facet,
 )
 from ..search.pairing import PairedFace, Pairing
-from ..search.quadrature import lobatto
 
 GAMMA = 10.0
 """Default γ0. The stability limit is between 0.6 and 1.8 for ν <= 0.3 and below 4.2 at ν = 0.49,

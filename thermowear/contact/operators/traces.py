@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from petsc4py import PETSc
 
+import basix
 import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
 
 from ...bulk.field import basis_element, owned
+from ...lagrange import tabulated
 from ..search.pairing import PairedFace, Pairing
 
 
@@ -72,9 +74,7 @@ def _local_values(space: fem.FunctionSpace, side: PairedFace):
     mine = np.flatnonzero(side.face.rank[side.facet] == mesh.comm.rank)
     element = basis_element(space)
     reference = reference_points(side, mine, element.cell_type)
-    if len(mine) == 0:  # basix takes no empty lists
-        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64), np.empty(0)
-    values = element.tabulate(0, reference)[0].reshape(len(mine), -1)
+    values = tabulated(element, reference)[0]
     cells = side.face.cell[side.facet[mine]]
     if not element.dof_transformations_are_permutations:  # permutations are part of the dofmap
         values = _oriented(mesh, element, cells, values)
@@ -98,8 +98,6 @@ def _oriented(mesh, element, cells: np.ndarray, values: np.ndarray) -> np.ndarra
 
 def reference_points(side: PairedFace, chosen: np.ndarray, cell_type) -> np.ndarray:
     """Reference coordinates of points on facets of their cells."""
-    import basix
-
     corners, facets = np.asarray(basix.geometry(cell_type)), np.array(basix.topology(cell_type)[-2])
     facet = side.facet[chosen]
     first, *others = np.moveaxis(corners[facets[side.face.local_facet[facet]]], 1, 0)

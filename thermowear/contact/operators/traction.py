@@ -5,7 +5,6 @@ Transposed and distributed like the operators of `traces`.
 
 from __future__ import annotations
 
-import basix
 import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
@@ -13,6 +12,7 @@ from dolfinx import fem
 from ...bulk.field import reference_element
 from ...bulk.mechanics.elasticity import Elasticity
 from ...compat import coordinate_element, geometry_dofmap
+from ...lagrange import equispaced, tabulated
 from ...parallel import sum_over_ranks
 from ..search.pairing import PairedFace, Pairing
 from .traces import gather_rows, reference_points
@@ -106,12 +106,9 @@ def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.nd
     """
     mesh, model = elastic.bodies.mesh, elastic.kinematics
     element = reference_element(mesh, elastic.space.ufl_element().degree)
-    map_ = coordinate_element(mesh)
-    geometry = basix.create_element(
-        basix.ElementFamily.P, element.cell_type, map_.degree, basix.LagrangeVariant(map_.variant)
-    )
-    values, *derivatives = _tabulated(element, reference)
-    placed, *stretched = _tabulated(geometry, reference)
+    geometry = equispaced(element.cell_type.name, coordinate_element(mesh).degree)
+    values, *derivatives = tabulated(element, reference, 1)
+    placed, *stretched = tabulated(geometry, reference, 1)
     nodes = mesh.geometry.x[geometry_dofmap(mesh)[cells], :2]
     points = np.einsum("ng,ngi->ni", placed, nodes)
     jacobian = np.einsum("dng,ngi->nid", stretched, nodes)
@@ -119,13 +116,6 @@ def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.nd
     divergence = slopes.copy()
     divergence[..., 0] += model.strain_across(values, slopes, points)
     return np.abs(np.linalg.det(jacobian)) * model.area_factor(points), slopes, divergence
-
-
-def _tabulated(element, reference: np.ndarray) -> np.ndarray:
-    """Values and both reference derivatives of scalar shape functions, shape (3, n, nodes)."""
-    if len(reference) == 0:  # basix takes no empty lists
-        return np.empty((3, 0, element.dim))
-    return element.tabulate(1, reference)[..., 0]
 
 
 def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray]:

@@ -15,8 +15,8 @@ from dolfinx import fem
 from ...bulk.bodies import Bodies
 from ...compat import entities_to_geometry_layout, geometry_dofmap
 from ...errors import CaseError
-from .facets import lagrange, lagrange_slopes, owned_facets, softness_behind
-from .quadrature import lobatto
+from ...lagrange import lobatto, on_lattice
+from .facets import owned_facets, softness_behind
 from .smooth_normals import corner_corrections, smooth_normals
 from .surface import Surface, gather_surface
 
@@ -59,11 +59,11 @@ class Face:
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, 2) [m]."""
-        return np.einsum("nk,nki->ni", lagrange(self.nodes.shape[1] - 1, t), self.nodes[facet])
+        return np.einsum("nk,nki->ni", on_lattice(self._order, t)[0], self.nodes[facet])
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along t, shape (n, 2) [m]."""
-        slopes = lagrange_slopes(self.nodes.shape[1] - 1, t)
+        slopes = on_lattice(self._order, t, 1)[1]
         return np.einsum("nk,nki->ni", slopes, self.nodes[facet])
 
     def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
@@ -116,6 +116,10 @@ class Face:
         """Coefficient numbers of continuous polynomials, shape (n_facets, degree + 1)."""
         return np.arange(len(self.nodes))[:, None] * degree + np.arange(degree + 1)
 
+    @property
+    def _order(self) -> int:
+        return self.nodes.shape[1] - 1
+
     @cached_property
     def _corrections(self) -> np.ndarray:
         corners = np.arange(len(self.nodes))[:, None] + np.arange(2)
@@ -125,7 +129,7 @@ class Face:
 
     def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Arc length of each facet from its start to t [m]."""
-        x, w = lobatto(self.nodes.shape[1] + 4)
+        x, w = lobatto(self._order + 5)
         at = (t[:, None] * x).ravel()
         return t * (self.stretch(np.repeat(facet, len(x)), at).reshape(-1, len(x)) @ w)
 

@@ -1,12 +1,9 @@
-"""Facets of a contact face: owned facets of a rank, and their Lagrange polynomials."""
+"""Facets of a contact face that a rank owns, and the softness behind them."""
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 from dolfinx import fem
-from numpy.polynomial.polynomial import polyder
 
 from ...bulk.bodies import Bodies
 
@@ -38,31 +35,3 @@ def softness_behind(cells: np.ndarray, softness: fem.Function | None) -> np.ndar
     if softness is None:
         return np.ones(len(cells))
     return softness.x.array[softness.function_space.dofmap.list[cells, 0]].astype(float)
-
-
-def lagrange(order: int, t: np.ndarray) -> np.ndarray:
-    """Lagrange polynomials with equally spaced nodes on [0, 1], shape (n, order + 1)."""
-    return np.vander(t, order + 1, increasing=True) @ _coefficients(order)
-
-
-def lagrange_slopes(order: int, t: np.ndarray) -> np.ndarray:
-    """First derivatives of the polynomials of `lagrange`, shape (n, order + 1)."""
-    return np.vander(t, order, increasing=True) @ _slope_coefficients(order)
-
-
-def lagrange_bends(order: int, t: np.ndarray) -> np.ndarray:
-    """Second derivatives of the polynomials of `lagrange`, shape (n, order + 1)."""
-    knots = np.linspace(0.0, 1.0, order + 1)
-    return lagrange_slopes(order, t) @ lagrange_slopes(order, knots)
-
-
-@cache
-def _coefficients(order: int) -> np.ndarray:
-    """Monomial coefficients of the polynomials: rows by power, columns by node; for low orders."""
-    return np.linalg.inv(np.vander(np.linspace(0.0, 1.0, order + 1), increasing=True))
-
-
-@cache
-def _slope_coefficients(order: int) -> np.ndarray:
-    """Monomial coefficients of the derivatives, with the same layout."""
-    return polyder(_coefficients(order))

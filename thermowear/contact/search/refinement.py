@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import CaseError
+from ...lagrange import gauss, lobatto, on_lattice
 from .clipping import parts_opposite
 from .common_face import FACING, Opposite, opposite
 from .face import Face
-from .quadrature import gauss, lobatto, square
 from .surface import Surface
 
 BESIDE = 1e-9
@@ -102,15 +102,12 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
     facet, corners = parts_opposite(face_1, face_2)
     triangular = np.all(corners[:, 2] == corners[:, 3], axis=1)
     parts = []
-    for chosen, line in ((~triangular, lobatto(order)), (triangular, gauss(order))):
-        places, weights = square(*line)
-        s, t = places.T
-        shape = np.stack([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t])
-        along = np.stack([t - 1, 1 - t, t, -t])
-        across = np.stack([s - 1, -s, s, 1 - s])
-        at, u, v = (
-            np.einsum("cq,pci->pqi", values, corners[chosen]) for values in (shape, along, across)
-        )
+    for chosen, (places, weights) in (
+        (~triangular, lobatto(order, 2)),
+        (triangular, gauss(order, 2)),
+    ):
+        table = on_lattice(1, places, 1)
+        at, u, v = np.einsum("dqc,pci->dpqi", table, corners[chosen][:, [0, 3, 1, 2]])
         area = weights * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
         at = np.clip(at, 0.0, 1.0)  # corners on an edge may lie beyond it by rounding
         parts.append((np.repeat(facet[chosen], len(weights)), at.reshape(-1, 2), area.ravel()))
@@ -122,7 +119,7 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
 
 def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
     """Gauss-Lobatto rule on each whole facet."""
-    places, weights = square(*lobatto(order))
+    places, weights = lobatto(order, dim=2)
     count = len(face_1.nodes)
     facet = np.repeat(np.arange(count), len(weights))
     whole = Rule(facet, np.tile(places, (count, 1)), np.tile(weights, count))

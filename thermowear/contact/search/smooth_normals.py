@@ -19,12 +19,14 @@ import itertools
 import numpy as np
 from numpy.polynomial import Legendre
 
-from .facets import lagrange, lagrange_bends, lagrange_slopes
+from ...lagrange import on_lattice
 
 _SHARP = np.cos(np.radians(20.0))
 """Cosine between facet normal and mean normal at a corner, below which it is a sharp edge."""
 _SLIGHT = 0.02
 """Largest error of a unit normal at the ends of curved or short facets."""
+_SECOND = {1: [[2]], 2: [[3, 4], [4, 5]]}
+"""Indices of the second derivatives of `on_lattice` by the number of parameters."""
 
 
 def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarray) -> np.ndarray:
@@ -95,9 +97,9 @@ def _raw(nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
     """Outward unit normals of the facets, without blending, and their derivatives."""
     order, dim = nodes.shape[1] - 1, t.shape[1]
     on = nodes[facet].reshape(len(facet), -1, nodes.shape[-1])
-    _, slopes, bends = _products(order, t)
-    tangents = np.einsum("nka,nai->nki", slopes, on)
-    bent = np.einsum("nkla,nai->nkli", bends, on)
+    table = on_lattice(order, t, 2)
+    tangents = np.einsum("kna,nai->nki", table[1 : 1 + dim], on)
+    bent = np.einsum("klna,nai->nkli", table[_SECOND[dim]], on)
     if dim == 1:
         across = _turned(tangents[:, 0])
         changing = _turned(bent[:, 0, 0])[:, None]
@@ -128,7 +130,7 @@ def _blending(order: int, t: np.ndarray):
 
     Products of ``(P_q(x) + P_{q-1}(x)) / 2``, the right Radau polynomial, and its mirror image for
     the other end, with ``x = 2 t - 1`` and Legendre polynomials P; q is the smallest odd number not
-    below the order of the facet. Shapes as in `_products`.
+    below the order of the facet. Shapes (n, n_corners) and (n, dim, n_corners).
     """
     degree = order + 1 - order % 2
     right = Legendre([0.0] * (degree - 1) + [0.5, 0.5], domain=[0.0, 1.0])
@@ -149,20 +151,3 @@ def _blending(order: int, t: np.ndarray):
 def _times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Products of functions (n, i) of the first and (n, j) of the second parameter, (n, i j)."""
     return np.einsum("na,nb->nab", a, b).reshape(len(a), -1)
-
-
-def _products(order: int, t: np.ndarray):
-    """Tensor products of Lagrange polynomials: values, first and second derivatives.
-
-    Shapes (n, a), (n, dim, a) and (n, dim, dim, a), with index a over the nodes of a facet.
-    """
-    kinds = lagrange, lagrange_slopes, lagrange_bends
-    one = [[kind(order, along) for kind in kinds] for along in t.T]
-    if t.shape[1] == 1:
-        values, slopes, bends = one[0]
-        return values, slopes[:, None], bends[:, None, None]
-    (u, du, ddu), (v, dv, ddv) = one
-    slopes = np.stack([_times(du, v), _times(u, dv)], axis=1)
-    mixed = _times(du, dv)
-    rows = [[_times(ddu, v), mixed], [mixed, _times(u, ddv)]]
-    return _times(u, v), slopes, np.stack([np.stack(row, axis=1) for row in rows], axis=1)

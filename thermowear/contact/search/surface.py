@@ -16,8 +16,8 @@ from ...bulk.bodies import Bodies
 from ...bulk.field import reference_element
 from ...compat import coordinate_element, geometry_dofmap
 from ...errors import CaseError
-from .facets import lagrange, lagrange_slopes, owned_facets, softness_behind
-from .quadrature import gauss, square
+from ...lagrange import equispaced, gauss, lattice, matching, on_lattice
+from .facets import owned_facets, softness_behind
 from .smooth_normals import corner_corrections, smooth_normals
 
 _FLAT = 1e-9
@@ -90,17 +90,12 @@ class Surface:
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of shape (n, 2) of facets, shape (n, 3) [m]."""
-        values = [lagrange(self._order, t[:, k]) for k in (0, 1)]
-        return np.einsum("na,nb,nabi->ni", *values, self.nodes[facet])
+        return np.einsum("nk,nki->ni", on_lattice(self._order, t)[0], self._listed[facet])
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along both parameters, shape (n, 2, 3) [m]."""
-        nodes = self.nodes[facet]
-        values = [lagrange(self._order, t[:, k]) for k in (0, 1)]
-        slopes = [lagrange_slopes(self._order, t[:, k]) for k in (0, 1)]
-        first = np.einsum("na,nb,nabi->ni", slopes[0], values[1], nodes)
-        second = np.einsum("na,nb,nabi->ni", values[0], slopes[1], nodes)
-        return np.stack([first, second], axis=1)
+        slopes = on_lattice(self._order, t, 1)[1:]
+        return np.einsum("dnk,nki->ndi", slopes, self._listed[facet])
 
     def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Outward unit normals, shape (n, 3)."""
@@ -133,7 +128,7 @@ class Surface:
     @cached_property
     def sizes(self) -> np.ndarray:
         """Areas of the facets, shape (n_facets,) [m²]."""
-        t, w = square(*gauss(self._order + 4))
+        t, w = gauss(self._order + 4, dim=2)
         facet = np.repeat(np.arange(len(self.nodes)), len(w))
         return self.stretch(facet, np.tile(t, (len(self.nodes), 1))).reshape(-1, len(w)) @ w
 
@@ -149,10 +144,8 @@ class Surface:
     @cached_property
     def flat(self) -> np.ndarray:
         """True for facets that are parallelograms, shape (n_facets,)."""
-        steps = np.linspace(0.0, 1.0, self._order + 1)
-        grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1)
-        as_flat = self.flattened.points(np.repeat(grid[:, :, None], len(self.nodes), axis=2))
-        off = np.abs(np.moveaxis(as_flat, 2, 0) - self.nodes).max(axis=(1, 2, 3))
+        as_flat = self.flattened.points(lattice(self._order, dim=2)[:, None])
+        off = np.abs(as_flat.swapaxes(0, 1) - self._listed).max(axis=(1, 2))
         return off < _FLAT * np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
 
     @cached_property
@@ -193,6 +186,11 @@ class Surface:
     @property
     def _order(self) -> int:
         return self.nodes.shape[1] - 1
+
+    @property
+    def _listed(self) -> np.ndarray:
+        """Nodes of each facet in one list, shape (n_facets, (order + 1)², 3) [m]."""
+        return self.nodes.reshape(len(self.nodes), -1, 3)
 
     @cached_property
     def _corrections(self) -> np.ndarray:
@@ -240,12 +238,7 @@ def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None =
 def _grids(mesh) -> np.ndarray:
     """Node indices of each facet of a cell on a parameter grid, shape (6, (order + 1)²)."""
     kind, order = reference_element(mesh, 1).cell_type, coordinate_element(mesh).degree
-    element = basix.create_element(
-        basix.ElementFamily.P, kind, order, basix.LagrangeVariant.equispaced
-    )
     corners, facets = np.asarray(basix.geometry(kind)), np.array(basix.topology(kind)[-2])
     a, b, c = np.moveaxis(corners[facets[:, :3]], 1, 0)[:, :, None]
-    s, t = np.indices((order + 1, order + 1)).reshape(2, -1, 1) / order
-    places = a + s * (b - a) + t * (c - a)
-    distance = np.abs(places[:, :, None] - element.points).sum(axis=-1)
-    return distance.argmin(axis=-1)
+    s, t = lattice(order, dim=2).T[..., None]
+    return matching(a + s * (b - a) + t * (c - a), equispaced(kind.name, order).points)

@@ -14,8 +14,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
+from ...lagrange import lattice, on_lattice
 from ..search.face import Face
-from ..search.facets import lagrange
 from ..search.pairing import PairedFace, Pairing
 from ..search.surface import Surface
 
@@ -50,7 +50,7 @@ def nodes_of(face: Face | Surface) -> np.ndarray:
 def node_normals(face: Face | Surface) -> np.ndarray:
     """Outward unit normals at the nodes, averaged over facets, shape (n_nodes, gdim)."""
     number = _numbers(face).ravel()
-    normals = _at(face, face.normals, np.linspace(0.0, 1.0, _order(face) + 1))
+    normals = _at(face, face.normals, _order(face))
     summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
     return summed / np.linalg.norm(summed, axis=1, keepdims=True)
 
@@ -78,15 +78,14 @@ def ways_between(
 
 def _ways_at(side: PairedFace, directions: np.ndarray) -> np.ndarray:
     """Directions at points of a face, interpolated from its nodes, unit vectors (n, gdim)."""
-    values = _polynomials(_order(side.face), side.t)
+    values = on_lattice(_order(side.face), side.t)[0]
     ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])
     return ways / np.linalg.norm(ways, axis=1, keepdims=True)
 
 
 def curvatures(face: Face | Surface) -> np.ndarray:
     """Largest curvature of each facet, from pairs of its corners, shape (n_facets,) [1/m]."""
-    ends = np.array([0.0, 1.0])
-    points, normals = _at(face, face.points, ends), _at(face, face.normals, ends)
+    points, normals = _at(face, face.points, 1), _at(face, face.normals, 1)
     pairs = np.array(list(itertools.combinations(range(points.shape[1]), 2))).T
     chord, turn = (np.subtract(*v[:, pairs].swapaxes(0, 1)) for v in (points, normals))
     return (np.linalg.norm(turn, axis=2) / np.linalg.norm(chord, axis=2)).max(axis=1)
@@ -113,7 +112,7 @@ class WornFace:
         self._paths = paths
         out = pairing.normals if index == 0 else -pairing.normals
         node = _numbers(side.face)[side.facet]
-        values = _polynomials(_order(side.face), side.t)
+        values = on_lattice(_order(side.face), side.t)[0]
         values = values * np.einsum("ni,nki->nk", out, paths.directions[node])
         point = np.broadcast_to(np.arange(len(node))[:, None], node.shape)
         shape = len(node), len(paths.directions)
@@ -176,18 +175,8 @@ def _roughness(face: Face | Surface) -> sp.csr_matrix:
     return sp.csr_matrix((values, where), shape=(numbers.max() + 1,) * 2)
 
 
-def _at(face: Face | Surface, values, knots: np.ndarray) -> np.ndarray:
-    """Values of a face's method on a grid of parameters of each facet, (n_facets, n_places, …)."""
-    dim, count = _dimension(face), len(face.nodes)
-    grid = np.array(list(itertools.product(knots, repeat=dim)))
-    facet, t = np.repeat(np.arange(count), len(grid)), np.tile(grid, (count, 1))
-    return values(facet, t if dim > 1 else t[:, 0]).reshape(count, len(grid), -1)
-
-
-def _polynomials(order: int, t: np.ndarray) -> np.ndarray:
-    """Nodal polynomials of a facet at parameters (n,) or (n, 2), (n, nodes_per_facet)."""
-    values = np.ones((len(t), 1))
-    for along in t.reshape(len(t), -1).T:
-        values = values[:, :, None] * lagrange(order, along)[:, None]
-        values = values.reshape(len(t), -1)
-    return values
+def _at(face: Face | Surface, values, order: int) -> np.ndarray:
+    """Values of a face's method on the lattice of each facet, (n_facets, n_places, …)."""
+    count, t = len(face.nodes), lattice(order, _dimension(face))
+    facet = np.repeat(np.arange(count), len(t))
+    return values(facet, np.concatenate([t] * count)).reshape(count, len(t), -1)

@@ -9,12 +9,15 @@ import numpy as np
 
 from ..mesh.orders import quadratic
 from ..mesh.tagged import TaggedMesh
+from ..moving.moved import Extension
 from ..reading.export import write_mesh
 from .design import Design
 from .worn_body import moved_body
 
 
-def write_design_mesh(mesh: TaggedMesh, design: Design, face: str, path: Path) -> None:
+def write_design_mesh(
+    mesh: TaggedMesh, design: Design, face: str, path: Path, extension: Extension
+) -> None:
     """Write the mesh of a body whose contact face has a worn shape.
 
     Straight-sided cells become quadratic to follow the shape; .vtu supports no higher order.
@@ -28,6 +31,8 @@ def write_design_mesh(mesh: TaggedMesh, design: Design, face: str, path: Path) -
     face : str
         Name of its contact face.
     path : Path
+    extension : callable
+        Factory of harmonic extensions, see `moved_body`.
 
     Raises
     ------
@@ -36,6 +41,6 @@ def write_design_mesh(mesh: TaggedMesh, design: Design, face: str, path: Path) -
     """
     if mesh.order == 1 or (path.suffix == ".vtu" and mesh.order > 2):
         mesh = quadratic(mesh)
-    points = moved_body(mesh, design, face)
+    points = moved_body(mesh, design, face, extension)
     told = np.pad(points - mesh.points, ((0, 0), (0, 3 - points.shape[1])))
     write_mesh(replace(mesh, points=points), path, {"displacement_m": told})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh.tagged import TaggedMesh
-from ..moving.moved import MovableBody
+from ..moving.moved import Extension, MovableBody
 from .design import Design
 from .outline import loops
 
@@ -13,11 +13,11 @@ _ALONG = 0.2
 """Least cosine between a side and the face normal for which the end of the face slides along it."""
 
 
-def moved_body(mesh: TaggedMesh, design: Design, face: str) -> np.ndarray:
+def moved_body(mesh: TaggedMesh, design: Design, face: str, extension: Extension) -> np.ndarray:
     """Nodes of a body after its contact face has been moved to a worn shape.
 
-    Plane bodies as in `moved`; in space the body is a prism on its face, z upwards, whose nodal
-    displacement decreases linearly with height.
+    Plane bodies as in `moving.moved`; in space the body is a prism on its face, z upwards, whose
+    nodal displacement decreases linearly with height.
 
     Parameters
     ----------
@@ -26,6 +26,8 @@ def moved_body(mesh: TaggedMesh, design: Design, face: str) -> np.ndarray:
     design : Design
     face : str
         Name of its contact face.
+    extension : callable
+        Factory of harmonic extensions, for the interior nodes of a plane body.
 
     Returns
     -------
@@ -42,7 +44,8 @@ def moved_body(mesh: TaggedMesh, design: Design, face: str) -> np.ndarray:
     ends = [
         slide(design, *points[side.nodes[:2]]) if side.is_corner else None for side in body.sides
     ]
-    return body.followed(body.outlined(face_motion(design, on_face, ends)))
+    follow = extension(mesh, mesh.cell_type, mesh.cells, None)
+    return points + follow(body.outlined(face_motion(design, on_face, ends)))
 
 
 def offsets(design: Design, points: np.ndarray) -> np.ndarray:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...lagrange import matching
+
 CORNERS = {"triangle": 3, "quadrilateral": 4}
 FACETS = {"triangle": "interval", "quadrilateral": "interval", "hexahedron": "quadrilateral"}
 """Facet type of each cell type."""
@@ -14,49 +16,48 @@ _PLACES = {
     "quadrilateral": _SQUARE,
     "hexahedron": np.vstack([np.insert(_SQUARE, 2, z, axis=1) for z in (0.0, 1.0)]),
 }
-_HEXAHEDRON_EDGES = np.array(
-    [(0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7)]
-)
+_EDGES = {
+    "interval": [(0, 1)],
+    "triangle": [(0, 1), (1, 2), (2, 0)],
+    "quadrilateral": [(0, 1), (1, 2), (2, 3), (3, 0)],
+    "hexahedron": [(0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3)]
+    + [(2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7)],
+}
 _HEXAHEDRON_FACETS = np.array(
     [(0, 3, 2, 1), (0, 1, 5, 4), (0, 4, 7, 3), (1, 2, 6, 5), (2, 3, 7, 6), (4, 5, 6, 7)]
 )
 
 
 def reference_nodes(cell_type: str, order: int) -> np.ndarray:
-    """Nodes of the cell with unit sides, shape (n_nodes, 1, 2 or 3)."""
+    """Nodes of the cell with unit sides: corners, then those in edges, in facets, and inside.
+
+    Shape (n_nodes, 1, 2 or 3).
+    """
     corners = _PLACES[cell_type]
     if order == 0:
         return corners.mean(axis=0, keepdims=True)
     steps = np.arange(1, order)[:, None] / order
-    if cell_type == "interval":
-        return np.concatenate([corners, steps])
+    nodes = [corners]
+    nodes += [corners[a] + steps * (corners[b] - corners[a]) for a, b in _EDGES[cell_type]]
     if cell_type == "hexahedron":
-        return _hexahedron(order, corners, steps)
-    sides = [a + steps * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)]
-    nodes = np.concatenate([corners, *sides])
-    inner = order - (3 if cell_type == "triangle" else 2)
-    if inner < 0:
-        return nodes
-    shrunk = 1 / order + inner / order * reference_nodes(cell_type, inner)
-    return np.concatenate([nodes, shrunk if inner else corners.mean(axis=0, keepdims=True)])
-
-
-def _hexahedron(order: int, corners: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Nodes of a hexahedron: corners, then those in edges, in facets, in the interior."""
-    edges = [corners[a] + steps * (corners[b] - corners[a]) for a, b in _HEXAHEDRON_EDGES]
-    if order == 1:
-        return corners
-    on_facet = _inner("quadrilateral", order)
-    facets = [
-        corners[a] + on_facet @ np.array([corners[b] - corners[a], corners[d] - corners[a]])
-        for a, b, _, d in _HEXAHEDRON_FACETS
-    ]
-    return np.concatenate([corners, *edges, *facets, _inner("hexahedron", order)])
+        s, t = _inner("quadrilateral", order).T[..., None]
+        nodes += [_on_facet(corners[facet], s, t) for facet in _HEXAHEDRON_FACETS]
+    if cell_type != "interval":
+        nodes.append(_inner(cell_type, order))
+    return np.concatenate(nodes)
 
 
 def _inner(cell_type: str, order: int) -> np.ndarray:
-    """Interior nodes of a cell: the nodes of a smaller cell."""
-    return 1 / order + (order - 2) / order * reference_nodes(cell_type, order - 2)
+    """Nodes inside a cell: the nodes of a smaller cell."""
+    left = order - (3 if cell_type == "triangle" else 2)
+    if left < 0:
+        return np.empty((0, _PLACES[cell_type].shape[1]))
+    return 1 / order + left / order * reference_nodes(cell_type, left)
+
+
+def _on_facet(corners: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Points of a facet of a hexahedron at parameters of shape (n, 1)."""
+    return corners[0] + s * (corners[1] - corners[0]) + t * (corners[3] - corners[0])
 
 
 def facet_nodes(order: int) -> np.ndarray:
@@ -66,11 +67,8 @@ def facet_nodes(order: int) -> np.ndarray:
     """
     nodes, corners = reference_nodes("hexahedron", order), _PLACES["hexahedron"]
     s, t = reference_nodes("quadrilateral", order).T[..., None]
-    places = [
-        corners[a] + s * (corners[b] - corners[a]) + t * (corners[d] - corners[a])
-        for a, b, _, d in _HEXAHEDRON_FACETS
-    ]
-    return np.array([[np.abs(nodes - p).sum(axis=1).argmin() for p in facet] for facet in places])
+    facets = [_on_facet(corners[facet], s, t) for facet in _HEXAHEDRON_FACETS]
+    return matching(np.array(facets), nodes)
 
 
 def edge_nodes(cell_type: str, order: int) -> np.ndarray:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
+from ...lagrange import equispaced, matching, tabulated
 from .nodes import FACETS, edge_nodes, facet_nodes, reference_nodes
 from .tagged import TaggedMesh
 
@@ -30,37 +32,24 @@ def boundary(cell_type: str, order: int, cells: np.ndarray) -> np.ndarray:
 def turned(cell_type: str, order: int) -> np.ndarray:
     """Permutation of nodes that reverses the orientation of a cell."""
     nodes = reference_nodes(cell_type, order)
-    return np.array([np.abs(nodes - p[::-1]).sum(axis=1).argmin() for p in nodes])
+    return matching(nodes[:, ::-1], nodes)
 
 
 def shape_functions(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
     """Values of the Lagrange polynomials at points of shape (n, dim), shape (n, n_nodes)."""
-    return _monomials(cell_type, order, points) @ np.linalg.inv(
-        _monomials(cell_type, order, reference_nodes(cell_type, order))
-    )
+    return tabulated(equispaced(cell_type, order), points)[0][:, _numbers(cell_type, order)]
 
 
 def slopes(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
     """Gradients of the Lagrange polynomials, shape (n, dim, n_nodes)."""
-    powers = _exponents(cell_type, order)
-    along = [
-        power * np.prod(points[:, None] ** np.maximum(powers - unit, 0), axis=2)
-        for power, unit in zip(powers.T, np.eye(powers.shape[1], dtype=int), strict=True)
-    ]
-    return np.stack(along, axis=1) @ np.linalg.inv(
-        _monomials(cell_type, order, reference_nodes(cell_type, order))
-    )
+    table = tabulated(equispaced(cell_type, order), points, 1)[1:]
+    return np.ascontiguousarray(table[..., _numbers(cell_type, order)].swapaxes(0, 1))
 
 
-def _monomials(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
-    return np.prod(points[:, None] ** _exponents(cell_type, order), axis=2)
-
-
-def _exponents(cell_type: str, order: int) -> np.ndarray:
-    """Exponents of the monomials that span the polynomials of a cell, shape (n_nodes, dim)."""
-    dim = reference_nodes(cell_type, 1).shape[1]
-    powers = np.indices([order + 1] * dim).reshape(dim, -1).T
-    return powers[powers.sum(axis=1) <= order] if cell_type == "triangle" else powers
+@cache
+def _numbers(cell_type: str, order: int) -> np.ndarray:
+    """Number of the polynomial of each node, from the order of gmsh to that of basix."""
+    return matching(reference_nodes(cell_type, order), equispaced(cell_type, order).points)
 
 
 def quadratic(mesh: TaggedMesh) -> TaggedMesh:

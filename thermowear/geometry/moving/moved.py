@@ -1,7 +1,7 @@
-"""Mesh motion of a plane body whose face has moved into it.
+"""Motion of the outline of a plane body whose face has moved into it.
 
 Sides adjacent to the face slide along themselves up to their next corner, the rest of the
-outline is fixed, and the interior nodes follow by harmonic extension.
+outline is fixed. Interior nodes follow by harmonic extension (`bulk.mesh_motion`).
 """
 
 from __future__ import annotations
@@ -11,21 +11,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
-from numpy.polynomial.polynomial import polyder
+from scipy.spatial import cKDTree
 
+from ...lagrange import gauss, on_lattice
 from ..mesh.nodes import edge_nodes
-from ..mesh.shapes import stiffness
 from ..mesh.tagged import TaggedMesh
 
 _CORNER = np.cos(np.radians(20.0))
 """Cosine of the largest turn of a smooth outline; sharper turns are corners."""
-_SYMMETRIC = {
-    "permc_spec": "MMD_AT_PLUS_A",
-    "diag_pivot_thresh": 0.0,
-    "options": {"SymmetricMode": True},
-}
-"""SuperLU's settings for symmetric positive matrices."""
+
+Extension = Callable[
+    [TaggedMesh, str, np.ndarray, np.ndarray | None], Callable[[np.ndarray], np.ndarray]
+]
+"""Factory of harmonic extensions, see `bulk.mesh_motion.serial_extension`."""
 
 
 @dataclass(frozen=True)
@@ -60,13 +58,9 @@ class MovableBody:
     """
 
     def __init__(self, mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray):
-        tags = [mesh.bodies.index(part) + 1 for part in parts]
         self._mesh = mesh
-        self.parts = parts
-        self._cells = np.isin(mesh.cell_tags, tags)
-        own = np.unique(mesh.cells[self._cells])
-        self.face = own[scipy.spatial.cKDTree(mesh.points[own]).query(face)[1]]
-        self._edges = _outline(mesh, mesh.cells[self._cells])
+        self.face = nodes_at(mesh, parts, face)
+        self._edges = _outline(mesh, cells_of(mesh, parts))
         self.sides = tuple(self._side(ends) for ends in (self.face[:2], self.face[-2:][::-1]))
 
     def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -93,16 +87,6 @@ class MovableBody:
         steps = np.linalg.norm(np.diff(self._mesh.points[self.face], axis=0), axis=1)
         part = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
         return _rotated(normals, (1 - part) * turn[0] + part * turn[1]), held
-
-    def displaced(self, displacement: np.ndarray) -> np.ndarray:
-        """Coordinates of all nodes of the mesh after the face has moved, shape (n_points, 2) [m].
-
-        Parameters
-        ----------
-        displacement : ndarray, shape (n, 2)
-            Displacement of the nodes of the face; at its ends along the sides [m].
-        """
-        return self.followed(self.outlined(displacement))
 
     def outlined(self, displacement: np.ndarray) -> np.ndarray:
         """Displacement of the outline when the face moves, zero inside; shape (n_points, 2) [m].
@@ -133,11 +117,6 @@ class MovableBody:
         edges = self._edges[np.any(outlined[self._edges] != 0.0, axis=(1, 2))]
         points = self._mesh.points[edges]
         return enclosed(points, factor) - enclosed(points + outlined[edges], factor)
-
-    def followed(self, outlined: np.ndarray) -> np.ndarray:
-        """Coordinates of all nodes of the mesh after the outline has moved, (n_points, 2) [m]."""
-        known = np.unique(self._edges)
-        return self._mesh.points + extended(self._mesh, self._cells, known, outlined)
 
     def _slide_displacement(self, side: OutlineSide, way: float) -> np.ndarray:
         """Displacement of the nodes of a side along it, given that of its first node [m]."""
@@ -177,37 +156,15 @@ class MovableBody:
         return OutlineSide(along, inward, bool(inward @ from_face < _CORNER))
 
 
-def extended(
-    mesh: TaggedMesh, cells: np.ndarray, known: np.ndarray, given: np.ndarray
-) -> np.ndarray:
-    """Harmonic extension of a nodal displacement into some cells.
+def cells_of(mesh: TaggedMesh, parts: tuple[str, ...]) -> np.ndarray:
+    """Cells of some parts of a mesh, shape (n_cells, nodes_per_cell)."""
+    return mesh.cells[np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])]
 
-    Parameters
-    ----------
-    mesh : TaggedMesh
-    cells : ndarray of bool, shape (n_cells,)
-    known : ndarray of int
-        Nodes whose displacement is prescribed.
-    given : ndarray, shape (n_points, 2)
-        Prescribed displacement, zero elsewhere [m].
 
-    Returns
-    -------
-    ndarray, shape (n_points, 2) [m]
-    """
-    result = given.copy()
-    matrices, nodes = stiffness(mesh, cells)
-    count, size = len(mesh.points), nodes.shape[1]
-    rows, columns = np.repeat(nodes, size, axis=1).ravel(), np.tile(nodes, size).ravel()
-    whole = scipy.sparse.coo_matrix(
-        (matrices.ravel(), (rows, columns)), shape=(count, count)
-    ).tocsr()
-    inner = np.setdiff1d(np.unique(nodes), known)
-    if len(inner):
-        of_inner = whole[inner]
-        factor = scipy.sparse.linalg.splu(of_inner[:, inner].tocsc(), **_SYMMETRIC)
-        result[inner] = factor.solve(-(of_inner @ given))
-    return result
+def nodes_at(mesh: TaggedMesh, parts: tuple[str, ...], places: np.ndarray) -> np.ndarray:
+    """Nodes of some parts of a mesh that are nearest to places (n, gdim), shape (n,)."""
+    own = np.unique(cells_of(mesh, parts))
+    return own[cKDTree(mesh.points[own]).query(places)[1]]
 
 
 def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
@@ -229,16 +186,12 @@ def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
 def enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
     """Contribution of edges (n, n_nodes, 2) to ``∮ G dy``, G the integral of a factor along x."""
     order = edges.shape[1] - 1
-    t, w = np.polynomial.legendre.leggauss(2 * order + 1)
-    knots = np.linspace(-1.0, 1.0, order + 1)
-    powers = np.linalg.inv(np.vander(knots, increasing=True))
-    values = np.vander(t, order + 1, increasing=True) @ powers
-    slopes = polyder(np.eye(order + 1)).T
-    slopes = np.vander(t, max(order, 1), increasing=True) @ slopes.T @ powers
-    points = np.einsum("qk,nki->nqi", values, edges)
-    x, rise = points[..., 0].ravel(), np.einsum("qk,nk->nq", slopes, edges[..., 1]).ravel()
-    halfway = np.column_stack([x / 2, points[..., 1].ravel()])
-    return float(np.tile(w, len(edges)) @ (factor(halfway) * x * rise))
+    t, w = gauss(2 * order + 1)
+    values, slopes = on_lattice(order, t, 1)
+    x, y = np.einsum("qk,nki->inq", values, edges)
+    rise = np.einsum("qk,nk->nq", slopes, edges[..., 1])
+    halfway = np.stack([x / 2, y], axis=-1).reshape(-1, 2)
+    return float(np.tile(w, len(edges)) @ (factor(halfway) * (x * rise).ravel()))
 
 
 def _angle(first: np.ndarray, second: np.ndarray) -> float:

@@ -1,25 +1,23 @@
-"""Mesh motion of a body in space whose face has moved into it.
+"""Motion of the boundary of a body in space whose face has moved into it.
 
 Sides that meet the face at an angle slide along themselves up to their next sharp edge, and so do
-the edges between them; the rest of the boundary is fixed, and the interior nodes follow. All by
-harmonic extension: first in the edges, then in the sides, then in the body.
+the edges between them; the rest of the boundary is fixed. All by harmonic extension, first in the
+edges, then in the sides; last, in the body, interior nodes follow (`bulk.mesh_motion`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
-import scipy
 
+from ...lagrange import gauss
 from ..mesh.nodes import FACETS
 from ..mesh.orders import shape_functions, slopes
-from ..mesh.shapes import gauss_rule, laplacians
 from ..mesh.tagged import TaggedMesh
+from .moved import Extension, cells_of, nodes_at
 from .patches import Patches
-
-_SETTLED = 1e-12
-"""Relative residual tolerance of a harmonic extension."""
 
 
 class MovableSolid:
@@ -33,15 +31,17 @@ class MovableSolid:
         Names of the body's parts.
     face : ndarray, shape (n, 3)
         Coordinates of the nodes of its face [m].
+    extension : callable
+        Factory of harmonic extensions into the edges and sides.
     """
 
-    def __init__(self, mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray):
-        tags = [mesh.bodies.index(part) + 1 for part in parts]
+    def __init__(
+        self, mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray, extension: Extension
+    ):
         self._mesh = mesh
-        self._cells = mesh.cells[np.isin(mesh.cell_tags, tags)]
-        own = np.unique(self._cells)
-        self.face = own[scipy.spatial.cKDTree(mesh.points[own]).query(face)[1]]
-        self._patches = Patches(mesh, self._cells, self.face)
+        self._extension = extension
+        self.face = nodes_at(mesh, parts, face)
+        self._patches = Patches(mesh, cells_of(mesh, parts), self.face)
 
     def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
@@ -74,10 +74,8 @@ class MovableSolid:
         """
         given = np.zeros_like(self._mesh.points)
         given[self.face] = displacement
-        known = np.zeros(len(given), dtype=bool)
-        known[self._patches.still] = known[self.face] = True
-        self._extend("interval", self._patches.seams, given, known)
-        self._extend("quadrilateral", self._patches.sliding, given, known)
+        for extended in self._extensions:
+            given = extended(given)
         return given
 
     def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
@@ -97,50 +95,30 @@ class MovableSolid:
         facets = facets[np.any(outlined[facets] != 0.0, axis=(1, 2))]
         points = self._mesh.points[facets]
         points = points - points.reshape(-1, 3).mean(axis=0)
-        kind, order = FACETS[self._mesh.cell_type], self._mesh.order
+        kind, order = self._kind, self._mesh.order
         before, after = (_enclosed(kind, order, p) for p in (points, points + outlined[facets]))
         return (before - after) * float(factor(np.zeros((1, 3)))[0])
 
-    def followed(self, outlined: np.ndarray) -> np.ndarray:
-        """Coordinates of all nodes of the mesh after the outline has moved, (n_points, 3) [m]."""
-        given, known = outlined.copy(), np.zeros(len(outlined), dtype=bool)
-        known[self._patches.facets] = True
-        self._extend(self._mesh.cell_type, self._cells, given, known)
-        return self._mesh.points + given
+    @cached_property
+    def _extensions(self) -> list[Callable[[np.ndarray], np.ndarray]]:
+        """Harmonic extensions into the edges between the sliding sides, then into these sides."""
+        known = np.zeros(len(self._mesh.points), dtype=bool)
+        known[self._patches.still] = known[self.face] = True
+        found = []
+        for kind, cells in (("interval", self._patches.seams), (self._kind, self._patches.sliding)):
+            if len(cells):
+                found.append(self._extension(self._mesh, kind, cells, known.copy()))
+                known[cells] = True
+        return found
 
-    def displaced(self, displacement: np.ndarray) -> np.ndarray:
-        """Coordinates of all nodes of the mesh after the face has moved, shape (n_points, 3) [m].
-
-        See `outlined` for `displacement`.
-        """
-        return self.followed(self.outlined(displacement))
-
-    def _extend(self, kind: str, cells: np.ndarray, given: np.ndarray, known: np.ndarray) -> None:
-        """Fill in unknown displacements of the nodes of cells by harmonic extension."""
-        free = np.unique(cells[~known[cells]])
-        if len(free) == 0:
-            return
-        nodes, place = np.unique(cells, return_inverse=True)
-        place = place.reshape(cells.shape)
-        matrices = laplacians(kind, self._mesh.order, self._mesh.points[cells])
-        size = cells.shape[1]
-        where = np.repeat(place, size, axis=1).ravel(), np.tile(place, size).ravel()
-        whole = scipy.sparse.coo_matrix(
-            (matrices.ravel(), where), shape=(len(nodes), len(nodes))
-        ).tocsr()
-        rows = whole[np.searchsorted(nodes, free)]
-        inner = rows[:, np.searchsorted(nodes, free)]
-        right = -(rows @ given[nodes])  # displacements of free nodes are still zero
-        scale = 1.0 / inner.diagonal()
-        jacobi = scipy.sparse.linalg.LinearOperator(inner.shape, matvec=lambda v: scale * v.ravel())
-        for k in range(given.shape[1]):
-            given[free, k] = scipy.sparse.linalg.cg(inner, right[:, k], rtol=_SETTLED, M=jacobi)[0]
-        known[free] = True
+    @property
+    def _kind(self) -> str:
+        return FACETS[self._mesh.cell_type]
 
 
 def _enclosed(kind: str, order: int, facets: np.ndarray) -> float:
     """Contribution of facets (n, n_nodes, 3) to ``∮ x·n dS / 3``."""
-    places, weights = gauss_rule(kind, 2 * order + 1)
+    places, weights = gauss(2 * order + 1, dim=2)
     points = np.einsum("qk,fki->fqi", shape_functions(kind, order, places), facets)
     tangents = np.einsum("qdk,fki->dfqi", slopes(kind, order, places), facets)
     return float(np.einsum("fqi,fqi,q->", points, np.cross(*tangents), weights)) / 3

@@ -17,7 +17,7 @@ from ..mesh.orders import compact
 from ..mesh.shapes import scaled_jacobians
 from ..mesh.tagged import TaggedMesh
 from .even_lines import even
-from .moved import extended
+from .moved import Extension
 from .new_face import NewFace, divided
 from .skeleton import OutlinePiece, skeleton
 
@@ -34,6 +34,7 @@ def meshed_anew(
     face: np.ndarray,
     sizes: np.ndarray,
     factor: Callable[[np.ndarray], np.ndarray],
+    extension: Extension,
 ) -> tuple[TaggedMesh, NewFace]:
     """Remesh a body; only its outline is used, its present cells may be inverted.
 
@@ -49,6 +50,8 @@ def meshed_anew(
         Requested lengths of the edges of the face [m].
     factor : callable
         Factor from area to volume at points of shape (n, 2); the volume is kept.
+    extension : callable
+        Factory of harmonic extensions, for the interior nodes of curved cells.
 
     Raises
     ------
@@ -70,7 +73,7 @@ def meshed_anew(
     found, trouble = [], None
     for algorithm in _ALGORITHMS:
         try:
-            found.append(_meshed(mesh, parts, lines, algorithm))
+            found.append(_curved(*_meshed(mesh, parts, lines, algorithm), extension))
         except Exception as error:  # gmsh raises plain Exception
             trouble = error
     if not found:
@@ -81,8 +84,8 @@ def meshed_anew(
 
 def _meshed(
     mesh: TaggedMesh, parts: tuple[str, ...], lines: list[OutlinePiece], algorithm: int
-) -> TaggedMesh:
-    """Mesh a body within its boundary lines."""
+) -> tuple[TaggedMesh, np.ndarray, np.ndarray]:
+    """Mesh a body within its boundary lines; see `_read`."""
     every = np.concatenate([line.edges.reshape(-1, 2) for line in lines])
     middle, size = every.mean(axis=0), np.ptp(every, axis=0).max()
     scaled = [replace(line, edges=(line.edges - middle) / size) for line in lines]
@@ -168,8 +171,11 @@ def _loops(model, lines: list[OutlinePiece], tag: int) -> list[int]:
 
 def _read(
     model, mesh: TaggedMesh, tags: list[int], lines: list[OutlinePiece], corners, scale
-) -> TaggedMesh:
-    """Body as meshed by gmsh, with the nodes of its lines moved back to their exact positions."""
+) -> tuple[TaggedMesh, np.ndarray, np.ndarray]:
+    """Body as meshed by gmsh.
+
+    Also returns the mask of the nodes of its lines, and their displacements to the exact positions.
+    """
     numbers, places, _ = model.mesh.getNodes()
     position = np.full(int(numbers.max()) + 1, -1)
     position[numbers.astype(int)] = np.arange(len(numbers))
@@ -195,8 +201,15 @@ def _read(
         facets=np.concatenate(facets),
         facet_tags=np.concatenate(facet_tags),
     )
-    every = np.ones(len(body.cells), dtype=bool)
-    return replace(body, points=points + extended(body, every, np.flatnonzero(known), given))
+    return body, known, given
+
+
+def _curved(
+    body: TaggedMesh, known: np.ndarray, given: np.ndarray, extension: Extension
+) -> TaggedMesh:
+    """Body with the nodes of its lines in their exact positions; interior nodes follow."""
+    motion = extension(body, body.cell_type, body.cells, known)(given)
+    return replace(body, points=body.points + motion)
 
 
 def _elements(model, dim: int, tag: int) -> np.ndarray:

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..mesh.orders import boundary, shape_functions
+from ...lagrange import lattice, on_lattice
+from ..mesh.orders import boundary
 from ..mesh.tagged import TaggedMesh
 
 _CORNER = np.cos(np.radians(20.0))
@@ -60,11 +61,9 @@ class OutlinePiece:
         """
         order, start = self.edges.shape[1] - 1, ends[:-1]
         of = np.minimum((start + ends[1:]) / 2, len(self.edges) - 0.5).astype(int)
-        along = start[:, None] + np.diff(ends)[:, None] * np.linspace(0.0, 1.0, order + 1)
-        values = shape_functions("interval", order, (along - of[:, None]).reshape(-1, 1))
-        listed = self.edges[:, [0, -1, *range(1, order)]]  # both ends first
-        values = values.reshape(*along.shape, -1)
-        edges = np.einsum("njk,nki->nji", values, listed[of])
+        along = start[:, None] + np.diff(ends)[:, None] * lattice(order)
+        values = on_lattice(order, (along - of[:, None]).ravel())[0].reshape(*along.shape, -1)
+        edges = np.einsum("njk,nki->nji", values, self.edges[of])
         for side in (0, -1):  # bitwise equal where they are ends of present edges
             number = ends[: len(of)] if side == 0 else ends[1:]
             whole = number == of - side

@@ -11,14 +11,13 @@ import scipy
 
 from ...errors import CaseError
 from ..mesh.nodes import CORNERS
-from ..mesh.orders import boundary, slopes, turned
+from ..mesh.orders import boundary, turned
+from ..mesh.shapes import jacobians
 
 _FLAT = 1e-8
 """Sine of the angle between grid lines below which a cell is degenerate."""
 _SAME = 1e-7
 """Distance relative to the size of a body below which nodes coincide."""
-_AT_ONCE = 2000
-"""Number of cells whose Jacobians are computed together."""
 
 
 def oriented(points: np.ndarray, cells: np.ndarray, kind: str, order: int, body: str) -> np.ndarray:
@@ -42,7 +41,8 @@ def oriented(points: np.ndarray, cells: np.ndarray, kind: str, order: int, body:
     """
     reversed_, piece = _sides(points, cells[:, : CORNERS[kind]], body)
     signs = np.where(reversed_, -1.0, 1.0)
-    least, most, areas = _jacobians(points, cells, kind, order)
+    # dense enough to bound det J, a polynomial; the extrema of straight cells are at corners
+    least, most, areas = jacobians(kind, order, points[cells], 4 * order - 2)
     least, most = np.where(reversed_, -most, least), np.where(reversed_, -least, most)
     mirrored = (np.bincount(piece, signs * areas) < 0)[piece]
     worst = np.where(mirrored, -most, least)
@@ -95,31 +95,6 @@ def _sides(points: np.ndarray, corners: np.ndarray, body: str) -> tuple[np.ndarr
         )
     _, piece = np.unique(np.minimum(as_listed, turned_round), return_inverse=True)
     return as_listed > turned_round, piece.ravel()
-
-
-def _jacobians(
-    points: np.ndarray, cells: np.ndarray, kind: str, order: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Smallest and largest sine of the angle between the grid lines of each cell, and its area.
-
-    Sampled densely enough to bound the polynomial det J; the extrema of straight cells are at
-    their corners.
-    """
-    along = np.linspace(0.0, 1.0, 4 * order - 2)
-    places = np.stack(np.meshgrid(along, along), axis=-1).reshape(-1, 2)
-    if kind == "triangle":
-        places = places[places.sum(axis=1) <= 1.0 + 1e-12]
-    derivatives = slopes(kind, order, places)
-    result = np.empty((3, len(cells)))
-    for first in range(0, len(cells), _AT_ONCE):
-        some = slice(first, first + _AT_ONCE)
-        tangents = np.einsum("qdk,cki->cqdi", derivatives, points[cells[some]])
-        lengths = np.linalg.norm(tangents, axis=3).prod(axis=2)
-        determinants = np.linalg.det(tangents)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            sines = np.nan_to_num(determinants / lengths, nan=0.0)
-        result[:, some] = sines.min(axis=1), sines.max(axis=1), determinants.mean(axis=1)
-    return result[0], result[1], result[2]
 
 
 def _check_conforming(points: np.ndarray, edges: np.ndarray, body: str) -> None:

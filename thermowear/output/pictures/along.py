@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -20,10 +19,14 @@ _SMALLEST_RANGE = 1e-2
 _DIRECTIONS = (("shape", "height of the unloaded face"), ("wear_rate", "wear rate"))
 
 
-def interface_quantities(data: tables.TableColumns) -> list[str]:
-    """Columns of ``interface.csv`` that a picture shows: those that the run determines."""
-    hot = ["temperature_1", "temperature_2"] if np.isfinite(data["temperature_1"]).all() else []
-    return ["pressure", *hot, *(["shape"] if np.ptp(data["shape"]) > _FLAT else [])]
+def interface_panels(data: tables.TableColumns) -> list[list[str]]:
+    """Columns of ``interface.csv`` to draw, by panel: pressure, temperatures, shape if worn."""
+    shown = [["pressure"]]
+    if np.isfinite(data["temperature_1"]).all():
+        shown.append(["temperature_1", "temperature_2"])
+    if np.ptp(data["shape"]) > _FLAT:
+        shown.append(["shape"])
+    return shown
 
 
 def worn_bodies(data: tables.TableColumns) -> list[str]:
@@ -42,13 +45,12 @@ def final_time(folder: Path) -> float | None:
 def draw_interface(folder: Path) -> None:
     """Draw ``interface.png``: pressure, temperatures and shape along the contact."""
     data = tables.read(folder / "interface.csv")
-    names = interface_quantities(data)
-    shown = [list(group) for _, group in groupby(names, lambda name: name.split("_")[0])]
+    shown = interface_panels(data)
     with column(folder / "interface.png", len(shown), 2.3) as axes:
         for axis, names in zip(axes, shown, strict=True):
             for name, color, line in zip(names, BODIES, ("-", "--"), strict=False):
                 plot_along(axis, data, name, line, color=color, label=f"body {name[-1]}")
-            axis.set_ylabel(data.quantities[names[0]].of_bodies.wrapped)
+            axis.set_ylabel(data.quantities[names[0]].of_both.wrapped)
             if len(names) > 1:
                 axis.legend()
         from_zero(axes[0])

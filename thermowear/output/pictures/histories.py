@@ -87,4 +87,4 @@ def _plot_bodies(axis, data: tables.TableColumns, x: str, name: str, bodies: lis
     for body in bodies:
         values = data.drawn(f"{name}_{body}")
         axis.plot(data.drawn(x), values, color=BODIES[body - 1], label=f"body {body}")
-    axis.set_ylabel(data.quantities[f"{name}_1"].of_bodies.axis)
+    axis.set_ylabel(data.quantities[f"{name}_1"].of_both.axis)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.tri import Triangulation
 
 from .. import tables
-from .along import final_time, interface_quantities, worn_bodies
+from .along import final_time, interface_panels, worn_bodies
 from .panels import MAP_STYLE, label_coordinates, panels
 from .scales import COLORS
 
@@ -28,7 +29,7 @@ def is_surface(folder: Path) -> bool:
 def draw_interface_maps(folder: Path) -> None:
     """Draw ``interface.png``: pressure, temperatures and shape over the face."""
     data = tables.read(folder / "interface.csv")
-    _draw(folder / "interface.png", data, interface_quantities(data))
+    _draw(folder / "interface.png", data, list(chain.from_iterable(interface_panels(data))))
 
 
 def draw_wear_maps(folder: Path) -> None:

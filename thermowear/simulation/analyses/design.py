@@ -6,8 +6,9 @@ import numpy as np
 
 from ...contact.search.face import Face
 from ...geometry.cad.design import Design
+from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state
-from ..interface.steady import least_worn, steady_state
+from ..interface.steady import steady_state
 from ..model.system import System
 from ..results.recording import along_press
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ...laws.motions import combined
+from ...laws.principle.least_worn import least_worn
 from ...results import Result
 from ..interface.body_state import body_state
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
-from ..interface.steady import least_worn, steady_state
+from ..interface.steady import steady_state
 from ..model.system import System
 from ..results.recording import Snapshot, record, snapshot
 from ..results.summary import conclude

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...bulk.mesh_motion import serial_extension
 from ...compat import geometry_dofmap
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ahead
@@ -181,9 +182,10 @@ def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
 
 def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody | MovableSolid:
     """Movable body of the mesh of a system, by its index."""
-    face = system.pairing.sides[index].face
-    movable = MovableSolid if isinstance(face, Surface) else MovableBody
-    return movable(mesh, system.model.bodies[index].parts, nodes_of(face))
+    face, parts = system.pairing.sides[index].face, system.model.bodies[index].parts
+    if isinstance(face, Surface):
+        return MovableSolid(mesh, parts, nodes_of(face), serial_extension)
+    return MovableBody(mesh, parts, nodes_of(face))
 
 
 def _curvature(face) -> float:

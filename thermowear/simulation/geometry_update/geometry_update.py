@@ -7,14 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...balances import relative, require
+from ...bulk.mesh_motion import HarmonicExtension
 from ...bulk.transfer import transferred
 from ...contact.search.refinement import Rule
 from ...contact.search.surface import Surface
-from ...contact.wear.worn_face import WornFace
+from ...contact.wear.worn_face import WornFace, nodes_of
 from ...errors import CaseError, ComputationError
 from ...geometry.mesh.shapes import scaled_jacobians
 from ...geometry.mesh.tagged import TaggedMesh
-from ...geometry.moving.moved import MovableBody
+from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.new_face import NewFace
 from ...laws.motions import combined
 from ...parallel import on_root
@@ -136,9 +137,9 @@ def _moved(system: System, kept: GapWear, state: InterfaceState) -> tuple[WornGe
     """Geometry with the meshes moved by the wear, and True if a body has been remeshed."""
     before, faces, depth = kept.geometry, kept.faces, kept.due(kept.depth(state.worn))
     amounts = {index: face.amounts(depth[index]) for index, face in faces.items()}
-    mesh, lost, quality, renewed = on_root(
-        system.comm,
-        lambda: _followed(system, before, faces, amounts, depth @ system.weights),
+    mesh, lost = _followed(system, before, faces, amounts, depth @ system.weights)
+    mesh, quality, renewed = on_root(
+        system.comm, lambda: _remeshed(system, before, mesh, list(faces))
     )
     if not quality >= FLOOR:  # NaN for degenerate cells
         raise ComputationError(
@@ -209,29 +210,50 @@ def _followed(
     faces: dict[int, WornFace],
     amounts: dict[int, np.ndarray],
     volumes: np.ndarray,
-) -> tuple[TaggedMesh, np.ndarray, float, dict[int, NewFace]]:
-    """Moved mesh, volumes lost (2,), smallest scaled Jacobian, and remeshed faces.
+) -> tuple[TaggedMesh, np.ndarray]:
+    """Moved mesh, and volumes lost (2,). Every rank calls.
 
     Displacements of the faces are scaled slightly so that the meshes lose the worn volumes: the
     volume of a curved layer is not exactly its area times its depth.
     """
-    mesh, factor = worn.mesh, system.elastic.kinematics.area_factor
-    lost = np.zeros(2)
+
+    def outlined() -> tuple[np.ndarray, np.ndarray]:
+        lost, moved = np.zeros(2), np.zeros_like(worn.mesh.points)
+        for index, face in faces.items():
+            body, part = movable_body(system, worn.mesh, index), 1.0
+            for _ in range(_PASSES):
+                outline = body.outlined(part * face.displacement(amounts[index]))
+                lost[index] = body.lost(outline, system.elastic.kinematics.area_factor)
+                if abs(lost[index] - volumes[index]) <= _SETTLED * abs(volumes[index]):
+                    break
+                part *= volumes[index] / lost[index]
+            moved += outline
+        return moved, lost
+
+    moved, lost = on_root(system.comm, outlined)
+    follow = HarmonicExtension(system.bodies.mesh)
+    return replace(worn.mesh, points=worn.mesh.points + follow(moved)), lost
+
+
+def _remeshed(
+    system: System, worn: WornGeometry, mesh: TaggedMesh, bodies: list[int]
+) -> tuple[TaggedMesh, float, dict[int, NewFace]]:
+    """Mesh with distorted bodies of a section remeshed, its quality, and the new faces.
+
+    The quality is the smallest scaled Jacobian.
+    """
     renewed: dict[int, NewFace] = {}
-    for index, face in faces.items():
-        body, part = movable_body(system, mesh, index), 1.0
-        for _ in range(_PASSES):
-            outlined = body.outlined(part * face.displacement(amounts[index]))
-            lost[index] = body.lost(outlined, factor)
-            if abs(lost[index] - volumes[index]) <= _SETTLED * abs(volumes[index]):
-                break
-            part *= volumes[index] / lost[index]
-        mesh = replace(mesh, points=body.followed(outlined))
-        if isinstance(body, MovableBody):
-            wanted = worn.sizes[index], factor, worn.best[index]
-            mesh, new = improved(mesh, body.parts, body.face, *wanted)
-            renewed |= {} if new is None else {index: new}
-    return mesh, lost, float(scaled_jacobians(mesh).min()), renewed
+    moved = mesh
+    for index in bodies:
+        parts, face = system.model.bodies[index].parts, system.pairing.sides[index].face
+        if isinstance(face, Surface):
+            continue
+        places = moved.points[nodes_at(worn.mesh, parts, nodes_of(face))]
+        nodes = nodes_at(mesh, parts, places)  # remeshing of another body renumbers them
+        wanted = worn.sizes[index], system.elastic.kinematics.area_factor, worn.best[index]
+        mesh, new = improved(mesh, parts, nodes, *wanted)
+        renewed |= {} if new is None else {index: new}
+    return mesh, float(scaled_jacobians(mesh).min()), renewed
 
 
 def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
+from ...bulk.mesh_motion import serial_extension
 from ...contact.search.face import Face
 from ...contact.search.pairing import PairedFace, Pairing
 from ...errors import ComputationError
@@ -48,7 +49,7 @@ def improved(
     if worst >= max(FLOOR, min(_SOFT, _WORSE * best)):
         return mesh, None
     try:
-        anew, divided = meshed_anew(mesh, parts, face, sizes, factor)
+        anew, divided = meshed_anew(mesh, parts, face, sizes, factor, serial_extension)
     except ComputationError as reason:
         if worst >= FLOOR:
             return mesh, None

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linprog
 
 from ...contact.operators.heat import ThermalState
 from ...laws import SteadyWear, steady_pressure
@@ -94,37 +93,3 @@ def _principle(system: System, conditions: InterfaceConditions) -> SteadyWear:
         temperature=conditions.temperature,
         friction=conditions.friction,
     )
-
-
-def least_worn(
-    modes: np.ndarray, opening: np.ndarray, weights: np.ndarray, pressing: np.ndarray
-) -> np.ndarray:
-    """Motion of the holder at which the faces conform with the least wear volume.
-
-    The wear depth is ``R d - B u``, non-negative at all points in contact. For a single translation
-    of a flat face the highest point is then just unworn.
-
-    Parameters
-    ----------
-    modes : ndarray, shape (n, k)
-        R of the free motions.
-    opening : ndarray, shape (n,)
-        ``B u``, change of the gap by load and heat [m].
-    weights : ndarray, shape (n,) [m²]
-    pressing : ndarray of bool, shape (n,)
-
-    Returns
-    -------
-    ndarray, shape (k,)
-    """
-    R, size = modes[pressing], np.abs(opening).max() or 1.0
-    stretch = np.abs(R).max(axis=0)
-    volume = weights[pressing] @ (R / stretch)
-    found = linprog(
-        volume / np.abs(volume).max(),
-        A_ub=-R / stretch,
-        b_ub=-opening[pressing] / size,
-        bounds=(None, None),
-        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
-    )
-    return found.x / stretch * size

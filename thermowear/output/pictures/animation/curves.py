@@ -81,7 +81,7 @@ class WearCurves(CurvePanel):
             (self._lines[name],) = axis.plot(*_curve(first, name), **style)
         depths = [_curve(state, name)[1].max() for state in self._states for name in self._names]
         axis.set_ylim(_AXIS_END * max(depths), (1 - _AXIS_END) * max(depths))
-        axis.set_ylabel(last.interface.quantities["wear_1"].of_bodies.wrapped)
+        axis.set_ylabel(last.interface.quantities["wear_1"].of_both.wrapped)
         super().prepare(axis)
 
 

@@ -1,0 +1,39 @@
+"""Least wear at which faces conform."""
+
+import numpy as np
+import pytest
+
+from thermowear.laws.principle.least_worn import least_worn
+
+
+@pytest.mark.parametrize("modes", [1, 2])
+def test_least_worn(modes):
+    """requirement: nowhere is material added, and no less could be taken off."""
+    rng = np.random.default_rng(3)
+    x = np.linspace(-1.0, 1.0, 41)
+    R = np.column_stack([np.ones_like(x), x])[:, :modes]
+    opening, weights = rng.normal(size=41), rng.uniform(0.5, 1.0, 41)
+    d = least_worn(R, opening, weights, np.ones(41, dtype=bool))
+    lost = R @ d - opening
+    assert lost.min() == pytest.approx(0.0, abs=1e-9)
+    assert np.sum(lost < 1e-9) == modes
+    for _ in range(200):
+        other = R @ (d + 0.3 * rng.normal(size=modes)) - opening
+        assert other.min() < 0 or weights @ other >= weights @ lost - 1e-9
+
+
+def test_least_worn_of_a_symmetric_face():
+    """requirement: of tilts that wear as little, the symmetric one; mirrored, the mirrored one."""
+    x, y = (points.ravel() for points in np.meshgrid(np.linspace(-1, 1, 9), np.linspace(-1, 1, 9)))
+    R, weights, all_points = (
+        np.column_stack([np.ones_like(x), x, y]),
+        np.ones(81),
+        np.full(81, True),
+    )
+    opening = 1.0 - 0.2 * x - np.abs(y)  # a ridge along x may tilt about it
+    d = least_worn(R, opening, weights, all_points)
+    assert d == pytest.approx([1.0, -0.2, 0.0], abs=1e-8)
+    skewed = opening + np.where(y > 0, 0.3 * y, 0.0)  # from -0.7 to 1 times the distance
+    d, mirrored = (least_worn(R, way, weights, all_points) for way in (skewed, skewed[::-1]))
+    assert d == pytest.approx([1.0, -0.2, 0.15], abs=1e-8)
+    assert mirrored == pytest.approx(d * [1.0, -1.0, -1.0], abs=1e-8)

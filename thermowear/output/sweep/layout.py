@@ -56,15 +56,15 @@ class Layout:
         """True if colours form a continuous scale instead of entries of a legend."""
         return self.axis.numbers is not None and len(self.axis.words) > _LEGEND_LIMIT
 
-    def color(self, place: int):
+    def color(self, index: int):
         """Colour of a value of the coloured key, by its index."""
         if self.continuous:
             assert self.axis.numbers is not None
-            return self.scale().to_rgba(np.array(self.axis.numbers[place]))
+            return self.scale().to_rgba(np.array(self.axis.numbers[index]))
         if self.axis.numbers is None:
-            return f"C{place % 10}"
+            return f"C{index % 10}"
         order = np.argsort(np.argsort(self.axis.numbers))
-        return mpl.colormaps["viridis"](0.85 * order[place] / max(len(order) - 1, 1))
+        return mpl.colormaps["viridis"](0.85 * order[index] / max(len(order) - 1, 1))
 
     def scale(self) -> ScalarMappable:
         """Colour scale for a colour bar."""
@@ -73,9 +73,9 @@ class Layout:
         norm = LogNorm(low, high) if is_wide(self.axis.numbers) else Normalize(low, high)
         return ScalarMappable(norm, "viridis")
 
-    def line(self, places: np.ndarray) -> str:
+    def line(self, indices: np.ndarray) -> str:
         """Line style of a variant, from its value indices."""
-        return "-" if self.lined is None else LINES[places[self.lined]]
+        return "-" if self.lined is None else LINES[indices[self.lined]]
 
 
 def lay_out(record: VariantRecord) -> Layout:
@@ -90,9 +90,9 @@ def lay_out(record: VariantRecord) -> Layout:
     lined = next((k for k in rest if sizes[k] <= len(LINES)), None)
     rest = sorted(k for k in rest if k != lined)
     columns = []
-    for combination in np.unique(record.places[:, rest], axis=0)[:_MOST_COLUMNS]:
-        chosen = (record.places[:, rest] == combination).all(axis=1)
-        named = (_named(record.axes[k], place) for k, place in zip(rest, combination, strict=True))
+    for combination in np.unique(record.indices[:, rest], axis=0)[:_MOST_COLUMNS]:
+        chosen = (record.indices[:, rest] == combination).all(axis=1)
+        named = (_named(record.axes[k], index) for k, index in zip(rest, combination, strict=True))
         columns.append((", ".join(named), chosen))
     return Layout(record, colored, lined, columns)
 
@@ -105,13 +105,13 @@ def is_wide(numbers) -> bool:
     return bool(logarithmic.min() / logarithmic.max() > linear.min() / linear.max())
 
 
-def _named(axis: Axis, place: int) -> str:
-    return f"{axis.key} = {axis.words[place]}"
+def _named(axis: Axis, index: int) -> str:
+    return f"{axis.key} = {axis.words[index]}"
 
 
-def add_legend(figure: Figure, place: str, title: str, handles: Sequence[Artist]) -> None:
+def add_legend(figure: Figure, location: str, title: str, handles: Sequence[Artist]) -> None:
     """Add a legend below the panels."""
-    figure.legend(handles=handles, loc=place, title=title, ncols=_legend_columns(handles))
+    figure.legend(handles=handles, loc=location, title=title, ncols=_legend_columns(handles))
 
 
 def legend_height(handles: Sequence[Artist]) -> float:

@@ -44,5 +44,5 @@ def draw_shape_maps(layout: Layout, path: Path) -> None:
 
 
 def _title(record: VariantRecord, variant: int) -> str:
-    indices = zip(record.axes, record.places[variant], strict=True)
+    indices = zip(record.axes, record.indices[variant], strict=True)
     return "\n".join(f"{axis.key} = {axis.words[index]}" for axis, index in indices)

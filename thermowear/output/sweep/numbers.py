@@ -66,11 +66,11 @@ def _draw(axis, layout: Layout, values: np.ndarray) -> None:
     record = layout.record
     others = _others(layout)
     across = layout.axis.numbers or tuple(range(len(layout.axis.words)))
-    for number, combination in enumerate(np.unique(record.places[:, others], axis=0)):
-        chosen = np.flatnonzero((record.places[:, others] == combination).all(axis=1))
-        x = np.array([across[place] for place in record.places[chosen, layout.colored]])
+    for number, combination in enumerate(np.unique(record.indices[:, others], axis=0)):
+        chosen = np.flatnonzero((record.indices[:, others] == combination).all(axis=1))
+        x = np.array([across[index] for index in record.indices[chosen, layout.colored]])
         order = np.argsort(x)
-        named = [record.axes[k].words[place] for k, place in zip(others, combination, strict=True)]
+        named = [record.axes[k].words[index] for k, index in zip(others, combination, strict=True)]
         axis.plot(
             x[order],
             values[chosen][order],

@@ -22,7 +22,7 @@ class VariantRecord:
     ----------
     axes : tuple of Axis
         Swept keys.
-    places : ndarray of int, shape (n, n_axes)
+    indices : ndarray of int, shape (n, n_axes)
         Index of the value of each key in each variant.
     folders : list of Path
         Results folder of each variant.
@@ -31,7 +31,7 @@ class VariantRecord:
     """
 
     axes: tuple[Axis, ...]
-    places: np.ndarray
+    indices: np.ndarray
     folders: list[Path]
     numbers: dict[str, np.ndarray]
 
@@ -50,9 +50,9 @@ def read_sweep(folder: Path) -> VariantRecord:
     try:
         status = header.index("status")
         keys = header[1:status]
-        places = np.array(list(product(*(range(len(values)) for values in over.values()))))
+        indices = np.array(list(product(*(range(len(values)) for values in over.values()))))
         axes = tuple(
-            axis(key, written, _different(rows, k + 1, places[:, k]), keys[k])
+            axis(key, written, _different(rows, k + 1, indices[:, k]), keys[k])
             for k, (key, written) in enumerate(over.items())
         )
         done = [row for row in rows if row[status] == "done"]
@@ -60,7 +60,7 @@ def read_sweep(folder: Path) -> VariantRecord:
         numbers = {name: np.array(column, dtype=float) for name, *column in [*cells][status + 1 :]}
         variants = [int(row[0]) for row in done]
         folders = [folder / f"{number:03d}" for number in variants]
-        return VariantRecord(axes, places[np.array(variants, dtype=int) - 1], folders, numbers)
+        return VariantRecord(axes, indices[np.array(variants, dtype=int) - 1], folders, numbers)
     except (IndexError, KeyError, ValueError) as error:
         raise ValueError(f"{folder}: run.json and sweep.csv are not of the same sweep") from error
 

@@ -28,7 +28,7 @@ def draw_shapes(layout: Layout, path: Path) -> None:
         for column, (title, chosen) in zip(axes.T, layout.columns, strict=True):
             column[0].set_title(title, fontsize="medium")
             for k in np.flatnonzero(chosen):
-                indices = layout.record.places[k]
+                indices = layout.record.indices[k]
                 color, line = layout.color(indices[layout.colored]), layout.line(indices)
                 for axis, name in zip(column, names, strict=True):
                     style = ("-", "0.3") if name in same else (line, color)
@@ -48,7 +48,7 @@ def draw_shapes(layout: Layout, path: Path) -> None:
 
 def legends(layout: Layout) -> dict[str, list[Line2D]]:
     """Legend entries of colours and line styles, by key."""
-    found, used = {}, sorted(set(layout.record.places[:, layout.colored]))
+    found, used = {}, sorted(set(layout.record.indices[:, layout.colored]))
     if not layout.continuous and len(used) > 1:
         found[layout.axis.key] = [
             Line2D([], [], color=layout.color(k), label=layout.axis.words[k]) for k in used

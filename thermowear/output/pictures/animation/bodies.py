@@ -9,7 +9,7 @@ from ..maps import draw_colors, triangulated
 from ..panels import label_coordinates
 from ..scales import COLORS, add_color_bar, color_limits, contact_window, inside, proportion, whole
 from ..section import read_section
-from .states import Film, FrameState
+from .states import FrameSequence, FrameState
 
 _SCALE = 0.05  # width of the colour bar relative to the panel
 
@@ -17,23 +17,23 @@ _SCALE = 0.05  # width of the colour bar relative to the panel
 class SectionPanel:
     """Panel with deformed 2D bodies: whole, or a window around a small contact."""
 
-    def __init__(self, film: Film):
-        self._film = film
-        self.sections = {s.time: read_section(s.file).displaced() for s in film.states}
+    def __init__(self, frames: FrameSequence):
+        self._frames = frames
+        self.sections = {s.time: read_section(s.file).displaced() for s in frames.states}
         sections = self.sections.values()
         points = np.concatenate([section.points for section in sections])
-        interfaces = [state.interface for state in film.states]
+        interfaces = [state.interface for state in frames.states]
         self.window = contact_window(interfaces, points) or whole(points)
         self.shape = proportion(self.window)
-        seen = [s.fields[film.field][inside(s.points, self.window)] for s in sections]
+        seen = [s.fields[frames.field][inside(s.points, self.window)] for s in sections]
         self.limits = color_limits(*seen)
         self._largest = max(values.max() for values in seen)
         self._drawn: list = []
 
     def prepare(self, axis) -> None:
         """Draw the static elements."""
-        self._axis, name = axis, self._film.field
-        label_coordinates(axis, self._film.states[-1].interface)
+        self._axis, name = axis, self._frames.field
+        label_coordinates(axis, self._frames.states[-1].interface)
         axis.set_anchor("W")
         axis.grid(visible=False)
         place = axis.inset_axes([1.03, 0.0, _SCALE * min(1.0, self.shape), 1.0])
@@ -45,26 +45,26 @@ class SectionPanel:
         while self._drawn:
             self._drawn.pop().remove()
         section = self.sections[state.time]
-        self._drawn = section.draw(self._axis, self._film.field, self.limits, self.window)
+        self._drawn = section.draw(self._axis, self._frames.field, self.limits, self.window)
 
 
 class SolidPanel:
     """Panel with undeformed 3D bodies and a fixed camera."""
 
-    def __init__(self, film: Film):
+    def __init__(self, frames: FrameSequence):
         from .. import solids
 
-        self._film, self._solids = film, solids
+        self._frames, self._solids = frames, solids
         self.shape = solids.PIXELS[1] / solids.PIXELS[0]
-        self._y = solids.middle(film.states[-1].interface)
-        surfaces = (self._surfaces(state) for state in film.states)
+        self._y = solids.middle(frames.states[-1].interface)
+        surfaces = (self._surfaces(state) for state in frames.states)
         self.limits = color_limits(
-            *(np.concatenate([surface[film.field] for surface in parts]) for parts in surfaces)
+            *(np.concatenate([surface[frames.field] for surface in parts]) for parts in surfaces)
         )
 
     def prepare(self, axis) -> None:
         """Draw the static elements."""
-        name, (width, height) = self._film.field, self._solids.PIXELS
+        name, (width, height) = self._frames.field, self._solids.PIXELS
         axis.set_axis_off()
         options = {"ax": axis, "label": FIELDS[name].axis, "shrink": 0.8}
         add_color_bar(axis, COLORS[name], self.limits, self.limits[1], **options)
@@ -74,7 +74,7 @@ class SolidPanel:
     def show(self, state: FrameState) -> None:
         """Update the panel to a state."""
         surfaces = self._surfaces(state)
-        self._image.set_data(self._solids.render(surfaces, self._film.field, self.limits))
+        self._image.set_data(self._solids.render(surfaces, self._frames.field, self.limits))
 
     def _surfaces(self, state: FrameState) -> list:
         return self._solids.clipped(self._solids.read_grid(state.file), self._y)
@@ -83,15 +83,15 @@ class SolidPanel:
 class FaceMap:
     """Panel with a map of a quantity over the contact face."""
 
-    def __init__(self, film: Film, name: str):
-        self._film, self._name = film, name
-        highest = max(float(state.interface.drawn(name).max()) for state in film.states)
+    def __init__(self, frames: FrameSequence, name: str):
+        self._frames, self._name = frames, name
+        highest = max(float(state.interface.drawn(name).max()) for state in frames.states)
         self._limits = (0.0, highest)
         self._drawn: list = []
 
     def prepare(self, axis) -> None:
         """Draw the static elements."""
-        self._axis, data = axis, self._film.states[-1].interface
+        self._axis, data = axis, self._frames.states[-1].interface
         label_coordinates(axis, data)
         window = whole(np.stack([data.drawn("x"), data.drawn("y")], axis=1))
         axis.set(xlim=window[:2], ylim=window[2:])
@@ -112,8 +112,8 @@ class FaceMap:
         self._drawn.append(colored)
 
 
-def face_maps(film: Film) -> list[FaceMap]:
+def face_maps(frames: FrameSequence) -> list[FaceMap]:
     """Maps of the pressure, and of the wear depth of the body with the deeper wear."""
-    depths = {name: film.states[-1].interface[name].max() for name in ("wear_1", "wear_2")}
+    depths = {name: frames.states[-1].interface[name].max() for name in ("wear_1", "wear_2")}
     deepest = max(depths, key=lambda name: depths[name])
-    return [FaceMap(film, name) for name in ("pressure", *([deepest] * (depths[deepest] > 0)))]
+    return [FaceMap(frames, name) for name in ("pressure", *([deepest] * (depths[deepest] > 0)))]

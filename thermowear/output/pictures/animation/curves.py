@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ..panels import BODIES, abscissa, clipped_top
-from .states import Film, FrameState
+from .states import FrameSequence, FrameState
 
 _AXIS_END = 1.06  # end of an axis relative to the largest value
 _FAINT = {"color": "0.6", "linewidth": 1.2}
@@ -24,13 +24,13 @@ class CurvePanel:
 
     Parameters
     ----------
-    film : Film
+    frames : FrameSequence
     names : sequence of str
         Columns of ``interface.csv``.
     """
 
-    def __init__(self, film: Film, names: Sequence[str]):
-        self._states, self._names = film.states, names
+    def __init__(self, frames: FrameSequence, names: Sequence[str]):
+        self._states, self._names = frames.states, names
         self._lines: dict[str, Line2D] = {}
 
     def prepare(self, axis) -> None:
@@ -51,9 +51,9 @@ class CurvePanel:
 class PressureCurve(CurvePanel):
     """Contact pressure along the face, with its start and end in grey."""
 
-    def __init__(self, film: Film):
-        super().__init__(film, ["pressure"])
-        self._end = "steady" if film.ends_steady else "end"
+    def __init__(self, frames: FrameSequence):
+        super().__init__(frames, ["pressure"])
+        self._end = "steady" if frames.ends_steady else "end"
 
     def prepare(self, axis) -> None:
         """Draw the static elements."""
@@ -85,10 +85,10 @@ class WearCurves(CurvePanel):
         super().prepare(axis)
 
 
-def contact_curves(film: Film) -> list[CurvePanel]:
+def contact_curves(frames: FrameSequence) -> list[CurvePanel]:
     """Panels of the pressure and, if a body wears, of the wear depths."""
-    worn = [name for name in _STYLES if _curve(film.states[-1], name)[1].max() > 0]
-    return [PressureCurve(film), *([WearCurves(film, worn)] if worn else [])]
+    worn = [name for name in _STYLES if _curve(frames.states[-1], name)[1].max() > 0]
+    return [PressureCurve(frames), *([WearCurves(frames, worn)] if worn else [])]
 
 
 def _curve(state: FrameState, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -101,11 +101,11 @@ def _curve(state: FrameState, name: str) -> tuple[np.ndarray, np.ndarray]:
 class TimeCurve:
     """History of the largest temperature or pressure, with a mark at the current time."""
 
-    def __init__(self, film: Film):
-        self._name = "max_temperature" if _is_hot(film) else "max_pressure"
-        self._even = film.even
+    def __init__(self, frames: FrameSequence):
+        self._name = "max_temperature" if _is_hot(frames) else "max_pressure"
+        self._even = frames.even
         # a logarithmic axis cannot start at zero
-        self._history = film.history if film.even else film.history.rows(np.s_[1:])
+        self._history = frames.history if frames.even else frames.history.rows(np.s_[1:])
         self._time, self._drawn = self._history["time"], self._history.drawn(self._name)
 
     def prepare(self, axis) -> None:
@@ -137,5 +137,5 @@ def top(values: np.ndarray) -> float:
     return clipped_top([pressed]) or float(pressed.max())
 
 
-def _is_hot(film: Film) -> bool:
-    return bool(np.isfinite(film.history.get("max_temperature", np.array([np.nan]))).all())
+def _is_hot(frames: FrameSequence) -> bool:
+    return bool(np.isfinite(frames.history.get("max_temperature", np.array([np.nan]))).all())

@@ -13,7 +13,7 @@ from ..scales import COLORS
 from .bodies import SectionPanel, SolidPanel, face_maps
 from .curves import TimeCurve, contact_curves
 from .scene import Scene
-from .states import read_film
+from .states import read_frames
 from .writers import GIF, MP4, common_palette, ffmpeg, write_gif, write_mp4
 
 FPS = 8.0
@@ -24,7 +24,7 @@ def has_frames(folder: Path) -> bool:
     return bool(frame_files(folder / FRAMES))
 
 
-def check_film(folder: Path, path: Path) -> None:
+def check_animation(folder: Path, path: Path) -> None:
     """Check that an animation can be drawn and written.
 
     Raises
@@ -58,18 +58,18 @@ def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
     fps : float
         Frames per second.
     """
-    film = read_film(folder)
+    frames = read_frames(folder)
     if is_surface(folder):
-        scene = Scene(film, SolidPanel(film), face_maps(film), TimeCurve(film))
+        scene = Scene(frames, SolidPanel(frames), face_maps(frames), TimeCurve(frames))
     else:
-        scene = Scene(film, SectionPanel(film), contact_curves(film), TimeCurve(film))
-    states = film.states
+        scene = Scene(frames, SectionPanel(frames), contact_curves(frames), TimeCurve(frames))
+    states = frames.states
     pictures = (scene.picture(state) for state in states)
     if path.suffix == MP4:
         write_mp4(path, pictures, fps)
         return
     some = [scene.picture(state) for state in (states[0], states[len(states) // 2], states[-1])]
-    write_gif(path, pictures, fps, common_palette(some, COLORS[film.field]))
+    write_gif(path, pictures, fps, common_palette(some, COLORS[frames.field]))
 
 
 if __name__ == "__main__":

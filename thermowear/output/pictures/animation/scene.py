@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ..panels import STYLE
-from .states import Film, FrameState
+from .states import FrameSequence, FrameState
 
 _DPI = 100
 _WIDTH, _HEIGHT = 9.0, 5.6  # inches
@@ -36,7 +36,7 @@ class Scene:
 
     Parameters
     ----------
-    film : Film
+    frames : FrameSequence
     bodies : ScenePanel
         Panel with `shape`, its height over width.
     contact : sequence of ScenePanel
@@ -45,7 +45,9 @@ class Scene:
         Panel over time.
     """
 
-    def __init__(self, film: Film, bodies, contact: Sequence[ScenePanel], history: ScenePanel):
+    def __init__(
+        self, frames: FrameSequence, bodies, contact: Sequence[ScenePanel], history: ScenePanel
+    ):
         self._panels = {"bodies": bodies, "history": history}
         self._panels |= {f"contact {k}": panel for k, panel in enumerate(contact)}
         with mpl.rc_context(_STYLE):
@@ -53,11 +55,11 @@ class Scene:
             self._canvas = FigureCanvasAgg(self._figure)
             plan, ratios = _plan(len(contact), bodies.shape)
             axes = self._figure.subplot_mosaic(plan, **ratios)
-            self._figure.suptitle(film.title, fontsize="large")
+            self._figure.suptitle(frames.title, fontsize="large")
             for name, panel in self._panels.items():
                 panel.prepare(axes[name])
             self._time = axes["bodies"].set_title("", loc="left", fontsize="large", color="tab:red")
-        self._fill(film.states[-1])
+        self._fill(frames.states[-1])
         self._figure.draw_without_rendering()
         self._figure.set_layout_engine("none")
 

@@ -40,7 +40,7 @@ class FrameState:
 
 
 @dataclass(frozen=True)
-class Film:
+class FrameSequence:
     """All states of an animation; the last one is the end of the run.
 
     Attributes
@@ -67,7 +67,7 @@ class Film:
     ends_steady: bool
 
 
-def read_film(folder: Path) -> Film:
+def read_frames(folder: Path) -> FrameSequence:
     """Read all data of an animation except the fields.
 
     Raises
@@ -88,7 +88,7 @@ def read_film(folder: Path) -> Film:
     last = tables.read(folder / "interface.csv")
     states.append(FrameState(end, last, _track(folder / "track.csv"), folder / "fields.vtu"))
     distance = read_summary(folder).get("distance_from_steady")
-    return Film(
+    return FrameSequence(
         states=states,
         title=_title(folder),
         history=history,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -62,7 +63,12 @@ def _draw_windows(
     size = (5.2, min(3.45 * height / rows, 6.0))
     margin = (0.0, 0.7 * (rows + bars_below) + (0.3 if title else 0.0))
     ratios = None if is_single else shapes
-    options = {"margin": margin, "style": MAP_STYLE, "crop": True, "height_ratios": ratios}
+    options: dict[str, Any] = {
+        "margin": margin,
+        "style": MAP_STYLE,
+        "crop": True,
+        "height_ratios": ratios,
+    }
     with panels(path, rows * columns, columns, size, **options) as (figure, axes):
         for row, window in zip(axes.T if is_single else axes, windows, strict=True):
             place = "bottom" if proportion(window) < _FLAT else "right"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +17,8 @@ from .scales import COLORS
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
+_SPACES = ("figure.constrained_layout.wspace", "figure.constrained_layout.hspace")
+_STYLE = MAP_STYLE | dict.fromkeys(_SPACES, 0.06)
 _LARGEST_ANGLE = 100.0
 """Largest angle of a boundary triangle [degrees]; larger ones lie outside the face."""
 
@@ -46,9 +49,12 @@ def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = 
     triangles = triangulated(data.drawn("x"), data.drawn("y"))
     ratio = np.clip(np.ptp(triangles.y) / np.ptp(triangles.x), 0.3, 2.5)
     size = (_LONGER_SIDE / max(1.0, ratio) + 2.2, _LONGER_SIDE * min(1.0, ratio) + 0.8)
-    options = {"margin": (0.0, 0.3 if title else 0.0), "style": MAP_STYLE, "crop": True}
+    options: dict[str, Any] = {
+        "margin": (0.0, 0.3 if title else 0.0),
+        "style": _STYLE,
+        "crop": True,
+    }
     with panels(path, len(names), 2, size, **options) as (figure, axes):
-        figure.get_layout_engine().set(wspace=0.06, hspace=0.06)
         for axis, name in zip(axes.flat, names, strict=False):
             _map(axis, triangles, data, name)
         if title:

@@ -66,7 +66,7 @@ def inside(points: np.ndarray, window: Extent, margin: float = 0.0) -> np.ndarra
     left, right, lower, upper = window
     low = np.array([left, lower]) - margin * np.array([right - left, upper - lower])
     high = np.array([right, upper]) + margin * np.array([right - left, upper - lower])
-    return ((points >= low) & (points <= high)).all(axis=1)
+    return np.asarray(((points >= low) & (points <= high)).all(axis=1))
 
 
 def proportion(window: Extent) -> float:

@@ -56,7 +56,7 @@ class BodySection:
         for number in (1, 2):
             own = self.triangles[(self.body == number) & seen]
             colored = axis.tripcolor(
-                Triangulation(*self.points.T, own),
+                Triangulation(self.points[:, 0], self.points[:, 1], own),
                 self.fields[name],
                 shading="gouraud",
                 cmap=COLORS[name],
@@ -64,8 +64,10 @@ class BodySection:
                 zorder=number,
             )
             edges = self.points[outline(self.points, own)]
-            black = {"colors": "black", "linewidths": 0.9, "snap": False, "zorder": number + 0.5}
-            drawn += [colored, axis.add_collection(LineCollection(edges, **black), autolim=False)]
+            black = LineCollection(
+                edges, colors="black", linewidths=0.9, snap=False, zorder=number + 0.5
+            )
+            drawn += [colored, axis.add_collection(black, autolim=False)]
         return drawn
 
 

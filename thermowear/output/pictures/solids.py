@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyvista
@@ -50,7 +51,7 @@ def draw_solids(path: Path, grid, y: float, title: str = "") -> None:
     surfaces = clipped(grid, y)
     names = [name for name in ("temperature", "von_mises") if name in grid.point_data]
     size = (6.2, 5.2 * PIXELS[1] / PIXELS[0] + 0.5)
-    options = {"style": MAP_STYLE, "crop": True}
+    options: dict[str, Any] = {"style": MAP_STYLE, "crop": True}
     with panels(path, len(names), len(names), size, **options) as (figure, axes):
         for axis, name in zip(axes.flat, names, strict=True):
             values = np.concatenate([surface[name] for surface in surfaces])

@@ -66,7 +66,7 @@ def swept(key: str, written: Sequence[str], tables: Sequence[dict[str, Any]]) ->
     tables : sequence of dict
         Case of each variant with all default values.
     """
-    resolved = [reduce(_entry, key.split("."), table) for table in tables]
+    resolved: list[Any] = [reduce(_entry, key.split("."), table) for table in tables]
     if all(isinstance(value, int | float) and not isinstance(value, bool) for value in resolved):
         return Swept(key, key, tuple(resolved))
     found = [_in_si(value) for value in resolved]

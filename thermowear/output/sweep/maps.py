@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -32,7 +33,12 @@ def draw_shape_maps(layout: Layout, path: Path) -> None:
         np.min(np.concatenate(values)), np.max(np.concatenate(values)), _LEVELS + 1
     )
     scale = ScalarMappable(Normalize(levels[0], levels[-1]), COLORS["shape"])
-    options = {"margin": (1.4, 0.3), "style": MAP_STYLE, "sharex": True, "sharey": True}
+    options: dict[str, Any] = {
+        "margin": (1.4, 0.3),
+        "style": MAP_STYLE,
+        "sharex": True,
+        "sharey": True,
+    }
     with panels(path, count, _ACROSS, (2.6, 2.7), **options) as (figure, axes):
         for axis, k, variant, z in zip(axes.flat, chosen, data, values, strict=False):
             triangles = triangulated(variant.drawn("x"), variant.drawn("y"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +41,7 @@ def draw_numbers(layout: Layout, path: Path) -> None:
     same = {name: values[0] for name, values in numbers.items() if name not in varying}
     if not varying:
         return
-    options = {"margin": (0.6, 0.6), "sharex": True}
+    options: dict[str, Any] = {"margin": (0.6, 0.6), "sharex": True}
     with panels(path, len(varying), 2, (4.0, 2.5), **options) as (figure, axes):
         drawn = axes.ravel()[: len(varying)]
         for axis, (name, values) in zip(drawn, varying.items(), strict=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -23,7 +24,7 @@ def draw_shapes(layout: Layout, path: Path) -> None:
     columns, keys = len(layout.columns), legends(layout)
     below = max(map(legend_height, keys.values()), default=0.0)
     margin = (max(1.4, 7.4 - 3.4 * columns), 0.4 + below)
-    options = {"margin": margin, "sharex": True, "sharey": "row"}
+    options: dict[str, Any] = {"margin": margin, "sharex": True, "sharey": "row"}
     with panels(path, len(names) * columns, columns, (3.4, 2.9), **options) as (figure, axes):
         for column, (title, chosen) in zip(axes.T, layout.columns, strict=True):
             column[0].set_title(title, fontsize="medium")

@@ -10,7 +10,12 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from thermowear.output.pictures.overlay import OverlayPanel, draw_overlay
+import matplotlib as mpl
+import numpy as np
+
+from thermowear.output import tables
+from thermowear.output.pictures.panels import clip_singular, column, plot_along
+from thermowear.results import TABLES
 
 HERE = Path(__file__).resolve().parent
 
@@ -28,7 +33,8 @@ class Slide:
     runs : dict of str to tuple of str
         Overrides of the case by legend entry; ``{previous}`` in them stands for the results folder
         of the previous run.
-    panels : tuple of OverlayPanel
+    panels : tuple of str
+        Columns of ``interface.csv`` or ``profile.csv``, by the names of their fields.
     """
 
     name: str
@@ -36,14 +42,14 @@ class Slide:
     text: str
     case: str
     runs: dict[str, tuple[str, ...]]
-    panels: tuple[OverlayPanel, ...]
+    panels: tuple[str, ...]
 
 
 COLD = "motion.angular_velocity=1e-6 rad/s"
 """Override for a speed without noticeable friction heat."""
 
-PRESSURE, SHAPE = OverlayPanel("pressure", from_zero=True), OverlayPanel("shape")
-ALONG, RATE = OverlayPanel("shape_along_press"), OverlayPanel("wear_rate", from_zero=True)
+PRESSURE, SHAPE, ALONG, RATE = "pressure", "shape", "shape_along_press", "wear_rate"
+FROM_ZERO = {PRESSURE, RATE}
 
 _ON = "analysis={type='transient', until='steady', tolerance=1e-3}"
 _FROM = "geometry.initial_shape={previous}/profile.csv"
@@ -179,4 +185,21 @@ def draw_slide(slide: Slide, results: Path, path: Path) -> None:
             command += ["--set", text.replace("{previous}", str(previous))]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         previous = folders[label]
-    draw_overlay(folders, slide.panels, path)
+    draw_runs(folders, slide.panels, path)
+
+
+def draw_runs(runs: dict[str, Path], panels: tuple[str, ...], path: Path) -> None:
+    """Draw quantities of several runs along the contact, by the legend entries of the runs."""
+    colors = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(runs)))
+    styles = ("-", "--", "-.", ":")
+    with column(path, len(panels), 2.6) as axes:
+        for axis, name in zip(axes, panels, strict=True):
+            stem = "interface" if name in TABLES["interface"].columns else "profile"
+            found = [tables.read(folder / f"{stem}.csv") for folder in runs.values()]
+            for k, (label, data) in enumerate(zip(runs, found, strict=True)):
+                plot_along(axis, data, name, styles[k % 4], color=colors[k], label=label)
+            clip_singular(axis, [data.drawn(name) for data in found])
+            axis.set_ylabel(found[0].quantities[name].wrapped)
+            if name in FROM_ZERO:
+                axis.set_ylim(bottom=0)
+        axes[0].legend()

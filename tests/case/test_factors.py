@@ -105,7 +105,7 @@ def test_a_case_whose_friction_or_wear_has_a_table_varies(path):
     assert tw.load(tables(RUNNING_IN, {path: HARD})).varies
 
 
-def test_tables_of_bodies_are_in_kelvin():
+def test_tables_of_both_are_in_kelvin():
     """
     requirement: conductivity and expansion as tables of temperature.
     """

@@ -98,7 +98,7 @@ def test_a_model_in_python_runs_in_as_the_case(ring):
     assert times[0] == pytest.approx(times[1], rel=1e-9)
 
 
-def test_a_pair_of_bodies_is_needed(ring):
+def test_a_pair_of_both_is_needed(ring):
     """requirement: a model of more bodies than the solvers carry is refused in one line."""
     with pytest.raises(tw.CaseError, match="two bodies, one interface and one holder; found 3"):
         replace(ring, bodies=(*ring.bodies, ring.bodies[0]))

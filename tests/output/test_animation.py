@@ -11,10 +11,11 @@ from thermowear import CaseError
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
 from thermowear.output.pictures.animation import make
+from thermowear.output.pictures.animation.bodies import SectionPanel
 from thermowear.output.pictures.animation.curves import top
 from thermowear.output.pictures.animation.scene import duration
-from thermowear.output.pictures.animation.section import SectionPanel, outline
-from thermowear.output.pictures.animation.states import read_film
+from thermowear.output.pictures.animation.states import read_frames
+from thermowear.output.pictures.section import outline
 
 from ..conftest import COLD_RUNNING_IN
 
@@ -31,19 +32,19 @@ def folder(tmp_path_factory, bodies_not_drawn):
 
 def pictures(path):
     """Colours of all pictures of a GIF and how long each is shown [ms]."""
-    with Image.open(path) as film:
+    with Image.open(path) as frames:
         found = []
-        for k in range(film.n_frames):
-            film.seek(k)
-            found.append((np.array(film.convert("RGB")), film.info["duration"]))
+        for k in range(frames.n_frames):
+            frames.seek(k)
+            found.append((np.array(frames.convert("RGB")), frames.info["duration"]))
     return found
 
 
 def test_the_run_draws_it(folder):
     """requirement: one picture per frame and a longer final one; a small file."""
-    film = read_film(folder)
+    frames = read_frames(folder)
     found = pictures(folder / "animation.gif")
-    assert len(found) == len(film.states) > 3
+    assert len(found) == len(frames.states) > 3
     assert [time for _, time in found] == [120] * (len(found) - 1) + [1500]
     assert found[0][0].shape == (560, 900, 3)
     assert (folder / "animation.gif").stat().st_size < 1e6
@@ -53,7 +54,7 @@ def test_the_run_draws_it(folder):
 
 def test_states_go_from_start_to_end(folder):
     """requirement: times rise from 0 to the end; the last state is that of the results."""
-    times = [state.time for state in read_film(folder).states]
+    times = [state.time for state in read_frames(folder).states]
     assert times[0] == 0.0
     assert times[-1] == 5.0
     assert np.all(np.diff(times) > 0)
@@ -73,23 +74,23 @@ def test_axes_stand_still(folder):
 
 def test_colours_mean_the_same_in_all_frames(folder):
     """requirement: one colour range for all states, except few largest samples."""
-    section = SectionPanel(read_film(folder))
-    low, high = section.limits
-    for _, _, _, values in section._fields.values():
+    frames = read_frames(folder)
+    panel = SectionPanel(frames)
+    low, high = panel.limits
+    for section in panel.sections.values():
+        values = section.fields[frames.field]
         assert values.min() >= low
         assert np.mean(values <= high) >= 0.99
 
 
 def test_body_1_sinks_as_it_wears(folder):
     """requirement: bodies are drawn displaced, consistent with the approach."""
-    film = read_film(folder)
-    section = SectionPanel(film)
+    frames = read_frames(folder)
     heights = []
-    for state in film.states:
-        points, triangles, body, _ = section._fields[id(state)]
-        heights.append(points[triangles[body == 1], 1].max())
+    for section in SectionPanel(frames).sections.values():
+        heights.append(section.points[section.triangles[section.body == 1], 1].max())
     approach = np.interp(
-        [state.time for state in film.states], film.course["time"], film.course["approach"]
+        [state.time for state in frames.states], frames.history["time"], frames.history["approach"]
     )
     fallen = heights[0] - np.array(heights)
     np.testing.assert_allclose(fallen, 1e3 * (approach - approach[0]), atol=2e-5)
@@ -141,9 +142,9 @@ def test_mp4_goes_through_ffmpeg(folder, tmp_path, monkeypatch):
     tool.write_text(FAKE, encoding="utf-8")
     tool.chmod(tool.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
-    path = tmp_path / "film.mp4"
+    path = tmp_path / "frames.mp4"
     assert main(["animate", str(folder), "-o", str(path)]) == 0
-    assert path.stat().st_size == len(read_film(folder).states) * 900 * 560 * 3
+    assert path.stat().st_size == len(read_frames(folder).states) * 900 * 560 * 3
 
 
 @pytest.mark.slow
@@ -153,16 +154,16 @@ def test_ffmpeg_that_fails_is_heard(folder, tmp_path, monkeypatch, capsys):
     tool.write_text("#!/bin/sh\necho 'no such encoder' >&2\nexit 1\n", encoding="utf-8")
     tool.chmod(tool.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
-    path = tmp_path / "film.mp4"
+    path = tmp_path / "frames.mp4"
     assert main(["animate", str(folder), "-o", str(path)]) == 2
     assert "no such encoder" in capsys.readouterr().err
-    assert not list(tmp_path.glob("*film.mp4"))
+    assert not list(tmp_path.glob("*frames.mp4"))
 
 
 def test_mp4_without_ffmpeg(folder, tmp_path, monkeypatch, capsys):
     """requirement: exit code 1 and one line naming the missing program."""
     monkeypatch.setattr(shutil, "which", lambda _: None)
-    assert main(["animate", str(folder), "-o", str(tmp_path / "film.mp4")]) == 1
+    assert main(["animate", str(folder), "-o", str(tmp_path / "frames.mp4")]) == 1
     said = capsys.readouterr().err.splitlines()
     assert len(said) == 1
     assert "ffmpeg" in said[0]
@@ -171,14 +172,14 @@ def test_mp4_without_ffmpeg(folder, tmp_path, monkeypatch, capsys):
 def test_refusals(folder, tmp_path):
     """requirement: invalid endings and folders are reported with a remedy."""
     with pytest.raises(CaseError, match=r"\.gif or \.mp4"):
-        make.check_film(folder, tmp_path / "film.avi")
+        make.check_animation(folder, tmp_path / "frames.avi")
     with pytest.raises(CaseError, match="no folder"):
-        make.check_film(folder, tmp_path / "nowhere" / "film.gif")
+        make.check_animation(folder, tmp_path / "nowhere" / "frames.gif")
     with pytest.raises(CaseError, match=r"interface\.csv"):
-        make.check_film(tmp_path, tmp_path / "film.gif")
+        make.check_animation(tmp_path, tmp_path / "frames.gif")
     (tmp_path / "interface.csv").touch()
     with pytest.raises(CaseError, match=r"analysis\.frames"):
-        make.check_film(tmp_path, tmp_path / "film.gif")
+        make.check_animation(tmp_path, tmp_path / "frames.gif")
 
 
 @pytest.mark.parametrize("fps", ["0", "-1", "nan", "many", "1000"])
@@ -195,7 +196,7 @@ def test_bodies_in_space(tmp_path):
     small = ["--set=mesh.degree=1", "--set=mesh.elements=2", f"--set={ending}"]
     assert main(["run", str(case), "-o", str(folder), *small]) == 0
     found = [picture.astype(int) for picture, _ in pictures(folder / "animation.gif")]
-    assert len(found) == len(read_film(folder).states) > 2
+    assert len(found) == len(read_frames(folder).states) > 2
     changed = np.abs(found[-1] - found[0]).max(axis=2) > 40
     assert changed[300:420, 500:].mean() > 0.1  # the map of the depth
     assert not changed[-25:].any()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.output.atomic_write import final_name, replacing
+from thermowear.output.atomic_write import atomic_write, final_name
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint, write_checkpoint
 from thermowear.output.folder import finite
 from thermowear.output.lock import Lock
@@ -144,7 +144,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
     path.write_text("old", "utf-8")
 
     def interrupted():
-        with replacing(path) as draft:
+        with atomic_write(path) as draft:
             draft.write_text("half", "utf-8")
             assert (path.read_text("utf-8"), final_name(draft)) == ("old", "table.csv")
             raise KeyboardInterrupt
@@ -152,7 +152,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         interrupted()
     assert [p.name for p in tmp_path.iterdir()] == ["table.csv"]
-    with replacing(path) as draft:
+    with atomic_write(path) as draft:
         draft.write_text("new", "utf-8")
     assert (path.read_text("utf-8"), final_name(path)) == ("new", "table.csv")
 

@@ -4,10 +4,12 @@ import json
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from thermowear.output import tables
 from thermowear.output.coordinates import in_model, model_of
-from thermowear.output.pictures import bodies, curves
+from thermowear.output.pictures import bodies, panels
+from thermowear.output.pictures.section import BodySection
 from thermowear.output.report.columns import shown_table
 from thermowear.results import TABLES
 
@@ -35,7 +37,7 @@ def test_axes_and_tables_of_a_folder(model, names, tmp_path):
     assert model_of(tmp_path) == model
     x = np.linspace(1.0, 2.0, 5)
     data = tables.TableColumns(tmp_path / "interface.csv", {"x_m": x, "y_m": 0 * x, "s_m": x})
-    label, place = curves.abscissa(data)
+    label, place = panels.abscissa(data)
     assert label == f"{names[0]} [mm]"
     assert place == pytest.approx(1e3 * x)
     columns = {"x_m": x, "y_m": x, "pressure_Pa": x}
@@ -47,15 +49,15 @@ def test_axes_and_tables_of_a_folder(model, names, tmp_path):
 def test_pictures_of_the_bodies(tmp_path, monkeypatch):
     """requirement: the axes of the section of an axisymmetric model are r and z."""
     (tmp_path / "summary.json").write_text('{"model": "axisymmetric"}', encoding="utf-8")
-    grid = bodies.pyvista.ImageData(dimensions=(3, 3, 1)).cast_to_unstructured_grid()
-    grid["von_mises_Pa"] = np.ones(grid.n_points)
-    grid["displacement_m"] = np.zeros((grid.n_points, 3))
-    monkeypatch.setattr(bodies.pyvista, "read", lambda _: grid)
-    interface = {name: np.ones(1) for name in ("x_m", "y_m", "pressure_Pa")}
+    points = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    triangles, body = np.array([[0, 1, 2], [0, 2, 3]]), np.array([1, 2])
+    section = BodySection(points, 0 * points, triangles, body, {"von_mises": np.arange(4.0)})
+    monkeypatch.setattr(bodies, "read_section", lambda _: section)
+    interface = dict.fromkeys(("x_m", "y_m", "s_m", "pressure_Pa"), np.array([1e-3, 2e-3]))
     monkeypatch.setattr(tables, "read", lambda path: tables.TableColumns(path, interface))
     drawn = []
-    monkeypatch.setattr(
-        bodies, "_draw", lambda path, grid, fields, axes, *_, **__: drawn.append(axes)
-    )
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **_: drawn.append(figure))
     bodies.draw_bodies(tmp_path)
-    assert drawn == [("r [mm]", "z [mm]")] * 2
+    assert len(drawn) == 2
+    for figure in drawn:
+        assert (figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()) == ("r [mm]", "z [mm]")

@@ -159,7 +159,7 @@ def test_the_record_is_read_back(tmp_path):
     made(tmp_path / "s", over, failing=[2])
     record = read_sweep(tmp_path / "s")
     assert [axis.label for axis in record.axes] == ["load.force [kN]", "model"]
-    assert record.places.tolist() == [[0, 0], [1, 0], [1, 1]]
+    assert record.indices.tolist() == [[0, 0], [1, 0], [1, 1]]
     assert [folder.name for folder in record.folders] == ["001", "003", "004"]
     assert record.numbers["max_pressure_Pa"].tolist() == [1e6, 3e6, 4e6]
 

@@ -102,7 +102,7 @@ def test_it_ends_in_the_steady_state_of_the_height_that_is_left():
 
 
 @pytest.mark.slow
-def test_heat_of_bodies_that_lose_material_is_accounted_for():
+def test_heat_of_both_that_lose_material_is_accounted_for():
     """Heat of the worn material counts as lost; the balance holds at each step."""
     result = run_starter("annular-punch", *HEAT)
     assert result.summary["geometry_updates"] >= 2

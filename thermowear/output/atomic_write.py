@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def atomic_write(path: Path) -> Iterator[Path]:
     """Write to a draft beside a file and rename it to the file at the end.
 
     Until then the file remains unchanged, even if the process is killed; after an error, such as a
@@ -22,6 +22,12 @@ def replacing(path: Path) -> Iterator[Path]:
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, atomically."""
+    with atomic_write(path) as draft:
+        draft.write_text(text, "utf-8")
 
 
 def final_name(path: Path) -> str:

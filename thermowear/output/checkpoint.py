@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import CaseError, quoted
-from .atomic_write import replacing
+from .atomic_write import atomic_write
 
 CHECKPOINT = "checkpoint.npz"
 FORMAT = 2
@@ -44,7 +44,7 @@ def write_checkpoint(folder: Path, about: dict[str, Any], arrays: Mapping[str, n
         If it cannot be written; the previous checkpoint remains.
     """
     head = np.array(json.dumps({"format": FORMAT, _DIGEST: _digest(about, arrays)} | about))
-    with replacing(folder / CHECKPOINT) as draft, draft.open("wb") as file:
+    with atomic_write(folder / CHECKPOINT) as draft, draft.open("wb") as file:
         np.savez(file, allow_pickle=False, **{_ABOUT: head}, **arrays)
         file.flush()
         os.fsync(file.fileno())

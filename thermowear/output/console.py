@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from math import pi
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -85,33 +86,37 @@ class ConsoleProgress:
             self._unsaid = ""
 
 
+_PLAIN: dict[str, Any] = {"box": None, "padding": (0, 2, 0, 0)}
 _SMALLEST_SHOWN = 1e-3
 """Smallest error estimate shown as a number [%]; errors of quadrature are far below."""
 
 
 def print_summary(console: Console, summary: dict, seconds: dict[str, float]) -> None:
     """Print the main results and the wall time by phase."""
-    numbers = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    numbers = Table(show_header=False, **_PLAIN)
     for label, value in _highlights(summary):
         numbers.add_row(label, value)
     console.print(numbers)
-    times = Table(box=None, padding=(0, 2, 0, 0))
-    times.add_column("phase")
-    times.add_column("seconds", justify="right")
+    times = _table("phase", "seconds")
     for name, value in seconds.items():
         times.add_row(PHASES.get(name, name), f"{value:.3f}")
     times.add_row("total", f"{sum(seconds.values()):.3f}")
     console.print(times)
 
 
+def _table(label: str, *columns: str) -> Table:
+    """Table without lines: labels in the first column, numbers in the others."""
+    table = Table(label, **_PLAIN)
+    for name in columns:
+        table.add_column(name, justify="right")
+    return table
+
+
 def print_discretisations(console: Console, summary: dict, keys: tuple[str, ...]) -> None:
     """Print results on a coarser, the given and a finer discretisation side by side."""
     coarser, finer = (summary[f"{name}_discretisation"] for name in ("coarser", "finer"))
     shown = {"coarser": coarser, "this case": summary, "finer": finer}
-    table = Table(box=None, padding=(0, 2, 0, 0))
-    table.add_column("quantity")
-    for name in shown:
-        table.add_column(name, justify="right")
+    table = _table("quantity", *shown)
     for key in keys:
         values = [numbers.get(key) for numbers in shown.values()]
         if any(value is not None for value in values):
@@ -147,53 +152,49 @@ def print_checks(console: Console, checks: list) -> None:
 def _highlights(summary: dict):
     """Labels and values of the main results that exist."""
 
-    def row(key: str, digits: int = 6, unit: str = "", label: str = "") -> tuple[str, str]:
-        quantity = of_key(key).shown_in(unit) if unit else of_key(key)
-        value = f"{quantity.drawn(summary[key]):.{digits}g} {quantity.unit}"
-        return label or quantity.label, value
-
     def exists(key: str) -> bool:
         return summary.get(key) is not None
+
+    def row(key: str, digits: int = 6, label: str = "", unit: str = "", more: str = ""):
+        if exists(key):
+            quantity = of_key(key).shown_in(unit) if unit else of_key(key)
+            value = f"{quantity.drawn(summary[key]):.{digits}g} {quantity.unit}"
+            yield label or quantity.label, value + more
 
     for key, balance in BALANCES.items():
         if exists(key) and not holds(summary[key]):
             yield f"NOT BALANCED: {balance.name}", f"relative error {summary[key]:.1e}"
-    yield row("normal_force_N", unit="kN")
+    yield from row("normal_force_N", unit="kN")
     low, high = (
         of_key("max_pressure_Pa").drawn(summary[f"{m}_pressure_Pa"]) for m in ("min", "max")
     )
     yield "pressure", f"{low:.5g} … {high:.5g} MPa{_margin(summary, 'pressure', 'max_pressure')}"
-    yield row("approach_m", 5, label="approach of the holder towards body 2")
+    yield from row("approach_m", 5, "approach of the holder towards body 2")
     if summary["shape_range_m"] > 0:
-        label, value = row("shape_range_m", 5)
-        yield label, f"{value}{_margin(summary, 'shape')}"
+        yield from row("shape_range_m", 5, more=_margin(summary, "shape"))
     if exists("max_temperature_K"):
-        label, value = row("max_temperature_K", 5)
-        yield label, f"{value}{_margin(summary, 'temperature')}"
-        yield row("friction_power_W")
+        yield from row("max_temperature_K", 5, more=_margin(summary, "temperature"))
+        yield from row("friction_power_W")
     if exists("contact_heat_1_W") and summary["friction_power_W"] == 0.0:
-        yield row("contact_heat_2_W", label="heat from body 1 to body 2")
-    if exists("prescribed_heat_W"):
-        yield row("prescribed_heat_W", label="heat through surfaces")
+        yield from row("contact_heat_2_W", label="heat from body 1 to body 2")
+    yield from row("prescribed_heat_W", label="heat through surfaces")
     if exists("peak_temperature_K"):
-        label, value = row("peak_temperature_K", 5)
-        yield label, f"{value} at {summary['peak_temperature_time_s']:.5g} s"
+        time = f" at {summary['peak_temperature_time_s']:.5g} s"
+        yield from row("peak_temperature_K", 5, more=time)
     if exists("max_cell_peclet_number"):
         peclet = f"cell Péclet number up to {summary['max_cell_peclet_number']:.3g}"
         yield of_key("heat_advection").label, f"{summary['heat_advection']}, {peclet}"
-    if exists("heat_carried_out_W"):
-        yield row("heat_carried_out_W")
-    if exists("rigid_wear_velocity_m_per_s"):
-        yield row("rigid_wear_velocity_m_per_s", 5)
+    yield from row("heat_carried_out_W")
+    yield from row("rigid_wear_velocity_m_per_s", 5)
     if exists("dissipated_energy_J"):
-        yield row("tangential_force_N")
-        yield row("dissipated_energy_J", 5)
+        yield from row("tangential_force_N")
+        yield from row("dissipated_energy_J", 5)
     if "time_s" in summary:
         yield "time, steps", f"{summary['time_s']:.6g} s, {summary['steps']}"
     if summary.get("cycles"):
         yield "cycles", f"{summary['cycles']:.6g}"
-    volumes = [row(f"wear_volume_{body}_m3", 5)[1] for body in (1, 2)]
     if max(summary["wear_volume_1_m3"], summary["wear_volume_2_m3"]) > 0:
+        volumes = (value for body in (1, 2) for _, value in row(f"wear_volume_{body}_m3", 5))
         yield "worn volume, body 1 and 2", " and ".join(volumes)
     for which, label in (("", ""), ("_with_wear", " with wear")):
         if exists(f"critical_speed_factor{which}"):

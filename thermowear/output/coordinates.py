@@ -1,4 +1,4 @@
-"""Summary of a results folder, and coordinate names in labels: r and z in axisymmetric models."""
+"""JSON files of a results folder, and coordinates in labels: r and z in axisymmetric models."""
 
 from __future__ import annotations
 
@@ -12,6 +12,15 @@ from typing import Any
 from ..results.quantity import Quantity
 
 _AXISYMMETRIC = {"x": "r", "y": "z"}
+
+
+def read_object(path: Path) -> dict[str, Any] | None:
+    """Content of a JSON file; None if it is missing, unreadable, or not an object."""
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) else None
 
 
 def read_summary(folder: Path) -> dict[str, Any]:

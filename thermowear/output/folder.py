@@ -19,7 +19,7 @@ from .. import __version__
 from ..errors import CaseError
 from ..results import TABLES
 from ..results.quantity import table_of
-from .atomic_write import final_name, replacing
+from .atomic_write import final_name, write_text
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .frames import remove_frames, write_frame
 from .lock import Lock
@@ -49,12 +49,7 @@ class ResultsFolder:
 
     def __init__(self, path: Path, tables: dict, ranks: int, overwrite: bool):
         self.path = path
-        self._run = {
-            "status": "running",
-            "started": now(),
-            "ranks": ranks,
-            "versions": versions(),
-        }
+        self._run = run_started(ranks=ranks)
         self._rows: dict[str, RowWriter] = {}
         self._made = not os.path.exists(path)  # Path.exists raises an error for invalid names
         try:
@@ -62,7 +57,7 @@ class ResultsFolder:
             self._lock = Lock(path)
             self._claim(overwrite)
             self._write_run()
-            self._write("case.resolved.toml", tomli_w.dumps(tables))
+            write_text(path / "case.resolved.toml", tomli_w.dumps(tables))
         except OSError as error:
             raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
 
@@ -121,15 +116,11 @@ class ResultsFolder:
         if result.fields is not None:
             write_fields(self.path / "fields.vtu", result.fields)
         rounded = {name: round(value, 4) for name, value in seconds.items()}
-        self._write_json("summary.json", finite(result.summary) | {"seconds": rounded})
+        write_json(self.path / "summary.json", finite(result.summary) | {"seconds": rounded})
 
     def close(self, status: str, message: str = "") -> None:
         """Record how the run ended: ``done``, ``failed`` or ``interrupted``."""
-        self._run |= {
-            "status": status,
-            "finished": now(),
-            **({"message": message} if message else {}),
-        }
+        self._run |= run_ended(status, message)
         self._write_run()
         self._lock.release()
 
@@ -149,15 +140,7 @@ class ResultsFolder:
         self._lock.release()
 
     def _write_run(self) -> None:
-        self._write_json("run.json", self._run)
-
-    def _write_json(self, name: str, content: dict) -> None:
-        text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
-        self._write(name, f"{text}\n")
-
-    def _write(self, name: str, text: str) -> None:
-        with replacing(self.path / name) as draft:
-            draft.write_text(text, "utf-8")
+        write_json(self.path / "run.json", self._run)
 
 
 def finite(summary: dict[str, Any]) -> dict[str, Any]:
@@ -180,6 +163,23 @@ def finite(summary: dict[str, Any]) -> dict[str, Any]:
 
     found = {key: cleared(key, value) for key, value in summary.items()}
     return found | {"not_finite": others} if others else found
+
+
+def write_json(path: Path, content: dict[str, Any]) -> None:
+    """Write a JSON file without numbers that are not finite."""
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    write_text(path, f"{text}\n")
+
+
+def run_started(**details) -> dict[str, Any]:
+    """Begin the record ``run.json`` of a run or sweep."""
+    return {"status": "running", "started": now(), **details, "versions": versions()}
+
+
+def run_ended(status: str, message: str) -> dict[str, Any]:
+    """Entries of a record at the end of a run or sweep."""
+    ended = {"status": status, "finished": now()}
+    return ended | ({"message": message} if message else {})
 
 
 def now() -> str:

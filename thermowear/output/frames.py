@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from .atomic_write import final_name, replacing
+from .atomic_write import atomic_write, final_name
 from .tables import write_points
 from .vtu import write_fields
 
 _INDEX = "frames.pvd"
 _KINDS = {"fields": ".vtu", "interface": ".csv", "track": ".csv"}
 """Files of a frame with their endings."""
+_FILE = re.compile(r"fields_\d{5,}\.vtu|(interface|track)_\d{5,}\.csv")
 
 
 @dataclass(frozen=True)
@@ -102,14 +104,8 @@ def _remove_others(place: Path, frames: list[FrameFiles]) -> None:
     """Remove files of frames, complete or partial, that belong to none of the given frames."""
     kept = {frame.file(kind) for frame in frames for kind in _KINDS}
     for path in place.iterdir():
-        if path not in kept and _is_of_frame(final_name(path)):
+        if path not in kept and _FILE.fullmatch(final_name(path)):
             path.unlink()
-
-
-def _is_of_frame(name: str) -> bool:
-    kind, _, number = name.partition("_")
-    number, ending = number[:-4], number[-4:]
-    return _KINDS.get(kind) == ending and len(number) >= 5 and number.isdecimal()
 
 
 def _write_index(place: Path, frames: list[FrameFiles]) -> None:
@@ -121,7 +117,7 @@ def _write_index(place: Path, frames: list[FrameFiles]) -> None:
             collection, "DataSet", timestep=f"{frame.time:.15g}", file=frame.file("fields").name
         )
     ET.indent(root)
-    with replacing(place / _INDEX) as draft:
+    with atomic_write(place / _INDEX) as draft:
         ET.ElementTree(root).write(draft, encoding="utf-8", xml_declaration=True)
 
 

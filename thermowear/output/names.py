@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 from ..results import TABLES
 from .atomic_write import final_name
-from .report_file import is_report
 
 PICTURES = {
     "bodies": "Von Mises stress of the bodies, and their temperature if the case has heat.",
@@ -26,6 +26,8 @@ PICTURES = {
 """Pictures of a run with their captions, in the order of the report."""
 
 FRAMES = "frames"
+_REPORT_TAG = re.compile(rb'<meta name="generator" content="thermowear"')
+_REPORT_HEAD = 1000  # bytes at the beginning of a report that contain its generator tag
 _OTHERS = {
     *("summary.json", "checkpoint.npz", "run.json", "case.resolved.toml", "fields.vtu"),
     *(FRAMES, "animation.gif", *(f"{name}.png" for name in PICTURES)),
@@ -62,3 +64,12 @@ def is_ours(path: Path) -> bool:
     stem, time = stem_and_time(name)
     table = TABLES.get(stem) if name == name_at(stem, time) else None
     return name in _OTHERS or (table is not None and (time is None or table.at_times))
+
+
+def is_report(path: Path) -> bool:
+    """Test whether a file is a report written by this program."""
+    try:
+        with path.open("rb") as file:
+            return _REPORT_TAG.search(file.read(_REPORT_HEAD)) is not None
+    except OSError:
+        return False

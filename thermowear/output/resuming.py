@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from ..case import Case, as_plain, load
 from ..case.validation.comparison import forbidden_changes, irrelevant_changes_only
 from ..errors import CaseError, other_mesh
 from .checkpoint import read_checkpoint
+from .coordinates import read_object
 from .folder import ResultsFolder, now, versions
 from .frames import keep_indexed
 from .names import FRAMES
@@ -65,11 +65,8 @@ def read_run(path: Path) -> dict[str, Any]:
     CaseError
         If there is no run in the folder.
     """
-    try:
-        found = json.loads((path / "run.json").read_text("utf-8"))
-    except (OSError, ValueError, RecursionError):
-        found = None
-    if not isinstance(found, dict) or not {"status", "started"} <= found.keys():
+    found = read_object(path / "run.json")
+    if found is None or not {"status", "started"} <= found.keys():
         raise CaseError(f"-o {path}: there is no run to resume")
     return found
 
@@ -85,19 +82,10 @@ def is_finished(path: Path, case: Case) -> bool:
     ended = read_run(path)["status"] == "done" and (path / "summary.json").is_file()
     if not ended or not irrelevant_changes_only(load(path / "case.resolved.toml"), case):
         return False
-    mesh = _mesh_of(path)
+    mesh = (read_object(path / "summary.json") or {}).get("mesh_sha256")
     if mesh is not None and mesh != case.tagged_mesh().checksum():
         raise CaseError(other_mesh(as_plain(case)["geometry"]["path"]))
     return True
-
-
-def _mesh_of(path: Path) -> str | None:
-    """Checksum of the mesh file of a finished run; None without a mesh file."""
-    try:
-        summary = json.loads((path / "summary.json").read_text("utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return None
-    return summary.get("mesh_sha256") if isinstance(summary, dict) else None
 
 
 def last_checkpoint(

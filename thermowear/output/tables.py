@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from ..results import TABLES
 from ..results.quantity import Quantity, Table, table_of, unknown
-from .atomic_write import replacing
+from .atomic_write import atomic_write
 from .coordinates import in_model, model_of
 from .names import stem_and_time
 
@@ -91,7 +91,7 @@ def read(path: Path) -> TableColumns:
 def write_points(path: Path, points) -> None:
     """Write points, such as `thermowear.results.InterfaceFields`, one per row."""
     table = table_of(points)
-    _write(path, table, zip(*table.values(points), strict=True))
+    _write_table(path, table, zip(*table.values(points), strict=True))
 
 
 class RowWriter:
@@ -108,7 +108,7 @@ class RowWriter:
     def __init__(self, folder: Path, table: Table, rows: Iterable = ()):
         self._path = folder / f"{table.stem}.csv"
         self._table = table
-        _write(self._path, table, map(table.values, rows))
+        _write_table(self._path, table, map(table.values, rows))
 
     def add(self, row) -> None:
         """Append a row; if the disk is full, no part of it is kept."""
@@ -121,12 +121,17 @@ class RowWriter:
             raise
 
 
-def _write(path: Path, table: Table, rows: Iterable) -> None:
-    with replacing(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
+def _write_table(path: Path, table: Table, rows: Iterable) -> None:
+    write_csv(path, [quantity.header for quantity in table.columns.values()], rows)
+
+
+def write_csv(path: Path, headers: Sequence[str], rows: Iterable) -> None:
+    """Write a CSV file of numbers and words."""
+    with atomic_write(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(quantity.header for quantity in table.columns.values())
+        writer.writerow(headers)
         writer.writerows(map(_texts, rows))
 
 
 def _texts(values: Iterable) -> list[str]:
-    return [_NUMBER.format(value) for value in values]
+    return [v if isinstance(v, str) else _NUMBER.format(v) for v in values]

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..results import FIELDS
-from .atomic_write import replacing
+from .atomic_write import atomic_write
 
 _CELLS = {3: "triangle", 4: "quad", 8: "hexahedron"}
 
@@ -35,7 +35,7 @@ def write_fields(path: Path, fields) -> None:
     mesh = meshio.Mesh(
         _three(fields.points.reshape(-1, gdim)), [(_CELLS[corners], pieces)], data, {"body": [body]}
     )
-    with replacing(path) as draft:
+    with atomic_write(path) as draft:
         mesh.write(draft, file_format="vtu")
 
 

@@ -1,147 +1,110 @@
-"""Temperature and stress of the two bodies; run in a separate process.
-
-pyvista renders the bodies off-screen, matplotlib adds scales and labels.
-"""
+"""Temperature and stress of the two bodies; run in a separate process, as pyvista may crash."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-import pyvista
-from matplotlib.figure import Figure
 
 from ...results import FIELDS
 from .. import tables
-from .solids import draw_solids
-from .windows import FLAT, Extent, around_contact, color_limits, is_small, whole, within
+from .maps import is_surface
+from .panels import MAP_STYLE, label_coordinates, panels
+from .scales import (
+    COLORS,
+    Extent,
+    add_color_bar,
+    color_limits,
+    contact_window,
+    inside,
+    proportion,
+    whole,
+)
+from .section import BodySection, read_section
 
-_DEFORMED_PART = 0.06  # largest displacement drawn, relative to the size of the bodies
-_PIXELS = 1400  # longer side of a rendered picture
-_DEPTH_OFFSET = 1e-3  # offset of body 1 away from the viewer, relative to the size of the bodies
+_DEFORMED_SIZE = 0.06  # largest displacement drawn, relative to the size of the bodies
+_FLAT = 0.55
+"""Height over width of a window below which its colour bar is placed below it."""
 
 
 def draw_bodies(folder: Path) -> None:
     """Draw ``bodies.png`` (fields on the undeformed bodies) and ``deformed.png``."""
-    grid = pyvista.read(folder / "fields.vtu")
-    grid.points = grid.points * 1e3
-    fields = []
-    for name, colors in (("temperature", "inferno"), ("von_mises", "viridis")):
-        shown = FIELDS[name]
-        if shown.header in grid.point_data:
-            grid[shown.axis] = shown.drawn(grid[shown.header])
-            fields.append((shown.axis, colors))
-    in_space = pyvista.CellType.HEXAHEDRON in grid.celltypes
-    if in_space:
-        draw_solids(folder / "bodies.png", grid, fields, "", _middle(folder))
-    else:
-        table = tables.read(folder / "interface.csv")
-        axes = tuple(table.quantities[name].axis for name in "xy")
-        _draw(folder / "bodies.png", grid, fields, axes, contact=around_contact([table]))
-    largest = float(np.linalg.norm(grid["displacement_m"], axis=1).max()) * 1e3
-    size = float(np.ptp(grid.points, axis=0).max())
-    factor = _round(_DEFORMED_PART * size / largest) if largest > 0 else 1.0
+    (_draw_solids if is_surface(folder) else _draw_sections)(folder)
+
+
+def _draw_sections(folder: Path) -> None:
+    """Draw sections of 2D bodies, with a further window around a small contact."""
+    interface = tables.read(folder / "interface.csv")
+    section = read_section(folder / "fields.vtu")
+    contact = contact_window([interface], section.points)
+    windows = [whole(section.points), *([contact] if contact else [])]
+    _draw_windows(folder / "bodies.png", section, interface, windows)
+    factor = _magnification(section.points, section.displacement)
+    section = section.displaced(factor)
+    title = _title(factor)
+    _draw_windows(folder / "deformed.png", section, interface, [whole(section.points)], title)
+
+
+def _draw_windows(
+    path: Path,
+    section: BodySection,
+    interface: tables.TableColumns,
+    windows: list[Extent],
+    title: str = "",
+) -> None:
+    """Draw one panel per field side by side; further windows below, or beside a single field."""
+    shapes = [proportion(window) for window in windows]
+    is_single = len(section.fields) == 1
+    rows, columns = (1, len(windows)) if is_single else (len(windows), len(section.fields))
+    height = max(shapes) if is_single else sum(shapes)
+    bars_below = sum(shape < _FLAT for shape in shapes)
+    size = (5.2, min(3.45 * height / rows, 6.0))
+    margin = (0.0, 0.7 * (rows + bars_below) + (0.3 if title else 0.0))
+    ratios = None if is_single else shapes
+    options: dict[str, Any] = {
+        "margin": margin,
+        "style": MAP_STYLE,
+        "crop": True,
+        "height_ratios": ratios,
+    }
+    with panels(path, rows * columns, columns, size, **options) as (figure, axes):
+        for row, window in zip(axes.T if is_single else axes, windows, strict=True):
+            place = "bottom" if proportion(window) < _FLAT else "right"
+            for axis, (name, values) in zip(row, section.fields.items(), strict=True):
+                seen = values[inside(section.points, window)]
+                limits = color_limits(seen)
+                section.draw(axis, name, limits, window)
+                label_coordinates(axis, interface)
+                options = {"ax": axis, "label": FIELDS[name].axis, "shrink": 0.8}
+                add_color_bar(axis, COLORS[name], limits, seen.max(), location=place, **options)
+        if title:
+            figure.suptitle(title, fontsize=11)
+
+
+def _draw_solids(folder: Path) -> None:
+    """Draw 3D bodies, clipped in the middle of the contact."""
+    from .solids import draw_solids, middle, read_grid
+
+    y = middle(tables.read(folder / "interface.csv"))
+    grid = read_grid(folder / "fields.vtu")
+    draw_solids(folder / "bodies.png", grid, y)
+    factor = _magnification(grid.points, 1e3 * grid["displacement_m"])
     grid.points = grid.points + factor * 1e3 * grid["displacement_m"]
-    note = f"displacements magnified {factor:g} times"
-    if in_space:
-        draw_solids(folder / "deformed.png", grid, fields, note, _middle(folder))
-    else:
-        _draw(folder / "deformed.png", grid, fields, axes, note)
+    draw_solids(folder / "deformed.png", grid, y, _title(factor))
 
 
-def _middle(folder: Path) -> float:
-    """Middle of the contact face along y [mm]."""
-    y = tables.read(folder / "interface.csv").drawn("y")
-    return float((y.min() + y.max()) / 2)
+def _title(factor: float) -> str:
+    return f"displacements magnified {factor:g} times"
 
 
-def _draw(path: Path, grid, fields, axes: tuple[str, ...], note: str = "", contact=None) -> None:
-    """Draw one panel per field side by side, and further panels around a small contact.
-
-    The latter is beside the panel of a single field, else below the others.
-    """
-    windows = [whole(grid.points)]
-    if contact is not None and is_small(contact, grid.points):
-        windows.append(within(contact, grid.points))
-    shapes = [(upper - lower) / (right - left) for left, right, lower, upper in windows]
-    beside = len(fields) == 1
-    rows, columns = (1, len(windows)) if beside else (len(windows), len(fields))
-    tall = max(shapes) if beside else sum(shapes)
-    flat_rows = sum(shape < FLAT for shape in shapes)
-    size = (
-        5.2 * columns,
-        min(3.45 * tall, 6.0 * rows) + 0.7 * (rows + flat_rows) + (0.3 if note else 0.0),
-    )
-    figure = Figure(figsize=size, layout="constrained", dpi=150)
-    ratios = None if beside else shapes
-    panels = figure.subplots(rows, columns, squeeze=False, height_ratios=ratios)
-    for row, extent in zip(panels.T if beside else panels, windows, strict=True):
-        for axis, (name, colors) in zip(row, fields, strict=True):
-            _panel(figure, axis, grid, name, colors, extent)
-            axis.set_xlabel(axes[0])
-            axis.set_ylabel(axes[1])
-    if note:
-        figure.suptitle(note, fontsize=11)
-    figure.savefig(path, bbox_inches="tight")
-
-
-def _panel(figure, axis, grid, name: str, colors: str, extent: Extent) -> None:
-    """Draw a window of a field with its own colour range."""
-    x, y = grid.points[:, 0], grid.points[:, 1]
-    inside = (x >= extent[0]) & (x <= extent[1]) & (y >= extent[2]) & (y <= extent[3])
-    limits = color_limits(grid[name][inside])
-    picture = _render(grid, name, colors, limits, extent)
-    axis.imshow(picture, extent=extent, interpolation="antialiased")
-    scale = axis.imshow([limits], cmap=colors, extent=extent, visible=False)
-    axis.set_xlim(extent[:2])
-    axis.set_ylim(extent[2:])
-    over = np.nanmax(grid[name][inside]) > limits[1] * (1 + 1e-9)
-    flat = extent[3] - extent[2] < FLAT * (extent[1] - extent[0])
-    figure.colorbar(
-        scale,
-        ax=axis,
-        label=name,
-        shrink=0.8,
-        extend="max" if over else "neither",
-        location="bottom" if flat else "right",
-    )
-    axis.spines[["top", "right"]].set_visible(False)
-
-
-def _render(grid, name: str, colors: str, limits, extent: Extent) -> np.ndarray:
-    """Render a plane grid in a window.
-
-    Body 1 is offset slightly behind body 2, so that the material worn off body 1 is hidden.
-    """
-    width, height = extent[1] - extent[0], extent[3] - extent[2]
-    scale = _PIXELS / max(width, height)
-    plotter = pyvista.Plotter(
-        off_screen=True, window_size=(round(scale * width), round(scale * height))
-    )
-    plotter.set_background("white")  # type: ignore[arg-type]
-    for body in np.unique(grid.cell_data["body"]):
-        part = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == body))
-        part.points[:, 2] = (body - 1) * _DEPTH_OFFSET * max(width, height)
-        plotter.add_mesh(
-            part, scalars=name, cmap=colors, clim=limits, lighting=False, show_scalar_bar=False
-        )
-        outline = part.extract_surface().clean(tolerance=1e-5 * max(width, height), absolute=True)
-        edges = outline.extract_feature_edges(
-            boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
-        )
-        plotter.add_mesh(edges, color="black", line_width=2, lighting=False)
-    centre = ((extent[0] + extent[1]) / 2, (extent[2] + extent[3]) / 2)
-    plotter.camera_position = [(*centre, max(width, height)), (*centre, 0.0), (0.0, 1.0, 0.0)]
-    plotter.camera.parallel_projection = True
-    plotter.camera.parallel_scale = height / 2
-    picture = plotter.screenshot(None, return_img=True)
-    plotter.close()
-    return picture
-
-
-def _round(value: float) -> float:
-    """Round down to 1, 2 or 5 times a power of ten."""
+def _magnification(points: np.ndarray, displacement: np.ndarray) -> float:
+    """Factor of the drawn displacements: 1, 2 or 5 times a power of ten."""
+    largest = float(np.linalg.norm(displacement, axis=1).max())
+    if largest == 0.0:
+        return 1.0
+    value = _DEFORMED_SIZE * float(np.ptp(points, axis=0).max()) / largest
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * max(k for k in (1, 2, 5) if k * power <= value * (1 + 1e-12)))
 

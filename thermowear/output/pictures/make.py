@@ -13,14 +13,11 @@ from ...balances import violated
 from ...errors import CaseError, ComputationError
 from ..coordinates import read_summary
 from ..tables import MissingColumnError
-from .animation import FPS, check_film, has_frames
-from .curves import draw_history, draw_interface, draw_wear
-from .friction import draw_cycles, draw_friction, draw_loads
-from .heat import draw_heat
+from .along import draw_friction, draw_interface, draw_profile, draw_track, draw_wear
+from .animation import FPS, check_animation, has_frames
+from .histories import draw_cycles, draw_heat, draw_history, draw_loads
 from .maps import draw_interface_maps, draw_wear_maps, is_surface
 from .modes import draw_modes
-from .profile import draw_profile
-from .track import draw_track
 
 _TIMEOUT = 180.0  # seconds for the rendering process
 _ANIMATION_TIMEOUT = 1800.0  # seconds for the rendering process of an animation
@@ -96,7 +93,7 @@ def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
     ComputationError
         If drawing fails.
     """
-    check_film(folder, path)
+    check_animation(folder, path)
     reason = _animate(folder, path, fps)
     if reason:
         raise ComputationError(f"{path}: could not be drawn: {reason}")

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.axes import Axes
 from matplotlib.tri import Triangulation
 
 from .. import tables
-from .curves import STYLE, final_time, interface_panels
+from .along import final_time, interface_panels, worn_bodies
+from .panels import MAP_STYLE, label_coordinates, panels
+from .scales import COLORS
 
-COLORS = {"pressure": "viridis", "temperature": "inferno", "shape": "cividis", "wear": "magma_r"}
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
-_LARGEST_ANGLE = (
-    100.0  # largest angle of a boundary triangle [degrees]; larger ones lie outside the face
-)
+_SPACES = ("figure.constrained_layout.wspace", "figure.constrained_layout.hspace")
+_STYLE = MAP_STYLE | dict.fromkeys(_SPACES, 0.06)
+_LARGEST_ANGLE = 100.0
+"""Largest angle of a boundary triangle [degrees]; larger ones lie outside the face."""
 
 
 def is_surface(folder: Path) -> bool:
@@ -37,48 +38,44 @@ def draw_interface_maps(folder: Path) -> None:
 def draw_wear_maps(folder: Path) -> None:
     """Draw ``wear.png``: wear depth of each body at the end of a transient analysis."""
     end = final_time(folder)
-    if end is None:
-        return
     data = tables.read(folder / "interface.csv")
-    names = [name for name in ("wear_1", "wear_2") if data[name].max() > 0]
-    if not names:
-        return
-    _draw(folder / "wear.png", data, names, f"wear after {end:.4g} s")
+    names = worn_bodies(data)
+    if end is not None and names:
+        _draw(folder / "wear.png", data, names, f"wear after {end:.4g} s")
 
 
 def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = "") -> None:
     """Draw a map of each quantity, two per row."""
-    x, y = map(data.drawn, "xy")
-    triangles = triangulated(x, y)
-    columns = min(2, len(names))
-    rows = -(-len(names) // columns)
-    tall = np.clip(np.ptp(y) / np.ptp(x), 0.3, 2.5)
-    width, height = _LONGER_SIDE / max(1.0, tall) + 2.2, _LONGER_SIDE * min(1.0, tall) + 0.8
-    with mpl.rc_context(STYLE | {"axes.grid": False}):
-        size = (width * columns, height * rows + (0.3 if title else 0.0))
-        layout = ConstrainedLayoutEngine(wspace=0.06, hspace=0.06)
-        figure = Figure(figsize=size, layout=layout, dpi=150)
-        axes = figure.subplots(rows, columns, squeeze=False).ravel()
-        for axis, name in zip(axes, names, strict=False):
-            _map(figure, axis, triangles, data, name)
-        for axis in axes[len(names) :]:
-            axis.set_visible(False)
+    triangles = triangulated(data.drawn("x"), data.drawn("y"))
+    ratio = np.clip(np.ptp(triangles.y) / np.ptp(triangles.x), 0.3, 2.5)
+    size = (_LONGER_SIDE / max(1.0, ratio) + 2.2, _LONGER_SIDE * min(1.0, ratio) + 0.8)
+    options: dict[str, Any] = {
+        "margin": (0.0, 0.3 if title else 0.0),
+        "style": _STYLE,
+        "crop": True,
+    }
+    with panels(path, len(names), 2, size, **options) as (figure, axes):
+        for axis, name in zip(axes.flat, names, strict=False):
+            _map(axis, triangles, data, name)
         if title:
             figure.suptitle(title, fontsize=11)
-        figure.savefig(path, bbox_inches="tight")
 
 
-def _map(figure, axis, triangles: Triangulation, data: tables.TableColumns, name: str) -> None:
+def _map(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: str) -> None:
     """Draw colours, with contour lines if the values differ."""
-    drawn, colors = data.drawn(name), COLORS[name.split("_")[0]]
-    colored = axis.tripcolor(triangles, drawn, shading="gouraud", cmap=colors)
-    figure.colorbar(colored, ax=axis, label=data.quantities[name].axis, shrink=0.9)
-    if np.ptp(drawn) > 1e-6 * np.abs(drawn).max():
-        lines = axis.tricontour(triangles, drawn, _LINES, colors="black", linewidths=0.6)
+    values = data.drawn(name)
+    colored = draw_colors(axis, triangles, values, name)
+    axis.figure.colorbar(colored, ax=axis, label=data.quantities[name].axis, shrink=0.9)
+    if np.ptp(values) > 1e-6 * np.abs(values).max():
+        lines = axis.tricontour(triangles, values, _LINES, colors="black", linewidths=0.6)
         axis.clabel(lines, fontsize=8)
-    axis.set_aspect("equal")
-    axis.set_xlabel(data.quantities["x"].axis)
-    axis.set_ylabel(data.quantities["y"].axis)
+    label_coordinates(axis, data)
+
+
+def draw_colors(axis: Axes, triangles: Triangulation, values: np.ndarray, name: str, **options):
+    """Fill triangles with the colours of a quantity."""
+    colors = COLORS[name.split("_")[0]]
+    return axis.tripcolor(triangles, values, shading="gouraud", cmap=colors, **options)
 
 
 def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:

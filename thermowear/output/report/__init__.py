@@ -1,6 +1,6 @@
 """``report.html``: a self-contained page made from the files of a results folder."""
 
-from ..report_file import is_report
+from ..names import is_report
 from .write import write_report
 
 __all__ = ["is_report", "write_report"]

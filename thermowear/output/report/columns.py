@@ -13,7 +13,7 @@ from ...results.quantity import Quantity, from_key
 from ...results.summary_keys import of_key
 from ..names import name_at, states
 from ..tables import TableColumns, read
-from .engineering import number
+from .unit_format import number
 
 _ROWS = 20
 

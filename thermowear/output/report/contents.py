@@ -13,9 +13,9 @@ from ...errors import CaseError
 from ...results import TABLES
 from ..names import PICTURES
 from ..tables import read
+from .case_lines import table_lines
 from .columns import AT_TIMES, ShownTable, output_times, shown_table
 from .figures import BalanceFigure, Figure, balances, key_figures
-from .glance import table_lines
 from .verdict import Verdict, verdict
 
 _PNG = b"\x89PNG\r\n\x1a\n"

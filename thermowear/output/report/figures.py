@@ -9,7 +9,7 @@ from typing import Any
 from ...balances import ALLOWED, BALANCES, holds
 from ...results.summary_keys import GROUPS, OTHER, PHASES, group_of, of_key
 from ...results.units import split_key
-from .engineering import NOTHING, number, quantity
+from .unit_format import NOTHING, number, quantity
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from .engineering import number
+from .unit_format import number
 
 
 @dataclass(frozen=True)
@@ -25,18 +25,16 @@ def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Verdict:
     run, summary : dict
         Contents of the files; the summary is empty if the run ended without one.
     """
-    status, why = run.get("status"), run.get("message")
-    reached = f" {_reached(summary)}"
+    status, reason = run.get("status"), run.get("message") or "no reason was recorded"
     if status == "done":
         return Verdict(f"Finished{_when(run)}.", "good")
-    if status == "failed":
-        return Verdict(f"Stopped: {why or 'no reason was recorded'}.{reached}", "bad")
-    if status == "interrupted":
-        return Verdict(f"Interrupted{_when(run)}.{reached}", "unsure")
-    if status == "running":
-        text = "Still running when this report was written, or killed."
-        return Verdict(f"{text}{reached}", "unsure")
-    return Verdict(f"Unknown status: {status}.{reached}", "unsure")
+    texts = {
+        "failed": f"Stopped: {reason}.",
+        "interrupted": f"Interrupted{_when(run)}.",
+        "running": "Still running when this report was written, or killed.",
+    }
+    text = texts.get(str(status), f"Unknown status: {status}.")
+    return Verdict(f"{text} {_reached(summary)}", "bad" if status == "failed" else "unsure")
 
 
 def _reached(summary: dict[str, Any]) -> str:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
-from ..report_file import put
+from ...errors import CaseError
+from ..atomic_write import write_text
+from ..names import is_report
 from .contents import ReportContents, read_contents
-from .engineering import NOTHING
+from .unit_format import NOTHING
 
 _UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -28,10 +31,18 @@ def write_report(folder: Path) -> Path:
     Raises
     ------
     CaseError
-        If the folder has no results, or a ``report.html`` of other origin.
+        If the folder has no results or a ``report.html`` of other origin, or cannot be written.
     """
     path = folder / "report.html"
-    put(path, page(read_contents(folder)))
+    text = page(read_contents(folder))
+    if os.path.lexists(path) and not is_report(path):
+        raise CaseError(
+            f"{path}: exists and is not a report of this program; move it away or rename it"
+        )
+    try:
+        write_text(path, text)
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be written: {error.strerror}") from None
     return path
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import re
 import time
 from collections.abc import Sequence
@@ -11,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import CaseError
-from ..atomic_write import replacing
-from ..folder import now, versions
+from ..coordinates import read_object
+from ..folder import run_ended, run_started, write_json
 from ..names import is_ours
+from ..tables import write_csv
 from .keys import Swept
 
 _OURS = ("sweep.csv", "shapes.png", "sweep.png", "run.json")
@@ -48,13 +47,7 @@ class SweepFolder:
         self._count = len(keys[0].values)
         self._rows: dict[int, tuple[str, dict[str, float]]] = {}
         self._written = 0.0
-        self._run: dict[str, Any] = {
-            "status": "running",
-            "started": now(),
-            "over": over,
-            "variants": self._count,
-            "versions": versions(),
-        }
+        self._run = run_started(over=over, variants=self._count)
         try:
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
@@ -93,12 +86,7 @@ class SweepFolder:
     def close(self, status: str, message: str, seconds: float) -> None:
         """Record how the sweep ended: ``done``, ``failed`` or ``interrupted``."""
         self._write_table()
-        self._run |= {
-            "status": status,
-            "finished": now(),
-            "seconds": round(seconds, 4),
-            **({"message": message} if message else {}),
-        }
+        self._run |= run_ended(status, message) | {"seconds": round(seconds, 4)}
         self._write_run()
 
     def _clear(self, overwrite: bool) -> None:
@@ -124,30 +112,19 @@ class SweepFolder:
     def _write_table(self) -> None:
         """Write ``sweep.csv``, one row per variant; unfinished variants have no numbers."""
         names = list(dict.fromkeys(name for _, row in self._rows.values() for name in row))
-        path = self.path / "sweep.csv"
-        with replacing(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(["variant", *(key.header for key in self._keys), "status", *names])
-            for k in range(self._count):
-                status, row = self._rows.get(k + 1, ("not computed", {}))
-                values = [key.values[k] for key in self._keys]
-                numbers = [row.get(name, float("nan")) for name in names]
-                writer.writerow([k + 1, *map(_cell, values), status, *map(_cell, numbers)])
+        rows: list[list[float | str]] = []
+        for k in range(self._count):
+            status, row = self._rows.get(k + 1, ("not computed", {}))
+            values = [key.values[k] for key in self._keys]
+            rows.append([k + 1, *values, status, *(row.get(name, float("nan")) for name in names)])
+        headers = ["variant", *(key.header for key in self._keys), "status", *names]
+        write_csv(self.path / "sweep.csv", headers, rows)
         self._written = time.monotonic()
 
     def _write_run(self) -> None:
-        with replacing(self.path / "run.json") as draft:
-            draft.write_text(json.dumps(self._run, indent=2, ensure_ascii=False) + "\n", "utf-8")
+        write_json(self.path / "run.json", self._run)
 
 
 def is_sweep(folder: Path) -> bool:
     """Test whether a folder contains a sweep."""
-    try:
-        run = json.loads((folder / "run.json").read_text("utf-8"))
-    except (OSError, ValueError):
-        return False
-    return isinstance(run, dict) and "over" in run
-
-
-def _cell(value: float | str) -> str:
-    return value if isinstance(value, str) else f"{value:.15g}"
+    return "over" in (read_object(folder / "run.json") or {})

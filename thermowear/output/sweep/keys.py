@@ -66,7 +66,7 @@ def swept(key: str, written: Sequence[str], tables: Sequence[dict[str, Any]]) ->
     tables : sequence of dict
         Case of each variant with all default values.
     """
-    resolved = [_found(table, key) for table in tables]
+    resolved: list[Any] = [reduce(_entry, key.split("."), table) for table in tables]
     if all(isinstance(value, int | float) and not isinstance(value, bool) for value in resolved):
         return Swept(key, key, tuple(resolved))
     found = [_in_si(value) for value in resolved]
@@ -103,12 +103,9 @@ def axis(key: str, written: Sequence[str], values: Sequence[float | str], header
     return Axis(key, key, None, words)
 
 
-def _found(table: dict[str, Any], key: str) -> Any:
-    """Value at the path of a key; None if there is none."""
-    found: Any = table
-    for part in key.split("."):
-        found = found.get(part.strip()) if isinstance(found, dict) else None
-    return found
+def _entry(table: Any, key: str) -> Any:
+    """Entry of a table; None if there is none."""
+    return table.get(key.strip()) if isinstance(table, dict) else None
 
 
 def _in_si(text: Any) -> tuple[float, str] | None:

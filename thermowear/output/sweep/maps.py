@@ -1,22 +1,22 @@
-"""``shapes.png`` of 3D models: a map of the worn shape of each variant."""
+"""``shapes.png`` of 3D models: maps of the worn shape of the variants."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 
 from .. import tables
-from ..pictures.curves import STYLE
 from ..pictures.maps import triangulated
+from ..pictures.panels import MAP_STYLE, label_coordinates, panels
+from ..pictures.scales import COLORS
 from .layout import Layout
 from .record import VariantRecord
 
-_MOST = 12
+_MOST = 12  # maps
 _ACROSS = 4
 _LEVELS = 12
 
@@ -28,34 +28,27 @@ def draw_shape_maps(layout: Layout, path: Path) -> None:
     chosen = np.unique(np.linspace(0, len(record.folders) - 1, count).round().astype(int))
     data = [tables.read(record.folders[k] / "interface.csv") for k in chosen]
     name = "shape" if any(np.ptp(d["shape"]) > 0 for d in data) else "pressure"
-    quantities = data[0].quantities
-    drawn = [d.drawn(name) for d in data]
-    low, high = min(map(np.min, drawn)), max(map(np.max, drawn))
-    scale = ScalarMappable(Normalize(low, high), "cividis")
-    across = min(_ACROSS, count)
-    down = -(-count // across)
-    with mpl.rc_context(STYLE | {"axes.grid": False}):
-        size = (2.6 * across + 1.4, 2.7 * down + 0.3)
-        figure = Figure(figsize=size, layout="constrained", dpi=150)
-        axes = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
-        for axis, k, table, values in zip(axes.ravel(), chosen, data, drawn, strict=False):
-            x, y = map(table.drawn, "xy")
-            levels = np.linspace(low, high, _LEVELS + 1)
-            axis.tricontourf(
-                triangulated(x, y), values, levels=levels, cmap=scale.cmap, norm=scale.norm
-            )
-            axis.set_aspect("equal")
-            axis.set_title(_named(record, k), fontsize="small")
-        for axis in axes.ravel()[count:]:
-            axis.set_visible(False)
-        for axis in axes[-1]:
-            axis.set_xlabel(quantities["x"].axis)
-        for axis in axes[:, 0]:
-            axis.set_ylabel(quantities["y"].axis)
-        figure.colorbar(scale, ax=axes, label=quantities[name].axis, pad=0.01)
-        figure.savefig(path)
+    values = [d.drawn(name) for d in data]
+    levels = np.linspace(
+        np.min(np.concatenate(values)), np.max(np.concatenate(values)), _LEVELS + 1
+    )
+    scale = ScalarMappable(Normalize(levels[0], levels[-1]), COLORS["shape"])
+    options: dict[str, Any] = {
+        "margin": (1.4, 0.3),
+        "style": MAP_STYLE,
+        "sharex": True,
+        "sharey": True,
+    }
+    with panels(path, count, _ACROSS, (2.6, 2.7), **options) as (figure, axes):
+        for axis, k, variant, z in zip(axes.flat, chosen, data, values, strict=False):
+            triangles = triangulated(variant.drawn("x"), variant.drawn("y"))
+            axis.tricontourf(triangles, z, levels=levels, cmap=scale.cmap, norm=scale.norm)
+            label_coordinates(axis, variant)
+            axis.label_outer()
+            axis.set_title(_title(record, k), fontsize="small")
+        figure.colorbar(scale, ax=axes, label=data[0].quantities[name].axis, pad=0.01)
 
 
-def _named(record: VariantRecord, variant: int) -> str:
-    places = zip(record.axes, record.places[variant], strict=True)
-    return "\n".join(f"{axis.key} = {axis.words[place]}" for axis, place in places)
+def _title(record: VariantRecord, variant: int) -> str:
+    indices = zip(record.axes, record.indices[variant], strict=True)
+    return "\n".join(f"{axis.key} = {axis.words[index]}" for axis, index in indices)

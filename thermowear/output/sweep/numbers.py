@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 
 from ...results.quantity import from_key
 from ...results.summary_keys import of_key
 from .. import tables
 from ..coordinates import in_model, model_of
-from ..pictures.curves import STYLE
-from .layout import LINES, Layout, is_wide
-from .legend import add_legend, tallest
+from ..pictures.panels import panels
+from .layout import LINES, Layout, add_legend, is_wide, legend_height
 from .record import VariantRecord
 
 _EQUAL = 1e-6
@@ -43,31 +41,25 @@ def draw_numbers(layout: Layout, path: Path) -> None:
     same = {name: values[0] for name, values in numbers.items() if name not in varying}
     if not varying:
         return
-    across = min(2, len(varying))
-    down = -(-len(varying) // across)
-    with mpl.rc_context(STYLE):
-        size = (4.0 * across + 0.6, 2.5 * down + 0.6)
-        figure = Figure(figsize=size, layout="constrained", dpi=150)
-        axes = figure.subplots(down, across, sharex=True, squeeze=False)
-        for axis, (name, values) in zip(axes.ravel(), varying.items(), strict=False):
+    options: dict[str, Any] = {"margin": (0.6, 0.6), "sharex": True}
+    with panels(path, len(varying), 2, (4.0, 2.5), **options) as (figure, axes):
+        drawn = axes.ravel()[: len(varying)]
+        for axis, (name, values) in zip(drawn, varying.items(), strict=True):
             _draw(axis, layout, shown[name].drawn(values))
             axis.set_ylabel(shown[name].wrapped)
-        for axis in axes.ravel()[len(varying) :]:
-            axis.set_visible(False)
-        for axis in axes.ravel()[: len(varying)][-across:]:
+        for axis in drawn[-axes.shape[1] :]:
             axis.set_xlabel(layout.axis.label)
             axis.tick_params(labelbottom=True)
-        handles = axes[0, 0].get_lines()[:_LISTED]
+        handles = drawn[0].get_lines()[:_LISTED]
         if len(handles) > 1:
             title = ", ".join(record.axes[k].key for k in _others(layout))
             add_legend(figure, "outside lower center", title, handles)
-            figure.set_figheight(size[1] + tallest([handles]))
+            figure.set_figheight(figure.get_figheight() + legend_height(handles))
         if same:
             listed = (
                 f"{shown[k].label} {shown[k].drawn(v):.6g} {shown[k].unit}" for k, v in same.items()
             )
             figure.suptitle(f"constant: {'; '.join(listed)}", fontsize="small")
-        figure.savefig(path)
 
 
 def _draw(axis, layout: Layout, values: np.ndarray) -> None:
@@ -75,11 +67,11 @@ def _draw(axis, layout: Layout, values: np.ndarray) -> None:
     record = layout.record
     others = _others(layout)
     across = layout.axis.numbers or tuple(range(len(layout.axis.words)))
-    for number, combination in enumerate(np.unique(record.places[:, others], axis=0)):
-        chosen = np.flatnonzero((record.places[:, others] == combination).all(axis=1))
-        x = np.array([across[place] for place in record.places[chosen, layout.colored]])
+    for number, combination in enumerate(np.unique(record.indices[:, others], axis=0)):
+        chosen = np.flatnonzero((record.indices[:, others] == combination).all(axis=1))
+        x = np.array([across[index] for index in record.indices[chosen, layout.colored]])
         order = np.argsort(x)
-        named = [record.axes[k].words[place] for k, place in zip(others, combination, strict=True)]
+        named = [record.axes[k].words[index] for k, index in zip(others, combination, strict=True)]
         axis.plot(
             x[order],
             values[chosen][order],

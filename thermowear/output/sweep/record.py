@@ -22,7 +22,7 @@ class VariantRecord:
     ----------
     axes : tuple of Axis
         Swept keys.
-    places : ndarray of int, shape (n, n_axes)
+    indices : ndarray of int, shape (n, n_axes)
         Index of the value of each key in each variant.
     folders : list of Path
         Results folder of each variant.
@@ -31,15 +31,9 @@ class VariantRecord:
     """
 
     axes: tuple[Axis, ...]
-    places: np.ndarray
+    indices: np.ndarray
     folders: list[Path]
     numbers: dict[str, np.ndarray]
-
-    def only(self, chosen: np.ndarray) -> VariantRecord:
-        """Subset of the variants by a mask."""
-        folders = [folder for folder, takes in zip(self.folders, chosen, strict=True) if takes]
-        numbers = {name: values[chosen] for name, values in self.numbers.items()}
-        return VariantRecord(self.axes, self.places[chosen], folders, numbers)
 
 
 def read_sweep(folder: Path) -> VariantRecord:
@@ -56,20 +50,18 @@ def read_sweep(folder: Path) -> VariantRecord:
     try:
         status = header.index("status")
         keys = header[1:status]
-        places = np.array(list(product(*(range(len(values)) for values in over.values()))))
+        indices = np.array(list(product(*(range(len(values)) for values in over.values()))))
         axes = tuple(
-            axis(key, written, _different(rows, k + 1, places[:, k]), keys[k])
+            axis(key, written, _different(rows, k + 1, indices[:, k]), keys[k])
             for k, (key, written) in enumerate(over.items())
         )
-        done = np.array([row[status] == "done" for row in rows])
-        numbers = {
-            name: np.array([float(row[k]) for row in rows])
-            for k, name in enumerate(header)
-            if k > status
-        }
-        folders = [folder / f"{int(row[0]):03d}" for row in rows]
-        return VariantRecord(axes, places, folders, numbers).only(done)
-    except (IndexError, KeyError) as error:
+        done = [row for row in rows if row[status] == "done"]
+        cells = zip(header, *done, strict=True)
+        numbers = {name: np.array(column, dtype=float) for name, *column in [*cells][status + 1 :]}
+        variants = [int(row[0]) for row in done]
+        folders = [folder / f"{number:03d}" for number in variants]
+        return VariantRecord(axes, indices[np.array(variants, dtype=int) - 1], folders, numbers)
+    except (IndexError, KeyError, ValueError) as error:
         raise ValueError(f"{folder}: run.json and sweep.csv are not of the same sweep") from error
 
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .. import tables
-from ..pictures.curves import STYLE, abscissa, cut_singular
-from .layout import LINES, Layout
-from .legend import add_legend, tallest
+from ..pictures.panels import clip_singular, panels, plot_along
+from .layout import LINES, Layout, add_legend, legend_height
 
 _EQUAL = 1e-6
 """Relative difference below which curves are considered identical."""
@@ -23,42 +21,35 @@ def draw_shapes(layout: Layout, path: Path) -> None:
     data = [tables.read(f / "interface.csv") for f in layout.record.folders]
     names = ["pressure", "shape"] if any(np.ptp(d["shape"]) > 0 for d in data) else ["pressure"]
     same = {name for name in names if alike([d[name] for d in data])}
-    columns = len(layout.columns)
-    with mpl.rc_context(STYLE):
-        keys = legends(layout)
-        size = (max(7.4, 1.4 + 3.4 * columns), 2.9 * len(names) + 0.4 + tallest(keys.values()))
-        figure = Figure(figsize=size, layout="constrained", dpi=150)
-        axes = figure.subplots(len(names), columns, sharex=True, sharey="row", squeeze=False)
-        for column, (title, chosen) in enumerate(layout.columns):
-            axes[0, column].set_title(title, fontsize="medium")
+    columns, keys = len(layout.columns), legends(layout)
+    below = max(map(legend_height, keys.values()), default=0.0)
+    margin = (max(1.4, 7.4 - 3.4 * columns), 0.4 + below)
+    options: dict[str, Any] = {"margin": margin, "sharex": True, "sharey": "row"}
+    with panels(path, len(names) * columns, columns, (3.4, 2.9), **options) as (figure, axes):
+        for column, (title, chosen) in zip(axes.T, layout.columns, strict=True):
+            column[0].set_title(title, fontsize="medium")
             for k in np.flatnonzero(chosen):
-                where, place = abscissa(data[k])
-                places = layout.record.places[k]
-                for axis, name in zip(axes[:, column], names, strict=True):
-                    axis.plot(
-                        place,
-                        data[k].drawn(name),
-                        "-" if name in same else layout.line(places),
-                        color="0.3" if name in same else layout.color(places[layout.colored]),
-                        linewidth=1.2,
-                    )
-            axes[-1, column].set_xlabel(where)
-        for row, name in zip(axes, names, strict=True):
-            row[0].set_ylabel(data[0].quantities[name].wrapped)
+                indices = layout.record.indices[k]
+                color, line = layout.color(indices[layout.colored]), layout.line(indices)
+                for axis, name in zip(column, names, strict=True):
+                    style = ("-", "0.3") if name in same else (line, color)
+                    plot_along(axis, data[k], name, style[0], color=style[1], linewidth=1.2)
+                    axis.label_outer()
+        for axis, name in zip(axes[:, 0], names, strict=True):
+            axis.set_ylabel(data[0].quantities[name].wrapped)
             if name in same:
-                row[0].text(0.5, 0.05, "identical", ha="center", transform=row[0].transAxes)
+                axis.text(0.5, 0.05, "identical", ha="center", transform=axis.transAxes)
         axes[0, 0].set_ylim(bottom=0)
-        cut_singular(axes[0, 0], *(d.drawn("pressure") for d in data))
+        clip_singular(axes[0, 0], [d.drawn("pressure") for d in data])
         if layout.continuous:
             figure.colorbar(layout.scale(), ax=axes, label=layout.axis.label, pad=0.01)
         for side, (title, handles) in zip(("left", "right"), keys.items(), strict=False):
             add_legend(figure, f"outside lower {side}", title, handles)
-        figure.savefig(path)
 
 
 def legends(layout: Layout) -> dict[str, list[Line2D]]:
     """Legend entries of colours and line styles, by key."""
-    found, used = {}, sorted(set(layout.record.places[:, layout.colored]))
+    found, used = {}, sorted(set(layout.record.indices[:, layout.colored]))
     if not layout.continuous and len(used) > 1:
         found[layout.axis.key] = [
             Line2D([], [], color=layout.color(k), label=layout.axis.words[k]) for k in used

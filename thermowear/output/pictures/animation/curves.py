@@ -2,110 +2,115 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ..curves import BODIES, abscissa
-from .states import Film, FrameState
+from ..panels import BODIES, abscissa, clipped_top
+from .states import FrameSequence, FrameState
 
 _AXIS_END = 1.06  # end of an axis relative to the largest value
-_SINGULAR, _MOST = 3.0, 0.9
-"""Peaks are clipped if they exceed the first factor times the quantile of the second."""
 _FAINT = {"color": "0.6", "linewidth": 1.2}
+_STYLES = {
+    "wear_1": {"color": BODIES[0], "linestyle": "-"},
+    "wear_2": {"color": BODIES[1], "linestyle": "--"},
+}
+"""Styles by body, so that coinciding curves are both visible."""
 
-Curve = Callable[[FrameState], tuple[np.ndarray, np.ndarray]]
+
+class CurvePanel:
+    """Curves along the contact with fixed axes.
+
+    Parameters
+    ----------
+    frames : FrameSequence
+    names : sequence of str
+        Columns of ``interface.csv``.
+    """
+
+    def __init__(self, frames: FrameSequence, names: Sequence[str]):
+        self._states, self._names = frames.states, names
+        self._lines: dict[str, Line2D] = {}
+
+    def prepare(self, axis) -> None:
+        """Draw the static elements."""
+        positions = [_curve(state, name)[0] for state in self._states for name in self._names]
+        axis.set_xlim(min(x.min() for x in positions), max(x.max() for x in positions))
+        axis.set_xlabel(abscissa(self._states[-1].interface)[0])
+        if len(axis.get_legend_handles_labels()[0]) > 1:  # above the panel, outside the curves
+            where = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.0}
+            axis.legend(fontsize="small", ncols=4, handlelength=1.5, **where)
+
+    def show(self, state: FrameState) -> None:
+        """Update the panel to a state."""
+        for name, line in self._lines.items():
+            line.set_data(*_curve(state, name))
 
 
-class PressureCurve:
+class PressureCurve(CurvePanel):
     """Contact pressure along the face, with its start and end in grey."""
 
-    def __init__(self, film: Film):
-        self._film = film
+    def __init__(self, frames: FrameSequence):
+        super().__init__(frames, ["pressure"])
+        self._end = "steady" if frames.ends_steady else "end"
 
-    def prepare(self, _, axis) -> None:
+    def prepare(self, axis) -> None:
         """Draw the static elements."""
-        states, self._curve = self._film.states, _along("pressure")
-        ends = {"--": (states[0], "start"), "-": (states[-1], self._name_of_end())}
-        for style, (state, name) in ends.items():
+        first, last = self._states[0], self._states[-1]
+        for state, line, label in ((first, "--", "start"), (last, "-", self._end)):
             if state.interface["pressure"].max() > 0:
-                axis.plot(*self._curve(state), style, label=name, **_FAINT)
-        (self._line,) = axis.plot(*self._curve(states[0]), color="tab:red", label="now")
-        axis.set_ylim(0.0, _AXIS_END * max(top(self._curve(state)[1]) for state in states))
-        axis.set_xlim(_span(self._curve(state)[0] for state in states))
-        last = states[-1].interface
-        axis.set_ylabel(last.quantities["pressure"].wrapped)
-        axis.set_xlabel(abscissa(last)[0])
-        _legend(axis)
-
-    def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
-        self._line.set_data(*self._curve(state))
-
-    def _name_of_end(self) -> str:
-        return "steady" if self._film.ends_steady else "end"
+                axis.plot(*_curve(state, "pressure"), line, label=label, **_FAINT)
+        moving = axis.plot(*_curve(first, "pressure"), color="tab:red", label="now")
+        self._lines["pressure"] = moving[0]
+        highest = max(top(state.interface.drawn("pressure")) for state in self._states)
+        axis.set_ylim(0.0, _AXIS_END * highest)
+        axis.set_ylabel(last.interface.quantities["pressure"].wrapped)
+        super().prepare(axis)
 
 
-class WearCurves:
-    """Wear depth of each wearing body, downwards, with its end in grey."""
+class WearCurves(CurvePanel):
+    """Wear depths of bodies, downwards, with their ends in grey."""
 
-    def __init__(self, film: Film):
-        self._film = film
-        self._lines: dict[str, Line2D] = {}
-        self._curves = {
-            name: curve
-            for name, curve in (("wear_1", _along("wear_1")), ("wear_2", _wear_of_body_2))
-            if curve(film.states[-1])[1].max() > 0
-        }
-
-    @property
-    def shows_something(self) -> bool:
-        """True if any body wears."""
-        return bool(self._curves)
-
-    def prepare(self, _, axis) -> None:
+    def prepare(self, axis) -> None:
         """Draw the static elements."""
-        states, values, places = self._film.states, [], []
-        for (name, curve), (color, line) in zip(self._curves.items(), self._styles(), strict=True):
-            axis.plot(*curve(states[-1]), label="_" if self._lines else "end", **_FAINT)
-            (self._lines[name],) = axis.plot(
-                *curve(states[0]), color=color, linestyle=line, label=f"body {name[-1]}"
-            )
-            places += [curve(state)[0] for state in states]
-            values += [curve(state)[1] for state in states]
-        deepest = max(v.max() for v in values)
-        axis.set_ylim(_AXIS_END * deepest, (1 - _AXIS_END) * deepest)
-        axis.set_xlim(_span(places))
-        last = states[-1].interface
-        axis.set_ylabel(last.quantities["wear_1"].of_both.wrapped)
-        axis.set_xlabel(abscissa(last)[0])
-        _legend(axis)
+        first, last = self._states[0], self._states[-1]
+        for name in self._names:
+            axis.plot(*_curve(last, name), label="_" if self._lines else "end", **_FAINT)
+            style = _STYLES[name] | {"label": f"body {name[-1]}"}
+            (self._lines[name],) = axis.plot(*_curve(first, name), **style)
+        depths = [_curve(state, name)[1].max() for state in self._states for name in self._names]
+        axis.set_ylim(_AXIS_END * max(depths), (1 - _AXIS_END) * max(depths))
+        axis.set_ylabel(last.interface.quantities["wear_1"].of_both.wrapped)
+        super().prepare(axis)
 
-    def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
-        for name, curve in self._curves.items():
-            self._lines[name].set_data(*curve(state))
 
-    def _styles(self) -> list[tuple[str, str]]:
-        """Colour and line style by body, so that coinciding curves are both visible."""
-        kinds = tuple(zip(BODIES, ("-", "--"), strict=True))
-        return [kinds[int(name[-1]) - 1] for name in self._curves]
+def contact_curves(frames: FrameSequence) -> list[CurvePanel]:
+    """Panels of the pressure and, if a body wears, of the wear depths."""
+    worn = [name for name in _STYLES if _curve(frames.states[-1], name)[1].max() > 0]
+    return [PressureCurve(frames), *([WearCurves(frames, worn)] if worn else [])]
+
+
+def _curve(state: FrameState, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and values along the contact, or of body 2 along its track, if it has one."""
+    if name == "wear_2" and state.track is not None:
+        return state.track.drawn("x"), state.track.drawn(name)
+    return abscissa(state.interface)[1], state.interface.drawn(name)
 
 
 class TimeCurve:
     """History of the largest temperature or pressure, with a mark at the current time."""
 
-    def __init__(self, film: Film):
-        self._name = "max_temperature" if _is_hot(film) else "max_pressure"
-        self._even = film.even
+    def __init__(self, frames: FrameSequence):
+        self._name = "max_temperature" if _is_hot(frames) else "max_pressure"
+        self._even = frames.even
         # a logarithmic axis cannot start at zero
-        self._course = film.course if film.even else film.course.rows(np.s_[1:])
-        self._time, self._drawn = self._course["time"], self._course.drawn(self._name)
+        self._history = frames.history if frames.even else frames.history.rows(np.s_[1:])
+        self._time, self._drawn = self._history["time"], self._history.drawn(self._name)
 
-    def prepare(self, _, axis) -> None:
+    def prepare(self, axis) -> None:
         """Draw the static elements."""
-        shown = self._course.quantities
+        shown = self._history.quantities
         axis.plot(self._time, self._drawn, color="0.45")
         if not self._even:
             axis.set_xscale("log")
@@ -129,34 +134,8 @@ def top(values: np.ndarray) -> float:
     pressed = values[values > 0]
     if not len(pressed):
         return 1.0
-    peak, usual = pressed.max(), np.quantile(pressed, _MOST)
-    return float(1.5 * usual if peak > _SINGULAR * usual else peak)
+    return clipped_top([pressed]) or float(pressed.max())
 
 
-def _legend(axis) -> None:
-    """Place the legend above the panel, outside the curves."""
-    if len(axis.get_legend_handles_labels()[0]) > 1:
-        where = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.0}
-        axis.legend(fontsize="small", ncols=4, handlelength=1.5, **where)
-
-
-def _is_hot(film: Film) -> bool:
-    return bool(np.isfinite(film.course.get("max_temperature", np.array([np.nan]))).all())
-
-
-def _along(name: str) -> Curve:
-    """Column of ``interface.csv`` along the contact, in the units of plots."""
-    return lambda state: (abscissa(state.interface)[1], state.interface.drawn(name))
-
-
-def _wear_of_body_2(state: FrameState) -> tuple[np.ndarray, np.ndarray]:
-    """Wear depths of body 2 along the contact, or along the track if body 1 reciprocates."""
-    if state.track is None:
-        return _along("wear_2")(state)
-    return state.track.drawn("x"), state.track.drawn("wear_2")
-
-
-def _span(places) -> tuple[float, float]:
-    """Range of all positions."""
-    every = np.concatenate(list(places))
-    return float(every.min()), float(every.max())
+def _is_hot(frames: FrameSequence) -> bool:
+    return bool(np.isfinite(frames.history.get("max_temperature", np.array([np.nan]))).all())

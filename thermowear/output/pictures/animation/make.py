@@ -9,12 +9,12 @@ from ....errors import CaseError
 from ...frames import frame_files
 from ...names import FRAMES
 from ..maps import is_surface
-from .curves import PressureCurve, TimeCurve, WearCurves
-from .palette import common_palette
-from .scene import Scene, ScenePanel
-from .section import SectionPanel
-from .states import Film, read_film
-from .writers import GIF, MP4, ffmpeg, write_gif, write_mp4
+from ..scales import COLORS
+from .bodies import SectionPanel, SolidPanel, face_maps
+from .curves import TimeCurve, contact_curves
+from .scene import Scene
+from .states import read_frames
+from .writers import GIF, MP4, common_palette, ffmpeg, write_gif, write_mp4
 
 FPS = 8.0
 
@@ -24,7 +24,7 @@ def has_frames(folder: Path) -> bool:
     return bool(frame_files(folder / FRAMES))
 
 
-def check_film(folder: Path, path: Path) -> None:
+def check_animation(folder: Path, path: Path) -> None:
     """Check that an animation can be drawn and written.
 
     Raises
@@ -58,27 +58,18 @@ def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
     fps : float
         Frames per second.
     """
-    film = read_film(folder)
-    scene = _in_space(film) if is_surface(folder) else _in_a_plane(film)
-    states = film.states
+    frames = read_frames(folder)
+    if is_surface(folder):
+        scene = Scene(frames, SolidPanel(frames), face_maps(frames), TimeCurve(frames))
+    else:
+        scene = Scene(frames, SectionPanel(frames), contact_curves(frames), TimeCurve(frames))
+    states = frames.states
     pictures = (scene.picture(state) for state in states)
     if path.suffix == MP4:
         write_mp4(path, pictures, fps)
         return
     some = [scene.picture(state) for state in (states[0], states[len(states) // 2], states[-1])]
-    write_gif(path, pictures, fps, common_palette(some, scene.colors))
-
-
-def _in_a_plane(film: Film) -> Scene:
-    wear = WearCurves(film)
-    beside: list[ScenePanel] = [PressureCurve(film)]
-    return Scene(film, SectionPanel(film), beside + [wear] * wear.shows_something, TimeCurve(film))
-
-
-def _in_space(film: Film) -> Scene:
-    from .solid import Solid, face_maps
-
-    return Scene(film, Solid(film), face_maps(film), TimeCurve(film))
+    write_gif(path, pictures, fps, common_palette(some, COLORS[frames.field]))
 
 
 if __name__ == "__main__":

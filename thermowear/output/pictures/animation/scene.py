@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import matplotlib as mpl
@@ -9,14 +10,13 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ..curves import STYLE
-from .states import Film, FrameState
+from ..panels import STYLE
+from .states import FrameSequence, FrameState
 
 _DPI = 100
 _WIDTH, _HEIGHT = 9.0, 5.6  # inches
-_FLAT = (
-    0.4  # aspect ratio of the bodies below which they are placed above the curves, else beside them
-)
+_FLAT = 0.4
+"""Height over width of the bodies below which they are above the curves, else beside them."""
 _SCALE = 1.5  # width of colour bar and labels of the bodies [inches]
 _STYLE = STYLE | {"font.size": 9}
 
@@ -24,7 +24,7 @@ _STYLE = STYLE | {"font.size": 9}
 class ScenePanel(Protocol):
     """Interface of the panels of the picture."""
 
-    def prepare(self, figure: Figure, axis) -> None:
+    def prepare(self, axis) -> None:
         """Draw the static elements."""
 
     def show(self, state: FrameState) -> None:
@@ -36,29 +36,30 @@ class Scene:
 
     Parameters
     ----------
-    film : Film
+    frames : FrameSequence
     bodies : ScenePanel
-        Panel with `shape`, its height over width, and `colors`, the name of its colour map.
-    beside : list of ScenePanel
-        One or two panels of curves along the contact.
-    course : ScenePanel
+        Panel with `shape`, its height over width.
+    contact : sequence of ScenePanel
+        One or two panels of the contact.
+    history : ScenePanel
         Panel over time.
     """
 
-    def __init__(self, film: Film, bodies, beside: list[ScenePanel], course: ScenePanel):
-        self.colors = bodies.colors
-        self._panels = {"bodies": bodies, "course": course}
-        self._panels |= {f"beside {k}": panel for k, panel in enumerate(beside)}
+    def __init__(
+        self, frames: FrameSequence, bodies, contact: Sequence[ScenePanel], history: ScenePanel
+    ):
+        self._panels = {"bodies": bodies, "history": history}
+        self._panels |= {f"contact {k}": panel for k, panel in enumerate(contact)}
         with mpl.rc_context(_STYLE):
             self._figure = Figure(figsize=(_WIDTH, _HEIGHT), dpi=_DPI, layout="constrained")
             self._canvas = FigureCanvasAgg(self._figure)
-            plan, ratios = _plan(len(beside), bodies.shape)
+            plan, ratios = _plan(len(contact), bodies.shape)
             axes = self._figure.subplot_mosaic(plan, **ratios)
-            self._figure.suptitle(film.title, fontsize="large")
+            self._figure.suptitle(frames.title, fontsize="large")
             for name, panel in self._panels.items():
-                panel.prepare(self._figure, axes[name])
+                panel.prepare(axes[name])
             self._time = axes["bodies"].set_title("", loc="left", fontsize="large", color="tab:red")
-        self._fill(film.states[-1])
+        self._fill(frames.states[-1])
         self._figure.draw_without_rendering()
         self._figure.set_layout_engine("none")
 
@@ -80,13 +81,13 @@ def duration(time: float) -> str:
     return f"{float(f'{time:.3g}'):g} s"
 
 
-def _plan(beside: int, shape: float) -> tuple[list[Any], dict[str, Any]]:
+def _plan(count: int, shape: float) -> tuple[list[Any], dict[str, Any]]:
     """Positions of the panels and their sizes, by height over width of the bodies."""
-    curves = [f"beside {k}" for k in range(beside)]
+    curves = [f"contact {k}" for k in range(count)]
     if shape < _FLAT:
         tall = np.clip(shape * (_WIDTH - _SCALE), 1.2, 2.2)
-        return [["bodies"] * beside, curves, ["course"] * beside], {"height_ratios": (tall, 1.3, 1)}
+        return [["bodies"] * count, curves, ["history"] * count], {"height_ratios": (tall, 1.3, 1)}
     rows = [["bodies", curve] for curve in curves]
     wide = np.clip(3.0 / shape + _SCALE, 0.3 * _WIDTH, 0.55 * _WIDTH)
     sizes = {"width_ratios": (wide, _WIDTH - wide)}
-    return [*rows, ["course"] * 2], sizes | {"height_ratios": (*[3.2 / beside] * beside, 1)}
+    return [*rows, ["history"] * 2], sizes | {"height_ratios": (*[3.2 / count] * count, 1)}

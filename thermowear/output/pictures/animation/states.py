@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-import meshio
 import numpy as np
 
-from ....results import FIELDS
-from ....results.quantity import Quantity
 from ... import tables
 from ...coordinates import read_summary
 from ...frames import frame_files
 from ...names import FRAMES
 
-_CORNERS = {"triangle": [[0, 1, 2]], "quad": [[0, 1, 2], [0, 2, 3]]}
+_HISTORIES = ("history.csv", "cycles.csv", "loads.csv")
 _STEADY = 1e-2  # distance from the steady state up to which the final state is called steady
 
 
@@ -42,7 +40,7 @@ class FrameState:
 
 
 @dataclass(frozen=True)
-class Film:
+class FrameSequence:
     """All states of an animation; the last one is the end of the run.
 
     Attributes
@@ -50,26 +48,26 @@ class Film:
     states : list of FrameState
     title : str
         Title of the case.
-    course : TableColumns
+    history : TableColumns
         Columns of ``history.csv``, or of ``cycles.csv`` or ``loads.csv``.
     even : bool
         True for a linear time axis, with prescribed loads or temperatures in time; running-in
         without them slows down and is shown on a logarithmic axis.
-    hot : bool
-        True if the case has temperatures.
+    field : str
+        Field shown on the bodies: the temperature if there is one, else the stress.
     ends_steady : bool
         True if the final state is close to the steady state.
     """
 
     states: list[FrameState]
     title: str
-    course: tables.TableColumns
+    history: tables.TableColumns
     even: bool
-    hot: bool
+    field: str
     ends_steady: bool
 
 
-def read_film(folder: Path) -> Film:
+def read_frames(folder: Path) -> FrameSequence:
     """Read all data of an animation except the fields.
 
     Raises
@@ -83,50 +81,21 @@ def read_film(folder: Path) -> Film:
         )
         for f in frame_files(folder / FRAMES)
     ]
-    name = next(name for name in _COURSES if (folder / name).is_file())
-    course = tables.read(folder / name)
-    end = float(course["time"][-1])
+    name = next(name for name in _HISTORIES if (folder / name).is_file())
+    history = tables.read(folder / name)
+    end = float(history["time"][-1])
     states = [state for state in states if state.time < end]
     last = tables.read(folder / "interface.csv")
     states.append(FrameState(end, last, _track(folder / "track.csv"), folder / "fields.vtu"))
     distance = read_summary(folder).get("distance_from_steady")
-    return Film(
+    return FrameSequence(
         states=states,
         title=_title(folder),
-        course=course,
+        history=history,
         even=name != "history.csv" or (folder / "heat.csv").is_file(),
-        hot=bool(np.isfinite(last["temperature_1"]).all()),
+        field="temperature" if np.isfinite(last["temperature_1"]).all() else "von_mises",
         ends_steady=distance is not None and distance <= _STEADY,
     )
-
-
-def read_fields(
-    state: FrameState, hot: bool
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Read the fields of 2D bodies as triangles; cells share no points.
-
-    Returns
-    -------
-    tuple of ndarray
-        Displaced points, shape (n, 2) [mm]; triangles, shape (m, 3); body of each triangle, shape
-        (m,); values at the points, see `shown_field`.
-    """
-    mesh = meshio.read(state.file)
-    block, body = mesh.cells[0], mesh.cell_data["body"][0]
-    corners = np.array(_CORNERS[block.type])
-    triangles = block.data[:, corners].reshape(-1, 3)
-    points = 1e3 * (mesh.points + mesh.point_data["displacement_m"])[:, :2]
-    shown = shown_field(hot)
-    values = shown.drawn(mesh.point_data[shown.header])
-    return points, triangles, np.repeat(body, len(corners)), values
-
-
-def shown_field(hot: bool) -> Quantity:
-    """Displayed field: the temperature if there is one, else the stress."""
-    return FIELDS["temperature" if hot else "von_mises"]
-
-
-_COURSES = ("history.csv", "cycles.csv", "loads.csv")
 
 
 def _track(path: Path) -> tables.TableColumns | None:
@@ -134,6 +103,4 @@ def _track(path: Path) -> tables.TableColumns | None:
 
 
 def _title(folder: Path) -> str:
-    import tomllib
-
     return tomllib.loads((folder / "case.resolved.toml").read_text("utf-8")).get("title", "")

@@ -10,14 +10,20 @@ from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryFile
 
+import matplotlib as mpl
 import numpy as np
+from matplotlib.colors import to_rgb
 from PIL import Image
 
 from ....errors import CaseError
-from ...atomic_write import replacing
+from ...atomic_write import atomic_write
+from ..panels import BODIES
 
 GIF, MP4 = ".gif", ".mp4"
 _LAST_DURATION = 1.5  # duration of the last frame [s]
+_MOST_COLORS = 255  # one more is reserved for unchanged pixels
+_LINES = ("black", "0.45", "0.6", "tab:red", *BODIES)
+_BLENDS = 6  # blends of a line with white, for antialiased edges
 
 
 def ffmpeg() -> str:
@@ -53,17 +59,43 @@ def write_gif(path: Path, pictures: Iterator[np.ndarray], fps: float, palette: n
         for picture in pictures
     ]
     shown = [1 / fps] * (len(frames) - 1) + [max(_LAST_DURATION, 1 / fps)]
-    with replacing(path) as draft:
+    with atomic_write(path) as draft:
         frames[0].save(
             draft,
             format="GIF",
             save_all=True,
             append_images=frames[1:],
-            duration=[
-                round(100 * seconds) * 10 for seconds in shown
-            ],  # GIF times are in hundredths of a second
+            duration=[round(100 * s) * 10 for s in shown],  # stored in hundredths of a second
             loop=0,
         )
+
+
+def common_palette(pictures: list[np.ndarray], scale: str) -> np.ndarray:
+    """Palette of the line colours and the best approximation of a colour map and of pictures.
+
+    Parameters
+    ----------
+    pictures : list of ndarray of uint8, shape (height, width, 3)
+    scale : str
+        Name of a colour map.
+
+    Returns
+    -------
+    ndarray of uint8, shape (k, 3)
+        At most 255.
+    """
+    parts = np.linspace(0.0, 1.0, _BLENDS)[:, None]
+    lines = np.concatenate([1 - parts * (1 - np.array(to_rgb(color))) for color in _LINES])
+    fixed = np.unique(_as_bytes(lines), axis=0)
+    height, width = pictures[0].shape[:2]
+    steps = _as_bytes(mpl.colormaps[scale](np.linspace(0.0, 1.0, width))[:, :3])
+    some = np.concatenate([*pictures, np.broadcast_to(steps, (height, width, 3))])
+    rest = Image.fromarray(some).quantize(_MOST_COLORS - len(fixed)).getpalette()
+    return np.concatenate([fixed, np.array(rest, dtype=np.uint8).reshape(-1, 3)])[:_MOST_COLORS]
+
+
+def _as_bytes(colors: np.ndarray) -> np.ndarray:
+    return np.round(255 * colors).astype(np.uint8)
 
 
 def write_mp4(path: Path, pictures: Iterator[np.ndarray], fps: float) -> None:
@@ -79,15 +111,9 @@ def write_mp4(path: Path, pictures: Iterator[np.ndarray], fps: float) -> None:
     first = next(pictures)
     height, width = (n - n % 2 for n in first.shape[:2])  # the encoder needs even numbers
     stream = f"-f rawvideo -pix_fmt rgb24 -s {width}x{height} -r {fps:g} -i -".split()
-    rest = [
-        "-vf",
-        f"tpad=stop_mode=clone:stop_duration={_LAST_DURATION:g}",
-        "-pix_fmt",
-        "yuv420p",
-        "-f",
-        "mp4",
-    ]
-    with replacing(path) as draft, TemporaryFile() as said:
+    last = f"tpad=stop_mode=clone:stop_duration={_LAST_DURATION:g}"
+    rest = f"-vf {last} -pix_fmt yuv420p -f mp4".split()
+    with atomic_write(path) as draft, TemporaryFile() as said:
         command = [ffmpeg(), "-y", "-loglevel", "error", *stream, *rest, str(draft)]
         encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said)
         assert encoder.stdin is not None

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from ...results.units import split_key
-from .engineering import quantity
+from .unit_format import quantity
 
 _QUANTITY = re.compile(r"([-+]?[.\d]+(?:e[-+]?\d+)?) (\S+)")
 _POWERS = str.maketrans({"2": "²", "3": "³", "^": None})

@@ -1,0 +1,143 @@
+"""Curves along the contact: pressure, temperature, shape, wear, friction."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .. import tables
+from ..coordinates import read_summary
+from ..names import states
+from .panels import BODIES, abscissa, column, from_zero, plot_along, time_colors, time_legend
+
+_FLAT = 1e-12  # range of the shape up to which a face is flat but for rounding errors [m]
+_SAME = 1e-3
+"""Relative difference below which both shapes coincide, as on a level face."""
+_SMALLEST_RANGE = 1e-2
+"""Smallest range of wear rates along the face, relative to their size."""
+_DIRECTIONS = (("shape", "height of the unloaded face"), ("wear_rate", "wear rate"))
+
+
+def interface_panels(data: tables.TableColumns) -> list[list[str]]:
+    """Columns of ``interface.csv`` to draw, by panel: pressure, temperatures, shape if worn."""
+    shown = [["pressure"]]
+    if np.isfinite(data["temperature_1"]).all():
+        shown.append(["temperature_1", "temperature_2"])
+    if np.ptp(data["shape"]) > _FLAT:
+        shown.append(["shape"])
+    return shown
+
+
+def worn_bodies(data: tables.TableColumns) -> list[str]:
+    """Columns of wear depths of the bodies that wear."""
+    return [name for name in ("wear_1", "wear_2") if data[name].max() > 0]
+
+
+def final_time(folder: Path) -> float | None:
+    """Time at the end of a run in time, from its history; None without one [s]."""
+    for name in ("history.csv", "loads.csv"):
+        if (folder / name).is_file():
+            return float(tables.read(folder / name)["time"][-1])
+    return None
+
+
+def draw_interface(folder: Path) -> None:
+    """Draw ``interface.png``: pressure, temperatures and shape along the contact."""
+    data = tables.read(folder / "interface.csv")
+    shown = interface_panels(data)
+    with column(folder / "interface.png", len(shown), 2.3) as axes:
+        for axis, names in zip(axes, shown, strict=True):
+            for name, color, line in zip(names, BODIES, ("-", "--"), strict=False):
+                plot_along(axis, data, name, line, color=color, label=f"body {name[-1]}")
+            axis.set_ylabel(data.quantities[names[0]].of_both.wrapped)
+            if len(names) > 1:
+                axis.legend()
+        from_zero(axes[0])
+
+
+def draw_wear(folder: Path) -> None:
+    """Draw ``wear.png``: pressure and wear depth along the contact at the output times."""
+    end = final_time(folder)
+    if end is None:
+        return
+    files = {end: folder / "interface.csv"} | states(folder, "interface")
+    found = {time: tables.read(files[time]) for time in sorted(files)}
+    final = found[max(found)]
+    bodies = worn_bodies(final)
+    if not bodies:
+        return
+    shown = ["pressure", *bodies] if len(found) > 1 else bodies
+    with column(folder / "wear.png", len(shown), 3.0) as axes:
+        for axis, name in zip(axes, shown, strict=True):
+            for (time, data), color in zip(found.items(), time_colors(len(found)), strict=True):
+                plot_along(axis, data, name, color=color, label=f"{time:.4g} s")
+            axis.set_ylabel(final.quantities[name].axis)
+            if name != "pressure":
+                axis.invert_yaxis()
+        time_legend(axes[0])
+
+
+def draw_profile(folder: Path) -> None:
+    """Draw ``profile.png``: worn shape and wear rates of a face that is not level."""
+    data = tables.read(folder / "profile.csv")
+    shown = [(name, label) for name, label in _DIRECTIONS if _depends_on_direction(data, name)]
+    if not shown or not np.any(data["wear_rate"] > 0):
+        return
+    with column(folder / "profile.png", len(shown), 2.6) as axes:
+        for axis, (name, label) in zip(axes, shown, strict=True):
+            plot_along(axis, data, name, "-", label="along the normal")
+            plot_along(axis, data, f"{name}_along_press", "--", label="along the load direction")
+            axis.set_ylabel(f"{label}\n[{data.quantities[name].unit}]")
+        axes[0].legend()
+
+
+def _depends_on_direction(data: tables.TableColumns, name: str) -> bool:
+    """Test whether a column differs along the normal and along the load direction."""
+    along_normal, along_load = data[name], data[f"{name}_along_press"]
+    size = max(float(np.ptp(along_normal)), _SMALLEST_RANGE * float(np.abs(along_normal).max()))
+    return float(np.nanmax(np.abs(along_load - along_normal))) > _SAME * size
+
+
+def draw_friction(folder: Path) -> None:
+    """Draw ``friction.png``: shear with its Coulomb limits, and slip, at the output times."""
+    found = {label: tables.read(path) for label, path in _at_times(folder, "friction").items()}
+    with column(folder / "friction.png", 2, 2.8) as (upper, lower):
+        for (label, data), color in zip(found.items(), time_colors(len(found), 0.85), strict=True):
+            where, position = abscissa(data)
+            upper.plot(position, data.drawn("shear"), color=color, label=label)
+            slip = np.where(data["pressure"] > 0, data.drawn("slip"), np.nan)
+            lower.plot(position, slip, color=color)
+        limit = (read_summary(folder).get("friction") or np.nan) * data.drawn("pressure")
+        upper.plot(position, limit, color="0.5", linestyle=":", label="friction · pressure")
+        upper.plot(position, -limit, color="0.5", linestyle=":")
+        pressed = position[data["pressure"] > 0]
+        margin = 0.1 * np.ptp(pressed)
+        lower.set_xlim(pressed.min() - margin, pressed.max() + margin)
+        lower.locator_params(axis="x", nbins=7)
+        upper.set_ylabel(data.quantities["shear"].axis)
+        lower.set_ylabel(data.quantities["slip"].axis)
+        lower.set_xlabel(where)
+        time_legend(upper)
+
+
+def draw_track(folder: Path) -> None:
+    """Draw ``track.png``: wear depths of both bodies, body 1 in the middle of its stroke."""
+    files = _at_times(folder, "track")
+    with column(folder / "track.png", 2, 2.8) as axes:
+        for (label, path), color in zip(files.items(), time_colors(len(files)), strict=True):
+            moving = tables.read(path.with_name(path.name.replace("track", "interface")))
+            both = ((moving, "wear_1"), (tables.read(path), "wear_2"))
+            for axis, (data, name) in zip(axes, both, strict=True):
+                axis.plot(data.drawn("x"), data.drawn(name), color=color, label=label)
+        for axis, (data, name) in zip(axes, both, strict=True):
+            axis.set_ylabel(data.quantities[name].axis)
+            axis.invert_yaxis()
+        time_legend(axes[0])
+        axes[1].set_xlabel(data.quantities["x"].axis)
+
+
+def _at_times(folder: Path, stem: str) -> dict[str, Path]:
+    """Files of a table at the output times and at the end, by the labels of their times."""
+    files = {f"{time:.4g} s": path for time, path in states(folder, stem).items()}
+    return files | {"end": folder / f"{stem}.csv"}

@@ -25,6 +25,10 @@ PACKAGE_OF = dict.fromkeys(["basix", "ffcx", "ufl"], "python3-dolfinx") | {
 }
 
 
+OPTIONAL = {"pandas"}
+"""Modules that are used where they are installed, and asked for by a message elsewhere."""
+
+
 def call(route, *command, path=None, cache=None, **options):
     """Run a command by one route, with a directory of commands put before those of the machine."""
     environment = os.environ | {"THERMOWEAR_ENV": route}
@@ -60,7 +64,7 @@ def third_party(*folders):
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 names.add(node.module)
     top = {name.partition(".")[0] for name in names}
-    return top - sys.stdlib_module_names - {"thermowear", "tests"}
+    return top - sys.stdlib_module_names - {"thermowear", "tests"} - OPTIONAL
 
 
 def test_command_is_passed_unharmed(tmp_path):

@@ -37,3 +37,19 @@ def test_least_worn_of_a_symmetric_face():
     d, mirrored = (least_worn(R, way, weights, all_points) for way in (skewed, skewed[::-1]))
     assert d == pytest.approx([1.0, -0.2, 0.15], abs=1e-8)
     assert mirrored == pytest.approx(d * [1.0, -1.0, -1.0], abs=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("modes", [1, 2, 3])
+def test_least_worn_of_curved_faces(modes, seed):
+    """requirement: the vertex that no other motion undercuts, where there is one."""
+    rng = np.random.default_rng(seed)
+    x, y = rng.uniform(-1, 1, (2, 85))
+    R = np.column_stack([1 - 0.2 * x**2, x, y])[:, :modes]
+    opening, weights = 1e-5 * rng.uniform(0, 1, 85), rng.uniform(0, 1, 85)
+    d = least_worn(R, opening, weights, np.full(85, True))
+    lost = R @ d - opening
+    assert lost.min() == pytest.approx(0.0, abs=1e-14)
+    assert np.sum(lost < 1e-14) == modes
+    if modes == 1:
+        assert d == pytest.approx((opening / R[:, 0]).max(), rel=1e-9)

@@ -7,10 +7,10 @@ from scipy.optimize import linprog, nnls
 
 _TOLERANCE = 1e-10
 """Feasibility of linear programs, relative to the largest change of the gap; the least of HiGHS."""
-_SLACK = 1e-12
-"""Wear depth and volume by which other motions of least volume may differ, above rounding."""
+_SLACK = 1e-11
+"""Depth by which other motions of least volume may add material, relative to the same change."""
 _SAME = 1e-6
-"""Difference of motions below which there is only one of least volume, as `_SLACK` allows it."""
+"""Difference of depths below which there is one motion of least volume, as `_SLACK` allows it."""
 
 
 def least_worn(
@@ -50,14 +50,23 @@ def least_worn(
             "dual_feasibility_tolerance": _TOLERANCE,
         },
     ).x
-    rows = np.vstack((R, -volume))
-    bounds = (
-        np.minimum(np.append(gap, np.inf), rows @ found) - _SLACK
-    )  # so that `found` is feasible
-    root = np.sqrt(weights)
-    fitted = _constrained_fit(root[:, None] * R, root * gap, rows, bounds)
-    unique = np.abs(fitted - found).max() < _SAME
-    return (found if unique else fitted) / stretch * size
+    return _fitted(R, gap, weights, found) / stretch * size
+
+
+def _fitted(R: np.ndarray, gap: np.ndarray, weights: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Motion of least squares among those with the volume of one; that one if there is no other."""
+    free = np.linalg.svd((weights @ R)[None])[2][1:].T  # changes that leave the volume as it is
+    rows, missing = R @ free, gap - R @ motion
+    if rows.size == 0 or np.linalg.matrix_rank(rows) < rows.shape[1]:
+        return motion
+    bounds, root = np.minimum(missing, 0.0) - _SLACK, np.sqrt(weights)
+    try:
+        shift = _constrained_fit(root[:, None] * rows, root * missing, rows, bounds)
+    except RuntimeError:  # of nnls, without convergence
+        return motion
+    change = rows @ shift
+    feasible = np.all(change >= bounds - _SLACK)
+    return motion + free @ shift if feasible and np.abs(change).max() > _SAME else motion
 
 
 def _constrained_fit(
@@ -75,4 +84,7 @@ def _constrained_fit(
     aim[-1] = 1.0
     dual = np.vstack((reduced, bounds - rows @ middle))
     residual = dual @ nnls(dual, aim)[0] - aim
-    return middle - np.linalg.solve(R, residual[:-1] / residual[-1])
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # no x is feasible: the result is not finite
+        return middle - np.linalg.solve(R, residual[:-1] / residual[-1])

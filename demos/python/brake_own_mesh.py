@@ -12,9 +12,13 @@ from mpi4py import MPI
 import dolfinx
 import gmsh
 import numpy as np
-from dolfinx.io import gmshio
 
 import thermowear as tw
+
+try:
+    from dolfinx.io import gmshio
+except ImportError:  # its name since dolfinx 0.10
+    from dolfinx.io import gmsh as gmshio
 
 RAIL, LINING, BACK = 101, 205, 7  # cells
 RAIL_TOP, RAIL_BOTTOM, PAD_FACE, PAD_TOP = 32, 31, 41, 42  # facets

@@ -50,7 +50,7 @@ def test_faults(make, message):
 def test_units_of_powers():
     """requirement: κ in (m/s)^(1-a) Pa^-b."""
     assert tw.PowerWear("1e-7 1/MPa").coefficient == pytest.approx(1e-13)
-    found = tw.PowerWear("2e-9 1/MPa^1.5 (mm/s)^0.5", b=1.5, a=0.5)
+    found = tw.PowerWear("2e-9 (mm/s)^0.5/MPa^1.5", b=1.5, a=0.5)
     assert found.coefficient == pytest.approx(2e-9 * 1e-9 * 1e-3**0.5)
 
 

@@ -27,7 +27,8 @@ def block(bottom, reverse, gdim):
     if reverse:
         cells[::2] = cells[::2][:, [0, 2, 1]]
     element = basix.ufl.element("Lagrange", "triangle", 1, shape=(gdim,))
-    mesh = dolfinx.mesh.create_mesh(MPI.COMM_SELF, cells, np.array(x)[:, :gdim], element)
+    points = np.array(x)[:, :gdim]
+    mesh = dolfinx.mesh.create_mesh(MPI.COMM_SELF, cells=cells, x=points, e=element)
     places = {
         7: lambda x: np.isclose(x[1], bottom),
         8: lambda x: np.isclose(x[1], bottom + HEIGHT),

@@ -87,9 +87,7 @@ def PowerWear(coefficient: Any, b: float = 1.0, a: float = 1.0) -> power_wear.Po
     """Wear rate ``coefficient p^b v^a``, see `laws.power_wear.PowerWear`."""
     name = "PowerWear"
     b, a = number(b, f"{name}.b", 0.1, 10.0), number(a, f"{name}.a", 0.0, 10.0)
-    unit = " ".join(
-        ["1/Pa" if b == 1 else f"1/Pa^{b!r}"] + ([] if a == 1 else [f"(m/s)^({1 - a!r})"])
-    )
+    unit = ("" if a == 1 else f"(m/s)^{1 - a:.12g} ") + f"1/Pa^{b:.12g}"
     kind = units.quantity(unit, f"1e-13 {unit}", gt=0)
     return power_wear.PowerWear(in_python(kind, coefficient, f"{name}.coefficient"), b, a)
 

@@ -8,6 +8,7 @@ import pytest
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.operators import condensation
 from thermowear.contact.operators.condensation import condense, influence
 from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
@@ -56,6 +57,14 @@ def test_compliance_is_the_bodies_own(degree, columns):
     np.testing.assert_allclose(contact.compliance @ λ, weak, rtol=1e-9)
     assert np.linalg.eigvalsh(contact.compliance).min() > 0
     assert np.all(gap > 0)  # pressure opens the gap of bodies that are held
+
+
+def test_blocks_of_columns(monkeypatch):
+    """requirement: the compliance is the same however many columns are solved for together."""
+    _, _, _, whole = condensed(6, (3, 3))
+    monkeypatch.setattr(condensation, "_COLUMNS", {2: 4})
+    _, _, _, parts = condensed(6, (3, 3))
+    np.testing.assert_allclose(parts.compliance, whole.compliance, rtol=1e-12)
 
 
 @pytest.mark.parametrize("columns", [(3, 3), (3, 4), (5, 2)])

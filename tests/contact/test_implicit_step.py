@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from thermowear.contact.wear.implicit_step import newton_with_wear
+from thermowear.contact.wear.implicit_step import WearRates, newton_with_wear
 from thermowear.errors import ComputationError
+from thermowear.laws.distribution import DutyFactor
+from thermowear.laws.power_wear import PowerWear
 
 STIFFNESS = np.array([1.0, 2.0])
 
@@ -83,3 +85,17 @@ def test_failure_is_reported():
             Pressed(np.ones(2)),
             failure="take smaller increments",
         )
+
+
+def test_rates_of_two_bodies():
+    """requirement: step Σ share factor κ p^b v^a, each with the data of its body, and its slope."""
+    pressure, factors = np.array([2.0, 3.0]), np.array([[1.0, 2.0], [3.0, 5.0]])
+    states = [tuple(np.full(2, value) for value in (speed, 0.0, 0.0, 0.0)) for speed in (2.0, 3.0)]
+    laws = [PowerWear(0.1, 2.0, 1.0), PowerWear(0.2, 1.0, 2.0)]
+    wear = WearRates(laws, [DutyFactor(0.5), DutyFactor(0.25)], factors, states, step=7.0)
+    first = 0.5 * factors[0] * 0.1 * pressure**2 * 2.0
+    second = 0.25 * factors[1] * 0.2 * pressure * 9.0
+    np.testing.assert_allclose(wear(pressure), [first, second], rtol=1e-14)
+    np.testing.assert_allclose(wear.value(pressure), 7 * (first + second), rtol=1e-14)
+    slope = 7 * (2 * first / pressure + second / pressure)
+    np.testing.assert_allclose(wear.slope(pressure).point, slope, rtol=1e-14)

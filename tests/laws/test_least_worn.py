@@ -39,6 +39,23 @@ def test_least_worn_of_a_symmetric_face():
     assert mirrored == pytest.approx(d * [1.0, -1.0, -1.0], abs=1e-8)
 
 
+def test_least_squares_weigh_areas():
+    """requirement: of tilts of least volume, the least squares of depth are those of the area.
+
+    Two points on either side of a ridge; tilted by t about it, their depths are 1 - t and 2 + t.
+    """
+    y = np.array([-1.0, 0.0, 1.0])
+    R, opening = np.column_stack([np.ones(3), y]), np.array([-1.0, 0.0, -2.0])
+    weights = np.array([1.0, 1.0, 1.0])
+    d = least_worn(R, opening, weights, np.full(3, True))
+    assert d == pytest.approx([0.0, -0.5], abs=1e-8)
+    R, opening = np.vstack([R, [1.0, 0.5]]), np.append(opening, -1.5)
+    weights = np.array([3.0, 1.0, 1.0, 4.0])
+    d = least_worn(R, opening, weights, np.full(4, True))
+    # t of least 3 (1 - t)² + (2 + t)² + 4 (1.5 + t/2)²
+    assert d == pytest.approx([0.0, -0.4], abs=1e-8)
+
+
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("modes", [1, 2, 3])
 def test_least_worn_of_curved_faces(modes, seed):

@@ -52,6 +52,8 @@ def test_units_of_powers():
     assert tw.PowerWear("1e-7 1/MPa").coefficient == pytest.approx(1e-13)
     found = tw.PowerWear("2e-9 (mm/s)^0.5/MPa^1.5", b=1.5, a=0.5)
     assert found.coefficient == pytest.approx(2e-9 * 1e-9 * 1e-3**0.5)
+    found = tw.PowerWear("2e-9 1/((mm/s) MPa)", a=2.0)
+    assert found.coefficient == pytest.approx(2e-9 * 1e-6 * 1e3)
 
 
 @pytest.fixture(scope="module")

@@ -25,8 +25,14 @@ STORED = (
 @pytest.mark.parametrize("apart", [False, True])
 def test_the_steady_state_of_a_case(apart, backwards):
     """requirement: the same to 1e-12 with own tags, bodies in any order, on one mesh or on two."""
-    model, _, case = python_model(STEADY, *COARSE, apart=apart, backwards=backwards)
-    same(model.steady().result, tw.run(case))
+    model, face, case = python_model(STEADY, *COARSE, apart=apart, backwards=backwards)
+    steady, known = model.steady(), tw.run(case)
+    same(steady.result, known)
+    own = steady.result.interface
+    assert not np.array_equal(own.temperature_1, own.temperature_2)
+    bodies = {body.name: body for body in model.bodies}
+    for name, rise in (("punch", own.temperature_1), ("plate", own.temperature_2)):
+        np.testing.assert_array_equal(steady.surface_temperature(face, bodies[name]), rise)
 
 
 @pytest.mark.parametrize(("overrides", "until"), [(IN_TIME, "200 s"), (STORED, "0.5 s")])
@@ -47,6 +53,7 @@ def test_the_running_in_of_a_case(overrides, until):
     ("name", "overrides", "analysis"),
     [
         ("rectangular-punch", ("mesh.degree=2", "mesh.elements=3"), "steady"),
+        ("punch-on-strip-tilting", ("mesh.degree=2", "load.moment=0.5 N m"), "steady"),
         ("stacked-blocks", ("mesh.degree=2",), "steady"),
         ("stacked-blocks", ("mesh.degree=2", "analysis.type=initial"), "initial"),
         ("stacked-blocks", ("mesh.degree=2", "analysis.type=stability"), "stability"),

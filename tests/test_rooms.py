@@ -23,9 +23,9 @@ ORDER = [
     "model",
     "results",
     "simulation",
-    "scripting",
     "verification",
     "output",
+    "scripting",
     "app",
 ]
 """Packages in the order of data flow: each imports only from packages above it."""

@@ -360,7 +360,7 @@ def test_pickles_in_checkpoints(raw, place):
     else:
         np.savez(path, about=bomb, x=bomb)
     with pytest.raises(CaseError) as error:
-        read_checkpoint(place)
+        read_checkpoint(path)
     (line,) = error.value.faults
     assert line.startswith(f"{path}: cannot be read: ")
     assert not (place / "mark").exists()

@@ -23,23 +23,23 @@ ABOUT, ARRAYS = {"time": 0.1, "case": {"title": "µ"}}, {"a0": np.arange(3.0), "
 
 def test_a_checkpoint_is_read_as_it_was_written(tmp_path):
     """requirement: exact restoration to the last bit, without pickle."""
-    assert read_checkpoint(tmp_path) is None
-    write_checkpoint(tmp_path, ABOUT, ARRAYS)
-    about, arrays = read_checkpoint(tmp_path)
+    assert read_checkpoint(tmp_path / CHECKPOINT) is None
+    write_checkpoint(tmp_path / CHECKPOINT, ABOUT, ARRAYS)
+    about, arrays = read_checkpoint(tmp_path / CHECKPOINT)
     assert about == ABOUT
     assert arrays.keys() == ARRAYS.keys()
     for name, values in ARRAYS.items():
         np.testing.assert_array_equal(arrays[name], values)
     assert [path.name for path in tmp_path.iterdir()] == [CHECKPOINT]
     with pytest.raises(ValueError, match="pickle"):
-        write_checkpoint(tmp_path, ABOUT, {"a0": np.array([object()])})
-    assert read_checkpoint(tmp_path)[0]["time"] == 0.1
+        write_checkpoint(tmp_path / CHECKPOINT, ABOUT, {"a0": np.array([object()])})
+    assert read_checkpoint(tmp_path / CHECKPOINT)[0]["time"] == 0.1
 
 
 @pytest.mark.parametrize("fails", ["fsync", "replace"])
 def test_a_disk_that_fails_leaves_the_last_checkpoint(fails, monkeypatch, tmp_path):
     """requirement: the previous checkpoint survives any error; the draft is removed."""
-    write_checkpoint(tmp_path, ABOUT, ARRAYS)
+    write_checkpoint(tmp_path / CHECKPOINT, ABOUT, ARRAYS)
 
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -47,8 +47,8 @@ def test_a_disk_that_fails_leaves_the_last_checkpoint(fails, monkeypatch, tmp_pa
     with monkeypatch.context() as patched:
         patched.setattr(os, fails, full)
         with pytest.raises(OSError, match="No space"):
-            write_checkpoint(tmp_path, ABOUT | {"time": 0.2}, ARRAYS)
-    assert read_checkpoint(tmp_path)[0]["time"] == 0.1
+            write_checkpoint(tmp_path / CHECKPOINT, ABOUT | {"time": 0.2}, ARRAYS)
+    assert read_checkpoint(tmp_path / CHECKPOINT)[0]["time"] == 0.1
     assert [path.name for path in tmp_path.iterdir()] == [CHECKPOINT]
 
 
@@ -56,13 +56,13 @@ def test_a_disk_that_fails_leaves_the_last_checkpoint(fails, monkeypatch, tmp_pa
 def test_other_files_are_refused(content, tmp_path):
     (tmp_path / CHECKPOINT).write_bytes(content)
     with pytest.raises(tw.CaseError, match=r"checkpoint\.npz"):
-        read_checkpoint(tmp_path)
+        read_checkpoint(tmp_path / CHECKPOINT)
 
 
 def test_a_later_format_is_refused(tmp_path):
-    write_checkpoint(tmp_path, ABOUT | {"format": 3}, ARRAYS)
+    write_checkpoint(tmp_path / CHECKPOINT, ABOUT | {"format": 3}, ARRAYS)
     with pytest.raises(tw.CaseError, match="format 3"):
-        read_checkpoint(tmp_path)
+        read_checkpoint(tmp_path / CHECKPOINT)
 
 
 CRAFTED = {
@@ -76,30 +76,30 @@ CRAFTED = {
 @pytest.mark.parametrize("changed", CRAFTED.values(), ids=CRAFTED)
 def test_what_was_not_written_is_refused(changed, tmp_path):
     """requirement: a modified checkpoint is reported in one line."""
-    write_checkpoint(tmp_path, ABOUT, ARRAYS)
+    write_checkpoint(tmp_path / CHECKPOINT, ABOUT, ARRAYS)
     with np.load(tmp_path / CHECKPOINT) as file:
         content = dict(file)
     np.savez(tmp_path / CHECKPOINT, **content | changed)
     with pytest.raises(tw.CaseError, match="damaged") as caught:
-        read_checkpoint(tmp_path)
+        read_checkpoint(tmp_path / CHECKPOINT)
     assert len(caught.value.faults) == 1
 
 
 def test_a_checkpoint_that_swells_is_refused(tmp_path):
     """requirement: compressed entries, which could exhaust the memory, are refused."""
-    write_checkpoint(tmp_path, ABOUT, ARRAYS)
+    write_checkpoint(tmp_path / CHECKPOINT, ABOUT, ARRAYS)
     with np.load(tmp_path / CHECKPOINT) as file:
         content = dict(file)
     np.savez_compressed(tmp_path / CHECKPOINT, **content)
     with pytest.raises(tw.CaseError, match="cannot be read: its entries are compressed"):
-        read_checkpoint(tmp_path)
+        read_checkpoint(tmp_path / CHECKPOINT)
 
 
 @pytest.mark.parametrize("about", ["[]", "1", "null", "{", '"text"', "{}"])
 def test_a_head_of_something_else_is_refused(about, tmp_path):
     np.savez(tmp_path / CHECKPOINT, about=np.array(about))
     with pytest.raises(tw.CaseError, match=r"checkpoint\.npz: cannot be read"):
-        read_checkpoint(tmp_path)
+        read_checkpoint(tmp_path / CHECKPOINT)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """Running-in step by step: looking, changing loads, stopping."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from itertools import pairwise
 
 import numpy as np
@@ -68,6 +68,23 @@ def test_a_law_of_one_s_own_wears_as_the_power_does(cold):
     assert one.time == pytest.approx(other.time, rel=1e-6)
     np.testing.assert_allclose(one.pressure(face), other.pressure(face), rtol=1e-6)
     np.testing.assert_allclose(one.wear(face, punch), other.wear(face, punch), rtol=1e-6)
+
+
+def test_saved_states(cold, tmp_path):
+    """requirement: from the file of a state a march goes on bit by bit as from the state."""
+    model, face, _ = cold
+    kept = next(state for state in model.march("200 s") if state.time > 20)
+    kept.save(tmp_path / "state.npz")
+    again, other = (
+        list(model.march("200 s", start=start)) for start in (kept, tmp_path / "state.npz")
+    )
+    rows = ([astuple(state.row) for state in states] for states in (again, other))
+    np.testing.assert_array_equal(*rows)
+    np.testing.assert_array_equal(again[-1].pressure(face), other[-1].pressure(face))
+    with pytest.raises(tw.CaseError, match=r"state\.npz: is a state of other bodies"):
+        next(replace(model, degree=3).march("200 s", start=tmp_path / "state.npz"))
+    with pytest.raises(tw.CaseError, match=r"^march: .*none\.npz: there is no such file"):
+        next(model.march("200 s", start=tmp_path / "none.npz"))
 
 
 def test_states_stay_valid(cold):

@@ -1,4 +1,4 @@
-"""``checkpoint.npz``: the state for restarting a run, replaced atomically by the next one."""
+"""Files of the state of a run to restart from, each replaced atomically by the next one."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from ..errors import CaseError, quoted
 from .atomic_write import atomic_write
 
 CHECKPOINT = "checkpoint.npz"
+"""Name in a results folder."""
 FORMAT = 2
 _ABOUT, _DIGEST = "about", "digest"
 _UNREADABLE = (
@@ -26,14 +27,14 @@ _UNREADABLE = (
 """Exceptions of numpy, zip archives and JSON on invalid content."""
 
 
-def write_checkpoint(folder: Path, about: dict[str, Any], arrays: Mapping[str, np.ndarray]) -> None:
+def write_checkpoint(path: Path, about: dict[str, Any], arrays: Mapping[str, np.ndarray]) -> None:
     """Write the checkpoint to a draft, synchronise it to disk, and rename it.
 
     A valid checkpoint exists at any time, the previous or the new one.
 
     Parameters
     ----------
-    folder : Path
+    path : Path
     about : dict
         Metadata that JSON can represent.
     arrays : mapping of str to ndarray
@@ -44,14 +45,14 @@ def write_checkpoint(folder: Path, about: dict[str, Any], arrays: Mapping[str, n
         If it cannot be written; the previous checkpoint remains.
     """
     head = np.array(json.dumps({"format": FORMAT, _DIGEST: _digest(about, arrays)} | about))
-    with atomic_write(folder / CHECKPOINT) as draft, draft.open("wb") as file:
+    with atomic_write(path) as draft, draft.open("wb") as file:
         np.savez(file, allow_pickle=False, **{_ABOUT: head}, **arrays)
         file.flush()
         os.fsync(file.fileno())
-    _wait_for_disk(folder)
+    _wait_for_disk(path.parent)
 
 
-def read_checkpoint(folder: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]] | None:
+def read_checkpoint(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]] | None:
     """Read metadata and arrays of a checkpoint; None if there is none.
 
     Raises
@@ -59,7 +60,6 @@ def read_checkpoint(folder: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]
     CaseError
         If the file is not a checkpoint of this program, or is damaged.
     """
-    path = folder / CHECKPOINT
     try:
         with np.load(path, allow_pickle=False) as file:
             if any(entry.compress_type != zipfile.ZIP_STORED for entry in file.zip.infolist()):

@@ -96,7 +96,7 @@ class ResultsFolder:
 
     def checkpoint(self, about: dict, arrays: dict) -> None:
         """Write a state from which the run can be resumed."""
-        write_checkpoint(self.path, about, arrays)
+        write_checkpoint(self.path / CHECKPOINT, about, arrays)
 
     def output(self, time: float, *tables) -> None:
         """Write tables of points, such as the interface, at an output time."""

@@ -10,7 +10,7 @@ import numpy as np
 from ..case import Case, as_plain, load
 from ..case.validation.comparison import forbidden_changes, irrelevant_changes_only
 from ..errors import CaseError, other_mesh
-from .checkpoint import read_checkpoint
+from .checkpoint import CHECKPOINT, read_checkpoint
 from .coordinates import read_object
 from .folder import ResultsFolder, now, versions
 from .frames import keep_indexed
@@ -98,7 +98,7 @@ def last_checkpoint(
     CaseError
         If it belongs to another case or number of ranks, or is missing although results exist.
     """
-    found = read_checkpoint(path)
+    found = read_checkpoint(path / CHECKPOINT)
     if found is None:
         if (path / "summary.json").is_file():
             raise CaseError(f"-o {path}: contains results but no checkpoint; {_START_ANEW}")

@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from os import PathLike
+from pathlib import Path
 
+from ..errors import CaseError
 from ..model.analyses import TransientAnalysis
+from ..output.checkpoint import read_checkpoint, write_checkpoint
+from ..parallel import on_root
 from ..results import HistoryRow
+from ..serialise import Checkpoint, pack
 from ..simulation.analyses.transient import transient_history
 from ..simulation.analyses.transient_history import snapshot_at
 from ..simulation.interface.interface_problem import InterfaceProblem
 from ..simulation.results.recording import Snapshot
-from ..simulation.runtime.checkpoint_data import Progress
+from ..simulation.runtime.checkpoint_data import Progress, Saved
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.system import System
 from .body import MeshBody
@@ -30,6 +36,11 @@ class MarchState(ContactResults):
         Row of the history: time, step, wear volumes, largest pressure and temperature, in SI.
     progress : Progress
         Data to continue from.
+    problem : InterfaceProblem
+    system : System
+        Present one, whose meshes may have been moved.
+    first : System
+        That of the unworn bodies.
     """
 
     bodies: tuple[MeshBody, ...]
@@ -38,6 +49,7 @@ class MarchState(ContactResults):
     progress: Progress
     problem: InterfaceProblem
     system: System
+    first: System
 
     @property
     def time(self) -> float:
@@ -48,27 +60,68 @@ class MarchState(ContactResults):
     def snapshot(self) -> Snapshot:
         return snapshot_at(self.system, self.problem, self.progress.state)
 
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the state to a file from which `ScriptedModel.march` continues. Every rank calls.
+
+        An earlier file is replaced once the new one is complete.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written.
+        """
+        packed = pack(self.first.comm, Saved.now(self.first, self.progress))
+
+        def write() -> None:
+            assert packed is not None  # on rank 0
+            about = {"time": self.time, "outlines": packed.outlines}
+            write_checkpoint(Path(path), about, packed.arrays)
+
+        on_root(self.first.comm, write)
+
 
 def march(
     bodies: tuple[MeshBody, ...],
     meshes: UserMeshes,
     system: System,
     settings: TransientAnalysis,
-    start: MarchState | None,
+    start: MarchState | str | PathLike[str] | None,
 ) -> Iterator[MarchState]:
-    """States of a running-in, from the unworn contact or from an earlier state.
+    """States of a running-in, from the unworn contact or from an earlier state or file of one.
 
     Every rank calls.
 
     Raises
     ------
+    CaseError
+        If the file is not one of a state of these bodies.
     ComputationError
         If a step fails, or its balances do not hold.
     """
-    before = None if start is None else start.progress
+    if isinstance(start, MarchState):
+        before: Progress | None = start.progress
+    else:
+        before = None if start is None else _saved(Path(start), system)
     history, passing = transient_history(system, settings, Observer(), before)
     for moment in passing:
         history.keep(moment)
         row = history.table(HistoryRow)[-1]
         loop = history.loop
-        yield MarchState(bodies, meshes, row, history.progress(), loop.problem, loop.system)
+        state = history.progress(), loop.problem, loop.system, system
+        yield MarchState(bodies, meshes, row, *state)
+
+
+def _saved(path: Path, system: System) -> Progress:
+    """Progress of a file of `MarchState.save`. Every rank calls."""
+    found = on_root(system.comm, lambda: read_checkpoint(path))
+    if found is None:
+        raise CaseError(f"march: {path}: there is no such file")
+    outlines, arrays = found[0]["outlines"], found[1]
+    if len(outlines) != system.comm.size:
+        raise CaseError(f"march: {path}: was written by {len(outlines)} processes; use as many")
+    try:
+        return Checkpoint(outlines, arrays).state(system.comm.rank).of(system)
+    except CaseError:
+        raise CaseError(
+            f"march: {path}: is a state of other bodies, or of another version of thermowear"
+        ) from None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from os import PathLike
 from typing import Any, Literal
 
 from ..case.values import units
@@ -125,7 +126,7 @@ class ScriptedModel:
         return self._solved(_transient(until, settings), observer)
 
     def march(
-        self, until: Any, start: MarchState | None = None, **settings: Any
+        self, until: Any, start: MarchState | str | PathLike[str] | None = None, **settings: Any
     ) -> Iterator[MarchState]:
         """States of a running-in, step by step; stop by leaving the loop.
 
@@ -133,8 +134,9 @@ class ScriptedModel:
         ----------
         until : float, quantity or ``"steady"``
             Time [s], or until the pressure is steady within ``steady_tolerance``.
-        start : MarchState, optional
-            State to continue from, of this model or of one with other loads, speeds or laws.
+        start : MarchState or path, optional
+            State to continue from, or a file of it by `MarchState.save`: of this model or of one
+            with other loads, speeds or laws.
         **settings
             Other attributes of `model.analyses.TransientAnalysis`.
         """

@@ -14,7 +14,7 @@ from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.mechanics.surface_load import pressure_work
+from thermowear.bulk.surfaces import pressure_work
 from thermowear.reference import cylinder
 
 from ..conftest import two_blocks

@@ -10,7 +10,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.mechanics.surface_load import pressure_work
+from thermowear.bulk.surfaces import pressure_work
 from thermowear.geometry.meshing.hexes import Lattice, level, mesh_lattice
 from thermowear.geometry.meshing.quads import tagged_bodies
 

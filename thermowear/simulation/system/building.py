@@ -18,13 +18,17 @@ from ...model.meshes import Zone
 from ...model.model import Model
 from ...parallel import on_root
 from ...timer import Phases
-from .contact_points import contact_points, facing_parts, worn_contact_points
+from .contact_points import (
+    contact_points,
+    facing_parts,
+    softness_of_parts,
+    worn_contact_points,
+)
 from .elastic_system import dead_load, dead_resultant, elastic_system
 from .rigid_modes import rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
 from .thermal_system import ThermalSystem, thermal_system
-from .wear_shares import softness_of_parts
 from .worn_geometry import WornGeometry
 
 

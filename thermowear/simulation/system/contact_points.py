@@ -19,13 +19,32 @@ from ...laws.motions import RigidMotion
 from ...model.facing import Facing
 from ...model.model import Model
 from .initial_shape import initial_gap
-from .wear_shares import LEAST
 from .worn_geometry import WornGeometry
 
 _SLIVER = 1e-3
 """Snapping distance to facet ends, relative to the facet: matching facets drift apart by wear."""
+_LEAST = 1e-9
+"""Softness of a body with an unchanging face, where that of the other body is 1."""
 _ALONG = 0.05
 """Largest overhang past the end of the other face by the holder's motion, relative to the face."""
+
+
+def softness_of_parts(model: Model) -> dict[str, float]:
+    """Softness of each part of the bodies for `contact.search.common_face`; only ratios count.
+
+    The gap between opposite points closes by the elastic deflection of both bodies. In continued
+    sliding wear the deflection is soon small compared with the wear depths: the shares are then in
+    the ratio of the wear rates.
+    """
+    wearing = model.interface.wearing_in_place
+    if not wearing:
+        return {part: material.compliance for part, material in model.materials.items()}
+    largest = max(wearing.values()) or 1.0  # all rates are 0 below a threshold
+    softness: dict[str, float] = {}
+    for index, body in enumerate(model.bodies):
+        share = max(wearing.get(index, 0.0) / largest, _LEAST)
+        softness |= dict.fromkeys(body.parts, share)
+    return softness
 
 
 def contact_points(
@@ -85,7 +104,7 @@ def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
     if walled[0] == walled[1]:
         return faces
     pairs = zip(faces, walled, strict=True)
-    return tuple(replace(face, softness=1.0 if wall else LEAST) for face, wall in pairs)
+    return tuple(replace(face, softness=1.0 if wall else _LEAST) for face, wall in pairs)
 
 
 def _max_overhang(worn: WornGeometry, face_1: Face | Surface) -> float:

@@ -11,7 +11,7 @@ from ...bulk.bodies import Bodies
 from ...bulk.compiled import nodal_loads
 from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
-from ...bulk.mechanics.surface_load import pressure_work, surface_work
+from ...bulk.surfaces import pressure_work, surface_work
 from ...contact.operators.traces import gap_trace
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion
@@ -55,7 +55,7 @@ def dead_load(holder: Holder, elastic: Elasticity) -> np.ndarray | None:
 
 
 def surface_loads(holder: Holder, elastic: Elasticity) -> list[Callable]:
-    """Forms of the work of the loads on surfaces, see `bulk.mechanics.surface_load`."""
+    """Forms of the work of the loads on surfaces, see `bulk.surfaces`."""
     direction = np.array(holder.load_direction)
     forces = [
         surface_work(elastic, surface, force * direction)

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from ...model.meshes import Zone
 from ...model.model import Model
-from .wear_shares import softness_of_parts
+from .contact_points import softness_of_parts
 
 Part = TypeVar("Part")
 

@@ -10,9 +10,8 @@ import numpy as np
 from ...bulk.bodies import Bodies
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.heat_equation import given_rises
-from ...bulk.heat.surface_heat import surface_heat
 from ...bulk.kinematics import Kinematics
-from ...bulk.surface_area import surface_area
+from ...bulk.surfaces import surface_area, surface_heat
 from ...laws.time_course import TimeFunction
 from ...model.heat import Heat
 from ...model.model import Model

@@ -44,8 +44,8 @@ def ring(columns=24, rows=3):
     angles, radii = np.linspace(0, 2 * np.pi, columns + 1), np.linspace(INNER, OUTER, rows + 1)
     at = Polar()
     surfaces = {
-        "ring_rim": lambda p: at.on_circle(p, OUTER),
-        "ring_bore": lambda p: at.on_circle(p, INNER),
+        "ring_rim": at.circle(OUTER),
+        "ring_bore": at.circle(INNER),
     }
     return _distributed({"ring": mesh_body([at.sheet(angles, radii)], 3)}, surfaces)
 

@@ -7,8 +7,9 @@ z = 0 at the mean radius. Beside a face that is not flat the plate continues at 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import Literal
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -17,8 +18,7 @@ from ...case.tables.geometry import named
 from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
 from ..mesh.tagged import TaggedMesh
-from ..meshing.blocks import growing
-from ..meshing.face_profiles import Arc, FaceProfile, Straight
+from ..meshing.divisions import growing
 from .stacked import Rectangle, Stacked
 
 _STEEPEST = math.radians(80)
@@ -26,6 +26,61 @@ _STEEPEST = math.radians(80)
 
 _DEEPEST = 0.9
 """Largest height of a face relative to the height of its body."""
+
+
+@dataclass(frozen=True)
+class FaceProfile(ABC):
+    """Meridian of a face: height over the radius, zero at the mean radius `middle` [m].
+
+    Attributes
+    ----------
+    order : int
+        Geometric order of cells that follow it.
+    """
+
+    middle: float
+    order: ClassVar[int]
+
+    @abstractmethod
+    def height(self, radii: np.ndarray) -> np.ndarray:
+        """Z at radii [m]."""
+
+    def spaced(self, radii: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Map equally spaced radii to the nodes of cells that end at `columns` [m]."""
+        return radii
+
+
+@dataclass(frozen=True)
+class Straight(FaceProfile):
+    """Cone that rises outwards by `slope`; flat if it is 0."""
+
+    slope: float
+    order = 1
+
+    def height(self, radii):
+        return (radii - self.middle) * self.slope
+
+
+@dataclass(frozen=True)
+class Arc(FaceProfile):
+    """Torus: an arc of the given radius, convex downwards [m]."""
+
+    radius: float
+    order = 3
+
+    def height(self, radii):
+        return 2 * self.radius * np.sin(self._angle(radii) / 2) ** 2
+
+    def spaced(self, radii, columns):
+        # equal angles: points between the nodes then lie within 3e-4 h⁴/R³ of the arc
+        after = np.clip(np.searchsorted(columns, radii, side="right"), 1, len(columns) - 1)
+        start, end = columns[after - 1], columns[after]
+        part = (radii - start) / (end - start)
+        angle = (1 - part) * self._angle(start) + part * self._angle(end)
+        return self.middle + self.radius * np.sin(angle)
+
+    def _angle(self, radii):
+        return np.arcsin((radii - self.middle) / self.radius)
 
 
 class AnnularPunch(Stacked):

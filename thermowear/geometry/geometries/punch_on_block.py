@@ -14,11 +14,10 @@ from pydantic import model_validator
 from ...case.tables.geometry import Pressing
 from ...case.values.section import KeyFault
 from ...case.values.units import Length, Radius
-from ..meshing.blocks import ends_of, growing_from_both
-from ..meshing.face_ends import face_ends, smoothed
-from ..meshing.quads import Sheet, grid, mesh_body
+from ..meshing.divisions import face_ends, growing_from_both, smoothed
+from ..meshing.quads import ORDER, Sheet, grid, level, mesh_body
 from ..meshing.rounded_punch import RoundedPunch, expected_end
-from .on_block import ORDER, PlaneOnBlock, near
+from .on_block import PlaneOnBlock
 
 
 class PunchOnBlock(PlaneOnBlock):
@@ -106,10 +105,7 @@ class PunchOnBlock(PlaneOnBlock):
             highest = shape.end_height
         else:
             sheets, highest = [self._rectangle(elements, grading)], 0.0
-        size = self.width
-
-        def on_top(p):
-            return near(p[..., 1], self.height, size)
+        size, on_top = self.width, level(1, self.height)
 
         def off_axis(p):
             return np.any(p[..., 0] != 0.0, axis=1)
@@ -145,8 +141,8 @@ class PunchOnBlock(PlaneOnBlock):
         contact = np.diff(columns).min()
         coarsest = max(self.width, self.height) * 3.0 / elements
         first = (contact, math.sqrt(contact * coarsest))
-        rows = ends_of(growing_from_both(0.0, self.height, first, grading, coarsest))
-        return Sheet(grid(columns, rows), lambda p: p)
+        rows = growing_from_both(0.0, self.height, first, grading, coarsest)
+        return Sheet(grid(columns, rows))
 
 
 def _with_end(ends: np.ndarray, place: float, kept: tuple[float, ...]) -> np.ndarray:

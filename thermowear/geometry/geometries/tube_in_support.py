@@ -17,8 +17,7 @@ from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.units import Length
 from ...errors import CaseError
 from ..meshing.polar import Polar, incomplete
-from ..meshing.quads import mesh_body, tagged_bodies
-from .on_block import ORDER
+from ..meshing.quads import ORDER, mesh_body, tagged_bodies
 
 _THINNEST = 1e-6
 """Least contact width relative to the tube's radius."""
@@ -97,12 +96,12 @@ class TubeInSupport(PlaneGeometry):
             "support": [support.sheet(hole_face.all_round(), hole_face.rows(hole, rim))],
         }
         claims = {
-            "tube_face": lambda p: tube.on_arc(p, radius, tube_face.span),
-            "tube_outside": lambda p: tube.on_circle(p, radius),
-            "tube_bore": lambda p: tube.on_circle(p, bore),
-            "support_face": lambda p: support.on_arc(p, hole, hole_face.span),
-            "support_hole": lambda p: support.on_circle(p, hole),
-            "support_rim": lambda p: support.on_circle(p, rim),
+            "tube_face": tube.circle(radius, tube_face.span),
+            "tube_outside": tube.circle(radius),
+            "tube_bore": tube.circle(bore),
+            "support_face": support.circle(hole, hole_face.span),
+            "support_hole": support.circle(hole),
+            "support_rim": support.circle(rim),
         }
         return tagged_bodies({name: mesh_body(s, ORDER) for name, s in bodies.items()}, claims)
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh.limits import MOST_HEXAHEDRA, check_count
 from ..mesh.nodes import reference_nodes
 from ..mesh.orders import boundary
+from .divisions import MOST_HEXAHEDRA, check_count
 from .quads import MeshedBody
 
 
@@ -26,13 +26,14 @@ class Lattice:
     ends : tuple of ndarray
         Element ends along each parameter, increasing.
     place : callable
-        Orientation-preserving map from parameters to coordinates, both of shape (..., 3) [m].
+        Orientation-preserving map from parameters to coordinates, both of shape (..., 3), by
+        default the identity [m].
     closed : bool
         True if the second parameter, an angle, is periodic.
     """
 
     ends: tuple[np.ndarray, np.ndarray, np.ndarray]
-    place: Callable[[np.ndarray], np.ndarray]
+    place: Callable[[np.ndarray], np.ndarray] = np.asarray
     closed: bool = False
 
 
@@ -50,11 +51,6 @@ def mesh_lattice(lattice: Lattice, order: int) -> MeshedBody:
     place[1] %= len(v)
     cells = np.ravel_multi_index(tuple(place), shape)
     return MeshedBody(points, cells, boundary("hexahedron", order, cells))
-
-
-def level(places: np.ndarray, z: float) -> np.ndarray:
-    """Mask of facets, given by their nodes (n, nodes, 3), at a height."""
-    return np.all(np.abs(places[..., 2] - z) < 1e-9 * np.ptp(places[..., :2]), axis=1)
 
 
 def _nodes(ends: np.ndarray, order: int) -> np.ndarray:

@@ -12,10 +12,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..mesh.limits import check_count
 from ..mesh.nodes import reference_nodes
 from ..mesh.orders import boundary
 from ..mesh.tagged import TaggedMesh
+from .divisions import check_count
+
+ORDER = 3
+"""Order of cells on arcs; nodes lie on an arc, points between them within 3e-4 h⁴/R³ of it."""
+
+Claim = Callable[[np.ndarray], np.ndarray]
+"""Predicate of a surface: mask of boundary facets, given by their nodes (n_facets, nodes, gdim)."""
 
 
 @dataclass(frozen=True)
@@ -27,13 +33,13 @@ class Sheet:
     corners : ndarray, shape (n_cells, 4, 2)
         Corners in order around each cell, of either orientation.
     place : callable
-        Map from parameters to coordinates, both of shape (..., 2) [m].
+        Map from parameters to coordinates, both of shape (..., 2), by default the identity [m].
     zone : str
         Zone of the body with a material of its own; empty for the body itself.
     """
 
     corners: np.ndarray
-    place: Callable[[np.ndarray], np.ndarray]
+    place: Callable[[np.ndarray], np.ndarray] = np.asarray
     zone: str = ""
 
 
@@ -108,9 +114,34 @@ def mesh_body(sheets: list[Sheet], order: int) -> MeshedBody:
     return MeshedBody(points, cells, boundary("quadrilateral", order, cells), zones)
 
 
-def tagged_bodies(
-    bodies: dict[str, MeshedBody], surfaces: dict[str, Callable[[np.ndarray], np.ndarray]]
-) -> TaggedMesh:
+def level(axis: int, value: float) -> Claim:
+    """Predicate of the facets with all nodes at a coordinate."""
+    return lambda p: np.all(
+        np.abs(p[..., axis] - value) < 1e-9 * np.ptp(p, axis=(0, 1)).max(), axis=1
+    )
+
+
+def between(first: float, last: float, axis: int = 0) -> Claim:
+    """Predicate of the facets whose midpoint is in a range of a coordinate."""
+
+    def claim(p):
+        middle = p[..., axis].mean(axis=1)
+        return (first < middle) & (middle < last)
+
+    return claim
+
+
+def both(*claims: Claim) -> Claim:
+    """Predicate of the facets that fulfil all of some predicates."""
+    return lambda p: np.logical_and.reduce([claim(p) for claim in claims])
+
+
+def every(p: np.ndarray) -> np.ndarray:
+    """Predicate of all facets, for those that no other surface claims."""
+    return np.ones(len(p), dtype=bool)
+
+
+def tagged_bodies(bodies: dict[str, MeshedBody], surfaces: dict[str, Claim]) -> TaggedMesh:
     """Assemble meshed bodies and name their boundary.
 
     Parameters
@@ -118,9 +149,8 @@ def tagged_bodies(
     bodies : dict of str to MeshedBody
         Bodies by name, body 1 first.
     surfaces : dict of str to callable
-        Predicate of each surface, named ``body_surface``: maps the coordinates of the nodes of
-        boundary facets, shape (n_facets, nodes, gdim), to a mask; a facet belongs to the first
-        surface of its body whose predicate is true.
+        Predicate of each surface, named ``body_surface``; a facet belongs to the first surface of
+        its body whose predicate is true.
     """
     names = [*bodies, *(zone for body in bodies.values() for zone in body.zones)]
     shift, points, cells, cell_tags, facets, facet_tags = 0, [], [], [], [], []

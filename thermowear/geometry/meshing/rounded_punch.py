@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .face_ends import depth_ends
+from .divisions import depth_ends
 from .quads import Sheet, grid, ruled
 
 _END = math.pi / 4
@@ -94,8 +94,7 @@ class RoundedPunch:
                 grid(
                     np.linspace(left[0], core[0], len(along)),
                     np.linspace(shell, self.height, len(side)),
-                ),
-                lambda p: p,
+                )
             ),
         ]
         if not self.half:

@@ -11,8 +11,8 @@ from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import PlaneStrain
+from thermowear.geometry.meshing.cells import Sheet, grid, mesh_body, tagged_bodies
 from thermowear.geometry.meshing.polar import Polar
-from thermowear.geometry.meshing.quads import Sheet, grid, mesh_body, tagged_bodies
 
 COMM = MPI.COMM_WORLD
 STEEL = ThermalMaterial(50.0, 2e6)

@@ -11,8 +11,7 @@ from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.mechanics.surface_load import pressure_work
-from thermowear.geometry.meshing.hexes import Lattice, mesh_lattice
-from thermowear.geometry.meshing.quads import level, tagged_bodies
+from thermowear.geometry.meshing.cells import Lattice, level, mesh_lattice, tagged_bodies
 
 COMM = MPI.COMM_WORLD
 ENDS = (np.linspace(0.0, 0.02, 3), np.linspace(0.0, 0.01, 3), np.array([0.0, 0.01, 0.03, 0.04]))

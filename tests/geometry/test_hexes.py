@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from thermowear.geometry.mesh.nodes import facet_nodes, reference_nodes
-from thermowear.geometry.mesh.orders import shape_functions
+from thermowear.geometry.mesh.nodes import facet_nodes, reference_nodes, shape_functions
+from thermowear.geometry.meshing.cells import Lattice, mesh_lattice, tagged_bodies
 from thermowear.geometry.meshing.divisions import graded_face
-from thermowear.geometry.meshing.hexes import Lattice, mesh_lattice
-from thermowear.geometry.meshing.quads import tagged_bodies
 from thermowear.geometry.reading.export import write_mesh
 
 GMSH = {1: 5, 2: 12, 3: 92}

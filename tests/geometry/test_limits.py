@@ -6,7 +6,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import CaseError
-from thermowear.geometry.meshing import quads
+from thermowear.geometry.meshing import cells
 from thermowear.geometry.meshing.divisions import MOST_CELLS, check_count, growing
 
 from ..case.bad import faults
@@ -81,9 +81,9 @@ def test_counting_comes_first(monkeypatch):
     """
     requirement: nothing is made of a grid that is too large.
     """
-    monkeypatch.setattr(quads.np, "meshgrid", None)
+    monkeypatch.setattr(cells.np, "meshgrid", None)
     with pytest.raises(CaseError):
-        quads.grid(range(2000), range(2000))
+        cells.grid(range(2000), range(2000))
     with pytest.raises(CaseError):
         growing(0.0, 1.0, 1e-9, 1.0, 1e-9)
     check_count(MOST_CELLS)

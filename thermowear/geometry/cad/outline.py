@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..mesh.orders import boundary, compact
-from ..mesh.tagged import TaggedMesh
+from ..mesh.nodes import boundary
+from ..mesh.tagged import TaggedMesh, compact
 
 _CORNER = math.radians(20.0)
 """Smallest angle between edges that makes a corner [rad]."""

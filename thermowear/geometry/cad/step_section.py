@@ -13,7 +13,7 @@ from ..mesh.gmsh_session import gmsh_model
 from ..mesh.tagged import TaggedMesh
 from .design import Design
 from .outline import Piece, loops
-from .step_files import UNIT, save
+from .step_prism import UNIT, save
 from .worn_body import face_motion, slide
 
 _STRAIGHT = 1e-9  # relative to the length of a piece

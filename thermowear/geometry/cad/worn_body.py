@@ -1,11 +1,15 @@
-"""Mesh of a body with a worn contact face: motion of the face, its sides and the interior."""
+"""Mesh of a body with a worn contact face: motion of face, sides and interior; its export."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 
-from ..mesh.tagged import TaggedMesh
+from ..mesh.tagged import TaggedMesh, quadratic
 from ..moving.moved import Extension, MovableBody
+from ..reading.export import write_mesh
 from .design import Design
 from .outline import loops
 
@@ -89,3 +93,34 @@ def face_motion(design: Design, points: np.ndarray, ends: list[np.ndarray | None
         if end is not None:
             motion = motion + (near * float((end - motion[k]) @ tangents[k]))[:, None] * tangents
     return motion
+
+
+def write_design_mesh(
+    mesh: TaggedMesh, design: Design, face: str, path: Path, extension: Extension
+) -> None:
+    """Write the mesh of a body whose contact face has a worn shape.
+
+    Straight-sided cells become quadratic to follow the shape; .vtu supports no higher order.
+    ``displacement_m`` holds the displacement of the nodes.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Mesh of the unworn body.
+    design : Design
+    face : str
+        Name of its contact face.
+    path : Path
+    extension : callable
+        Factory of harmonic extensions, see `moved_body`.
+
+    Raises
+    ------
+    CaseError
+        If the file cannot be written.
+    """
+    if mesh.order == 1 or (path.suffix == ".vtu" and mesh.order > 2):
+        mesh = quadratic(mesh)
+    points = moved_body(mesh, design, face, extension)
+    displacement = np.pad(points - mesh.points, ((0, 0), (0, 3 - points.shape[1])))
+    write_mesh(replace(mesh, points=points), path, {"displacement_m": displacement})

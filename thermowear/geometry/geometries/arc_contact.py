@@ -17,8 +17,8 @@ from ...case.tables.geometry import keyed
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
+from ..meshing.cells import ORDER, Claim, Sheet, every, grid, level, mesh_body, tagged_bodies
 from ..meshing.polar import Division, Polar, complete
-from ..meshing.quads import ORDER, Claim, Sheet, every, grid, level, mesh_body, tagged_bodies
 
 ORIGIN = Polar()
 _STEEPEST = math.radians(80.0)

@@ -15,8 +15,7 @@ from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
 from ..mesh.tagged import TaggedMesh
-from ..meshing.divisions import joined
-from ..meshing.quads import (
+from ..meshing.cells import (
     MeshedBody,
     Sheet,
     between,
@@ -26,6 +25,7 @@ from ..meshing.quads import (
     mesh_body,
     tagged_bodies,
 )
+from ..meshing.divisions import joined
 
 
 class BeamOnFoundation(PlaneGeometry):

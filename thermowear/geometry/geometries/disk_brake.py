@@ -16,9 +16,17 @@ from pydantic import model_validator
 from ...case.tables.geometry import Geometry, keyed, named
 from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
+from ..meshing.cells import (
+    Claim,
+    Lattice,
+    MeshedBody,
+    both,
+    every,
+    level,
+    mesh_lattice,
+    tagged_bodies,
+)
 from ..meshing.divisions import SAME, graded_face, growing, joined
-from ..meshing.hexes import Lattice, mesh_lattice
-from ..meshing.quads import Claim, MeshedBody, both, every, level, tagged_bodies
 from .stacked import Rectangle, Stacked
 
 _WIDEST = math.radians(30)

@@ -16,8 +16,8 @@ from pydantic import model_validator
 from ...case.tables.geometry import keyed
 from ...case.values.section import KeyFault
 from ...case.values.units import Coordinate, Length
+from ..meshing.cells import Sheet
 from ..meshing.polar import Division
-from ..meshing.quads import Sheet
 from .arc_contact import ORIGIN, ArcContact, degrees
 
 _STEEPEST = math.radians(85.0)

@@ -11,8 +11,7 @@ from ...case.tables.geometry import Geometry, keyed, named
 from ...case.tables.plane_geometry import HalvableGeometry
 from ...case.values.units import Length
 from ...errors import CaseError
-from ..meshing.divisions import face_ends, growth, row_ratio
-from ..meshing.quads import (
+from ..meshing.cells import (
     ORDER,
     Claim,
     MeshedBody,
@@ -22,6 +21,7 @@ from ..meshing.quads import (
     mesh_body,
     tagged_bodies,
 )
+from ..meshing.divisions import face_ends, growth, row_ratio
 from ..meshing.rings import RectangularOutline, ringed_body
 
 _THINNEST = 1e-6

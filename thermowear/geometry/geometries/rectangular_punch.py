@@ -14,9 +14,17 @@ from pydantic import model_validator
 from ...case.tables.geometry import Geometry, named
 from ...case.values.section import KeyFault
 from ...case.values.units import Length
+from ..meshing.cells import (
+    Lattice,
+    MeshedBody,
+    between,
+    both,
+    every,
+    level,
+    mesh_lattice,
+    tagged_bodies,
+)
 from ..meshing.divisions import graded_face, growing, joined
-from ..meshing.hexes import Lattice, mesh_lattice
-from ..meshing.quads import MeshedBody, between, both, every, level, tagged_bodies
 
 
 class RectangularPunch(Geometry):

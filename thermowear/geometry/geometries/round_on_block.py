@@ -15,9 +15,9 @@ import numpy as np
 from ...case.tables.geometry import Pressing
 from ...case.values.units import Length
 from ...errors import CaseError
+from ..meshing.cells import ORDER, between, both, level, mesh_body
 from ..meshing.divisions import face_ends, growth, row_ratio
 from ..meshing.polar import Polar
-from ..meshing.quads import ORDER, between, both, level, mesh_body
 from ..meshing.rings import Disc, ringed_body
 from .on_block import OnBlock, PlaneOnBlock
 

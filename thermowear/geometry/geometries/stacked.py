@@ -12,8 +12,8 @@ import numpy as np
 
 from ...case.tables.geometry import Geometry
 from ..mesh.tagged import TaggedMesh
+from ..meshing.cells import Sheet, between, both, grid, level, mesh_body, tagged_bodies
 from ..meshing.divisions import divided_face, growing_from_both, joined
-from ..meshing.quads import Sheet, between, both, grid, level, mesh_body, tagged_bodies
 
 
 @dataclass(frozen=True)

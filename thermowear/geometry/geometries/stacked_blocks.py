@@ -14,8 +14,8 @@ import numpy as np
 from ...case.tables.geometry import named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.units import Length
+from ..meshing.cells import MeshedBody, Sheet, every, grid, level, mesh_body, tagged_bodies
 from ..meshing.divisions import growing
-from ..meshing.quads import MeshedBody, Sheet, every, grid, level, mesh_body, tagged_bodies
 
 _THIN_ROWS = 3
 """Graded rows at the contact, which resolve the thermal boundary layer and waves along the face."""

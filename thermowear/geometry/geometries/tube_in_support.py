@@ -16,8 +16,8 @@ from ...case.tables.geometry import Pressing, named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.units import Length
 from ...errors import CaseError
+from ..meshing.cells import ORDER, mesh_body, tagged_bodies
 from ..meshing.polar import Polar, incomplete
-from ..meshing.quads import ORDER, mesh_body, tagged_bodies
 
 _THINNEST = 1e-6
 """Least contact width relative to the tube's radius."""

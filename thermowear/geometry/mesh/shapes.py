@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .orders import slopes
+from .nodes import slopes
 from .tagged import TaggedMesh
 
 _PLACES = {2: 7, 3: 4}

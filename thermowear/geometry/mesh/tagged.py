@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .nodes import FACETS, reference_nodes
+from .nodes import FACETS, reference_nodes, shape_functions
 
 
 @dataclass(frozen=True)
@@ -68,3 +68,42 @@ class TaggedMesh:
     def node_places(self, kind: str) -> np.ndarray:
         """Reference coordinates of the nodes of a cell or facet, shape (n_nodes, dim)."""
         return reference_nodes(kind, self.order)
+
+
+def quadratic(mesh: TaggedMesh) -> TaggedMesh:
+    """Mesh with cells of order 2 whose nodes lie on the cells of higher order."""
+    kind, order = mesh.cell_type, mesh.order
+    values = shape_functions(kind, order, reference_nodes(kind, 2))
+    places = np.einsum("qk,cki->cqi", values, mesh.points[mesh.cells])
+    keys = [_corner_keys(kind, mesh.cells), _corner_keys(FACETS[kind], mesh.facets)]
+    keys[1] = np.pad(
+        keys[1], ((0, 0), (keys[0].shape[1] - keys[1].shape[1], 0)), constant_values=-1
+    )
+    _, first, node = np.unique(np.concatenate(keys), axis=0, return_index=True, return_inverse=True)
+    cells, facets = np.split(node.ravel(), [len(keys[0])])
+    return replace(
+        mesh,
+        points=places.reshape(-1, mesh.points.shape[1])[first],
+        cells=cells.reshape(len(mesh.cells), -1),
+        facets=facets.reshape(len(mesh.facets), -1),
+    )
+
+
+def _corner_keys(kind: str, cells: np.ndarray) -> np.ndarray:
+    """Corners between which each node of order 2 lies, padded with -1, sorted; one row per node."""
+    belongs = shape_functions(kind, 1, reference_nodes(kind, 2)) > 1e-9
+    corners = cells[:, : belongs.shape[1]]
+    return np.sort(np.where(belongs, corners[:, None], -1), axis=2).reshape(-1, belongs.shape[1])
+
+
+def compact(mesh: TaggedMesh) -> TaggedMesh:
+    """Mesh without unused points."""
+    used, cells = np.unique(mesh.cells, return_inverse=True)
+    number = np.full(len(mesh.points), -1, dtype=np.int64)
+    number[used] = np.arange(len(used))
+    return replace(
+        mesh,
+        points=np.ascontiguousarray(mesh.points[used]),
+        cells=cells.reshape(mesh.cells.shape).astype(np.int64),
+        facets=number[mesh.facets],
+    )

@@ -79,13 +79,14 @@ def divided_face(
         return graded_face(start, end, elements, grading)
     first, last = max(zone[0], start), min(zone[1], end)
     face = graded_face(first, last, elements, grading)
+    parts = [face]
     size, largest = np.diff(face).min(), (last - first) / elements
     apart = _APART * max(abs(start), abs(end))
     if first - start > apart:
-        face = joined(growing_from_both(start, first, (size, size), grading, largest), face)
+        parts = [growing_from_both(start, first, (size, size), grading, largest), face]
     if end - last > apart:
-        face = joined(face, growing_from_both(last, end, (size, size), grading, largest))
-    return face
+        parts.append(growing_from_both(last, end, (size, size), grading, largest))
+    return joined(*parts)
 
 
 def growing(start: float, end: float, first: float, grading: float, largest: float) -> np.ndarray:
@@ -98,7 +99,7 @@ def growing(start: float, end: float, first: float, grading: float, largest: flo
     if span <= SAME * max(abs(start), abs(end)):
         return np.array([start])
     if grading == 1.0:
-        steps = np.ones(_count(span, largest))
+        steps: np.ndarray = np.ones(_count(span, largest))
     else:
         ratio, count, size, graded = 1.0 / grading, 1, first, first
         while graded < span and size * ratio <= largest:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .cells import Claim, Sheet, grid
 from .divisions import (
     QUICKLY,
     divided_face,
@@ -19,7 +20,6 @@ from .divisions import (
     growth,
     row_ratio,
 )
-from .quads import Claim, Sheet, grid
 
 _WIDEST = math.radians(12.0)
 """Largest angle of cells away from the contact: order 3 reproduces the area of a disk to 6e-7."""

@@ -17,8 +17,8 @@ from typing import Protocol
 
 import numpy as np
 
+from .cells import Sheet, ruled
 from .divisions import check_count, depth_ends
-from .quads import Sheet, ruled
 
 _SHOULDER = 0.66
 """Position on the flat where the diagonal of the rings in a disc ends, relative to the radius."""

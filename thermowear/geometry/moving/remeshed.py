@@ -13,13 +13,11 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..mesh.gmsh_session import gmsh_model
-from ..mesh.orders import compact
 from ..mesh.shapes import scaled_jacobians
-from ..mesh.tagged import TaggedMesh
-from .even_lines import even
+from ..mesh.tagged import TaggedMesh, compact
 from .moved import Extension
 from .new_face import NewFace, divided
-from .skeleton import OutlinePiece, skeleton
+from .skeleton import OutlinePiece, even, skeleton
 
 _ALGORITHMS = (6, 8, 5)
 """gmsh's algorithms: frontal-Delaunay, its variant for quads, Delaunay; the best one varies."""

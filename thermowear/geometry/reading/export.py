@@ -9,8 +9,7 @@ import numpy as np
 
 from ...errors import CaseError
 from ..mesh.nodes import FACETS
-from ..mesh.orders import compact, quadratic
-from ..mesh.tagged import TaggedMesh
+from ..mesh.tagged import TaggedMesh, compact, quadratic
 
 _MESHIO_CELLS = {
     ("quadrilateral", 4): "quad",

@@ -1,25 +1,41 @@
 """Reading of untrusted mesh files: neither ending nor contents are assumed to be valid.
 
 Only meshes are read. A file is checked before it is passed to a reader, and no reader executes
-commands, opens other files or writes any.
+commands, opens other files or writes any. Readers of XML and HDF5 files may crash, hang or exhaust
+the memory on a malformed or hostile file; a separate process with resource limits protects the
+program.
 """
 
 from __future__ import annotations
 
+import io
+import json
 import os
 import stat
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from ...errors import CaseError
 from .abaqus import read_abaqus
-from .contents import MeshContents, shown
+from .contents import CellBlock, MeshContents, shown
 from .gmsh.file import read_gmsh
-from .isolated import read_isolated
 
 _LARGEST = 32 * 2**20
 """Largest size of a file [bytes]: half a million nodes as text, read in seconds."""
+_READER = Path(__file__).with_name("isolated_reader.py")
+_SECONDS = 60
+"""Largest elapsed time, regardless of processor time."""
+_MEMORY = 2**30
+"""Address space for the libraries and a small file [bytes], larger than the memory used."""
+_PER_BYTE = 16
+"""Additional memory per byte of a file."""
+_LONGEST = 300
+"""Largest number of characters of an error message."""
 
 
 @dataclass(frozen=True)
@@ -98,3 +114,47 @@ _KINDS = {
     ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), _by_libraries),
     ".med": _Kind("MED file", (b"\x89HDF\r\n\x1a\n",), _by_libraries),
 }
+
+
+def read_isolated(path: Path, ending: str) -> MeshContents:
+    """Read a .vtu, .xdmf or .med file.
+
+    Raises
+    ------
+    ValueError
+        If it is malformed, refers to other files, or exceeds the limits of memory or time.
+    """
+    memory = _MEMORY + _PER_BYTE * path.stat().st_size
+    command = [sys.executable, "-P", str(_READER), str(path.resolve()), ending, str(memory)]
+    single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+    try:
+        done = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_SECONDS,
+            env=os.environ | single,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"reading it took more than {_SECONDS} s") from None
+    if done.returncode == 1:
+        reason = done.stderr.decode("utf-8", "replace").rpartition("\n")[2]
+        raise ValueError(reason[:_LONGEST] or "it is malformed")
+    if done.returncode:
+        raise ValueError("its reader was stopped: the file is malformed, or takes too long to read")
+    return _unpacked(done.stdout)
+
+
+def _unpacked(data: bytes) -> MeshContents:
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        arrays = dict(file)
+    contents = json.loads(str(arrays["contents"]))
+    blocks = [
+        CellBlock(kind, arrays[f"nodes_{index}"], {})
+        for index, kind in enumerate(contents["kinds"])
+    ]
+    for number, (index, name) in enumerate(contents["sets"]):
+        blocks[index].sets[name] = arrays[f"set_{number}"]
+    sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(contents["node_sets"])}
+    return MeshContents(arrays["points"], blocks, sets)

@@ -1,4 +1,4 @@
-"""Program that reads a mesh file with libraries, run by `isolated` in a separate process.
+"""Program that reads a mesh file with libraries, run by `file_contents` in a separate process.
 
 Started by its path, so that this package is not imported. The file may be hostile: memory and
 processor time are limited, no file can be written, and only the named one (and an HDF5 file
@@ -42,7 +42,7 @@ class _Mesh:
 
 
 def read(path: Path, ending: str) -> dict[str, np.ndarray]:
-    """Arrays that describe a mesh, see `isolated.read_isolated`."""
+    """Arrays that describe a mesh, see `file_contents.read_isolated`."""
     if ending == ".med":
         _check_hdf5_links(path)
     else:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import CaseError, note
-from ..mesh.orders import shape_functions
+from ..mesh.nodes import shape_functions
 from ..mesh.tagged import TaggedMesh
 from .mesh_checks import length, whole_bodies
 

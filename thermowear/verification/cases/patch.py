@@ -10,7 +10,15 @@ import numpy as np
 
 from ...case import load
 from ...case.tables.plane_geometry import PlaneGeometry
-from ...geometry.meshing.quads import Sheet, grid, level, mesh_body, tagged_bodies
+from ...geometry.meshing.cells import (
+    Claim,
+    MeshedBody,
+    Sheet,
+    grid,
+    level,
+    mesh_body,
+    tagged_bodies,
+)
 from ...results import Result
 from ..check import Check, compare, compare_worst
 from ..computed import computed
@@ -47,7 +55,8 @@ class PatchGeometry(PlaneGeometry):
 
     def build(self, mesh, zone=None):
         spans = {"upper": (0.0, HEIGHTS[0]), "lower": (-HEIGHTS[1], 0.0)}
-        bodies, claims = {}, {}
+        bodies: dict[str, MeshedBody] = {}
+        claims: dict[str, Claim] = {}
         for (name, span), n in zip(spans.items(), self.columns, strict=True):
             ends = np.linspace(0.0, WIDTH, n + 1), np.linspace(*span, 4)
             bodies[name] = mesh_body([Sheet(grid(*ends))], order=1)

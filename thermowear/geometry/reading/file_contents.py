@@ -23,7 +23,7 @@ import numpy as np
 from ...errors import CaseError
 from .abaqus import read_abaqus
 from .contents import CellBlock, MeshContents, shown
-from .gmsh.file import read_gmsh
+from .gmsh_file import read_gmsh
 
 _LARGEST = 32 * 2**20
 """Largest size of a file [bytes]: half a million nodes as text, read in seconds."""

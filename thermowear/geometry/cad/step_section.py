@@ -11,8 +11,8 @@ import scipy
 
 from ..mesh.gmsh_session import gmsh_model
 from ..mesh.tagged import TaggedMesh
+from ..moving.outline import Piece, loops
 from .design import Design
-from .outline import Piece, loops
 from .step_prism import UNIT, save
 from .worn_body import face_motion, slide
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ..mesh.tagged import TaggedMesh, quadratic
+from ..mesh.tagged import TaggedMesh, compact, quadratic
 from ..moving.moved import Extension, MovableBody
+from ..moving.outline import loops
 from ..reading.export import write_mesh
 from .design import Design
-from .outline import loops
 
 _ALONG = 0.2
 """Least cosine between a side and the face normal for which the end of the face slides along it."""
@@ -50,6 +50,34 @@ def moved_body(mesh: TaggedMesh, design: Design, face: str, extension: Extension
     ]
     follow = extension(mesh, mesh.cell_type, mesh.cells, None)
     return points + follow(body.outlined(face_motion(design, on_face, ends)))
+
+
+def only_body(mesh: TaggedMesh, parts: tuple[str, ...]) -> TaggedMesh:
+    """Mesh of one body, with its surfaces.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    parts : tuple of str
+        Names of the body and its zones.
+    """
+    tags = sorted(mesh.bodies.index(part) + 1 for part in parts if part in mesh.bodies)
+    cells = np.isin(mesh.cell_tags, tags)
+    has = np.zeros(len(mesh.points), dtype=bool)
+    has[mesh.cells[cells]] = True
+    facets = has[mesh.facets].all(axis=1)
+    marks, facet_tags = np.unique(mesh.facet_tags[facets], return_inverse=True)
+    return compact(
+        replace(
+            mesh,
+            cells=mesh.cells[cells],
+            cell_tags=(np.searchsorted(tags, mesh.cell_tags[cells]) + 1).astype(np.int32),
+            facets=mesh.facets[facets],
+            facet_tags=(facet_tags + 1).astype(np.int32),
+            bodies=tuple(mesh.bodies[tag - 1] for tag in tags),
+            surfaces=tuple(mesh.surfaces[mark - 1] for mark in marks),
+        )
+    )
 
 
 def offsets(design: Design, points: np.ndarray) -> np.ndarray:

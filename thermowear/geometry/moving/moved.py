@@ -6,7 +6,6 @@ outline is fixed. Interior nodes follow by harmonic extension (`bulk.mesh_motion
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,8 +13,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...lagrange import gauss, on_lattice
-from ..mesh.nodes import edge_nodes
 from ..mesh.tagged import TaggedMesh
+from .outline import outline_edges, split
 
 _CORNER = np.cos(np.radians(20.0))
 """Cosine of the largest turn of a smooth outline; sharper turns are corners."""
@@ -60,8 +59,13 @@ class MovableBody:
     def __init__(self, mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray):
         self._mesh = mesh
         self.face = nodes_at(mesh, parts, face)
-        self._edges = _outline(mesh, cells_of(mesh, parts))
-        self.sides = tuple(self._side(ends) for ends in (self.face[:2], self.face[-2:][::-1]))
+        self._edges = outline_edges(mesh, cells_of(mesh, parts))
+        self.sides = tuple(
+            self._side(ends, nodes)
+            for ends, nodes in zip(
+                (self.face[:2], self.face[-2:][::-1]), self._beside(), strict=True
+            )
+        )
 
     def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
@@ -129,26 +133,20 @@ class MovableBody:
         before = np.minimum(to, 0.0)[:, None] * side.inward  # a face that has grown
         return where + before - points
 
-    def _side(self, ends: np.ndarray) -> OutlineSide:
-        """Side that begins at the first of the two end nodes of the face."""
-        points, at = self._mesh.points, defaultdict(list)
-        on_face = set(self.face.tolist())
-        for edge in self._edges:
-            if not (edge[0] in on_face and edge[-1] in on_face):
-                at[edge[0]].append(edge)
-                at[edge[-1]].append(edge[::-1])
-        nodes, direction = [np.array([ends[0]])], None
-        while True:
-            last = nodes[-1][-1]
-            onward = [edge for edge in at[last] if edge[1] not in set(np.concatenate(nodes))]
-            if len(onward) != 1:
-                break
-            heading = _unit(points[onward[0][1]] - points[last])
-            if direction is not None and heading @ direction < _CORNER:
-                break
-            nodes.append(onward[0][1:])
-            direction = _unit(points[onward[0][-1]] - points[onward[0][-2]])
-        along = np.concatenate(nodes)
+    def _beside(self) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes of the outline from both ends of the face to the next corners."""
+        is_face = np.isin(self._edges[:, [0, -1]], self.face).all(axis=1)
+        found = split(self._mesh.points, self._edges, is_face)
+        pieces = next(loop for loop in found if any(piece.is_face for piece in loop))
+        k = next(number for number, piece in enumerate(pieces) if piece.is_face)
+        if len(pieces) == 1:
+            return self.face[:1], self.face[-1:]
+        before, after = pieces[k - 1].nodes[::-1], pieces[(k + 1) % len(pieces)].nodes
+        return (before, after) if before[0] == self.face[0] else (after, before)
+
+    def _side(self, ends: np.ndarray, along: np.ndarray) -> OutlineSide:
+        """Side with nodes `along` it, given the first two nodes of the face from there."""
+        points = self._mesh.points
         if len(along) == 1:
             return OutlineSide(along, np.zeros(2), False)
         inward = _unit(points[along[1]] - points[along[0]])
@@ -165,22 +163,6 @@ def nodes_at(mesh: TaggedMesh, parts: tuple[str, ...], places: np.ndarray) -> np
     """Nodes of some parts of a mesh that are nearest to places (n, gdim), shape (n,)."""
     own = np.unique(cells_of(mesh, parts))
     return own[cKDTree(mesh.points[own]).query(places)[1]]
-
-
-def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
-    """Boundary edges, with ordered nodes and their cell on the left."""
-    local = edge_nodes(mesh.cell_type, mesh.order)
-    every = cells[:, local].reshape(-1, local.shape[1])
-    ends = np.sort(every[:, :2], axis=1)
-    _, index, count = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
-    single = count[index.ravel()] == 1
-    edges = np.concatenate([every[:, :1], every[:, 2:], every[:, 1:2]], axis=1)[single]
-    middle = np.repeat(mesh.points[cells].mean(axis=1), len(local), axis=0)[single]
-    along = mesh.points[edges[:, -1]] - mesh.points[edges[:, 0]]
-    inward = middle - mesh.points[edges].mean(axis=1)
-    right = along[:, 0] * inward[:, 1] < along[:, 1] * inward[:, 0]
-    edges[right] = edges[right, ::-1]
-    return edges
 
 
 def enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..mesh.nodes import boundary
-from ..mesh.tagged import TaggedMesh, compact
+from ..mesh.tagged import TaggedMesh
 
 _CORNER = math.radians(20.0)
 """Smallest angle between edges that makes a corner [rad]."""
@@ -30,34 +30,6 @@ class Piece:
     is_face: bool
 
 
-def only_body(mesh: TaggedMesh, parts: tuple[str, ...]) -> TaggedMesh:
-    """Mesh of one body, with its surfaces.
-
-    Parameters
-    ----------
-    mesh : TaggedMesh
-    parts : tuple of str
-        Names of the body and its zones.
-    """
-    tags = sorted(mesh.bodies.index(part) + 1 for part in parts if part in mesh.bodies)
-    cells = np.isin(mesh.cell_tags, tags)
-    has = np.zeros(len(mesh.points), dtype=bool)
-    has[mesh.cells[cells]] = True
-    facets = has[mesh.facets].all(axis=1)
-    marks, facet_tags = np.unique(mesh.facet_tags[facets], return_inverse=True)
-    return compact(
-        replace(
-            mesh,
-            cells=mesh.cells[cells],
-            cell_tags=(np.searchsorted(tags, mesh.cell_tags[cells]) + 1).astype(np.int32),
-            facets=mesh.facets[facets],
-            facet_tags=(facet_tags + 1).astype(np.int32),
-            bodies=tuple(mesh.bodies[tag - 1] for tag in tags),
-            surfaces=tuple(mesh.surfaces[mark - 1] for mark in marks),
-        )
-    )
-
-
 def loops(mesh: TaggedMesh, face: str) -> list[list[Piece]]:
     """Loops of the outline of a plane body, each a list of pieces in order.
 
@@ -68,23 +40,41 @@ def loops(mesh: TaggedMesh, face: str) -> list[list[Piece]]:
     face : str
         Name of its contact face.
     """
-    edges = boundary(mesh.cell_type, mesh.order, mesh.cells)
+    edges = outline_edges(mesh, mesh.cells)
     on_face = mesh.facets[mesh.facet_tags == mesh.surfaces.index(face) + 1]
     touching = {tuple(sorted(ends)) for ends in on_face[:, :2].tolist()}
-    following = {int(edge[0]): edge for edge in edges}
+    ends = np.sort(edges[:, [0, -1]], axis=1).tolist()
+    return split(mesh.points, edges, np.array([tuple(pair) in touching for pair in ends]))
+
+
+def outline_edges(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
+    """Boundary edges of plane cells: nodes in order along each, the cell to its left."""
+    edges = boundary(mesh.cell_type, mesh.order, cells)
+    return edges[:, [0, *range(2, edges.shape[1]), 1]]
+
+
+def split(points: np.ndarray, edges: np.ndarray, is_face: np.ndarray) -> list[list[Piece]]:
+    """Loops of edges, see `outline_edges`, split at corners and at the ends of the face.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_points, 2) [m]
+    edges : ndarray of int, shape (n, order + 1)
+    is_face : ndarray of bool, shape (n,)
+        Mask of the edges of the contact face.
+    """
+    following = {int(edge[0]): k for k, edge in enumerate(edges)}
     found = []
     while following:
         chain = [following.pop(next(iter(following)))]
-        while int(chain[-1][1]) in following:
-            chain.append(following.pop(int(chain[-1][1])))
-        is_face = np.array([tuple(sorted(edge[:2].tolist())) in touching for edge in chain])
-        found.append(_pieces(mesh.points, np.array(chain), is_face))
+        while int(edges[chain[-1], -1]) in following:
+            chain.append(following.pop(int(edges[chain[-1], -1])))
+        found.append(_pieces(points, edges[chain], is_face[chain]))
     return found
 
 
-def _pieces(points: np.ndarray, chain: np.ndarray, is_face: np.ndarray) -> list[Piece]:
+def _pieces(points: np.ndarray, along: np.ndarray, is_face: np.ndarray) -> list[Piece]:
     """Split a closed chain of edges at its corners and at the ends of the contact face."""
-    along = np.column_stack([chain[:, 0], chain[:, 2:], chain[:, 1]])
     first = points[along[:, 1]] - points[along[:, 0]]
     last = points[along[:, -1]] - points[along[:, -2]]
     turn = _angle(np.roll(last, 1, axis=0), first)
@@ -95,8 +85,8 @@ def _pieces(points: np.ndarray, chain: np.ndarray, is_face: np.ndarray) -> list[
     starts = cuts if len(cuts) else np.array([0])
     pieces = []
     for start, end in zip(starts, np.roll(starts, -1), strict=True):
-        count = (end - start) % len(chain) or len(chain)
-        edges = np.arange(start, start + count) % len(chain)
+        count = (end - start) % len(along) or len(along)
+        edges = np.arange(start, start + count) % len(along)
         nodes = np.append(along[edges, :-1].ravel(), along[edges[-1], -1])
         pieces.append(Piece(nodes, bool(is_face[start])))
     return pieces

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -109,25 +110,14 @@ class MeshFile(HalvableGeometry):
         keys = _KEYS | {"contact_area_given": "contact_area"}
         return {keys.get(name, name): value for name, value in handler(self).items()}
 
+    contact = keyed(attrgetter("contact_names"))
+    held = keyed(attrgetter("held_name"))
+    fixed = keyed(attrgetter("fixed_name"))
+    symmetry = keyed(attrgetter("symmetry_names"))
+
     @keyed
     def bodies(self) -> tuple[str, ...]:
         return tuple(self.body_names)
-
-    @keyed
-    def contact(self) -> tuple[str, str]:
-        return self.contact_names
-
-    @keyed
-    def held(self) -> str:
-        return self.held_name
-
-    @keyed
-    def fixed(self) -> str:
-        return self.fixed_name
-
-    @keyed
-    def symmetry(self) -> tuple[str, ...]:
-        return self.symmetry_names
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from typing import ClassVar
 
 import numpy as np
 
-from ...case.tables.geometry import Geometry, keyed, named
+from ...case.tables.geometry import Geometry, Pressing, keyed, named
 from ...case.tables.plane_geometry import HalvableGeometry
 from ...case.values.units import Length
 from ...errors import CaseError
@@ -27,6 +28,23 @@ from ..meshing.rings import RectangularOutline, ringed_body
 _THINNEST = 1e-6
 """Least contact width relative to the block's half width: 10 000 times the tolerance for positions
 in the mesh, and finer than any element."""
+
+
+def expected_half_width(pressing: Pressing, radius: float, thickness: float) -> float:
+    """Half-width of the contact of cylinders: Hertz for a force, an estimate for an approach [m].
+
+    Parameters
+    ----------
+    pressing : Pressing
+    radius : float
+        Relative radius of curvature [m].
+    thickness : float
+        Length of the contact that the force refers to [m].
+    """
+    if pressing.force is not None:
+        return math.sqrt(4 * pressing.force / thickness * radius / (math.pi * pressing.modulus))
+    assert pressing.approach is not None
+    return 0.7 * math.sqrt(radius * pressing.approach)
 
 
 class OnBlock(Geometry):

@@ -19,7 +19,7 @@ from ..meshing.cells import ORDER, between, both, level, mesh_body
 from ..meshing.divisions import face_ends, growth, row_ratio
 from ..meshing.polar import Polar
 from ..meshing.rings import Disc, ringed_body
-from .on_block import OnBlock, PlaneOnBlock
+from .on_block import OnBlock, PlaneOnBlock, expected_half_width
 
 
 class RoundOnBlock(OnBlock):
@@ -81,11 +81,7 @@ class CylinderOnBlock(RoundOnBlock, PlaneOnBlock):
     type: Literal["cylinder-on-block"]
 
     def unworn_half_width(self, pressing: Pressing) -> float:
-        if pressing.force is not None:  # Hertz
-            line_load = pressing.force / self.thickness
-            return math.sqrt(4 * line_load * self.radius / (math.pi * pressing.modulus))
-        assert pressing.approach is not None
-        return 0.7 * math.sqrt(self.radius * pressing.approach)
+        return expected_half_width(pressing, self.radius, self.thickness)
 
 
 class SphereOnBlock(RoundOnBlock):

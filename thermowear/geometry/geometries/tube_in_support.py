@@ -18,6 +18,7 @@ from ...case.values.units import Length
 from ...errors import CaseError
 from ..meshing.cells import ORDER, mesh_body, tagged_bodies
 from ..meshing.polar import Polar, incomplete
+from .on_block import expected_half_width
 
 _THINNEST = 1e-6
 """Least contact width relative to the tube's radius."""
@@ -70,12 +71,7 @@ class TubeInSupport(PlaneGeometry):
         if self.zone is not None:
             return -self.zone, self.zone
         radius = self.tube_radius * self.hole_radius / self.support_clearance
-        if pressing.force is not None:
-            line_load = pressing.force / self.thickness
-            a = math.sqrt(4 * line_load * radius / (math.pi * pressing.modulus))
-        else:
-            assert pressing.approach is not None
-            a = 0.7 * math.sqrt(radius * pressing.approach)
+        a = expected_half_width(pressing, radius, self.thickness)
         x = self.tube_radius * math.sin(min(a / self.tube_radius, _EXPECTED))
         return -x, x
 

@@ -6,6 +6,7 @@ outline is fixed. Interior nodes follow by harmonic extension (`bulk.mesh_motion
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -44,7 +45,62 @@ class OutlineSide:
     is_corner: bool
 
 
-class MovableBody:
+class MovableFace(ABC):
+    """Worn face of a body that can be moved, and the motion of the body's outline with it.
+
+    Attributes
+    ----------
+    face : ndarray of int, shape (n,)
+        Nodes of the face.
+    """
+
+    face: np.ndarray
+
+    @abstractmethod
+    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
+
+        Nodes at the ends (or the rim) of the face move along the sides, or are fixed where the
+        outline continues smoothly.
+
+        Parameters
+        ----------
+        normals : ndarray, shape (n, gdim)
+            Outward normals at the nodes of the face.
+
+        Returns
+        -------
+        directions : ndarray, shape (n, gdim)
+        held : ndarray of bool, shape (n,)
+        """
+
+    @abstractmethod
+    def outlined(self, displacement: np.ndarray) -> np.ndarray:
+        """Displacement of the outline when the face moves, zero inside; (n_points, gdim) [m].
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (n, gdim)
+            Displacement of the nodes of the face; at its ends along the sides [m].
+        """
+
+    @abstractmethod
+    def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
+        """Volume that the body loses by a displacement of its outline [m³].
+
+        By Gauss's theorem on its moved part only, as it may be tiny relative to the body's volume.
+
+        Parameters
+        ----------
+        outlined : ndarray, shape (n_points, gdim)
+            Displacement of the outline, see `outlined` [m].
+        factor : callable
+            Factor from area to volume at points of shape (n, gdim); linear in x in a plane,
+            constant in space.
+        """
+
+
+class MovableBody(MovableFace):
     """Body of a plane mesh whose worn face can be moved.
 
     Parameters
@@ -67,22 +123,8 @@ class MovableBody:
             )
         )
 
-    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
-
-        Ends of the face move along the sides, or are fixed if the outline continues smoothly. In
-        between, the inclination to the normal varies linearly, so that the paths do not cross.
-
-        Parameters
-        ----------
-        normals : ndarray, shape (n, 2)
-            Outward normals at the nodes of the face.
-
-        Returns
-        -------
-        directions : ndarray, shape (n, 2)
-        held : ndarray of bool, shape (n,)
-        """
+    def ways(self, normals):
+        # in between, the inclination to the normal varies linearly, so that paths do not cross
         held, turn = np.zeros(len(normals), dtype=bool), np.zeros(2)
         for k, side in enumerate(self.sides):
             held[-k] = not side.is_corner
@@ -92,32 +134,14 @@ class MovableBody:
         part = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
         return _rotated(normals, (1 - part) * turn[0] + part * turn[1]), held
 
-    def outlined(self, displacement: np.ndarray) -> np.ndarray:
-        """Displacement of the outline when the face moves, zero inside; shape (n_points, 2) [m].
-
-        Parameters
-        ----------
-        displacement : ndarray, shape (n, 2)
-            Displacement of the nodes of the face; at its ends along the sides [m].
-        """
+    def outlined(self, displacement):
         given = np.zeros_like(self._mesh.points)
         for side, end in zip(self.sides, (displacement[0], displacement[-1]), strict=True):
             given[side.nodes] = self._slide_displacement(side, float(end @ side.inward))
         given[self.face] = displacement
         return given
 
-    def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
-        """Volume that the body loses by a displacement of its outline [m³].
-
-        By Gauss's theorem on the moved edges only, as it may be tiny relative to the body's volume.
-
-        Parameters
-        ----------
-        outlined : ndarray, shape (n_points, 2)
-            Displacement of the outline, see `outlined` [m].
-        factor : callable
-            Factor from area to volume at points of shape (n, 2); linear in x.
-        """
+    def lost(self, outlined, factor):
         edges = self._edges[np.any(outlined[self._edges] != 0.0, axis=(1, 2))]
         points = self._mesh.points[edges]
         return enclosed(points, factor) - enclosed(points + outlined[edges], factor)

@@ -17,7 +17,7 @@ import scipy
 from ...lagrange import gauss
 from ..mesh.nodes import FACETS, boundary, edge_nodes, reference_nodes, shape_functions, slopes
 from ..mesh.tagged import TaggedMesh
-from .moved import Extension, cells_of, nodes_at
+from .moved import Extension, MovableFace, cells_of, nodes_at
 
 _SMOOTH = np.cos(np.radians(20.0))
 """Cosine of the largest angle between the normals of adjacent facets in one patch."""
@@ -112,7 +112,7 @@ def _meeting(edges: np.ndarray) -> np.ndarray:
     return order[count[number[order]] == 2].reshape(-1, 2)
 
 
-class MovableSolid:
+class MovableSolid(MovableFace):
     """Body of a mesh in space whose worn face can be moved.
 
     Parameters
@@ -135,54 +135,21 @@ class MovableSolid:
         self.face = nodes_at(mesh, parts, face)
         self._patches = Patches(mesh, cells_of(mesh, parts), self.face)
 
-    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
-
-        Nodes where the face ends at a side move along it; fixed where it continues smoothly.
-
-        Parameters
-        ----------
-        normals : ndarray, shape (n, 3)
-            Outward normals at the nodes of the face.
-
-        Returns
-        -------
-        directions : ndarray, shape (n, 3)
-        held : ndarray of bool, shape (n,)
-        """
+    def ways(self, normals):
         every = np.zeros_like(self._mesh.points)
         every[self.face] = normals
         nodes, inward = self._patches.inward()
         every[nodes] = -inward
         return every[self.face], np.isin(self.face, self._patches.level())
 
-    def outlined(self, displacement: np.ndarray) -> np.ndarray:
-        """Displacement of the outline when the face moves, zero inside; shape (n_points, 3) [m].
-
-        Parameters
-        ----------
-        displacement : ndarray, shape (n, 3)
-            Displacement of the nodes of the face; at its rim along the sides [m].
-        """
+    def outlined(self, displacement):
         given = np.zeros_like(self._mesh.points)
         given[self.face] = displacement
         for extended in self._extensions:
             given = extended(given)
         return given
 
-    def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
-        """Volume that the body loses by a displacement of its outline [m³].
-
-        By Gauss's theorem on the moved facets only, as it may be tiny relative to the body's
-        volume.
-
-        Parameters
-        ----------
-        outlined : ndarray, shape (n_points, 3)
-            Displacement of the outline, see `outlined` [m].
-        factor : callable
-            Constant volume factor at points of shape (n, 3).
-        """
+    def lost(self, outlined, factor):
         facets = self._patches.facets
         facets = facets[np.any(outlined[facets] != 0.0, axis=(1, 2))]
         points = self._mesh.points[facets]

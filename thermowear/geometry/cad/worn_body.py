@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh, compact, quadratic
 from ..moving.moved import Extension, MovableBody
 from ..moving.outline import loops
@@ -115,8 +116,7 @@ def face_motion(design: Design, points: np.ndarray, ends: list[np.ndarray | None
     """
     motion, normals = offsets(design, points), design.normals_at(points)
     tangents = np.column_stack([-normals[:, 1], normals[:, 0]])
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    share = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+    share = chord_lengths(points) / chord_lengths(points)[-1]
     for k, near, end in ((0, 1.0 - share, ends[0]), (-1, share, ends[1])):
         if end is not None:
             motion = motion + (near * float((end - motion[k]) @ tangents[k]))[:, None] * tangents

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, PrivateAttr, model_serializer, model_validator
 
@@ -110,10 +110,10 @@ class MeshFile(HalvableGeometry):
         keys = _KEYS | {"contact_area_given": "contact_area"}
         return {keys.get(name, name): value for name, value in handler(self).items()}
 
-    contact = keyed(attrgetter("contact_names"))
-    held = keyed(attrgetter("held_name"))
-    fixed = keyed(attrgetter("fixed_name"))
-    symmetry = keyed(attrgetter("symmetry_names"))
+    contact: ClassVar[Any] = keyed(attrgetter("contact_names"))
+    held: ClassVar[Any] = keyed(attrgetter("held_name"))
+    fixed: ClassVar[Any] = keyed(attrgetter("fixed_name"))
+    symmetry: ClassVar[Any] = keyed(attrgetter("symmetry_names"))
 
     @keyed
     def bodies(self) -> tuple[str, ...]:

@@ -73,6 +73,12 @@ def facet_nodes(order: int) -> np.ndarray:
     return matching(np.array(facets), nodes)
 
 
+def chord_lengths(points: np.ndarray) -> np.ndarray:
+    """Lengths along a polygon up to each of its points (n, gdim), shape (n,)."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
 def edge_nodes(cell_type: str, order: int) -> np.ndarray:
     """Nodes of each edge: first, last, then interior; shape (n_edges, order + 1)."""
     n = CORNERS[cell_type]

@@ -102,7 +102,7 @@ def growing(start: float, end: float, first: float, grading: float, largest: flo
         steps: np.ndarray = np.ones(_count(span, largest))
     else:
         ratio, count, size, graded = 1.0 / grading, 1, first, first
-        while graded < span and size * ratio <= largest:
+        while graded < span * (1 - SAME) and size * ratio <= largest:
             size *= ratio
             graded += size
             count += 1

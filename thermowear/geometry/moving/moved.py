@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...lagrange import gauss, on_lattice
+from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh
 from .outline import outline_edges, split
 
@@ -130,8 +131,8 @@ class MovableBody(MovableFace):
             held[-k] = not side.is_corner
             if side.is_corner:
                 turn[k] = _angle(normals[-k], -side.inward)
-        steps = np.linalg.norm(np.diff(self._mesh.points[self.face], axis=0), axis=1)
-        part = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+        length = chord_lengths(self._mesh.points[self.face])
+        part = length / length[-1]
         return _rotated(normals, (1 - part) * turn[0] + part * turn[1]), held
 
     def outlined(self, displacement):
@@ -151,7 +152,7 @@ class MovableBody(MovableFace):
         points = self._mesh.points[side.nodes]
         if not side.is_corner:
             return np.zeros_like(points)
-        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+        length = chord_lengths(points)
         to = length + way * (1 - length / length[-1])
         where = np.column_stack([np.interp(to, length, x) for x in points.T])
         before = np.minimum(to, 0.0)[:, None] * side.inward  # a face that has grown
@@ -159,7 +160,7 @@ class MovableBody(MovableFace):
 
     def _beside(self) -> tuple[np.ndarray, np.ndarray]:
         """Nodes of the outline from both ends of the face to the next corners."""
-        is_face = np.isin(self._edges[:, [0, -1]], self.face).all(axis=1)
+        is_face = np.logical_and.reduce(np.isin(self._edges[:, [0, -1]], self.face), axis=1)
         found = split(self._mesh.points, self._edges, is_face)
         pieces = next(loop for loop in found if any(piece.is_face for piece in loop))
         k = next(number for number, piece in enumerate(pieces) if piece.is_face)

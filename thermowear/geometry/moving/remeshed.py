@@ -13,8 +13,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..mesh.gmsh_session import gmsh_model
-from ..mesh.shapes import scaled_jacobians
-from ..mesh.tagged import TaggedMesh, compact
+from ..mesh.tagged import TaggedMesh, compact, scaled_jacobians
 from .moved import Extension
 from .new_face import NewFace, divided
 from .skeleton import OutlinePiece, even, skeleton

@@ -14,8 +14,7 @@ import scipy
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError, note
 from ..mesh.nodes import CORNERS, boundary, turned
-from ..mesh.shapes import jacobians
-from ..mesh.tagged import TaggedMesh
+from ..mesh.tagged import TaggedMesh, jacobians
 
 _FLAT = 1e-8
 """Sine of the angle between grid lines below which a cell is degenerate."""

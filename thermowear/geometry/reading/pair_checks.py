@@ -39,8 +39,6 @@ class Faces:
     ----------
     gap : float
         Smallest distance, negative where the bodies overlap [m].
-    width : float
-        Width of the range of x common to both faces [m].
     span : tuple of float
         Range of x common to both faces [m].
     height : float

@@ -93,7 +93,7 @@ def write_prism(mesh: TaggedMesh, design: Design, face: str, path: Path) -> None
 
 def face_grid(mesh: TaggedMesh, face: str) -> np.ndarray:
     """Grid of points of a face of structured facets, shape (n_u, n_v, 3) [m]."""
-    facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index(face) + 1]
+    facets = mesh.facets_of(face)
     corners = _lattice(facets[:, :4])
     xi, eta = (step[:, None] for step in np.indices((_WITHIN, _WITHIN)).reshape(2, -1))
     points = shape_functions("quadrilateral", mesh.order, np.hstack([xi, eta]) / (_WITHIN - 1))

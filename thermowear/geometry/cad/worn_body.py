@@ -62,7 +62,7 @@ def only_body(mesh: TaggedMesh, parts: tuple[str, ...]) -> TaggedMesh:
     parts : tuple of str
         Names of the body and its zones.
     """
-    tags = sorted(mesh.bodies.index(part) + 1 for part in parts if part in mesh.bodies)
+    tags = sorted(mesh.tags_of(part for part in parts if part in mesh.bodies))
     cells = np.isin(mesh.cell_tags, tags)
     has = np.zeros(len(mesh.points), dtype=bool)
     has[mesh.cells[cells]] = True

@@ -15,7 +15,7 @@ from ...case.values.paths import UserFile
 from ...case.values.section import KeyFault
 from ...case.values.units import Area, Length
 from ..reading.assembly import Named, assemble
-from ..reading.cell_sets import Union, divided, joined
+from ..reading.cell_sets import divided, joined
 from ..reading.file_contents import read_contents
 from ..reading.mesh_checks import check_mesh
 from ..reading.pair_checks import check_pair
@@ -154,11 +154,8 @@ class MeshFile(HalvableGeometry):
 
     def build(self, mesh, zone):
         contents = read_contents(Path(self.path))
-        unions = [
-            Union(name, self.sets_of(name), f"geometry.bodies.{name}") for name in self.bodies
-        ]
         contents = replace(contents, points=contents.points * self.length_unit)
-        contents, bodies = joined(contents, unions)
+        contents, bodies = joined(contents, {name: self.sets_of(name) for name in self.bodies})
         tagged = assemble(contents, bodies, list(self._purposes().values()))
         owners = [self.bodies.index(body) for body in self.zones.values()]
         sets = [

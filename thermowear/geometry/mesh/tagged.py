@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -70,6 +71,14 @@ class TaggedMesh:
             found.update(repr((values.dtype.str, values.shape)).encode())
             found.update(np.ascontiguousarray(values).tobytes())
         return found.hexdigest()
+
+    def tags_of(self, parts: Iterable[str]) -> list[int]:
+        """Tags of the cells of some bodies or zones."""
+        return [self.bodies.index(part) + 1 for part in parts]
+
+    def facets_of(self, surface: str) -> np.ndarray:
+        """Facets of a surface, shape (n, nodes_per_facet)."""
+        return self.facets[self.facet_tags == self.surfaces.index(surface) + 1]
 
     def node_places(self, kind: str) -> np.ndarray:
         """Reference coordinates of the nodes of a cell or facet, shape (n_nodes, dim)."""
@@ -158,7 +167,7 @@ def scaled_jacobians(mesh: TaggedMesh) -> np.ndarray:
 
 def quality(mesh: TaggedMesh, parts: tuple[str, ...]) -> float:
     """Smallest scaled Jacobian of some parts of a mesh; -1 if cells have degenerated."""
-    of_parts = np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])
+    of_parts = np.isin(mesh.cell_tags, mesh.tags_of(parts))
     found = scaled_jacobians(replace(mesh, cells=mesh.cells[of_parts]))
     return float(np.nan_to_num(found, nan=-1.0).min())
 

@@ -181,7 +181,7 @@ class MovableBody(MovableFace):
 
 def cells_of(mesh: TaggedMesh, parts: tuple[str, ...]) -> np.ndarray:
     """Cells of some parts of a mesh, shape (n_cells, nodes_per_cell)."""
-    return mesh.cells[np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])]
+    return mesh.cells[np.isin(mesh.cell_tags, mesh.tags_of(parts))]
 
 
 def nodes_at(mesh: TaggedMesh, parts: tuple[str, ...], places: np.ndarray) -> np.ndarray:

@@ -41,8 +41,7 @@ def loops(mesh: TaggedMesh, face: str) -> list[list[Piece]]:
         Name of its contact face.
     """
     edges = outline_edges(mesh, mesh.cells)
-    on_face = mesh.facets[mesh.facet_tags == mesh.surfaces.index(face) + 1]
-    touching = {tuple(sorted(ends)) for ends in on_face[:, :2].tolist()}
+    touching = {tuple(sorted(ends)) for ends in mesh.facets_of(face)[:, :2].tolist()}
     ends = np.sort(edges[:, [0, -1]], axis=1).tolist()
     return split(mesh.points, edges, np.array([tuple(pair) in touching for pair in ends]))
 

@@ -92,7 +92,7 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
     face : ndarray of int, shape (n,)
         Nodes of its worn face in order along it.
     """
-    edges, beside = _edges(mesh, [mesh.bodies.index(part) + 1 for part in parts])
+    edges, beside = _edges(mesh, mesh.tags_of(parts))
     corners = np.sort(mesh.facets[:, :2], axis=1)
     surfaces = {
         (int(a), int(b)): int(tag) for (a, b), tag in zip(corners, mesh.facet_tags, strict=True)

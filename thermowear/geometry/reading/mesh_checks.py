@@ -153,8 +153,7 @@ def whole_bodies(mesh: TaggedMesh, geometry: Geometry) -> TaggedMesh:
     """Mesh with the cells of each body under one tag, those of its cell sets included."""
     tags = np.zeros_like(mesh.cell_tags)
     for number, body in enumerate(geometry.bodies, start=1):
-        parts = [mesh.bodies.index(part) + 1 for part in geometry.parts_of(body)]
-        tags[np.isin(mesh.cell_tags, parts)] = number
+        tags[np.isin(mesh.cell_tags, mesh.tags_of(geometry.parts_of(body)))] = number
     return replace(mesh, cell_tags=tags, bodies=geometry.bodies)
 
 
@@ -175,7 +174,7 @@ def length(value: float) -> str:
 
 def _ends(mesh: TaggedMesh, surface: str) -> np.ndarray:
     """Nodes at both ends of the edges of a surface, shape (n, 2)."""
-    return mesh.facets[mesh.facet_tags == mesh.surfaces.index(surface) + 1][:, :2]
+    return mesh.facets_of(surface)[:, :2]
 
 
 def _check_shared_edges(mesh: TaggedMesh) -> None:

@@ -105,15 +105,6 @@ class RectangularOutline:
         return np.stack(np.broadcast_arrays(along, -depth), axis=-1)
 
 
-@dataclass(frozen=True)
-class Levels:
-    """Limits of the rings: `along` on the left and on the right, depth; shape (n + 1,)."""
-
-    left: np.ndarray
-    right: np.ndarray
-    depth: np.ndarray
-
-
 def ringed_body(
     outline: Outline, ends: np.ndarray, rows: Sequence[float], ratio: float
 ) -> list[Sheet]:
@@ -132,16 +123,16 @@ def ringed_body(
     half = ends[0] == outline.reach[0]
     depth = min((ends[-1] - ends[0]) / (1 if half else 2), outline.depth / 2)
     levels = _ring_levels(outline, (ends[0], ends[-1]), depth, ratio)
-    return _ringed(outline, ends, depth_ends(rows[0], depth, rows[1]), levels)
+    return _sheets(outline, ends, depth_ends(rows[0], depth, rows[1]), levels)
 
 
 def _ring_levels(
     outline: Outline, face: tuple[float, float], depth: float, growth: float
-) -> Levels:
+) -> np.ndarray:
     """Rings from a patch to the end of a body, each about `growth` times the one before it.
 
     The patch covers `face` and extends to `depth`. A left end equal to that of `reach` is a plane
-    of symmetry.
+    of symmetry. Limits of the rings, shape (3, n + 1): `along` on the left and on the right, depth.
     """
     middle = face[0] if face[0] == outline.reach[0] else (face[0] + face[1]) / 2
     starts = np.array([middle - face[0], face[1] - middle, depth])
@@ -150,7 +141,7 @@ def _ring_levels(
     steps = [_growing(a, b, growth, largest) for a, b in zip(starts, ends, strict=True)]
     count = max(map(len, steps))
     left, right, down = (np.pad(s, (0, count - len(s)), mode="edge") for s in steps)
-    return Levels(middle - left, middle + right, down)
+    return np.array([middle - left, middle + right, down])
 
 
 def _growing(start: float, end: float, growth: float, largest: float) -> np.ndarray:
@@ -168,22 +159,11 @@ def _growing(start: float, end: float, growth: float, largest: float) -> np.ndar
     return result
 
 
-def _ringed(outline: Outline, face: np.ndarray, rows: np.ndarray, levels: Levels) -> list[Sheet]:
-    """Cells of a body.
-
-    Parameters
-    ----------
-    outline : Outline
-    face : ndarray
-        `along` at the element ends of the patch, increasing.
-    rows : ndarray
-        Depths at its row ends, from 0 to the depth of the first level.
-    levels : Levels
-    """
+def _sheets(outline: Outline, face: np.ndarray, rows: np.ndarray, stack: np.ndarray) -> list[Sheet]:
+    """Cells of the patch, with its element ends along the face and in depth, and of the rings."""
     inner = outline.inside(face[[0, -1]], rows[[-1, -1]])
     sheets = [ruled(outline.face, inner, face, rows / rows[-1])]
     parts = [np.linspace(0.0, 1.0, len(face)), rows / rows[-1], rows / rows[-1]]
-    stack = np.array([levels.left, levels.right, levels.depth])
     k = 0
     while k < stack.shape[1] - 1:
         left, right, depth = stack[:, k : k + 2]

@@ -25,6 +25,8 @@ from .abaqus import read_abaqus
 from .contents import CellBlock, MeshContents, shown
 from .gmsh_file import read_gmsh
 
+_MARK = b"\xef\xbb\xbf"
+"""Byte order mark of UTF-8."""
 _LARGEST = 32 * 2**20
 """Largest size of a file [bytes]: half a million nodes as text, read in seconds."""
 _READER = Path(__file__).with_name("isolated_reader.py")
@@ -85,7 +87,7 @@ def _check_file(path: Path, kind: _Kind) -> None:
             f"it has {about.st_size / 2**20:.0f} MB; at most {_LARGEST / 2**20:.0f} MB are allowed"
         )
     with path.open("rb") as file:
-        head = file.read(4096).removeprefix(b"\xef\xbb\xbf").lstrip()
+        head = file.read(4096).removeprefix(_MARK).lstrip()
     if not head:
         raise ValueError("it is empty")
     if not head.startswith(kind.heads):
@@ -95,28 +97,7 @@ def _check_file(path: Path, kind: _Kind) -> None:
         )
 
 
-def _read_abaqus(path: Path) -> MeshContents:
-    return read_abaqus(path.read_text(encoding="utf-8-sig", errors="replace"))
-
-
-def _read_gmsh(path: Path) -> MeshContents:
-    return read_gmsh(path.read_bytes().removeprefix(b"\xef\xbb\xbf"))
-
-
-def _by_libraries(path: Path) -> MeshContents:
-    return read_isolated(path, path.suffix.lower())
-
-
-_KINDS = {
-    ".msh": _Kind("gmsh mesh", (b"$MeshFormat", b"$Comments"), _read_gmsh),
-    ".inp": _Kind("Abaqus input file", (b"*",), _read_abaqus),
-    ".vtu": _Kind("VTK unstructured grid", (b"<?xml", b"<VTKFile", b"<!--"), _by_libraries),
-    ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), _by_libraries),
-    ".med": _Kind("MED file", (b"\x89HDF\r\n\x1a\n",), _by_libraries),
-}
-
-
-def read_isolated(path: Path, ending: str) -> MeshContents:
+def read_isolated(path: Path) -> MeshContents:
     """Read a .vtu, .xdmf or .med file.
 
     Raises
@@ -125,7 +106,14 @@ def read_isolated(path: Path, ending: str) -> MeshContents:
         If it is malformed, refers to other files, or exceeds the limits of memory or time.
     """
     memory = _MEMORY + _PER_BYTE * path.stat().st_size
-    command = [sys.executable, "-P", str(_READER), str(path.resolve()), ending, str(memory)]
+    command = [
+        sys.executable,
+        "-P",
+        str(_READER),
+        str(path.resolve()),
+        path.suffix.lower(),
+        str(memory),
+    ]
     single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     try:
         done = subprocess.run(
@@ -158,3 +146,20 @@ def _unpacked(data: bytes) -> MeshContents:
         blocks[index].sets[name] = arrays[f"set_{number}"]
     sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(contents["node_sets"])}
     return MeshContents(arrays["points"], blocks, sets)
+
+
+_KINDS = {
+    ".msh": _Kind(
+        "gmsh mesh",
+        (b"$MeshFormat", b"$Comments"),
+        lambda path: read_gmsh(path.read_bytes().removeprefix(_MARK)),
+    ),
+    ".inp": _Kind(
+        "Abaqus input file",
+        (b"*",),
+        lambda path: read_abaqus(path.read_text("utf-8-sig", "replace")),
+    ),
+    ".vtu": _Kind("VTK unstructured grid", (b"<?xml", b"<VTKFile", b"<!--"), read_isolated),
+    ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), read_isolated),
+    ".med": _Kind("MED file", (b"\x89HDF\r\n\x1a\n",), read_isolated),
+}

@@ -13,8 +13,9 @@ from hypothesis import settings
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import thermowear as tw
-from thermowear.geometry.mesh.gmsh_session import gmsh_model, tagged_mesh
-from thermowear.geometry.meshing.blocks import Interval, add_grid
+from thermowear.geometry.mesh.gmsh_session import gmsh_model
+
+from .gmsh_meshes import Interval, add_grid, tagged_mesh
 
 # the same examples every time, so that a red test is the change's own; `make verify` looks for more
 settings.register_profile("fixed", derandomize=True, deadline=None)

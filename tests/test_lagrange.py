@@ -5,8 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from thermowear.geometry.mesh.nodes import reference_nodes
-from thermowear.geometry.mesh.orders import shape_functions, slopes
+from thermowear.geometry.mesh.nodes import reference_nodes, shape_functions, slopes
 from thermowear.lagrange import equispaced, gauss, lattice, lobatto, on_lattice, tabulated
 
 

@@ -11,8 +11,8 @@ from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import PlaneStrain
+from thermowear.geometry.meshing.cells import Sheet, grid, mesh_body, tagged_bodies
 from thermowear.geometry.meshing.polar import Polar
-from thermowear.geometry.meshing.quads import Sheet, grid, mesh_body, tagged_bodies
 
 COMM = MPI.COMM_WORLD
 STEEL = ThermalMaterial(50.0, 2e6)
@@ -44,8 +44,8 @@ def ring(columns=24, rows=3):
     angles, radii = np.linspace(0, 2 * np.pi, columns + 1), np.linspace(INNER, OUTER, rows + 1)
     at = Polar()
     surfaces = {
-        "ring_rim": lambda p: at.on_circle(p, OUTER),
-        "ring_bore": lambda p: at.on_circle(p, INNER),
+        "ring_rim": at.circle(OUTER),
+        "ring_bore": at.circle(INNER),
     }
     return _distributed({"ring": mesh_body([at.sheet(angles, radii)], 3)}, surfaces)
 

@@ -15,7 +15,7 @@ from tests.conftest import two_blocks
 from tests.contact.solids import MATCHING, bent, skewed, turned, two_solids
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.mesh_motion import HarmonicExtension, serial_extension
-from thermowear.geometry.mesh.orders import boundary
+from thermowear.geometry.mesh.nodes import boundary
 
 from ..test_parallel import ROOT
 

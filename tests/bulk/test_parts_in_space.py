@@ -11,8 +11,7 @@ from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.surfaces import pressure_work
-from thermowear.geometry.meshing.hexes import Lattice, level, mesh_lattice
-from thermowear.geometry.meshing.quads import tagged_bodies
+from thermowear.geometry.meshing.cells import Lattice, level, mesh_lattice, tagged_bodies
 
 COMM = MPI.COMM_WORLD
 ENDS = (np.linspace(0.0, 0.02, 3), np.linspace(0.0, 0.01, 3), np.array([0.0, 0.01, 0.03, 0.04]))
@@ -23,7 +22,7 @@ def bar():
     body = mesh_lattice(Lattice(ENDS, lambda p: p), 1)
     middles = body.points[body.cells].mean(axis=1)[:, 2]
     body = replace(body, zones={"core": np.flatnonzero((middles > 0.01) & (middles < 0.03))})
-    surfaces = {"bar_bottom": lambda p: level(p, 0.0), "bar_top": lambda p: level(p, 0.04)}
+    surfaces = {"bar_bottom": level(2, 0.0), "bar_top": level(2, 0.04)}
     return tagged_bodies({"bar": body}, surfaces)
 
 

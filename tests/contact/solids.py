@@ -17,8 +17,7 @@ from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.geometry.meshing.hexes import Lattice, mesh_lattice
-from thermowear.geometry.meshing.quads import tagged_bodies
+from thermowear.geometry.meshing.cells import Lattice, mesh_lattice, tagged_bodies
 from thermowear.laws.motions import translation
 
 COMM = MPI.COMM_WORLD

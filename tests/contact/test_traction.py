@@ -19,8 +19,10 @@ from thermowear.contact.operators.traction import (
 )
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.geometry.mesh.gmsh_session import gmsh_model, tagged_mesh
+from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.parallel import sum_over_ranks
+
+from ..gmsh_meshes import tagged_mesh
 
 COMM = MPI.COMM_WORLD
 MATERIALS = {

@@ -11,9 +11,8 @@ from thermowear.bulk.kinematics import kinematics_of
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.geometry.geometries.block_on_disk import BlockOnDisk
-from thermowear.geometry.geometries.drum_brake import DrumBrake
-from thermowear.geometry.geometries.ring_segment_on_disk import RingSegmentOnDisk
+from thermowear.geometry.geometries.arc_contact import BlockOnDisk
+from thermowear.geometry.geometries.inside_ring import DrumBrake, RingSegmentOnDisk
 
 from .measure import edges, unnamed
 from .sound import check_mesh, fault

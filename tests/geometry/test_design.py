@@ -11,9 +11,8 @@ from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.errors import CaseError
 from thermowear.geometry.cad.design import HEADERS, Design, add_table, from_table, read_table
 from thermowear.geometry.cad.design import write_table as write
-from thermowear.geometry.cad.design_mesh import write_design_mesh
-from thermowear.geometry.cad.outline import loops, only_body
-from thermowear.geometry.cad.worn_body import moved_body
+from thermowear.geometry.cad.worn_body import moved_body, only_body, write_design_mesh
+from thermowear.geometry.moving.outline import loops
 from thermowear.geometry.reading.export import write_mesh
 
 from ..case.starter import STEADY, tables

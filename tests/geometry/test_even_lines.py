@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.geometry.moving.even_lines import even
-from thermowear.geometry.moving.skeleton import OutlinePiece
+from thermowear.geometry.moving.skeleton import OutlinePiece, even
 
 
 def straight(sizes, ends=(0, 1), start=(0.0, 0.0), way=(1.0, 0.0)):

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from thermowear.geometry.mesh.nodes import facet_nodes, reference_nodes
-from thermowear.geometry.mesh.orders import shape_functions
-from thermowear.geometry.meshing.blocks import ends_of, graded_face
-from thermowear.geometry.meshing.hexes import Lattice, mesh_lattice
-from thermowear.geometry.meshing.quads import tagged_bodies
+from thermowear.geometry.mesh.nodes import facet_nodes, reference_nodes, shape_functions
+from thermowear.geometry.meshing.cells import Lattice, mesh_lattice, tagged_bodies
+from thermowear.geometry.meshing.divisions import graded_face
 from thermowear.geometry.reading.export import write_mesh
 
 GMSH = {1: 5, 2: 12, 3: 92}
@@ -133,7 +131,7 @@ def test_vtk_sees_the_same_cells(order, tmp_path):
 
 def test_ends_of_intervals():
     """requirement: consecutive intervals give one row of ends, the last one exactly."""
-    ends = ends_of(graded_face(-0.03, 0.05, 9, 0.4))
+    ends = graded_face(-0.03, 0.05, 9, 0.4)
     assert len(ends) == 10
     assert (ends[0], ends[-1]) == (-0.03, 0.05)
     sizes = np.diff(ends)

@@ -18,7 +18,7 @@ import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.errors import CaseError
 from thermowear.geometry.geometries.mesh_file import MeshFile
-from thermowear.geometry.reading import isolated
+from thermowear.geometry.reading import file_contents
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint
 
 from .plain import NAMES, NUMBERED, blocks, inp, meshio_file, msh
@@ -287,7 +287,7 @@ def test_data_that_swell(place, monkeypatch):
     """
     requirement: a file of some kilobytes cannot take all memory.
     """
-    monkeypatch.setattr(isolated, "_MEMORY", 5 * 2**27)
+    monkeypatch.setattr(file_contents, "_MEMORY", 5 * 2**27)
     maker = zlib.compressobj(9)
     first = maker.compress(bytes(2**20)) + maker.flush(zlib.Z_FULL_FLUSH)
     again = maker.compress(bytes(2**20)) + maker.flush(zlib.Z_FULL_FLUSH)

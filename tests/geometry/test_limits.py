@@ -6,9 +6,8 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import CaseError
-from thermowear.geometry.mesh.limits import MOST_CELLS, check_count
-from thermowear.geometry.meshing import quads
-from thermowear.geometry.meshing.blocks import Interval, growing
+from thermowear.geometry.meshing import cells
+from thermowear.geometry.meshing.divisions import MOST_CELLS, check_count, growing
 
 from ..case.bad import faults
 from ..case.starter import HERTZ, PUNCH, SPHERE, STEADY, TUBE, tables
@@ -82,16 +81,16 @@ def test_counting_comes_first(monkeypatch):
     """
     requirement: nothing is made of a grid that is too large.
     """
-    monkeypatch.setattr(quads.np, "meshgrid", None)
+    monkeypatch.setattr(cells.np, "meshgrid", None)
     with pytest.raises(CaseError):
-        quads.grid(range(2000), range(2000))
+        cells.grid(range(2000), range(2000))
     with pytest.raises(CaseError):
         growing(0.0, 1.0, 1e-9, 1.0, 1e-9)
     check_count(MOST_CELLS)
     for wrong in (MOST_CELLS + 1, float("inf"), float("nan")):
         with pytest.raises(CaseError):
             check_count(wrong)
-    assert growing(0.0, 1.0, 0.5, 1.0, 0.5) == [Interval(0.0, 1.0, 2)]
+    assert growing(0.0, 1.0, 0.5, 1.0, 0.5).tolist() == [0.0, 0.5, 1.0]
 
 
 ZONES = [

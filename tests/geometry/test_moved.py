@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import two_blocks
-from thermowear.geometry.mesh.shapes import scaled_jacobians
+from thermowear.geometry.mesh.tagged import scaled_jacobians
 from thermowear.geometry.moving.moved import MovableBody
 
 from .measure import areas, followed

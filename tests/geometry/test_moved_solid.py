@@ -7,7 +7,7 @@ import pytest
 
 from tests.contact.solids import HEIGHTS, SIZE, bent, skewed, straight, turned, two_solids
 from thermowear.bulk.mesh_motion import serial_extension
-from thermowear.geometry.mesh.shapes import scaled_jacobians
+from thermowear.geometry.mesh.tagged import scaled_jacobians
 from thermowear.geometry.moving.moved_solid import MovableSolid
 
 from .measure import followed, volumes

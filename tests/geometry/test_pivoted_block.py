@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.case.tables.schema import MeshTable
-from thermowear.geometry.geometries.pivoted_block import PivotedBlock
+from thermowear.geometry.geometries.on_strip import PivotedBlock
 
 from .measure import ends, unnamed
 from .sound import check_mesh, check_surfaces, fault

@@ -88,6 +88,6 @@ def test_angles_are_from_the_vertical_towards_x():
     angles = np.radians([[170.0, 185.0], [185.0, 200.0], [200.0, 215.0], [530.0, 545.0]])
     arcs = np.stack([angles, np.full_like(angles, 2.0)], axis=-1)
     for polar in (up, down):
-        found = polar.on_arc(polar.place(arcs), 2.0, (np.radians(-190.0), np.radians(-160.0)))
+        found = polar.circle(2.0, (np.radians(-190.0), np.radians(-160.0)))(polar.place(arcs))
         assert found.tolist() == [True, True, False, True]
-        assert not np.any(polar.on_circle(polar.place(arcs), 2.001))
+        assert not np.any(polar.circle(2.001)(polar.place(arcs)))

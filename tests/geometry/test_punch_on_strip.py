@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.case.tables.schema import MeshTable
-from thermowear.geometry.geometries.punch_on_strip import PunchOnStrip
+from thermowear.geometry.geometries.on_strip import PunchOnStrip
 
 from .measure import edges, ends, unnamed
 from .sound import check_mesh, check_surfaces, fault, spans

@@ -8,8 +8,8 @@ import pytest
 from tests.conftest import two_blocks
 from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.errors import ComputationError
-from thermowear.geometry.mesh.orders import boundary
-from thermowear.geometry.mesh.shapes import quality
+from thermowear.geometry.mesh.nodes import boundary
+from thermowear.geometry.mesh.tagged import quality
 from thermowear.geometry.moving.moved import MovableBody
 from thermowear.geometry.moving.remeshed import meshed_anew
 from thermowear.geometry.moving.skeleton import skeleton

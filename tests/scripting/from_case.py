@@ -9,7 +9,7 @@ import numpy as np
 
 import thermowear as tw
 from thermowear.bulk.bodies import distribute
-from thermowear.geometry.mesh.orders import compact
+from thermowear.geometry.mesh.tagged import compact
 from thermowear.simulation.from_case import model_of
 
 from ..case.starter import tables

@@ -16,7 +16,7 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
-from thermowear.geometry.mesh.shapes import quality
+from thermowear.geometry.mesh.tagged import quality
 from thermowear.serialise import pack
 from thermowear.simulation import Observer
 from thermowear.simulation.from_case import run

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.geometry.mesh.orders import turned
+from thermowear.geometry.mesh.nodes import turned
 from thermowear.geometry.reading.export import write_mesh
 
 from ..case.starter import FILE, HERTZ, PUNCH, solved, tables

@@ -12,10 +12,9 @@ from ..case import Case, as_plain
 from ..case.tables.plane_geometry import PlaneGeometry
 from ..errors import CaseError
 from ..geometry.cad.design import CARRIERS, Design, add_table, write_table
-from ..geometry.cad.design_mesh import write_design_mesh
-from ..geometry.cad.outline import only_body
 from ..geometry.cad.step_prism import write_prism
 from ..geometry.cad.step_section import write_section
+from ..geometry.cad.worn_body import only_body, write_design_mesh
 
 _FORMATS = (".csv", *CARRIERS)
 _IN_TIME = ("transient", "initial")

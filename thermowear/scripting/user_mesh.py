@@ -8,10 +8,9 @@ import numpy as np
 
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
-from ..geometry.mesh.nodes import CORNERS, FACETS, reference_nodes
-from ..geometry.mesh.orders import boundary, compact
-from ..geometry.mesh.tagged import TaggedMesh
-from ..geometry.reading.cell_checks import oriented
+from ..geometry.mesh.nodes import CORNERS, FACETS, boundary, reference_nodes
+from ..geometry.mesh.tagged import TaggedMesh, compact
+from ..geometry.reading.mesh_checks import oriented
 from ..lagrange import equispaced, matching
 from ..parallel import on_root
 from .body import MeshBody

@@ -1,6 +1,6 @@
 """Base class of geometries: keys in the case file and interface to the program.
 
-Each geometry is a subclass in the room ``geometry`` (one file per geometry).
+Each geometry is a subclass in the room ``geometry``.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ import scipy
 
 from ...errors import CaseError
 from ...user_files import read_bytes
+from ..mesh.nodes import chord_lengths
 
 HEADERS = (
     "body",
@@ -109,8 +110,7 @@ class Design:
     @cached_property
     def _lengths(self) -> np.ndarray:
         """Chord lengths along the points, shape (n,) [m]."""
-        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        return np.concatenate([[0.0], np.cumsum(steps)])
+        return chord_lengths(self.points)
 
     @cached_property
     def _face(self) -> scipy.interpolate.CubicSpline:

@@ -1,21 +1,59 @@
-"""STEP export of a worn body in space: a prism on a B-spline surface through its worn face."""
+"""STEP export (CAD, in millimetres) by OpenCASCADE through gmsh.
+
+A worn body in space is a prism on a B-spline surface through its worn face.
+"""
 
 from __future__ import annotations
 
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import scipy
 
+from ...errors import CaseError
 from ..mesh.gmsh_session import gmsh_model
-from ..mesh.orders import shape_functions
+from ..mesh.nodes import shape_functions
 from ..mesh.tagged import TaggedMesh
 from .design import Design
-from .step_files import UNIT, save
 from .worn_body import offsets
 
+UNIT = 1e3
+"""Millimetres in a metre."""
 _WITHIN = 5
 """Points of the surface along each side of a facet, both ends included."""
+
+
+def save(gmsh, path: Path) -> None:
+    """Write a gmsh model to a file, with the output of OpenCASCADE suppressed.
+
+    Written to a temporary file and renamed: gmsh derives the format from a fixed file ending.
+    """
+    draft = path.with_name(f".{path.name}.step")
+    try:
+        draft.open("wb").close()
+        with _silence():
+            gmsh.write(str(draft))
+        os.replace(draft, path)
+    except OSError as error:
+        raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Suppress the standard output of the process."""
+    sys.stdout.flush()
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)
 
 
 def write_prism(mesh: TaggedMesh, design: Design, face: str, path: Path) -> None:
@@ -55,7 +93,7 @@ def write_prism(mesh: TaggedMesh, design: Design, face: str, path: Path) -> None
 
 def face_grid(mesh: TaggedMesh, face: str) -> np.ndarray:
     """Grid of points of a face of structured facets, shape (n_u, n_v, 3) [m]."""
-    facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index(face) + 1]
+    facets = mesh.facets_of(face)
     corners = _lattice(facets[:, :4])
     xi, eta = (step[:, None] for step in np.indices((_WITHIN, _WITHIN)).reshape(2, -1))
     points = shape_functions("quadrilateral", mesh.order, np.hstack([xi, eta]) / (_WITHIN - 1))

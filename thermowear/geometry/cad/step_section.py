@@ -10,10 +10,11 @@ import numpy as np
 import scipy
 
 from ..mesh.gmsh_session import gmsh_model
+from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh
+from ..moving.outline import Piece, loops
 from .design import Design
-from .outline import Piece, loops
-from .step_files import UNIT, save
+from .step_prism import UNIT, save
 from .worn_body import face_motion, slide
 
 _STRAIGHT = 1e-9  # relative to the length of a piece
@@ -179,10 +180,7 @@ def _wire(occ, curves: list[_Curve]) -> int:
 
 def _spline(occ, points: np.ndarray, start: int, end: int) -> int:
     """Cubic B-spline through points; OpenCASCADE's own is off by up to a micrometre."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    spline = scipy.interpolate.make_interp_spline(
-        np.concatenate([[0.0], np.cumsum(steps)]), points, k=3
-    )
+    spline = scipy.interpolate.make_interp_spline(chord_lengths(points), points, k=3)
     knots, multiplicities = np.unique(spline.t, return_counts=True)
     inner = [_point(occ, control) for control in spline.c[1:-1]]
     return occ.addBSpline(

@@ -1,13 +1,18 @@
-"""Mesh of a body with a worn contact face: motion of the face, its sides and the interior."""
+"""Mesh of a body with a worn contact face: motion of face, sides and interior; its export."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 
-from ..mesh.tagged import TaggedMesh
+from ..mesh.nodes import chord_lengths
+from ..mesh.tagged import TaggedMesh, compact, quadratic
 from ..moving.moved import Extension, MovableBody
+from ..moving.outline import loops
+from ..reading.export import write_mesh
 from .design import Design
-from .outline import loops
 
 _ALONG = 0.2
 """Least cosine between a side and the face normal for which the end of the face slides along it."""
@@ -48,6 +53,34 @@ def moved_body(mesh: TaggedMesh, design: Design, face: str, extension: Extension
     return points + follow(body.outlined(face_motion(design, on_face, ends)))
 
 
+def only_body(mesh: TaggedMesh, parts: tuple[str, ...]) -> TaggedMesh:
+    """Mesh of one body, with its surfaces.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    parts : tuple of str
+        Names of the body and its zones.
+    """
+    tags = sorted(mesh.tags_of(part for part in parts if part in mesh.bodies))
+    cells = np.isin(mesh.cell_tags, tags)
+    has = np.zeros(len(mesh.points), dtype=bool)
+    has[mesh.cells[cells]] = True
+    facets = has[mesh.facets].all(axis=1)
+    marks, facet_tags = np.unique(mesh.facet_tags[facets], return_inverse=True)
+    return compact(
+        replace(
+            mesh,
+            cells=mesh.cells[cells],
+            cell_tags=(np.searchsorted(tags, mesh.cell_tags[cells]) + 1).astype(np.int32),
+            facets=mesh.facets[facets],
+            facet_tags=(facet_tags + 1).astype(np.int32),
+            bodies=tuple(mesh.bodies[tag - 1] for tag in tags),
+            surfaces=tuple(mesh.surfaces[mark - 1] for mark in marks),
+        )
+    )
+
+
 def offsets(design: Design, points: np.ndarray) -> np.ndarray:
     """Displacement of points (n, gdim) of the unworn face to the worn one, along the normal [m]."""
     return -design.depth_at(points)[:, None] * design.normals_at(points)
@@ -83,9 +116,39 @@ def face_motion(design: Design, points: np.ndarray, ends: list[np.ndarray | None
     """
     motion, normals = offsets(design, points), design.normals_at(points)
     tangents = np.column_stack([-normals[:, 1], normals[:, 0]])
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    share = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+    share = chord_lengths(points) / chord_lengths(points)[-1]
     for k, near, end in ((0, 1.0 - share, ends[0]), (-1, share, ends[1])):
         if end is not None:
             motion = motion + (near * float((end - motion[k]) @ tangents[k]))[:, None] * tangents
     return motion
+
+
+def write_design_mesh(
+    mesh: TaggedMesh, design: Design, face: str, path: Path, extension: Extension
+) -> None:
+    """Write the mesh of a body whose contact face has a worn shape.
+
+    Straight-sided cells become quadratic to follow the shape; .vtu supports no higher order.
+    ``displacement_m`` holds the displacement of the nodes.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Mesh of the unworn body.
+    design : Design
+    face : str
+        Name of its contact face.
+    path : Path
+    extension : callable
+        Factory of harmonic extensions, see `moved_body`.
+
+    Raises
+    ------
+    CaseError
+        If the file cannot be written.
+    """
+    if mesh.order == 1 or (path.suffix == ".vtu" and mesh.order > 2):
+        mesh = quadratic(mesh)
+    points = moved_body(mesh, design, face, extension)
+    displacement = np.pad(points - mesh.points, ((0, 0), (0, 3 - points.shape[1])))
+    write_mesh(replace(mesh, points=points), path, {"displacement_m": displacement})

@@ -1,4 +1,7 @@
-"""Geometries that a case file can name, one file each; importing this folder makes them known."""
+"""Geometries that a case file can name, in one file or with similar ones.
+
+Importing this folder makes them known.
+"""
 
 import importlib
 import pkgutil

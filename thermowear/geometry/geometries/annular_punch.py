@@ -17,8 +17,7 @@ from ...case.tables.geometry import named
 from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
 from ..mesh.tagged import TaggedMesh
-from ..meshing.blocks import growing
-from ..meshing.face_profiles import Arc, FaceProfile, Straight
+from ..meshing.divisions import growing
 from .stacked import Rectangle, Stacked
 
 _STEEPEST = math.radians(80)
@@ -101,7 +100,7 @@ class AnnularPunch(Stacked):
             )
 
     def _check_rise(self, key: str, *heights: str) -> None:
-        rise = abs(float(self.profile.height(np.array(self.outer_radius))))
+        rise = abs(float(self._height(np.array(self.outer_radius))))
         for name in heights:
             largest = _DEEPEST * getattr(self, name)
             if not rise < largest:
@@ -120,16 +119,32 @@ class AnnularPunch(Stacked):
         return Rectangle(0.0, self.plate_radius, self.plate_height)
 
     @property
-    def profile(self) -> FaceProfile:
-        """Profile of both faces."""
-        middle = (self.inner_radius + self.outer_radius) / 2
-        if self.torus_radius is not None:
-            return Arc(middle, self.torus_radius)
-        return Straight(middle, 0.0 if self.cone_angle is None else 1 / math.tan(self.cone_angle))
+    def cell_order(self) -> int:
+        return 1 if self.torus_radius is None else 3
 
     @property
-    def cell_order(self) -> int:
-        return self.profile.order
+    def _middle(self) -> float:
+        """Mean radius, where the face is at z = 0 [m]."""
+        return (self.inner_radius + self.outer_radius) / 2
+
+    def _height(self, radii: np.ndarray) -> np.ndarray:
+        """Z of the face at radii [m]."""
+        offset, radius = radii - self._middle, self.torus_radius
+        if radius is not None:
+            return 2 * radius * np.sin(np.arcsin(offset / radius) / 2) ** 2
+        return offset * (0.0 if self.cone_angle is None else 1 / math.tan(self.cone_angle))
+
+    def _spaced(self, radii: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Map equally spaced radii to the nodes of cells that end at `columns` [m]."""
+        radius = self.torus_radius
+        if radius is None:
+            return radii
+        # equal angles: points between the nodes then lie within 3e-4 h⁴/R³ of the arc
+        after = np.clip(np.searchsorted(columns, radii, side="right"), 1, len(columns) - 1)
+        part = (radii - columns[after - 1]) / (columns[after] - columns[after - 1])
+        angles = np.arcsin((columns - self._middle) / radius)
+        angle = (1 - part) * angles[after - 1] + part * angles[after]
+        return self._middle + radius * np.sin(angle)
 
     def contact_area(self) -> float:
         """Area projected along the axis, also of a cone or a torus."""
@@ -164,8 +179,6 @@ class AnnularPunch(Stacked):
         limits = self.inner_radius, self.outer_radius
         r, z = points.T
         within = np.clip(r, *limits)
-        on_face = self.profile.spaced(within, np.unique(np.clip(columns, *limits)))
+        on_face = self._spaced(within, np.unique(np.clip(columns, *limits)))
         part = 1 - z / height
-        return np.column_stack(
-            [r + part * (on_face - within), z + part * self.profile.height(on_face)]
-        )
+        return np.column_stack([r + part * (on_face - within), z + part * self._height(on_face)])

@@ -1,4 +1,4 @@
-"""Base of geometries whose body 1 conforms to a circle of a rotating body 2.
+"""Base of geometries whose body 1 conforms to a circle of a rotating body 2; block on a disk.
 
 Body 2 is a whole ring (a disk with a bore, a drum) about the origin. Angles are measured from
 12 o'clock (the direction +y), clockwise: positive towards +x.
@@ -7,7 +7,8 @@ Body 2 is a whole ring (a disk with a bore, a drum) about the origin. Angles are
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from abc import abstractmethod
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -15,12 +16,13 @@ from pydantic import model_validator
 from ...case.tables.geometry import keyed
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
-from ...case.values.units import Angle
+from ...case.values.units import Angle, Length
+from ..meshing.cells import ORDER, Claim, Sheet, every, grid, level, mesh_body, tagged_bodies
 from ..meshing.polar import Division, Polar, complete
-from ..meshing.quads import Sheet, mesh_body, tagged_bodies
-from .on_block import ORDER
 
 ORIGIN = Polar()
+_STEEPEST = math.radians(80.0)
+"""Largest angle of the arc of a block: at least 10 degrees with its vertical side."""
 
 
 class ArcContact(PlaneGeometry):
@@ -36,7 +38,6 @@ class ArcContact(PlaneGeometry):
         Keys of the radii of the contact circle and of the circle where body 2 is fixed.
     """
 
-    name: ClassVar[str] = ""
     models = ("plane-strain", "plane-stress")
     rotation_center = (0.0, 0.0)
     rest: ClassVar[str]
@@ -75,13 +76,13 @@ class ArcContact(PlaneGeometry):
         """Radius of the circle where body 2 is fixed [m]."""
         return getattr(self, self.far_circle)
 
+    @abstractmethod
     def upper_sheets(self, division: Division) -> list[Sheet]:
         """Cells of body 1."""
-        raise NotImplementedError
 
-    def on_holder(self, p: np.ndarray) -> np.ndarray:
-        """Mask of edges of body 1, given by their nodes, on the holder."""
-        raise NotImplementedError
+    @abstractmethod
+    def on_holder(self) -> Claim:
+        """Predicate of the edges of body 1 on the holder."""
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:
@@ -125,18 +126,69 @@ class ArcContact(PlaneGeometry):
         first, last = (math.asin(min(max(x / self.radius, -1.0), 1.0)) for x in zone)
         return first, last
 
-    def _claims(self):
+    def _claims(self) -> dict[str, Claim]:
         """Predicates of all surfaces, see `tagged_bodies`."""
         upper_face, ring_face = self.contact
         return {
-            upper_face: lambda p: ORIGIN.on_circle(p, self.radius),
-            self.held: self.on_holder,
-            f"{self.bodies[0]}_side": lambda p: np.full(len(p), True),
-            ring_face: lambda p: ORIGIN.on_arc(p, self.radius, self.arc),
-            self.rest: lambda p: ORIGIN.on_circle(p, self.radius),
-            self.fixed: lambda p: ORIGIN.on_circle(p, self.far_radius),
+            upper_face: ORIGIN.circle(self.radius),
+            self.held: self.on_holder(),
+            f"{self.bodies[0]}_side": every,
+            ring_face: ORIGIN.circle(self.radius, self.arc),
+            self.rest: ORIGIN.circle(self.radius),
+            self.fixed: ORIGIN.circle(self.far_radius),
         }
 
 
 def degrees(angle: float) -> str:
     return f"{math.degrees(angle):g} deg"
+
+
+class BlockOnDisk(ArcContact):
+    """Dimensions of a block with a concave face on the rim of a disk; its flat top is held.
+
+    Attributes
+    ----------
+    disk_radius, disk_bore : float
+        Radii of rim and bore [m].
+    block_height : float
+        Height of the block's top above the highest point of the disk [m].
+    """
+
+    name = "block-on-disk"
+    bodies = ("block", "disk")
+    held = "block_top"
+    fixed = "disk_bore"
+    rest = "disk_rim"
+    far_circle = "disk_bore"
+
+    type: Literal["block-on-disk"]
+    disk_radius: Length
+    disk_bore: Length
+    block_height: Length
+
+    @model_validator(mode="after")
+    def _fits(self):
+        self.check_arc(_STEEPEST)
+        self.check_less("disk_bore", "disk_radius")
+        return self
+
+    @property
+    def top(self) -> float:
+        """Height of the block's top above the centre of the disk [m]."""
+        return self.disk_radius + self.block_height
+
+    def upper_sheets(self, division: Division) -> list[Sheet]:
+        radius, top = self.disk_radius, self.top
+        highest_side = top - radius * min(map(math.cos, self.arc))
+        width = radius * float(np.ptp(np.sin(self.arc)))
+        rows = division.layered((highest_side,), width)[0] / highest_side
+
+        def place(p):
+            angle, up = p[..., 0], p[..., 1]
+            y = (1 - up) * radius * np.cos(angle) + up * top
+            return np.stack([radius * np.sin(angle), y], axis=-1)
+
+        return [Sheet(grid(division.angles, rows), place)]
+
+    def on_holder(self):
+        return level(1, self.top)

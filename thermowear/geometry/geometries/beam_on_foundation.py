@@ -15,8 +15,17 @@ from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
 from ..mesh.tagged import TaggedMesh
-from ..meshing.quads import MeshedBody, Sheet, grid, mesh_body, tagged_bodies
-from .on_block import near, within
+from ..meshing.cells import (
+    MeshedBody,
+    Sheet,
+    between,
+    both,
+    grid,
+    level,
+    mesh_body,
+    tagged_bodies,
+)
+from ..meshing.divisions import joined
 
 
 class BeamOnFoundation(PlaneGeometry):
@@ -79,17 +88,16 @@ class BeamOnFoundation(PlaneGeometry):
                 -self.foundation_height, 0.0, mesh.face("foundation")[0], (1, 3)
             ),
         }
-        size = self.length
         claims = {
-            "beam_face": lambda p: near(p[..., 1], self.gap, size),
-            "beam_clamp": lambda p: near(p[..., 0], 0.0, size),
-            "beam_support": lambda p: near(p[..., 0], self.length, size),
-            "beam_load": lambda p: near(p[..., 1], top, size) & within(p, self.load_span),
-            "beam_top": lambda p: near(p[..., 1], top, size),
-            "foundation_face": lambda p: near(p[..., 1], 0.0, size),
-            "foundation_left": lambda p: near(p[..., 0], 0.0, size),
-            "foundation_right": lambda p: near(p[..., 0], self.length, size),
-            "foundation_bottom": lambda p: near(p[..., 1], -self.foundation_height, size),
+            "beam_face": level(1, self.gap),
+            "beam_clamp": level(0, 0.0),
+            "beam_support": level(0, self.length),
+            "beam_load": both(level(1, top), between(*self.load_span)),
+            "beam_top": level(1, top),
+            "foundation_face": level(1, 0.0),
+            "foundation_left": level(0, 0.0),
+            "foundation_right": level(0, self.length),
+            "foundation_bottom": level(1, -self.foundation_height),
         }
         return tagged_bodies(bodies, claims)
 
@@ -100,7 +108,7 @@ class BeamOnFoundation(PlaneGeometry):
         columns = self._columns(elements)
         wanted = round((top - bottom) / np.diff(columns).max())
         ends = np.linspace(bottom, top, int(np.clip(wanted, *rows)) + 1)
-        return mesh_body([Sheet(grid(columns, ends), lambda p: p)], 1)
+        return mesh_body([Sheet(grid(columns, ends))], 1)
 
     def _columns(self, elements: int) -> np.ndarray:
         """X of the ends of nearly equal elements that match the ends of the load."""
@@ -109,8 +117,5 @@ class BeamOnFoundation(PlaneGeometry):
         counts = np.ones(3, dtype=int)
         while counts.sum() < elements:
             counts[np.argmax(spans / counts)] += 1
-        parts = [
-            np.linspace(a, b, n, endpoint=False)
-            for a, b, n in zip(places[:-1], places[1:], counts, strict=True)
-        ]
-        return np.concatenate([*parts, [self.length]])
+        ends = zip(places[:-1], places[1:], counts + 1, strict=True)
+        return joined(*(np.linspace(*span) for span in ends))

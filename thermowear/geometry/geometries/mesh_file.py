@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, PrivateAttr, model_serializer, model_validator
 
@@ -14,7 +15,7 @@ from ...case.values.paths import UserFile
 from ...case.values.section import KeyFault
 from ...case.values.units import Area, Length
 from ..reading.assembly import Named, assemble
-from ..reading.cell_sets import Union, divided, joined
+from ..reading.cell_sets import divided, joined
 from ..reading.file_contents import read_contents
 from ..reading.mesh_checks import check_mesh
 from ..reading.pair_checks import check_pair
@@ -109,25 +110,14 @@ class MeshFile(HalvableGeometry):
         keys = _KEYS | {"contact_area_given": "contact_area"}
         return {keys.get(name, name): value for name, value in handler(self).items()}
 
+    contact: ClassVar[Any] = keyed(attrgetter("contact_names"))
+    held: ClassVar[Any] = keyed(attrgetter("held_name"))
+    fixed: ClassVar[Any] = keyed(attrgetter("fixed_name"))
+    symmetry: ClassVar[Any] = keyed(attrgetter("symmetry_names"))
+
     @keyed
     def bodies(self) -> tuple[str, ...]:
         return tuple(self.body_names)
-
-    @keyed
-    def contact(self) -> tuple[str, str]:
-        return self.contact_names
-
-    @keyed
-    def held(self) -> str:
-        return self.held_name
-
-    @keyed
-    def fixed(self) -> str:
-        return self.fixed_name
-
-    @keyed
-    def symmetry(self) -> tuple[str, ...]:
-        return self.symmetry_names
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:
@@ -164,11 +154,8 @@ class MeshFile(HalvableGeometry):
 
     def build(self, mesh, zone):
         contents = read_contents(Path(self.path))
-        unions = [
-            Union(name, self.sets_of(name), f"geometry.bodies.{name}") for name in self.bodies
-        ]
         contents = replace(contents, points=contents.points * self.length_unit)
-        contents, bodies = joined(contents, unions)
+        contents, bodies = joined(contents, {name: self.sets_of(name) for name in self.bodies})
         tagged = assemble(contents, bodies, list(self._purposes().values()))
         owners = [self.bodies.index(body) for body in self.zones.values()]
         sets = [

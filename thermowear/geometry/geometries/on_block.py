@@ -2,28 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from abc import abstractmethod
 from typing import ClassVar
 
 import numpy as np
 
-from ...case.tables.geometry import Geometry, keyed, named
+from ...case.tables.geometry import Geometry, Pressing, keyed, named
 from ...case.tables.plane_geometry import HalvableGeometry
 from ...case.values.units import Length
 from ...errors import CaseError
-from ..meshing.face_ends import face_ends, growth, row_ratio
-from ..meshing.outlines import RectangularOutline, ringed_body
-from ..meshing.quads import MeshedBody, mesh_body, tagged_bodies
-
-ORDER = 3
-"""Order of the cells; nodes lie on an arc, points between them within 3e-4 h⁴/R³ of it."""
+from ..meshing.cells import (
+    ORDER,
+    Claim,
+    MeshedBody,
+    between,
+    both,
+    level,
+    mesh_body,
+    tagged_bodies,
+)
+from ..meshing.divisions import face_ends, growth, row_ratio
+from ..meshing.rings import RectangularOutline, ringed_body
 
 _THINNEST = 1e-6
 """Least contact width relative to the block's half width: 10 000 times the tolerance for positions
 in the mesh, and finer than any element."""
 
-Claim = Callable[[np.ndarray], np.ndarray]
-"""Predicate of a surface: mask of edges, given by their nodes, that lie on it."""
+
+def expected_half_width(pressing: Pressing, radius: float, thickness: float) -> float:
+    """Half-width of the contact of cylinders: Hertz for a force, an estimate for an approach [m].
+
+    Parameters
+    ----------
+    pressing : Pressing
+    radius : float
+        Relative radius of curvature [m].
+    thickness : float
+        Length of the contact that the force refers to [m].
+    """
+    if pressing.force is not None:
+        return math.sqrt(4 * pressing.force / thickness * radius / (math.pi * pressing.modulus))
+    assert pressing.approach is not None
+    return 0.7 * math.sqrt(radius * pressing.approach)
 
 
 class OnBlock(Geometry):
@@ -36,7 +57,6 @@ class OnBlock(Geometry):
         Key of the block's size along the contact.
     """
 
-    name: ClassVar[str] = ""
     block_key: ClassVar[str]
 
     block_height: Length
@@ -61,14 +81,15 @@ class OnBlock(Geometry):
         return True
 
     @property
+    @abstractmethod
     def block_reach(self) -> float:
         """Distance of the block's side from x = 0 [m]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def upper_limits(self) -> dict[str, float]:
         """Keys of body 1 that bound the contact, and its largest distance from x = 0 [m]."""
-        raise NotImplementedError
 
+    @abstractmethod
     def upper_body(self, mesh, zone: tuple[float, float]) -> tuple[MeshedBody, dict[str, Claim]]:
         """Mesh body 1 for a contact zone.
 
@@ -78,7 +99,6 @@ class OnBlock(Geometry):
         claims : dict of str to callable
             Predicates of its surfaces by the last word of their names, see `tagged_bodies`.
         """
-        raise NotImplementedError
 
     def block_ends(self, mesh, zone: tuple[float, float]) -> tuple[np.ndarray, float, float]:
         """Element ends along the top of the block, and row sizes below the contact.
@@ -107,9 +127,14 @@ class OnBlock(Geometry):
         outline = RectangularOutline(self.block_reach, self.block_height, self.right_only)
         sheets = ringed_body(outline, ends, rows, growth(mesh.face(block)[0]))
         claims = {f"{upper}_{part}": claim for part, claim in upper_claims.items()}
-        claims |= {f"{block}_{part}": c for part, c in self._claims(self.block_span(ends)).items()}
-        for axis in self.symmetry:
-            claims[axis] = lambda p: near(p[..., 0], 0.0, self.block_reach)
+        on_top = level(1, 0.0)
+        claims |= {
+            f"{block}_face": both(on_top, between(*self.block_span(ends))),
+            f"{block}_top": on_top,
+            f"{block}_side": lambda p: level(0, self.block_reach)(np.abs(p)),
+            f"{block}_bottom": level(1, -self.block_height),
+            **dict.fromkeys(self.symmetry, level(0, 0.0)),
+        }
         bodies = {upper: upper_body, block: mesh_body(sheets, ORDER)}
         return tagged_bodies(bodies, {surface: claims[surface] for surface in self.surfaces})
 
@@ -133,20 +158,6 @@ class OnBlock(Geometry):
                     f"x = {outer:.3g} m; it can be meshed up to {limit:.3g} m"
                 )
 
-    def _claims(self, span: tuple[float, float]) -> dict[str, Claim]:
-        """Predicates of the block's surfaces."""
-        reach = self.block_reach
-
-        def on_top(p):
-            return near(p[..., 1], 0.0, reach)
-
-        return {
-            "face": lambda p: on_top(p) & within(p, span),
-            "top": on_top,
-            "side": lambda p: near(np.abs(p[..., 0]), reach, reach),
-            "bottom": lambda p: near(p[..., 1], -self.block_height, reach),
-        }
-
 
 class PlaneOnBlock(OnBlock, HalvableGeometry):
     """Base of geometries on a block for plane models.
@@ -157,7 +168,6 @@ class PlaneOnBlock(OnBlock, HalvableGeometry):
         Width of the block, |x| <= block_width / 2 [m].
     """
 
-    name: ClassVar[str] = ""
     models = ("plane-strain", "plane-stress")
     block_key = "block_width"
 
@@ -174,13 +184,3 @@ class PlaneOnBlock(OnBlock, HalvableGeometry):
     @property
     def block_reach(self) -> float:
         return self.block_width / 2
-
-
-def near(values: np.ndarray, target: float, size: float) -> np.ndarray:
-    """Mask of edges with all nodes at a value, within a tolerance relative to a size."""
-    return np.all(np.abs(values - target) < 1e-9 * size, axis=1)
-
-
-def within(p: np.ndarray, span: tuple[float, float]) -> np.ndarray:
-    """Mask of edges whose midpoint is in a range of x."""
-    return np.array([span[0] < x < span[1] for x in p[..., 0].mean(axis=1)], dtype=bool)

@@ -1,4 +1,4 @@
-"""Base of geometries whose body 1 slides with a flat face on a strip that moves along x.
+"""Flat punch, and block on a pivot, sliding on a strip that moves along x, or reciprocating on it.
 
 The contact lies at y = 0, in the middle of the strip.
 """
@@ -6,14 +6,16 @@ The contact lies at y = 0, in the middle of the strip.
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Literal
+
+import numpy as np
+from pydantic import model_validator
 
 from ...case.tables.geometry import keyed, named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
-from ...case.values.units import Length
-from ..meshing.blocks import SAME
-from ..meshing.face_ends import growth
+from ...case.values.units import Distance, Length
+from ..meshing.divisions import SAME, growth
 from .stacked import Rectangle, Stacked
 
 
@@ -28,8 +30,8 @@ class OnStrip(Stacked, PlaneGeometry):
         Dimensions of the strip, at least as long as the face of body 1 [m].
     """
 
-    name: ClassVar[str] = ""
     models = ("plane-strain", "plane-stress")
+    fixed = "strip_bottom"
 
     strip_length: Length
     strip_height: Length
@@ -37,10 +39,6 @@ class OnStrip(Stacked, PlaneGeometry):
     @keyed
     def held(self) -> str:
         return f"{self.bodies[0]}_top"
-
-    @keyed
-    def fixed(self) -> str:
-        return "strip_bottom"
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:
@@ -53,10 +51,6 @@ class OnStrip(Stacked, PlaneGeometry):
         """True if the face is as wide as the strip is long, without a free part of its top."""
         start, end = self.lower_face
         return math.isclose(end - start, self.strip_length, rel_tol=SAME)
-
-    @property
-    def face_width(self) -> float:
-        return self.upper.right - self.upper.left
 
     @property
     def lower(self) -> Rectangle:
@@ -77,7 +71,7 @@ class OnStrip(Stacked, PlaneGeometry):
         )
 
     def contact_area(self) -> float:
-        return self.face_width * self.thickness
+        return (self.upper.right - self.upper.left) * self.thickness
 
     def check_strip(self) -> None:
         """Raise a `KeyFault` if the face is wider than the strip is long."""
@@ -87,3 +81,82 @@ class OnStrip(Stacked, PlaneGeometry):
                 "strip_length",
                 f"{self.strip_length:g} m must be at least the width of the face {end - start:g} m",
             )
+
+
+class PunchOnStrip(OnStrip):
+    """Dimensions of a flat punch with sharp edges, centred at x = 0, and of the strip.
+
+    Attributes
+    ----------
+    width, height : float
+        Dimensions of the punch [m].
+    stroke : float
+        Amplitude of a reciprocating punch on a strip at rest: the strip is meshed for contact over
+        the whole stroke [m].
+    """
+
+    name = "punch-on-strip"
+    bodies = ("punch", "strip")
+
+    type: Literal["punch-on-strip"]
+    width: Length
+    height: Length
+    stroke: Distance = 0.0
+
+    @model_validator(mode="after")
+    def _fits(self):
+        self.check_strip()
+        return self
+
+    @property
+    def upper(self) -> Rectangle:
+        return Rectangle(-self.width / 2, self.width / 2, self.height)
+
+    @property
+    def lower_face(self) -> tuple[float, float]:
+        reach = self.width / 2 + self.stroke
+        return -reach, reach
+
+    def _lower_face(self, elements, grading, zone):
+        if self.stroke == 0.0:
+            return super()._lower_face(elements, grading, zone)
+        start, end = self.lower_face  # the contact edges move over the face: uniform elements
+        return np.linspace(start, end, math.ceil(elements * (end - start) / self.width - 1e-9) + 1)
+
+
+class PivotedBlock(OnStrip):
+    """Dimensions of a block that rotates about a pivot beside it, and of the strip.
+
+    The pivot lies at x = 0. The block is attached to it by a rigid arm that holds its whole top.
+
+    Attributes
+    ----------
+    face_start, face_end : float
+        X at the ends of the block's face, measured from the pivot [m].
+    block_height : float [m]
+    pivot_height : float
+        Height of the pivot above the face [m].
+    """
+
+    name = "pivoted-block"
+    bodies = ("block", "strip")
+
+    type: Literal["pivoted-block"]
+    face_start: Length
+    face_end: Length
+    block_height: Length
+    pivot_height: Distance
+
+    @model_validator(mode="after")
+    def _fits(self):
+        self.check_less("face_start", "face_end")
+        self.check_strip()
+        return self
+
+    @keyed
+    def pivot_point(self) -> tuple[float, float]:
+        return 0.0, self.pivot_height
+
+    @property
+    def upper(self) -> Rectangle:
+        return Rectangle(self.face_start, self.face_end, self.block_height)

@@ -1,11 +1,14 @@
 """Flat punch, sharp or with rounded edges, pressed on a block or sliding along it.
 
-The contact lies at y = 0 and is centred at x = 0; the punch is above.
+The contact lies at y = 0 and is centred at x = 0; the punch is above. In a punch with rounded edges
+the face, the side and a core meet at a point above each rounding, so that cells follow the rounding
+and stay well shaped.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -14,11 +17,120 @@ from pydantic import model_validator
 from ...case.tables.geometry import Pressing
 from ...case.values.section import KeyFault
 from ...case.values.units import Length, Radius
-from ..meshing.blocks import ends_of, growing_from_both
-from ..meshing.face_ends import face_ends, smoothed
-from ..meshing.quads import Sheet, grid, mesh_body
-from ..meshing.rounded_punch import RoundedPunch, expected_end
-from .on_block import ORDER, PlaneOnBlock, near
+from ..meshing.cells import ORDER, Sheet, grid, level, mesh_body, ruled
+from ..meshing.divisions import depth_ends, face_ends, growing_from_both, smoothed
+from .on_block import PlaneOnBlock
+
+_END = math.pi / 4
+"""Angle of the rounding up to which it belongs to the contact face."""
+
+
+def expected_end(flat: float, radius: float, load: float) -> float:
+    """Half-width of the contact with an elastic half-plane.
+
+    Ciavarella, Hills and Monno (1998): ``2 P r / (b² E*) = (π - 2φ) / (2 sin² φ) - cot φ`` with
+    the end of the flat at ``b = a sin φ``.
+
+    Parameters
+    ----------
+    flat : float
+        Half-width of the flat, b [m].
+    radius : float
+        Radius of the rounding, r [m].
+    load : float
+        Line load over the contact modulus, P / E* [m].
+    """
+    from scipy.optimize import brentq
+
+    def excess(phi):
+        return (math.pi - 2 * phi) / (2 * math.sin(phi) ** 2) - 1 / math.tan(phi) - target
+
+    target = 2 * load * radius / flat**2
+    lowest, highest = 1e-6, math.pi / 2 - 1e-9
+    if excess(lowest) < 0:
+        return flat / math.sin(lowest)
+    return flat / math.sin(brentq(excess, lowest, highest)) if excess(highest) < 0 else flat
+
+
+@dataclass(frozen=True)
+class RoundedPunch:
+    """Section of a punch; `flat` is the half-width of its flat face [m]."""
+
+    flat: float
+    radius: float
+    height: float
+    half: bool
+
+    @property
+    def end(self) -> float:
+        """X of the end of the contact face [m]."""
+        return self.flat + self.radius * math.sin(_END)
+
+    @property
+    def end_height(self) -> float:
+        """Y of the end of the contact face [m]."""
+        return self.radius * (1 - math.cos(_END))
+
+    @property
+    def largest(self) -> float:
+        """Largest half-width of a contact zone [m]."""
+        return self.flat + 0.6 * self.radius
+
+    def cells(self, ends: np.ndarray, first: float) -> list[Sheet]:
+        """Cells of the section.
+
+        Parameters
+        ----------
+        ends : ndarray
+            X at the element ends of the contact face; the outermost are moved to its ends [m].
+        first : float
+            Size of the first row above it [m], bounded by the radius of the rounding.
+        """
+        width = self.flat + self.radius
+        shell = min(max(1.5 * self.radius, 0.4 * width), 0.7 * width, 0.7 * self.height)
+        rows = depth_ends(min(first, self.radius), shell, 2.0) / shell
+        along = self._along(ends)
+        core = np.array([width - shell, shell])
+        left = np.array([0.0, shell]) if self.half else core * [-1, 1]
+        side = self._side_ends(min(first, self.radius))
+        up = np.array([core, [core[0], self.height]])
+        sheets = [
+            ruled(self._contour, np.array([left, core]), along, rows),
+            ruled(self._contour, up, side, rows),
+            Sheet(
+                grid(
+                    np.linspace(left[0], core[0], len(along)),
+                    np.linspace(shell, self.height, len(side)),
+                )
+            ),
+        ]
+        if not self.half:
+            sheets.append(ruled(lambda s: self._contour(s) * [-1, 1], up * [-1, 1], side, rows))
+        return sheets
+
+    def _along(self, ends: np.ndarray) -> np.ndarray:
+        """Arc lengths along the contour at x, the outermost moved to the ends of the face."""
+        x = np.abs(ends)
+        over = np.clip((x - self.flat) / self.radius, 0.0, math.sin(_END))
+        along = np.minimum(x, self.flat) + self.radius * np.arcsin(over)
+        along[[-1] if self.half else [0, -1]] = self.flat + self.radius * _END
+        return np.sign(ends) * along
+
+    def _side_ends(self, first: float) -> np.ndarray:
+        """Arc lengths along the contour at the element ends beside the contact face."""
+        start = self.flat + self.radius * _END
+        corner = self.flat + self.radius * math.pi / 2
+        up = self.height - self.radius
+        return np.concatenate([[start], corner + depth_ends(min(first, up), up, 2.0)])
+
+    def _contour(self, along: np.ndarray) -> np.ndarray:
+        """Points of the contour: flat, rounding, side."""
+        s = np.abs(along)
+        angle = np.clip((s - self.flat) / self.radius, 0.0, math.pi / 2)
+        x = np.minimum(s, self.flat) + self.radius * np.sin(angle)
+        y = self.radius * 2 * np.sin(angle / 2) ** 2
+        y = y + np.maximum(s - self.flat - self.radius * math.pi / 2, 0.0)
+        return np.stack([np.sign(along) * x, y], axis=-1)
 
 
 class PunchOnBlock(PlaneOnBlock):
@@ -106,10 +218,7 @@ class PunchOnBlock(PlaneOnBlock):
             highest = shape.end_height
         else:
             sheets, highest = [self._rectangle(elements, grading)], 0.0
-        size = self.width
-
-        def on_top(p):
-            return near(p[..., 1], self.height, size)
+        size, on_top = self.width, level(1, self.height)
 
         def off_axis(p):
             return np.any(p[..., 0] != 0.0, axis=1)
@@ -145,8 +254,8 @@ class PunchOnBlock(PlaneOnBlock):
         contact = np.diff(columns).min()
         coarsest = max(self.width, self.height) * 3.0 / elements
         first = (contact, math.sqrt(contact * coarsest))
-        rows = ends_of(growing_from_both(0.0, self.height, first, grading, coarsest))
-        return Sheet(grid(columns, rows), lambda p: p)
+        rows = growing_from_both(0.0, self.height, first, grading, coarsest)
+        return Sheet(grid(columns, rows))
 
 
 def _with_end(ends: np.ndarray, place: float, kept: tuple[float, ...]) -> np.ndarray:

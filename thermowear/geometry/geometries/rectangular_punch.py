@@ -14,9 +14,17 @@ from pydantic import model_validator
 from ...case.tables.geometry import Geometry, named
 from ...case.values.section import KeyFault
 from ...case.values.units import Length
-from ..meshing.blocks import Interval, ends_of, graded_face, growing, smallest
-from ..meshing.hexes import Lattice, level, mesh_lattice
-from ..meshing.quads import MeshedBody, tagged_bodies
+from ..meshing.cells import (
+    Lattice,
+    MeshedBody,
+    between,
+    both,
+    every,
+    level,
+    mesh_lattice,
+    tagged_bodies,
+)
+from ..meshing.divisions import graded_face, growing, joined
 
 
 class RectangularPunch(Geometry):
@@ -65,59 +73,49 @@ class RectangularPunch(Geometry):
         return self.size_x * self.size_y
 
     def build(self, mesh, zone=None):
-        bodies = {
-            "punch": self._punch(*mesh.face("punch")),
-            "block": self._block(*mesh.face("block")),
-        }
+        at_face, (x, y) = level(2, 0.0), (self.size_x / 2, self.size_y / 2)
         return tagged_bodies(
-            bodies,
             {
-                "punch_face": lambda p: level(p, 0.0),
-                "punch_top": lambda p: level(p, self.height),
-                "punch_sides": lambda p: np.ones(len(p), dtype=bool),
-                "block_face": lambda p: level(p, 0.0) & self._under_punch(p),
-                "block_top": lambda p: level(p, 0.0),
-                "block_bottom": lambda p: level(p, -self.block_height),
-                "block_sides": lambda p: np.ones(len(p), dtype=bool),
+                "punch": self._punch(*mesh.face("punch")),
+                "block": self._block(*mesh.face("block")),
+            },
+            {
+                "punch_face": at_face,
+                "punch_top": level(2, self.height),
+                "punch_sides": every,
+                "block_face": both(at_face, between(-x, x), between(-y, y, axis=1)),
+                "block_top": at_face,
+                "block_bottom": level(2, -self.block_height),
+                "block_sides": every,
             },
         )
 
     def _punch(self, elements: int, grading: float) -> MeshedBody:
-        x, y = self._face(elements, grading)
-        thin, largest = self._sizes(x, y, elements)
+        x, y, thin, largest = self._face(elements, grading)
         z = growing(0.0, self.height, thin, grading, largest)
-        return _boxes(x, y, z)
+        return mesh_lattice(Lattice((x, y, z)), 1)
 
     def _block(self, elements: int, grading: float) -> MeshedBody:
-        x, y = self._face(elements, grading)
-        thin, largest = self._sizes(x, y, elements)
+        *faces, thin, largest = self._face(elements, grading)
         x, y = (
-            growing(-face[-1].end, -block / 2, thin, grading, largest)
-            + face
-            + growing(face[-1].end, block / 2, thin, grading, largest)
-            for face, block in ((x, self.block_x), (y, self.block_y))
+            joined(
+                growing(-face[-1], -block / 2, thin, grading, largest),
+                face,
+                growing(face[-1], block / 2, thin, grading, largest),
+            )
+            for face, block in zip(faces, (self.block_x, self.block_y), strict=True)
         )
         z = growing(0.0, -self.block_height, thin, grading, largest)
-        return _boxes(x, y, z)
+        return mesh_lattice(Lattice((x, y, z)), 1)
 
-    def _face(self, elements: int, grading: float) -> list[list[Interval]]:
-        """Divisions of the contact along x and along y."""
+    def _face(self, elements: int, grading: float) -> tuple[np.ndarray, np.ndarray, float, float]:
+        """Divisions of the contact along x and along y.
+
+        Also the element size next to the contact edges, and the largest one far away [m].
+        """
         longest = max(self.size_x, self.size_y)
-        return [
+        x, y = (
             graded_face(-size / 2, size / 2, max(1, round(elements * size / longest)), grading)
             for size in (self.size_x, self.size_y)
-        ]
-
-    def _sizes(self, x: list[Interval], y: list[Interval], elements: int) -> tuple[float, float]:
-        """Element sizes next to the contact edges, and the largest ones far away [m]."""
-        thin = min(smallest(x), smallest(y))
-        return thin, 3.0 * max(self.size_x, self.size_y) / elements
-
-    def _under_punch(self, p: np.ndarray) -> np.ndarray:
-        half = np.array([self.size_x, self.size_y]) / 2
-        return np.all(np.abs(p[..., :2].mean(axis=1)) < half, axis=1)
-
-
-def _boxes(x: list[Interval], y: list[Interval], z: list[Interval]) -> MeshedBody:
-    """Boxes between the element ends along the axes."""
-    return mesh_lattice(Lattice((ends_of(x), ends_of(y), ends_of(z)), lambda p: p), 1)
+        )
+        return x, y, float(min(np.diff(x).min(), np.diff(y).min())), 3.0 * longest / elements

@@ -1,4 +1,4 @@
-"""Base of a cylinder and a sphere on a block: a circular section touching a rectangle.
+"""Cylinder or sphere on a block: a circular section touching a rectangle.
 
 They touch at the origin. The lower half of the disc above is meshed (or the right half of that);
 it is held on the flat at the height of its centre.
@@ -6,17 +6,20 @@ it is held on the flat at the height of its centre.
 
 from __future__ import annotations
 
-from typing import ClassVar
+import math
+from abc import abstractmethod
+from typing import Literal
 
 import numpy as np
 
 from ...case.tables.geometry import Pressing
 from ...case.values.units import Length
 from ...errors import CaseError
-from ..meshing.face_ends import face_ends, growth, row_ratio
-from ..meshing.outlines import Disc, ringed_body
-from ..meshing.quads import mesh_body
-from .on_block import ORDER, OnBlock, near, within
+from ..meshing.cells import ORDER, between, both, level, mesh_body
+from ..meshing.divisions import face_ends, growth, row_ratio
+from ..meshing.polar import Polar
+from ..meshing.rings import Disc, ringed_body
+from .on_block import OnBlock, PlaneOnBlock, expected_half_width
 
 
 class RoundOnBlock(OnBlock):
@@ -30,14 +33,12 @@ class RoundOnBlock(OnBlock):
         unworn bodies; larger for contacts that grow by wear [m].
     """
 
-    name: ClassVar[str] = ""
-
     radius: Length
     zone: Length | None = None
 
+    @abstractmethod
     def unworn_half_width(self, pressing: Pressing) -> float:
         """Estimate of the half-width (radius) of the unworn contact [m]."""
-        raise NotImplementedError
 
     def expected_zone(self, pressing):
         expected = self.unworn_half_width(pressing)
@@ -62,12 +63,50 @@ class RoundOnBlock(OnBlock):
         rows = largest, row_ratio(elements)
         sheets = ringed_body(Disc(radius, self.right_only), along, rows, growth(elements))
 
-        def on_arc(p):
-            return near(np.hypot(p[..., 0], p[..., 1] - radius), radius, radius)
-
+        on_arc = Polar(radius).circle(radius)
         claims = {
-            "face": lambda p: on_arc(p) & within(p, (ends[0], ends[-1])),
+            "face": both(on_arc, between(ends[0], ends[-1])),
             "side": on_arc,
-            "top": lambda p: near(p[..., 1], radius, radius),
+            "top": level(1, radius),
         }
         return mesh_body(sheets, ORDER), claims
+
+
+class CylinderOnBlock(RoundOnBlock, PlaneOnBlock):
+    """Dimensions of a cylinder pressed on a block, or sliding along it, see the bases."""
+
+    name = "cylinder-on-block"
+    bodies = ("cylinder", "block")
+
+    type: Literal["cylinder-on-block"]
+
+    def unworn_half_width(self, pressing: Pressing) -> float:
+        return expected_half_width(pressing, self.radius, self.thickness)
+
+
+class SphereOnBlock(RoundOnBlock):
+    """Dimensions of a sphere pressed on a cylindrical block, or rotating on it (r and z).
+
+    Attributes
+    ----------
+    block_radius : float [m]
+    """
+
+    name = "sphere-on-block"
+    models = ("axisymmetric",)
+    bodies = ("sphere", "block")
+    block_key = "block_radius"
+    slides_across = True
+
+    type: Literal["sphere-on-block"]
+    block_radius: Length
+
+    @property
+    def block_reach(self) -> float:
+        return self.block_radius
+
+    def unworn_half_width(self, pressing: Pressing) -> float:
+        if pressing.force is not None:  # Hertz
+            return (3 * pressing.force * self.radius / (4 * pressing.modulus)) ** (1 / 3)
+        assert pressing.approach is not None
+        return math.sqrt(self.radius * pressing.approach)

@@ -5,16 +5,15 @@ The contact lies at y = 0; body 1 is above. The mesh is structured in columns an
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
+
+import numpy as np
 
 from ...case.tables.geometry import Geometry
-from ..mesh.gmsh_session import gmsh_model, tagged_mesh
 from ..mesh.tagged import TaggedMesh
-from ..meshing.blocks import Grid, Interval, add_grid, growing_from_both, smallest
-from ..meshing.divided_face import divided_face
-
-Beside = tuple[list[Interval], list[Interval]]
+from ..meshing.cells import Sheet, between, both, grid, level, mesh_body, tagged_bodies
+from ..meshing.divisions import divided_face, growing_from_both, joined
 
 
 @dataclass(frozen=True)
@@ -38,21 +37,19 @@ class Stacked(Geometry):
         Geometric order of the cells.
     """
 
-    name: ClassVar[str] = ""
-
     @property
     def cell_order(self) -> int:
         return 1
 
     @property
+    @abstractmethod
     def upper(self) -> Rectangle:
         """Section of body 1."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def lower(self) -> Rectangle:
         """Section of body 2."""
-        raise NotImplementedError
 
     @property
     def lower_face(self) -> tuple[float, float]:
@@ -64,37 +61,38 @@ class Stacked(Geometry):
         return True  # faces may separate thermally, body 1 may tilt by friction
 
     def build(self, mesh, zone=None) -> TaggedMesh:
-        with gmsh_model(self.name) as gmsh:
-            upper = self._upper(gmsh.model, zone, *mesh.face(self.bodies[0]))
-            lower, face, rest = self._lower(gmsh.model, zone, *mesh.face(self.bodies[1]))
-            gmsh.model.geo.synchronize()
-            parts = [upper.bottom, upper.top, upper.left, upper.right]
-            parts += [face, lower.bottom, lower.right, lower.left, rest]
-            for body, made in zip(self.bodies, (upper, lower), strict=True):
-                gmsh.model.addPhysicalGroup(2, made.surfaces, name=body)
-            for surface, curves in zip(self.surfaces, parts, strict=False):
-                gmsh.model.addPhysicalGroup(1, curves, name=surface)
-            gmsh.model.mesh.generate(2)
-            gmsh.model.mesh.setOrder(self.cell_order)
-            return tagged_mesh(gmsh.model, self.bodies, self.surfaces)
+        (first, upper), (second, lower) = zip(self.bodies, (self.upper, self.lower), strict=True)
+        ends = {
+            first: self._upper(zone, *mesh.face(first)),
+            second: self._lower(zone, *mesh.face(second)),
+        }
+        at_face = level(1, 0.0)
+        claims = [at_face, level(1, upper.height), level(0, upper.left), level(0, upper.right)]
+        claims += [both(at_face, between(*self.lower_face)), level(1, -lower.height)]
+        claims += [level(0, lower.right), level(0, lower.left), at_face]
+        return tagged_bodies(
+            {body: mesh_body([Sheet(grid(*of))], self.cell_order) for body, of in ends.items()},
+            dict(zip(self.surfaces, claims, strict=False)),
+        )
 
-    def _upper(self, model, zone, elements: int, grading: float) -> Grid:
+    def _upper(self, zone, elements: int, grading: float) -> tuple[np.ndarray, np.ndarray]:
+        """Columns and rows of body 1."""
         columns = self._face(elements, grading, zone)
         contact, support, largest = self._sizes(columns, elements)
         rows = growing_from_both(0.0, self.upper.height, (contact, support), grading, largest)
-        return add_grid(model, columns, rows)
+        return columns, rows
 
-    def _lower(self, model, zone, elements: int, grading: float):
-        """Body 2 in gmsh, the curves of its contact face, and those beside it."""
+    def _lower(self, zone, elements: int, grading: float) -> tuple[np.ndarray, np.ndarray]:
+        """Columns and rows of body 2."""
         face = self._lower_face(elements, grading, zone)
         contact, support, largest = self._sizes(face, elements)
         before, after = self._beside((contact, support, largest), elements, grading)
         rows = growing_from_both(-self.lower.height, 0.0, (support, contact), grading, largest)
-        made = add_grid(model, before + face + after, rows)
-        start, end = len(before), len(before) + len(face)
-        return made, made.top[start:end], made.top[:start] + made.top[end:]
+        return joined(before, face, after), rows
 
-    def _beside(self, sizes: tuple[float, float, float], elements: int, grading: float) -> Beside:
+    def _beside(
+        self, sizes: tuple[float, float, float], elements: int, grading: float
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Divisions of body 2 on the left and on the right of the face, see `_sizes`."""
         contact, support, largest = sizes
         (left, right), (start, end) = (self.lower.left, self.lower.right), self.lower_face
@@ -103,19 +101,18 @@ class Stacked(Geometry):
             growing_from_both(end, right, (contact, support), grading, largest),
         )
 
-    def _lower_face(self, elements: int, grading: float, zone) -> list[Interval]:
+    def _lower_face(self, elements: int, grading: float, zone) -> np.ndarray:
         """Division of the face of body 2."""
         return self._face(elements, grading, zone)
 
-    def _face(self, elements: int, grading: float, zone) -> list[Interval]:
+    def _face(self, elements: int, grading: float, zone) -> np.ndarray:
         return divided_face(self.upper.left, self.upper.right, elements, grading, zone)
 
-    def _sizes(self, face: list[Interval], elements: int) -> tuple[float, float, float]:
+    def _sizes(self, face: np.ndarray, elements: int) -> tuple[float, float, float]:
         """Element sizes at the contact edges, at the clamped edges, and the largest elsewhere.
 
         Clamped edges are singular too; being remote they need fewer thin elements.
         """
-        upper = self.upper
-        contact = smallest(face)
+        upper, contact = self.upper, float(np.diff(face).min())
         largest = max(upper.right - upper.left, upper.height) * 3.0 / elements
         return contact, (contact * largest) ** 0.5, largest

@@ -7,16 +7,15 @@ friction heats and wears the blocks, without tangential traction in the section.
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 
 from ...case.tables.geometry import named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.units import Length
-from ..meshing.blocks import growing, sizes
-from ..meshing.quads import MeshedBody, Sheet, grid, mesh_body, tagged_bodies
-from .on_block import Claim, near
+from ..meshing.cells import MeshedBody, Sheet, every, grid, level, mesh_body, tagged_bodies
+from ..meshing.divisions import growing
 
 _THIN_ROWS = 3
 """Graded rows at the contact, which resolve the thermal boundary layer and waves along the face."""
@@ -41,7 +40,7 @@ class StackedBlocks(PlaneGeometry):
     symmetry = ("upper_side", "lower_side")
     held = "upper_top"
     fixed = "lower_bottom"
-    slides_across: ClassVar[bool] = True
+    slides_across = True
 
     type: Literal["stacked-blocks"]
     width: Length
@@ -56,9 +55,9 @@ class StackedBlocks(PlaneGeometry):
         claims = {}
         for body, end in ends.items():
             far = "top" if end > 0 else "bottom"
-            claims[f"{body}_face"] = _level(0.0, self.width)
-            claims[f"{body}_{far}"] = _level(end, abs(end))
-            claims[f"{body}_side"] = self._on_sides
+            claims[f"{body}_face"] = level(1, 0.0)
+            claims[f"{body}_{far}"] = level(1, end)
+            claims[f"{body}_side"] = every
         blocks = {body: self._block(end, *mesh.face(body)) for body, end in ends.items()}
         return tagged_bodies(blocks, claims)
 
@@ -66,17 +65,6 @@ class StackedBlocks(PlaneGeometry):
         """Block from the contact to y = `end`."""
         largest = abs(end) / elements
         first = largest * grading**_THIN_ROWS
-        steps = sizes(growing(0.0, abs(end), first, grading, largest))
-        rows = np.concatenate([[0.0], np.cumsum(steps)])
-        rows *= end / rows[-1]
+        rows = growing(0.0, end, first, grading, largest)
         columns = np.linspace(0.0, self.width, elements + 1)
-        return mesh_body([Sheet(grid(columns, rows), lambda p: p)], order=1)
-
-    def _on_sides(self, places: np.ndarray) -> np.ndarray:
-        x = places[..., 0]
-        return near(x, 0.0, self.width) | near(x, self.width, self.width)
-
-
-def _level(y: float, size: float) -> Claim:
-    """Predicate of a horizontal surface."""
-    return lambda places: near(places[..., 1], y, size)
+        return mesh_body([Sheet(grid(columns, rows))], order=1)

@@ -16,9 +16,9 @@ from ...case.tables.geometry import Pressing, named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.units import Length
 from ...errors import CaseError
+from ..meshing.cells import ORDER, mesh_body, tagged_bodies
 from ..meshing.polar import Polar, incomplete
-from ..meshing.quads import mesh_body, tagged_bodies
-from .on_block import ORDER
+from .on_block import expected_half_width
 
 _THINNEST = 1e-6
 """Least contact width relative to the tube's radius."""
@@ -71,12 +71,7 @@ class TubeInSupport(PlaneGeometry):
         if self.zone is not None:
             return -self.zone, self.zone
         radius = self.tube_radius * self.hole_radius / self.support_clearance
-        if pressing.force is not None:
-            line_load = pressing.force / self.thickness
-            a = math.sqrt(4 * line_load * radius / (math.pi * pressing.modulus))
-        else:
-            assert pressing.approach is not None
-            a = 0.7 * math.sqrt(radius * pressing.approach)
+        a = expected_half_width(pressing, radius, self.thickness)
         x = self.tube_radius * math.sin(min(a / self.tube_radius, _EXPECTED))
         return -x, x
 
@@ -97,12 +92,12 @@ class TubeInSupport(PlaneGeometry):
             "support": [support.sheet(hole_face.all_round(), hole_face.rows(hole, rim))],
         }
         claims = {
-            "tube_face": lambda p: tube.on_arc(p, radius, tube_face.span),
-            "tube_outside": lambda p: tube.on_circle(p, radius),
-            "tube_bore": lambda p: tube.on_circle(p, bore),
-            "support_face": lambda p: support.on_arc(p, hole, hole_face.span),
-            "support_hole": lambda p: support.on_circle(p, hole),
-            "support_rim": lambda p: support.on_circle(p, rim),
+            "tube_face": tube.circle(radius, tube_face.span),
+            "tube_outside": tube.circle(radius),
+            "tube_bore": tube.circle(bore),
+            "support_face": support.circle(hole, hole_face.span),
+            "support_hole": support.circle(hole),
+            "support_rim": support.circle(rim),
         }
         return tagged_bodies({name: mesh_body(s, ORDER) for name, s in bodies.items()}, claims)
 

@@ -1,10 +1,12 @@
-"""Lagrange nodes of cells of any order, numbered as in gmsh."""
+"""Cells of any order: Lagrange nodes numbered as in gmsh, boundary and shape functions."""
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
-from ...lagrange import matching
+from ...lagrange import equispaced, matching, tabulated
 
 CORNERS = {"triangle": 3, "quadrilateral": 4}
 FACETS = {"triangle": "interval", "quadrilateral": "interval", "hexahedron": "quadrilateral"}
@@ -71,9 +73,55 @@ def facet_nodes(order: int) -> np.ndarray:
     return matching(np.array(facets), nodes)
 
 
+def chord_lengths(points: np.ndarray) -> np.ndarray:
+    """Lengths along a polygon up to each of its points (n, gdim), shape (n,)."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
 def edge_nodes(cell_type: str, order: int) -> np.ndarray:
     """Nodes of each edge: first, last, then interior; shape (n_edges, order + 1)."""
     n = CORNERS[cell_type]
     side = np.arange(n)[:, None]
     between = n + side * (order - 1) + np.arange(order - 1)
     return np.hstack([side, (side + 1) % n, between])
+
+
+def boundary(cell_type: str, order: int, cells: np.ndarray) -> np.ndarray:
+    """Nodes of the edges or facets that belong to a single cell, in gmsh's order.
+
+    Shape (n_edges, order + 1) of plane cells, (n_facets, (order + 1)²) of hexahedra.
+    """
+    in_space = cell_type == "hexahedron"
+    local = facet_nodes(order) if in_space else edge_nodes(cell_type, order)
+    every = cells[:, local].reshape(-1, local.shape[1])
+    _, index, count = np.unique(
+        np.sort(every[:, : 4 if in_space else 2], axis=1),
+        axis=0,
+        return_inverse=True,
+        return_counts=True,
+    )
+    return every[count[index.ravel()] == 1]
+
+
+def turned(cell_type: str, order: int) -> np.ndarray:
+    """Permutation of nodes that reverses the orientation of a cell."""
+    nodes = reference_nodes(cell_type, order)
+    return matching(nodes[:, ::-1], nodes)
+
+
+def shape_functions(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
+    """Values of the Lagrange polynomials at points of shape (n, dim), shape (n, n_nodes)."""
+    return tabulated(equispaced(cell_type, order), points)[0][:, _numbers(cell_type, order)]
+
+
+def slopes(cell_type: str, order: int, points: np.ndarray) -> np.ndarray:
+    """Gradients of the Lagrange polynomials, shape (n, dim, n_nodes)."""
+    table = tabulated(equispaced(cell_type, order), points, 1)[1:]
+    return np.ascontiguousarray(table[..., _numbers(cell_type, order)].swapaxes(0, 1))
+
+
+@cache
+def _numbers(cell_type: str, order: int) -> np.ndarray:
+    """Number of the polynomial of each node, from the order of gmsh to that of basix."""
+    return matching(reference_nodes(cell_type, order), equispaced(cell_type, order).points)

@@ -1,14 +1,21 @@
-"""Mesh format returned by every geometry and used by all later rooms."""
+"""Tagged mesh, returned by every geometry and used by all later rooms; quality of its cells."""
 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .nodes import FACETS, reference_nodes
+from .nodes import FACETS, reference_nodes, shape_functions, slopes
+
+_PLACES = {2: 7, 3: 4}
+"""Points along each side of a plane or spatial cell at which its Jacobian is evaluated."""
+_AT_ONCE = 2000
+"""Number of cells whose Jacobians are computed together."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +72,115 @@ class TaggedMesh:
             found.update(np.ascontiguousarray(values).tobytes())
         return found.hexdigest()
 
+    def tags_of(self, parts: Iterable[str]) -> list[int]:
+        """Tags of the cells of some bodies or zones."""
+        return [self.bodies.index(part) + 1 for part in parts]
+
+    def facets_of(self, surface: str) -> np.ndarray:
+        """Facets of a surface, shape (n, nodes_per_facet)."""
+        return self.facets[self.facet_tags == self.surfaces.index(surface) + 1]
+
     def node_places(self, kind: str) -> np.ndarray:
         """Reference coordinates of the nodes of a cell or facet, shape (n_nodes, dim)."""
         return reference_nodes(kind, self.order)
+
+
+def quadratic(mesh: TaggedMesh) -> TaggedMesh:
+    """Mesh with cells of order 2 whose nodes lie on the cells of higher order."""
+    kind, order = mesh.cell_type, mesh.order
+    values = shape_functions(kind, order, reference_nodes(kind, 2))
+    places = np.einsum("qk,cki->cqi", values, mesh.points[mesh.cells])
+    keys = [_corner_keys(kind, mesh.cells), _corner_keys(FACETS[kind], mesh.facets)]
+    keys[1] = np.pad(
+        keys[1], ((0, 0), (keys[0].shape[1] - keys[1].shape[1], 0)), constant_values=-1
+    )
+    _, first, node = np.unique(np.concatenate(keys), axis=0, return_index=True, return_inverse=True)
+    cells, facets = np.split(node.ravel(), [len(keys[0])])
+    return replace(
+        mesh,
+        points=places.reshape(-1, mesh.points.shape[1])[first],
+        cells=cells.reshape(len(mesh.cells), -1),
+        facets=facets.reshape(len(mesh.facets), -1),
+    )
+
+
+def _corner_keys(kind: str, cells: np.ndarray) -> np.ndarray:
+    """Corners between which each node of order 2 lies, padded with -1, sorted; one row per node."""
+    belongs = shape_functions(kind, 1, reference_nodes(kind, 2)) > 1e-9
+    corners = cells[:, : belongs.shape[1]]
+    return np.sort(np.where(belongs, corners[:, None], -1), axis=2).reshape(-1, belongs.shape[1])
+
+
+def compact(mesh: TaggedMesh) -> TaggedMesh:
+    """Mesh without unused points."""
+    used, cells = np.unique(mesh.cells, return_inverse=True)
+    number = np.full(len(mesh.points), -1, dtype=np.int64)
+    number[used] = np.arange(len(used))
+    return replace(
+        mesh,
+        points=np.ascontiguousarray(mesh.points[used]),
+        cells=cells.reshape(mesh.cells.shape).astype(np.int64),
+        facets=number[mesh.facets],
+    )
+
+
+def jacobians(
+    cell_type: str, order: int, nodes: np.ndarray, along: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Smallest and largest scaled Jacobian of each cell, and its mean Jacobian determinant.
+
+    The scaled Jacobian is the determinant of the unit tangents along the grid lines of a cell, in
+    the plane the sine of the angle between them: negative if a cell is inverted, NaN where a
+    tangent vanishes.
+
+    Parameters
+    ----------
+    cell_type : str
+    order : int
+    nodes : ndarray, shape (n_cells, nodes_per_cell, gdim) [m]
+    along : int
+        Number of points along each side of a cell.
+
+    Returns
+    -------
+    least, most, mean : ndarray, shape (n_cells,)
+    """
+    derivatives = slopes(cell_type, order, _grid(cell_type, along, nodes.shape[2]))
+    flat = derivatives.reshape(-1, derivatives.shape[2])
+    result = np.empty((3, len(nodes)))
+    for first in range(0, len(nodes), _AT_ONCE):
+        some = slice(first, first + _AT_ONCE)
+        tangents = (flat @ nodes[some]).reshape(-1, *derivatives.shape[:2], nodes.shape[2])
+        lengths = np.sqrt(np.einsum("cqdi,cqdi->cqd", tangents, tangents)).prod(axis=2)
+        determinants = _determinants(tangents)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            scaled = determinants / lengths
+        result[:, some] = scaled.min(axis=1), scaled.max(axis=1), determinants.mean(axis=1)
+    return result[0], result[1], result[2]
+
+
+def scaled_jacobians(mesh: TaggedMesh) -> np.ndarray:
+    """Smallest scaled Jacobian of each cell, see `jacobians`, shape (n_cells,)."""
+    along = _PLACES[mesh.points.shape[1]]
+    return jacobians(mesh.cell_type, mesh.order, mesh.points[mesh.cells], along)[0]
+
+
+def quality(mesh: TaggedMesh, parts: tuple[str, ...]) -> float:
+    """Smallest scaled Jacobian of some parts of a mesh; -1 if cells have degenerated."""
+    of_parts = np.isin(mesh.cell_tags, mesh.tags_of(parts))
+    found = scaled_jacobians(replace(mesh, cells=mesh.cells[of_parts]))
+    return float(np.nan_to_num(found, nan=-1.0).min())
+
+
+def _grid(cell_type: str, along: int, dim: int) -> np.ndarray:
+    """Reference points (n, dim) on a grid with `along` points on each side of a cell."""
+    places = np.array(list(itertools.product(np.linspace(0.0, 1.0, along), repeat=dim)))
+    return places[places.sum(axis=1) <= 1.0 + 1e-9] if cell_type == "triangle" else places
+
+
+def _determinants(matrices: np.ndarray) -> np.ndarray:
+    """Determinants of small matrices (..., d, d); 2 x 2 ones explicitly, faster than by LAPACK."""
+    if matrices.shape[-1] != 2:
+        return np.linalg.det(matrices)
+    (a, b), (c, d) = np.moveaxis(matrices, (-2, -1), (0, 1))
+    return a * d - b * c

@@ -1,1 +1,1 @@
-"""Structured meshing: blocks, rings, outlines, graded element ends."""
+"""Structured meshing: graded divisions, blocks, rings."""

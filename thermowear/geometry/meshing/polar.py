@@ -10,16 +10,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .blocks import growing, growing_from_both, sizes
-from .divided_face import divided_face
-from .face_ends import face_ends, growth, row_ratio
-from .quads import Sheet, grid
+from .cells import Claim, Sheet, grid
+from .divisions import (
+    QUICKLY,
+    divided_face,
+    face_ends,
+    growing,
+    growing_from_both,
+    growth,
+    row_ratio,
+)
 
 _WIDEST = math.radians(12.0)
 """Largest angle of cells away from the contact: order 3 reproduces the area of a disk to 6e-7."""
-
-_QUICKLY = 3.0
-"""Size ratio of elements away from a graded contact edge, outside the contact zone."""
 
 
 @dataclass(frozen=True)
@@ -48,18 +51,21 @@ class Polar:
         y = self.height - up if self.downwards else self.height + up
         return np.stack([radius * np.sin(angle), y], axis=-1)
 
-    def on_circle(self, p: np.ndarray, radius: float) -> np.ndarray:
-        """Mask of edges with all nodes on a circle; nodes of shape (n_edges, order + 1, 2)."""
-        distance = np.hypot(p[..., 0], p[..., 1] - self.height)
-        return np.all(np.abs(distance - radius) < 1e-9 * radius, axis=1)
+    def circle(self, radius: float, span: tuple[float, float] | None = None) -> Claim:
+        """Predicate of edges with all nodes on a circle, and midpoints between two angles."""
 
-    def on_arc(self, p: np.ndarray, radius: float, span: tuple[float, float]) -> np.ndarray:
-        """Mask of edges on a circle whose midpoint is between two angles."""
-        x, y = p.mean(axis=1).T
-        up = self.height - y if self.downwards else y - self.height
-        turned = np.arctan2(x, up) - (span[0] + span[1]) / 2
-        off_middle = np.abs((turned + math.pi) % (2 * math.pi) - math.pi)
-        return self.on_circle(p, radius) & (off_middle < (span[1] - span[0]) / 2)
+        def claim(p):
+            distance = np.hypot(p[..., 0], p[..., 1] - self.height)
+            on_circle = np.all(np.abs(distance - radius) < 1e-9 * radius, axis=1)
+            if span is None:
+                return on_circle
+            x, y = p.mean(axis=1).T
+            up = self.height - y if self.downwards else y - self.height
+            turned = np.arctan2(x, up) - (span[0] + span[1]) / 2
+            off_middle = np.abs((turned + math.pi) % (2 * math.pi) - math.pi)
+            return on_circle & (off_middle < (span[1] - span[0]) / 2)
+
+        return claim
 
 
 @dataclass(frozen=True)
@@ -98,7 +104,7 @@ class Division:
     def _beside(self, edge: float) -> np.ndarray:
         """Angles of elements from an end of the face to the point opposite to the face.
 
-        They start as wide as the last one on the face and grow by `_QUICKLY` to the widest there.
+        They start as wide as the last one on the face and grow by `QUICKLY` to the widest there.
         """
         first, last = self.span
         room = math.pi - (last - first) / 2
@@ -107,18 +113,16 @@ class Division:
         size = min(edge, widest)
         while size < 0.9 * widest and sum(quick) + size < room / 2:
             quick.append(size)
-            size = min(_QUICKLY * size, widest)
+            size = min(QUICKLY * size, widest)
         rest = growing(0.0, room - sum(quick), size, 1 / growth(self.elements), _WIDEST)
-        return np.concatenate([quick, sizes(rest)])
+        return np.concatenate([quick, np.diff(rest)])
 
     def rows(self, start: float, end: float) -> np.ndarray:
         """Radii of the row ends of a ring, from its face to the other side [m]."""
         depth, largest = abs(end - start), max(start, end) * _WIDEST
         first = min(self.first, depth / 3)
-        rows = sizes(growing(0.0, depth, first, 1 / self.ratio, largest))
-        radii = start + math.copysign(1.0, end - start) * np.concatenate([[0.0], np.cumsum(rows)])
-        radii[-1] = end
-        return radii
+        radii = growing(start, end, first, 1 / self.ratio, largest)
+        return radii if start < end else radii[::-1]
 
     def layered(self, thicknesses: tuple[float, ...], length: float) -> list[np.ndarray]:
         """Depths of the row ends of each layer below a face; layer interfaces are row ends.
@@ -137,10 +141,8 @@ class Division:
         depth, size, layers = 0.0, self.first, []
         for thickness in thicknesses:
             rows = growing_from_both(0.0, thickness, (size, border), 1 / self.ratio, largest)
-            ends = depth + np.concatenate([[0.0], np.cumsum(sizes(rows))])
+            layers.append(depth + rows)
             depth, size = depth + thickness, border
-            ends[-1] = depth
-            layers.append(ends)
         return layers
 
 
@@ -163,9 +165,8 @@ def complete(
         Angles of the contact edges if they lie inside the face [rad].
     """
     elements, grading = face
-    steps = sizes(divided_face(*arc, elements, grading, zone))
-    angles = arc[0] + np.concatenate([[0.0], np.cumsum(steps)])
-    angles[-1] = arc[1]
+    angles = divided_face(*arc, elements, grading, zone)
+    steps = np.diff(angles)
     if grading == 1:
         return Division(elements, angles, radius * float(steps.max()), row_ratio(elements))
     return Division(elements, angles, radius * float(steps.min()), min(3.0, 1 / grading))

@@ -10,13 +10,18 @@ Lengths along the face are arc lengths ("along"), depths are measured from the f
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from ..mesh.limits import check_count
-from .quads import Sheet, ruled
+from .cells import Sheet, ruled
+from .divisions import check_count, depth_ends
+
+_SHOULDER = 0.66
+"""Position on the flat where the diagonal of the rings in a disc ends, relative to the radius."""
 
 _SLENDER = 2.9
 """Ratio of ring width to cell size above which three cells are merged."""
@@ -53,19 +58,81 @@ class Outline(Protocol):
 
 
 @dataclass(frozen=True)
-class Levels:
-    """Limits of the rings: `along` on the left and on the right, depth; shape (n + 1,)."""
+class Disc:
+    """Lower half of a disc that touches the origin from above, an `Outline`.
 
-    left: np.ndarray
-    right: np.ndarray
-    depth: np.ndarray
+    `along` is the arc length from the origin. Only x >= 0 if `half`.
+    """
+
+    radius: float
+    half: bool
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        return (0.0 if self.half else -self.depth, self.depth)
+
+    @property
+    def depth(self) -> float:
+        return math.pi / 2 * self.radius
+
+    def face(self, along):
+        angle = along / self.radius
+        return self.radius * np.stack([np.sin(angle), 2 * np.sin(angle / 2) ** 2], axis=-1)
+
+    def inside(self, along, depth):
+        quarter = self.depth
+        ends = ((along, _SHOULDER * self.radius), (depth, self.radius))
+        bent = [v * (1 - (1 - end / quarter) * np.abs(v) / quarter) for v, end in ends]
+        return np.stack(np.broadcast_arrays(*bent), axis=-1)
 
 
-def ring_levels(outline: Outline, face: tuple[float, float], depth: float, growth: float) -> Levels:
+@dataclass(frozen=True)
+class RectangularOutline:
+    """Rectangle below y = 0, an `Outline`; `side` is the distance of its sides from x = 0."""
+
+    side: float
+    depth: float
+    half: bool
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        return (0.0 if self.half else -self.side, self.side)
+
+    def face(self, along):
+        return np.stack([along, np.zeros_like(along)], axis=-1)
+
+    def inside(self, along, depth):
+        return np.stack(np.broadcast_arrays(along, -depth), axis=-1)
+
+
+def ringed_body(
+    outline: Outline, ends: np.ndarray, rows: Sequence[float], ratio: float
+) -> list[Sheet]:
+    """Cells of a body with given division of its contact face.
+
+    Parameters
+    ----------
+    outline : Outline
+    ends : ndarray
+        Element ends of the contact face, along it [m].
+    rows : sequence of float
+        Size of the first row below the face [m], and ratio of successive rows.
+    ratio : float
+        Ratio of successive ring widths.
+    """
+    half = ends[0] == outline.reach[0]
+    depth = min((ends[-1] - ends[0]) / (1 if half else 2), outline.depth / 2)
+    levels = _ring_levels(outline, (ends[0], ends[-1]), depth, ratio)
+    return _sheets(outline, ends, depth_ends(rows[0], depth, rows[1]), levels)
+
+
+def _ring_levels(
+    outline: Outline, face: tuple[float, float], depth: float, growth: float
+) -> np.ndarray:
     """Rings from a patch to the end of a body, each about `growth` times the one before it.
 
     The patch covers `face` and extends to `depth`. A left end equal to that of `reach` is a plane
-    of symmetry.
+    of symmetry. Limits of the rings, shape (3, n + 1): `along` on the left and on the right, depth.
     """
     middle = face[0] if face[0] == outline.reach[0] else (face[0] + face[1]) / 2
     starts = np.array([middle - face[0], face[1] - middle, depth])
@@ -74,7 +141,7 @@ def ring_levels(outline: Outline, face: tuple[float, float], depth: float, growt
     steps = [_growing(a, b, growth, largest) for a, b in zip(starts, ends, strict=True)]
     count = max(map(len, steps))
     left, right, down = (np.pad(s, (0, count - len(s)), mode="edge") for s in steps)
-    return Levels(middle - left, middle + right, down)
+    return np.array([middle - left, middle + right, down])
 
 
 def _growing(start: float, end: float, growth: float, largest: float) -> np.ndarray:
@@ -92,22 +159,11 @@ def _growing(start: float, end: float, growth: float, largest: float) -> np.ndar
     return result
 
 
-def ringed(outline: Outline, face: np.ndarray, rows: np.ndarray, levels: Levels) -> list[Sheet]:
-    """Cells of a body.
-
-    Parameters
-    ----------
-    outline : Outline
-    face : ndarray
-        `along` at the element ends of the patch, increasing.
-    rows : ndarray
-        Depths at its row ends, from 0 to the depth of the first level.
-    levels : Levels
-    """
+def _sheets(outline: Outline, face: np.ndarray, rows: np.ndarray, stack: np.ndarray) -> list[Sheet]:
+    """Cells of the patch, with its element ends along the face and in depth, and of the rings."""
     inner = outline.inside(face[[0, -1]], rows[[-1, -1]])
     sheets = [ruled(outline.face, inner, face, rows / rows[-1])]
     parts = [np.linspace(0.0, 1.0, len(face)), rows / rows[-1], rows / rows[-1]]
-    stack = np.array([levels.left, levels.right, levels.depth])
     k = 0
     while k < stack.shape[1] - 1:
         left, right, depth = stack[:, k : k + 2]

@@ -6,7 +6,7 @@ outline is fixed. Interior nodes follow by harmonic extension (`bulk.mesh_motion
 
 from __future__ import annotations
 
-from collections import defaultdict
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,8 +14,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...lagrange import gauss, on_lattice
-from ..mesh.nodes import edge_nodes
+from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh
+from .outline import outline_edges, split
 
 _CORNER = np.cos(np.radians(20.0))
 """Cosine of the largest turn of a smooth outline; sharper turns are corners."""
@@ -45,7 +46,62 @@ class OutlineSide:
     is_corner: bool
 
 
-class MovableBody:
+class MovableFace(ABC):
+    """Worn face of a body that can be moved, and the motion of the body's outline with it.
+
+    Attributes
+    ----------
+    face : ndarray of int, shape (n,)
+        Nodes of the face.
+    """
+
+    face: np.ndarray
+
+    @abstractmethod
+    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
+
+        Nodes at the ends (or the rim) of the face move along the sides, or are fixed where the
+        outline continues smoothly.
+
+        Parameters
+        ----------
+        normals : ndarray, shape (n, gdim)
+            Outward normals at the nodes of the face.
+
+        Returns
+        -------
+        directions : ndarray, shape (n, gdim)
+        held : ndarray of bool, shape (n,)
+        """
+
+    @abstractmethod
+    def outlined(self, displacement: np.ndarray) -> np.ndarray:
+        """Displacement of the outline when the face moves, zero inside; (n_points, gdim) [m].
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (n, gdim)
+            Displacement of the nodes of the face; at its ends along the sides [m].
+        """
+
+    @abstractmethod
+    def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
+        """Volume that the body loses by a displacement of its outline [m³].
+
+        By Gauss's theorem on its moved part only, as it may be tiny relative to the body's volume.
+
+        Parameters
+        ----------
+        outlined : ndarray, shape (n_points, gdim)
+            Displacement of the outline, see `outlined` [m].
+        factor : callable
+            Factor from area to volume at points of shape (n, gdim); linear in x in a plane,
+            constant in space.
+        """
+
+
+class MovableBody(MovableFace):
     """Body of a plane mesh whose worn face can be moved.
 
     Parameters
@@ -60,60 +116,33 @@ class MovableBody:
     def __init__(self, mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray):
         self._mesh = mesh
         self.face = nodes_at(mesh, parts, face)
-        self._edges = _outline(mesh, cells_of(mesh, parts))
-        self.sides = tuple(self._side(ends) for ends in (self.face[:2], self.face[-2:][::-1]))
+        self._edges = outline_edges(mesh, cells_of(mesh, parts))
+        self.sides = tuple(
+            self._side(ends, nodes)
+            for ends, nodes in zip(
+                (self.face[:2], self.face[-2:][::-1]), self._beside(), strict=True
+            )
+        )
 
-    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
-
-        Ends of the face move along the sides, or are fixed if the outline continues smoothly. In
-        between, the inclination to the normal varies linearly, so that the paths do not cross.
-
-        Parameters
-        ----------
-        normals : ndarray, shape (n, 2)
-            Outward normals at the nodes of the face.
-
-        Returns
-        -------
-        directions : ndarray, shape (n, 2)
-        held : ndarray of bool, shape (n,)
-        """
+    def ways(self, normals):
+        # in between, the inclination to the normal varies linearly, so that paths do not cross
         held, turn = np.zeros(len(normals), dtype=bool), np.zeros(2)
         for k, side in enumerate(self.sides):
             held[-k] = not side.is_corner
             if side.is_corner:
                 turn[k] = _angle(normals[-k], -side.inward)
-        steps = np.linalg.norm(np.diff(self._mesh.points[self.face], axis=0), axis=1)
-        part = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+        length = chord_lengths(self._mesh.points[self.face])
+        part = length / length[-1]
         return _rotated(normals, (1 - part) * turn[0] + part * turn[1]), held
 
-    def outlined(self, displacement: np.ndarray) -> np.ndarray:
-        """Displacement of the outline when the face moves, zero inside; shape (n_points, 2) [m].
-
-        Parameters
-        ----------
-        displacement : ndarray, shape (n, 2)
-            Displacement of the nodes of the face; at its ends along the sides [m].
-        """
+    def outlined(self, displacement):
         given = np.zeros_like(self._mesh.points)
         for side, end in zip(self.sides, (displacement[0], displacement[-1]), strict=True):
             given[side.nodes] = self._slide_displacement(side, float(end @ side.inward))
         given[self.face] = displacement
         return given
 
-    def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
-        """Volume that the body loses by a displacement of its outline [m³].
-
-        By Gauss's theorem on the moved edges only, as it may be tiny relative to the body's volume.
-
-        Parameters
-        ----------
-        outlined : ndarray, shape (n_points, 2)
-            Displacement of the outline, see `outlined` [m].
-        factor : callable
-            Factor from area to volume at points of shape (n, 2); linear in x.
-        """
+    def lost(self, outlined, factor):
         edges = self._edges[np.any(outlined[self._edges] != 0.0, axis=(1, 2))]
         points = self._mesh.points[edges]
         return enclosed(points, factor) - enclosed(points + outlined[edges], factor)
@@ -123,32 +152,26 @@ class MovableBody:
         points = self._mesh.points[side.nodes]
         if not side.is_corner:
             return np.zeros_like(points)
-        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+        length = chord_lengths(points)
         to = length + way * (1 - length / length[-1])
         where = np.column_stack([np.interp(to, length, x) for x in points.T])
         before = np.minimum(to, 0.0)[:, None] * side.inward  # a face that has grown
         return where + before - points
 
-    def _side(self, ends: np.ndarray) -> OutlineSide:
-        """Side that begins at the first of the two end nodes of the face."""
-        points, at = self._mesh.points, defaultdict(list)
-        on_face = set(self.face.tolist())
-        for edge in self._edges:
-            if not (edge[0] in on_face and edge[-1] in on_face):
-                at[edge[0]].append(edge)
-                at[edge[-1]].append(edge[::-1])
-        nodes, direction = [np.array([ends[0]])], None
-        while True:
-            last = nodes[-1][-1]
-            onward = [edge for edge in at[last] if edge[1] not in set(np.concatenate(nodes))]
-            if len(onward) != 1:
-                break
-            heading = _unit(points[onward[0][1]] - points[last])
-            if direction is not None and heading @ direction < _CORNER:
-                break
-            nodes.append(onward[0][1:])
-            direction = _unit(points[onward[0][-1]] - points[onward[0][-2]])
-        along = np.concatenate(nodes)
+    def _beside(self) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes of the outline from both ends of the face to the next corners."""
+        is_face = np.logical_and.reduce(np.isin(self._edges[:, [0, -1]], self.face), axis=1)
+        found = split(self._mesh.points, self._edges, is_face)
+        pieces = next(loop for loop in found if any(piece.is_face for piece in loop))
+        k = next(number for number, piece in enumerate(pieces) if piece.is_face)
+        if len(pieces) == 1:
+            return self.face[:1], self.face[-1:]
+        before, after = pieces[k - 1].nodes[::-1], pieces[(k + 1) % len(pieces)].nodes
+        return (before, after) if before[0] == self.face[0] else (after, before)
+
+    def _side(self, ends: np.ndarray, along: np.ndarray) -> OutlineSide:
+        """Side with nodes `along` it, given the first two nodes of the face from there."""
+        points = self._mesh.points
         if len(along) == 1:
             return OutlineSide(along, np.zeros(2), False)
         inward = _unit(points[along[1]] - points[along[0]])
@@ -158,29 +181,13 @@ class MovableBody:
 
 def cells_of(mesh: TaggedMesh, parts: tuple[str, ...]) -> np.ndarray:
     """Cells of some parts of a mesh, shape (n_cells, nodes_per_cell)."""
-    return mesh.cells[np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])]
+    return mesh.cells[np.isin(mesh.cell_tags, mesh.tags_of(parts))]
 
 
 def nodes_at(mesh: TaggedMesh, parts: tuple[str, ...], places: np.ndarray) -> np.ndarray:
     """Nodes of some parts of a mesh that are nearest to places (n, gdim), shape (n,)."""
     own = np.unique(cells_of(mesh, parts))
     return own[cKDTree(mesh.points[own]).query(places)[1]]
-
-
-def _outline(mesh: TaggedMesh, cells: np.ndarray) -> np.ndarray:
-    """Boundary edges, with ordered nodes and their cell on the left."""
-    local = edge_nodes(mesh.cell_type, mesh.order)
-    every = cells[:, local].reshape(-1, local.shape[1])
-    ends = np.sort(every[:, :2], axis=1)
-    _, index, count = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
-    single = count[index.ravel()] == 1
-    edges = np.concatenate([every[:, :1], every[:, 2:], every[:, 1:2]], axis=1)[single]
-    middle = np.repeat(mesh.points[cells].mean(axis=1), len(local), axis=0)[single]
-    along = mesh.points[edges[:, -1]] - mesh.points[edges[:, 0]]
-    inward = middle - mesh.points[edges].mean(axis=1)
-    right = along[:, 0] * inward[:, 1] < along[:, 1] * inward[:, 0]
-    edges[right] = edges[right, ::-1]
-    return edges
 
 
 def enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:

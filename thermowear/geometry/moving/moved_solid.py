@@ -1,8 +1,9 @@
 """Motion of the boundary of a body in space whose face has moved into it.
 
-Sides that meet the face at an angle slide along themselves up to their next sharp edge, and so do
-the edges between them; the rest of the boundary is fixed. All by harmonic extension, first in the
-edges, then in the sides; last, in the body, interior nodes follow (`bulk.mesh_motion`).
+The boundary is split at its sharp edges into smooth patches. Sides that meet the face at an angle
+slide along themselves up to their next sharp edge, and so do the edges between them; the rest of
+the boundary is fixed. All by harmonic extension, first in the edges, then in the sides; last, in
+the body, interior nodes follow (`bulk.mesh_motion`).
 """
 
 from __future__ import annotations
@@ -11,16 +12,107 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
+import scipy
 
 from ...lagrange import gauss
-from ..mesh.nodes import FACETS
-from ..mesh.orders import shape_functions, slopes
+from ..mesh.nodes import FACETS, boundary, edge_nodes, reference_nodes, shape_functions, slopes
 from ..mesh.tagged import TaggedMesh
-from .moved import Extension, cells_of, nodes_at
-from .patches import Patches
+from .moved import Extension, MovableFace, cells_of, nodes_at
+
+_SMOOTH = np.cos(np.radians(20.0))
+"""Cosine of the largest angle between the normals of adjacent facets in one patch."""
+_INWARD = ((1, 1.0), (0, -1.0), (1, -1.0), (0, 1.0))
+"""Reference coordinate normal to each edge of a quadrilateral, and its inward sign."""
 
 
-class MovableSolid:
+class Patches:
+    """Boundary facets of a body of hexahedra, and the edges between its smooth patches.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    cells : ndarray of int, shape (n_cells, nodes_per_cell)
+        Cells of the body.
+    face : ndarray of int, shape (n,)
+        Nodes of the face that moves.
+
+    Attributes
+    ----------
+    facets : ndarray of int, shape (n_facets, nodes_per_facet)
+        All boundary facets, with outward normals by the right-hand rule.
+    sliding : ndarray of int, shape (n, nodes_per_facet)
+        Facets of the patches that meet the face at a sharp edge.
+    seams : ndarray of int, shape (n, order + 1)
+        Edges between two such patches: both ends, then the interior nodes.
+    still : ndarray of int, shape (n,)
+        Nodes of all other patches.
+    """
+
+    def __init__(self, mesh: TaggedMesh, cells: np.ndarray, face: np.ndarray):
+        self._points, self._order = mesh.points, mesh.order
+        self.facets = boundary(mesh.cell_type, mesh.order, cells)
+        on_face = np.logical_and.reduce(np.isin(self.facets, face), axis=1)
+        self._edges = self.facets[:, edge_nodes("quadrilateral", mesh.order)]
+        meeting = _meeting(self._edges)  # edge number: 4 facet + local edge
+        one, other = np.moveaxis(self._normals(meeting), 1, 0)
+        smooth = np.einsum("ei,ei->e", one, other) > _SMOOTH
+        facet = meeting // 4
+        inside = ~on_face[facet].any(axis=1)
+        links = facet[inside & smooth]
+        count = len(self.facets)
+        graph = scipy.sparse.coo_matrix((np.ones(len(links)), links.T), shape=(count, count))
+        patch = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+        rim = on_face[facet[:, 0]] != on_face[facet[:, 1]]
+        beside = np.where(on_face[facet[:, 0]], *meeting.T[::-1])
+        self._sharp, self._level = beside[rim & ~smooth], beside[rim & smooth]
+        slides = np.isin(patch, patch[self._sharp // 4]) & ~on_face
+        between = inside & (patch[facet[:, 0]] != patch[facet[:, 1]]) & slides[facet].all(axis=1)
+        self.sliding = self.facets[slides]
+        self.seams = self._edges.reshape(-1, mesh.order + 1)[meeting[between, 0]]
+        self.still = np.unique(self.facets[~slides & ~on_face])
+
+    def inward(self) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes where the face ends at a sharp edge, and unit vectors from them along the side.
+
+        Shapes (n,) and (n, 3); at a corner the vector runs along the seam.
+        """
+        places = reference_nodes("quadrilateral", self._order)
+        local = edge_nodes("quadrilateral", self._order)
+        facet, side = np.divmod(self._sharp, 4)
+        axis, sense = (np.array(column)[side] for column in zip(*_INWARD, strict=True))
+        derivatives = slopes("quadrilateral", self._order, places)[:, axis.astype(int)]
+        at = np.take_along_axis(derivatives, local[side].T[..., None], axis=0)
+        along = np.einsum("qek,eki->eqi", at, self._points[self.facets[facet]])
+        along *= sense[:, None, None] / np.linalg.norm(along, axis=2, keepdims=True)
+        nodes, place = np.unique(self._edges[facet, side], return_inverse=True)
+        summed = np.zeros((len(nodes), 3))
+        np.add.at(summed, place.ravel(), along.reshape(-1, 3))
+        return nodes, summed / np.linalg.norm(summed, axis=1, keepdims=True)
+
+    def level(self) -> np.ndarray:
+        """Nodes where the boundary continues smoothly beyond the face."""
+        return np.unique(self._edges.reshape(-1, self._order + 1)[self._level])
+
+    def _normals(self, edges: np.ndarray) -> np.ndarray:
+        """Outward unit normals of facets at the midpoints of edges, shape (..., 3)."""
+        facet, side = np.divmod(edges, 4)
+        middles = np.array([(0.5, 0.0), (1.0, 0.5), (0.5, 1.0), (0.0, 0.5)])
+        derivatives = slopes("quadrilateral", self._order, middles)[side]
+        tangents = np.einsum("...dk,...ki->d...i", derivatives, self._points[self.facets[facet]])
+        normals = np.cross(*tangents)
+        return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+
+
+def _meeting(edges: np.ndarray) -> np.ndarray:
+    """Pairs of edge numbers that are the same edge of two facets, shape (n, 2)."""
+    ends = np.sort(edges[..., :2].reshape(-1, 2), axis=1)
+    _, number, count = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
+    number = number.ravel()
+    order = np.argsort(number, kind="stable")
+    return order[count[number[order]] == 2].reshape(-1, 2)
+
+
+class MovableSolid(MovableFace):
     """Body of a mesh in space whose worn face can be moved.
 
     Parameters
@@ -43,54 +135,21 @@ class MovableSolid:
         self.face = nodes_at(mesh, parts, face)
         self._patches = Patches(mesh, cells_of(mesh, parts), self.face)
 
-    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
-
-        Nodes where the face ends at a side move along it; fixed where it continues smoothly.
-
-        Parameters
-        ----------
-        normals : ndarray, shape (n, 3)
-            Outward normals at the nodes of the face.
-
-        Returns
-        -------
-        directions : ndarray, shape (n, 3)
-        held : ndarray of bool, shape (n,)
-        """
+    def ways(self, normals):
         every = np.zeros_like(self._mesh.points)
         every[self.face] = normals
         nodes, inward = self._patches.inward()
         every[nodes] = -inward
         return every[self.face], np.isin(self.face, self._patches.level())
 
-    def outlined(self, displacement: np.ndarray) -> np.ndarray:
-        """Displacement of the outline when the face moves, zero inside; shape (n_points, 3) [m].
-
-        Parameters
-        ----------
-        displacement : ndarray, shape (n, 3)
-            Displacement of the nodes of the face; at its rim along the sides [m].
-        """
+    def outlined(self, displacement):
         given = np.zeros_like(self._mesh.points)
         given[self.face] = displacement
         for extended in self._extensions:
             given = extended(given)
         return given
 
-    def lost(self, outlined: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> float:
-        """Volume that the body loses by a displacement of its outline [m³].
-
-        By Gauss's theorem on the moved facets only, as it may be tiny relative to the body's
-        volume.
-
-        Parameters
-        ----------
-        outlined : ndarray, shape (n_points, 3)
-            Displacement of the outline, see `outlined` [m].
-        factor : callable
-            Constant volume factor at points of shape (n, 3).
-        """
+    def lost(self, outlined, factor):
         facets = self._patches.facets
         facets = facets[np.any(outlined[facets] != 0.0, axis=(1, 2))]
         points = self._mesh.points[facets]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
+from ..mesh.nodes import chord_lengths
 from .moved import enclosed
 
 _STEPS = 6
@@ -57,7 +58,7 @@ class NewFace:
     @property
     def sizes(self) -> np.ndarray:
         """Lengths of the new edges, shape (n,) [m]."""
-        return np.diff(_lengths(_nodes(self.edges))[:: self._order])
+        return np.diff(chord_lengths(_nodes(self.edges))[:: self._order])
 
     @property
     def _order(self) -> int:
@@ -83,7 +84,7 @@ def divided(
     factor : callable
         Factor from area to volume at points of shape (n, 2); the volume behind the face is kept.
     """
-    place = _lengths(nodes)
+    place = chord_lengths(nodes)
     wanted = np.concatenate([[0.0], np.cumsum(np.diff(place[::order]) / sizes)])
     number = np.linspace(0.0, wanted[-1], max(1, round(wanted[-1])) + 1)
     ends = np.interp(number, wanted, place[::order])
@@ -121,8 +122,3 @@ def _edges(nodes: np.ndarray, order: int) -> np.ndarray:
 def _nodes(edges: np.ndarray) -> np.ndarray:
     """Inverse of `_edges`."""
     return np.concatenate([edges[:, :-1].reshape(-1, 2), edges[-1:, -1]])
-
-
-def _lengths(nodes: np.ndarray) -> np.ndarray:
-    """Chord lengths up to each node [m]."""
-    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(nodes, axis=0), axis=1))])

@@ -13,13 +13,10 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..mesh.gmsh_session import gmsh_model
-from ..mesh.orders import compact
-from ..mesh.shapes import scaled_jacobians
-from ..mesh.tagged import TaggedMesh
-from .even_lines import even
+from ..mesh.tagged import TaggedMesh, compact, scaled_jacobians
 from .moved import Extension
 from .new_face import NewFace, divided
-from .skeleton import OutlinePiece, skeleton
+from .skeleton import OutlinePiece, even, skeleton
 
 _ALGORITHMS = (6, 8, 5)
 """gmsh's algorithms: frontal-Delaunay, its variant for quads, Delaunay; the best one varies."""
@@ -89,8 +86,7 @@ def _meshed(
     every = np.concatenate([line.edges.reshape(-1, 2) for line in lines])
     middle, size = every.mean(axis=0), np.ptp(every, axis=0).max()
     scaled = [replace(line, edges=(line.edges - middle) / size) for line in lines]
-    tags = [mesh.bodies.index(part) + 1 for part in parts]
-    tags = [tag for tag in tags if np.any(mesh.cell_tags == tag)]
+    tags = [tag for tag in mesh.tags_of(parts) if np.any(mesh.cell_tags == tag)]
     with gmsh_model("worn body") as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", algorithm)
         gmsh.option.setNumber("Mesh.RecombinationAlgorithm", _FULL_QUADS)
@@ -222,7 +218,7 @@ def _elements(model, dim: int, tag: int) -> np.ndarray:
 
 def _replaced(mesh: TaggedMesh, parts: tuple[str, ...], body: TaggedMesh) -> TaggedMesh:
     """Mesh with a new body in place of the one with these parts."""
-    stays = ~np.isin(mesh.cell_tags, [mesh.bodies.index(part) + 1 for part in parts])
+    stays = ~np.isin(mesh.cell_tags, mesh.tags_of(parts))
     other = np.zeros(len(mesh.points), dtype=bool)
     other[mesh.cells[stays]] = True
     facets, shift = other[mesh.facets].all(axis=1), len(mesh.points)

@@ -8,8 +8,8 @@ include other files, are rejected; all others (materials, steps) are skipped.
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from .contents import CellBlock, MeshContents, numbering, parsed
 _PLANE = re.compile(r"(CPS|CPE|CPEG|CAX|M3D|STRI|S|DC2D|DCAX|WARP2D|R3D)(3|4|6|8|9)(?!\d)")
 _LINE = re.compile(r"(T2D|T3D|B2|B3|SAX|R2D|RAX|DC1D|W2D|W3D)\d*")
 _CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
-_CORNERS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
+_CORNERS = {"triangle": 3, "quad": 4}
 _LINES = {2: "line", 3: "line3"}
 _REFUSED = {
     "INCLUDE": "includes another file; a mesh must be in one file",
@@ -82,9 +82,9 @@ class _Deck:
     def __init__(self) -> None:
         self.tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
         self.points: list[np.ndarray] = [np.empty((0, 3))]
-        self.blocks: list[_Elements] = []
-        self.node_sets: dict[str, list[Member]] = {}
-        self.element_sets: dict[str, list[Member]] = {}
+        self.elements: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
+        self.node_sets: defaultdict[str, list[Member]] = defaultdict(list)
+        self.element_sets: defaultdict[str, list[Member]] = defaultdict(list)
         self.surfaces: dict[str, list[tuple[int | str, int]]] = {}
 
     def read_node(self, options, lines) -> None:
@@ -94,16 +94,16 @@ class _Deck:
         self.tags.append(_whole(table[:, 0]))
         self.points.append(np.pad(table[:, 1:], ((0, 0), (0, 4 - table.shape[1]))))
         if "NSET" in options:
-            self.node_sets.setdefault(options["NSET"], []).append(self.tags[-1])
+            self.node_sets[options["NSET"]].append(self.tags[-1])
 
     def read_element(self, options, lines) -> None:
         kind, words = options.get("TYPE", "").upper(), len(lines[0].split(",")) if lines else 0
         plane = _PLANE.match(kind)
         if plane:
-            count, corners = int(plane[2]), _CORNERS[int(plane[2])]
+            count = int(plane[2])
             name = _CELLS[count]
         elif _LINE.match(kind) and words - 1 in _LINES:
-            count, corners = words - 1, 2
+            count = words - 1
             name = _LINES[count]
         else:
             raise ValueError(f"elements of type {kind or '?'} are not supported")
@@ -111,22 +111,23 @@ class _Deck:
         if len(flat) % (count + 1):
             raise ValueError(f"an element of type {kind} does not have {count} nodes")
         table = flat.reshape(-1, count + 1)
-        self.blocks.append(_Elements(name, corners, table[:, 0], table[:, 1:]))
+        numbers = table[:, 0]
+        self.elements.setdefault(name, []).append((numbers, table[:, 1:]))
         if "ELSET" in options:
-            self.element_sets.setdefault(options["ELSET"], []).append(table[:, 0])
+            self.element_sets[options["ELSET"]].append(numbers)
 
     def read_nset(self, options, lines) -> None:
-        self.node_sets.setdefault(options.get("NSET", ""), []).extend(_members(options, lines))
+        self.node_sets[options.get("NSET", "")] += _members(options, lines)
 
     def read_elset(self, options, lines) -> None:
-        self.element_sets.setdefault(options.get("ELSET", ""), []).extend(_members(options, lines))
+        self.element_sets[options.get("ELSET", "")] += _members(options, lines)
 
     def read_surface(self, options, lines) -> None:
         name, kind = options.get("NAME", ""), options.get("TYPE", "ELEMENT").upper()
         rows = [_words(line) for line in lines]
         if kind == "NODE":
             firsts = [row[0] for row in rows]
-            self.node_sets.setdefault(name, []).extend(_members({}, firsts))
+            self.node_sets[name] += _members({}, firsts)
         elif kind == "ELEMENT" and all(len(row) > 1 and _is_side(row[1]) for row in rows):
             self.surfaces[name] = [(_member(row[0]), int(row[1][1:])) for row in rows]
 
@@ -135,8 +136,11 @@ class _Deck:
             raise ValueError(f"it has more than {_MOST_SETS} sets")
         tags, points = self._nodes()
         positions = numbering(tags)
-        self._merge()
-        elements = np.concatenate([np.empty(0, int), *(block.numbers for block in self.blocks)])
+        merged = {
+            kind: tuple(map(np.concatenate, zip(*cards, strict=True)))
+            for kind, cards in self.elements.items()
+        }
+        elements = np.concatenate([np.empty(0, int), *(numbers for numbers, _ in merged.values())])
         ordered = np.sort(elements)
         double = ordered[1:][ordered[1:] == ordered[:-1]]
         if len(double):
@@ -145,12 +149,12 @@ class _Deck:
             )
         sets = {name: _resolved(name, self.element_sets, elements) for name in self.element_sets}
         blocks = []
-        for block in self.blocks:
-            mine = {n: np.flatnonzero(np.isin(block.numbers, found)) for n, found in sets.items()}
+        for kind, (numbers, nodes) in merged.items():
+            mine = {n: np.flatnonzero(np.isin(numbers, found)) for n, found in sets.items()}
             own = {name: at for name, at in mine.items() if len(at)}
-            blocks.append(CellBlock(block.kind, positions(block.nodes), own))
+            blocks.append(CellBlock(kind, positions(nodes), own))
         for name, sides in self.surfaces.items():
-            lines = [self._sides(of, side, sets) for of, side in sides]
+            lines = [_sides(merged, of, side, sets) for of, side in sides]
             nodes = positions(np.concatenate([np.empty((0, 2), int), *lines]))
             if len(nodes):
                 blocks.append(CellBlock("line", nodes, {name: np.arange(len(nodes))}))
@@ -159,21 +163,6 @@ class _Deck:
             for name in self.node_sets
         }
         return MeshContents(points, blocks, node_sets)
-
-    def _merge(self) -> None:
-        """Merge the elements of all cards of one type."""
-        kinds: dict[str, list[_Elements]] = {}
-        for block in self.blocks:
-            kinds.setdefault(block.kind, []).append(block)
-        self.blocks = [
-            _Elements(
-                kind,
-                parts[0].corners,
-                np.concatenate([part.numbers for part in parts]),
-                np.concatenate([part.nodes for part in parts]),
-            )
-            for kind, parts in kinds.items()
-        ]
 
     def _nodes(self) -> tuple[np.ndarray, np.ndarray]:
         """Numbers and coordinates; duplicate nodes must have equal coordinates."""
@@ -190,25 +179,19 @@ class _Deck:
         kept = np.sort(order[~again])
         return tags[kept], points[kept]
 
-    def _sides(self, of: int | str, side: int, sets: dict[str, np.ndarray]) -> np.ndarray:
-        """Corners of one side of an element, or of the elements of a set, shape (n, 2)."""
-        members = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
-        found: list[np.ndarray] = [np.empty((0, 2), dtype=np.int64)]
-        for block in self.blocks:
-            if block.corners > 2:
-                ends = block.nodes[:, [(side - 1) % block.corners, side % block.corners]]
-                found.append(ends[np.isin(block.numbers, members)])
-        return np.concatenate(found)
 
-
-@dataclass(frozen=True)
-class _Elements:
-    """Elements of one card: their numbers, and those of their nodes."""
-
-    kind: str
-    corners: int
-    numbers: np.ndarray
-    nodes: np.ndarray
+def _sides(
+    elements: dict[str, tuple[np.ndarray, ...]], of: int | str, side: int, sets: dict
+) -> np.ndarray:
+    """Corners of one side of an element, or of the elements of a set, shape (n, 2)."""
+    members = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
+    found: list[np.ndarray] = [np.empty((0, 2), dtype=np.int64)]
+    for kind, (numbers, nodes) in elements.items():
+        corners = _CORNERS.get(kind.rstrip("0123456789"), 0)
+        if corners:
+            ends = nodes[:, [(side - 1) % corners, side % corners]]
+            found.append(ends[np.isin(numbers, members)])
+    return np.concatenate(found)
 
 
 def _words(line: str) -> list[str]:

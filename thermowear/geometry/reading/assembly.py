@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import CaseError
-from ..mesh.nodes import CORNERS
-from ..mesh.orders import boundary, compact
-from ..mesh.tagged import TaggedMesh
-from .cell_checks import oriented
+from ..mesh.nodes import CORNERS, boundary
+from ..mesh.tagged import TaggedMesh, compact
 from .contents import CellBlock, MeshContents
+from .mesh_checks import oriented
 
 _TYPES = {corners: name for name, corners in CORNERS.items()}
 _ORDERS = {(3, 3): 1, (3, 6): 2, (3, 10): 3, (4, 4): 1, (4, 8): 2, (4, 9): 2, (4, 16): 3}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,17 +12,16 @@ from .assembly import Named
 from .contents import CellBlock, MeshContents
 
 
-@dataclass(frozen=True)
-class Union:
-    """Body that consists of one or more cell sets: its name, theirs, and the key with them."""
-
-    name: str
-    in_file: tuple[str, ...]
-    key: str
-
-
-def joined(contents: MeshContents, bodies: list[Union]) -> tuple[MeshContents, list[Named]]:
+def joined(
+    contents: MeshContents, bodies: dict[str, tuple[str, ...]]
+) -> tuple[MeshContents, list[Named]]:
     """Merge the cell sets of each body; returns the contents and the names of the merged sets.
+
+    Parameters
+    ----------
+    contents : MeshContents
+    bodies : dict of str to tuple of str
+        Names of the cell sets of each body.
 
     Raises
     ------
@@ -30,17 +29,16 @@ def joined(contents: MeshContents, bodies: list[Union]) -> tuple[MeshContents, l
         If the file has no cells of a set.
     """
     blocks, named = list(contents.blocks), []
-    for body in bodies:
-        for name in body.in_file:
+    for body, sets in bodies.items():
+        key = f"geometry.bodies.{body}"
+        for name in sets:
             if _count(blocks, name) == 0:
                 known = ", ".join(contents.names(2)) or "none"
-                raise CaseError(
-                    f"{body.key}: the file has no cells named {name!r}; one of: {known}"
-                )
-        union = " + ".join(body.in_file)
-        if len(body.in_file) > 1:
-            blocks = [_with_union(block, body.in_file, union) for block in blocks]
-        named.append(Named(body.name, union, body.key))
+                raise CaseError(f"{key}: the file has no cells named {name!r}; one of: {known}")
+        union = " + ".join(sets)
+        if len(sets) > 1:
+            blocks = [_with_union(block, sets, union) for block in blocks]
+        named.append(Named(body, union, key))
     return replace(contents, blocks=blocks), named
 
 

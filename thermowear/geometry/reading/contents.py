@@ -10,16 +10,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 _SHAPES = {
-    "line": (1, 2),
-    "line3": (1, 2),
-    "line4": (1, 2),
-    "triangle": (2, 3),
-    "triangle6": (2, 3),
-    "triangle10": (2, 3),
-    "quad": (2, 4),
-    "quad8": (2, 4),
-    "quad9": (2, 4),
-    "quad16": (2, 4),
+    **dict.fromkeys(("line", "line3", "line4"), (1, 2)),
+    **dict.fromkeys(("triangle", "triangle6", "triangle10"), (2, 3)),
+    **dict.fromkeys(("quad", "quad8", "quad9", "quad16"), (2, 4)),
 }
 """Dimension and number of corners of the supported elements, by meshio's names."""
 

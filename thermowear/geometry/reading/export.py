@@ -8,26 +8,15 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import CaseError
-from ..mesh.nodes import FACETS
-from ..mesh.orders import compact, quadratic
-from ..mesh.tagged import TaggedMesh
+from ..mesh.tagged import TaggedMesh, compact, quadratic
 
 _MESHIO_CELLS = {
-    ("quadrilateral", 4): "quad",
-    ("quadrilateral", 9): "quad9",
-    ("quadrilateral", 16): "quad16",
-    ("triangle", 3): "triangle",
-    ("triangle", 6): "triangle6",
-    ("triangle", 10): "triangle10",
-    ("hexahedron", 8): "hexahedron",
-    ("hexahedron", 20): "hexahedron20",
-    ("hexahedron", 27): "hexahedron27",
-    ("hexahedron", 64): "hexahedron64",
-    ("interval", 2): "line",
-    ("interval", 3): "line3",
-    ("interval", 4): "line4",
-    ("quadrilateral", 8): "quad8",
+    "interval": ("line", 2),
+    "triangle": ("triangle", 3),
+    "quadrilateral": ("quad", 4),
+    "hexahedron": ("hexahedron", 8),
 }
+"""Meshio's name of straight cells, to which that of others adds their number of nodes."""
 _QUADRATIC_HEXAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
 _QUADRATIC_HEXAHEDRON += [22, 23, 21, 24, 20, 25, 26]
 """Permutation from gmsh's node order to that of meshio and VTK."""
@@ -68,11 +57,7 @@ def write_mesh(
         mesh = replace(mesh, cells=mesh.cells[:, _QUADRATIC_HEXAHEDRON])
         if path.suffix == ".inp":  # supports no nodes inside facets
             mesh = compact(replace(mesh, cells=mesh.cells[:, :20], facets=mesh.facets[:, :8]))
-    kinds = mesh.cell_type, FACETS[mesh.cell_type]
-    cells = [
-        (_MESHIO_CELLS[kind, nodes.shape[1]], nodes)
-        for kind, nodes in zip(kinds, (mesh.cells, mesh.facets), strict=True)
-    ]
+    cells = [_block(mesh.cell_type, mesh.cells), _block(mesh.facet_type, mesh.facets)]
     n = len(mesh.bodies)
     # one numbering for both dimensions, so that a tag is unique in every format
     tags = [mesh.cell_tags, mesh.facet_tags + n]
@@ -99,15 +84,17 @@ def write_mesh(
         raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
 
 
+def _block(kind: str, nodes: np.ndarray) -> tuple[str, np.ndarray]:
+    """Cells or facets with meshio's name of their type."""
+    name, corners = _MESHIO_CELLS[kind]
+    return name if nodes.shape[1] == corners else f"{name}{nodes.shape[1]}", nodes
+
+
 def _sets(mesh: TaggedMesh) -> dict[str, list[np.ndarray]]:
     """Elements of each name, per block of cells."""
-    none = np.array([], dtype=np.int64)
-    bodies = {
-        name: [np.flatnonzero(mesh.cell_tags == tag), none]
-        for tag, name in enumerate(mesh.bodies, start=1)
-    }
-    surfaces = {
-        name: [none, np.flatnonzero(mesh.facet_tags == tag)]
-        for tag, name in enumerate(mesh.surfaces, start=1)
-    }
-    return bodies | surfaces
+    none, sets = np.array([], dtype=np.int64), {}
+    for tag, name in enumerate(mesh.bodies, start=1):
+        sets[name] = [np.flatnonzero(mesh.cell_tags == tag), none]
+    for tag, name in enumerate(mesh.surfaces, start=1):
+        sets[name] = [none, np.flatnonzero(mesh.facet_tags == tag)]
+    return sets

@@ -1,25 +1,43 @@
 """Reading of untrusted mesh files: neither ending nor contents are assumed to be valid.
 
 Only meshes are read. A file is checked before it is passed to a reader, and no reader executes
-commands, opens other files or writes any.
+commands, opens other files or writes any. Readers of XML and HDF5 files may crash, hang or exhaust
+the memory on a malformed or hostile file; a separate process with resource limits protects the
+program.
 """
 
 from __future__ import annotations
 
+import io
+import json
 import os
 import stat
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from ...errors import CaseError
 from .abaqus import read_abaqus
-from .contents import MeshContents, shown
-from .gmsh.file import read_gmsh
-from .isolated import read_isolated
+from .contents import CellBlock, MeshContents, shown
+from .gmsh_file import read_gmsh
 
+_MARK = b"\xef\xbb\xbf"
+"""Byte order mark of UTF-8."""
 _LARGEST = 32 * 2**20
 """Largest size of a file [bytes]: half a million nodes as text, read in seconds."""
+_READER = Path(__file__).with_name("isolated_reader.py")
+_SECONDS = 60
+"""Largest elapsed time, regardless of processor time."""
+_MEMORY = 2**30
+"""Address space for the libraries and a small file [bytes], larger than the memory used."""
+_PER_BYTE = 16
+"""Additional memory per byte of a file."""
+_LONGEST = 300
+"""Largest number of characters of an error message."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +87,7 @@ def _check_file(path: Path, kind: _Kind) -> None:
             f"it has {about.st_size / 2**20:.0f} MB; at most {_LARGEST / 2**20:.0f} MB are allowed"
         )
     with path.open("rb") as file:
-        head = file.read(4096).removeprefix(b"\xef\xbb\xbf").lstrip()
+        head = file.read(4096).removeprefix(_MARK).lstrip()
     if not head:
         raise ValueError("it is empty")
     if not head.startswith(kind.heads):
@@ -79,22 +97,69 @@ def _check_file(path: Path, kind: _Kind) -> None:
         )
 
 
-def _read_abaqus(path: Path) -> MeshContents:
-    return read_abaqus(path.read_text(encoding="utf-8-sig", errors="replace"))
+def read_isolated(path: Path) -> MeshContents:
+    """Read a .vtu, .xdmf or .med file.
+
+    Raises
+    ------
+    ValueError
+        If it is malformed, refers to other files, or exceeds the limits of memory or time.
+    """
+    memory = _MEMORY + _PER_BYTE * path.stat().st_size
+    command = [
+        sys.executable,
+        "-P",
+        str(_READER),
+        str(path.resolve()),
+        path.suffix.lower(),
+        str(memory),
+    ]
+    single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+    try:
+        done = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=_SECONDS,
+            env=os.environ | single,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"reading it took more than {_SECONDS} s") from None
+    if done.returncode == 1:
+        reason = done.stderr.decode("utf-8", "replace").rpartition("\n")[2]
+        raise ValueError(reason[:_LONGEST] or "it is malformed")
+    if done.returncode:
+        raise ValueError("its reader was stopped: the file is malformed, or takes too long to read")
+    return _unpacked(done.stdout)
 
 
-def _read_gmsh(path: Path) -> MeshContents:
-    return read_gmsh(path.read_bytes().removeprefix(b"\xef\xbb\xbf"))
-
-
-def _by_libraries(path: Path) -> MeshContents:
-    return read_isolated(path, path.suffix.lower())
+def _unpacked(data: bytes) -> MeshContents:
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        arrays = dict(file)
+    contents = json.loads(str(arrays["contents"]))
+    blocks = [
+        CellBlock(kind, arrays[f"nodes_{index}"], {})
+        for index, kind in enumerate(contents["kinds"])
+    ]
+    for number, (index, name) in enumerate(contents["sets"]):
+        blocks[index].sets[name] = arrays[f"set_{number}"]
+    sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(contents["node_sets"])}
+    return MeshContents(arrays["points"], blocks, sets)
 
 
 _KINDS = {
-    ".msh": _Kind("gmsh mesh", (b"$MeshFormat", b"$Comments"), _read_gmsh),
-    ".inp": _Kind("Abaqus input file", (b"*",), _read_abaqus),
-    ".vtu": _Kind("VTK unstructured grid", (b"<?xml", b"<VTKFile", b"<!--"), _by_libraries),
-    ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), _by_libraries),
-    ".med": _Kind("MED file", (b"\x89HDF\r\n\x1a\n",), _by_libraries),
+    ".msh": _Kind(
+        "gmsh mesh",
+        (b"$MeshFormat", b"$Comments"),
+        lambda path: read_gmsh(path.read_bytes().removeprefix(_MARK)),
+    ),
+    ".inp": _Kind(
+        "Abaqus input file",
+        (b"*",),
+        lambda path: read_abaqus(path.read_text("utf-8-sig", "replace")),
+    ),
+    ".vtu": _Kind("VTK unstructured grid", (b"<?xml", b"<VTKFile", b"<!--"), read_isolated),
+    ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), read_isolated),
+    ".med": _Kind("MED file", (b"\x89HDF\r\n\x1a\n",), read_isolated),
 }

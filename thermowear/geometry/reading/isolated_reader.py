@@ -1,4 +1,4 @@
-"""Program that reads a mesh file with libraries, run by `isolated` in a separate process.
+"""Program that reads a mesh file with libraries, run by `file_contents` in a separate process.
 
 Started by its path, so that this package is not imported. The file may be hostile: memory and
 processor time are limited, no file can be written, and only the named one (and an HDF5 file
@@ -14,6 +14,7 @@ import os
 import sys
 import warnings
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -34,15 +35,8 @@ _COUNTED = (1, 2)
 """Mixed cells whose number of nodes follows their type."""
 
 
-class _Mesh:
-    """Minimal replacement of a meshio mesh."""
-
-    def __init__(self, points, cells, cell_data):
-        self.points, self.cells, self.cell_data, self.point_data = points, cells, cell_data, {}
-
-
 def read(path: Path, ending: str) -> dict[str, np.ndarray]:
-    """Arrays that describe a mesh, see `isolated.read_isolated`."""
+    """Arrays that describe a mesh, see `file_contents.read_isolated`."""
     if ending == ".med":
         _check_hdf5_links(path)
     else:
@@ -141,7 +135,7 @@ def _check_hdf5_links(path: Path) -> None:
                     raise ValueError(f"its entry {name!r} is stored in another file")
 
 
-def _read_xdmf(path: Path) -> _Mesh:
+def _read_xdmf(path: Path) -> SimpleNamespace:
     """Mesh of an XDMF file with one grid, with data in it or in an HDF5 file next to it."""
     from xml.etree import ElementTree as ET
 
@@ -177,7 +171,7 @@ def _read_xdmf(path: Path) -> _Mesh:
             raise ValueError(f"the attribute {name} must have one value per cell")
         squeezed = value[:, 0] if value.ndim == 2 and value.shape[1] == 1 else value
         of_blocks[name] = [squeezed[members] for members in at]
-    return _Mesh(points, cells, of_blocks)
+    return SimpleNamespace(points=points, cells=cells, cell_data=of_blocks, point_data={})
 
 
 def _type(entry, tag: str) -> str | None:

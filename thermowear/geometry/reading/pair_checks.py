@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import CaseError, note
-from ..mesh.orders import shape_functions
+from ..mesh.nodes import shape_functions
 from ..mesh.tagged import TaggedMesh
 from .mesh_checks import length, whole_bodies
 
@@ -39,8 +39,6 @@ class Faces:
     ----------
     gap : float
         Smallest distance, negative where the bodies overlap [m].
-    width : float
-        Width of the range of x common to both faces [m].
     span : tuple of float
         Range of x common to both faces [m].
     height : float
@@ -174,10 +172,9 @@ def compared(mesh: TaggedMesh, case: Case) -> Faces:
 
 def _pieces(mesh: TaggedMesh, surface: str) -> np.ndarray:
     """Straight segments of a surface, with their body on the left, shape (n, 2 ends, 2) [m]."""
-    facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index(surface) + 1]
     t = np.linspace(0.0, 1.0, 1 + (_PIECES * mesh.order if mesh.order > 1 else 1))
     values = shape_functions("interval", mesh.order, t[:, None])
-    points = np.einsum("qk,fki->fqi", values, mesh.points[facets])
+    points = np.einsum("qk,fki->fqi", values, mesh.points[mesh.facets_of(surface)])
     return np.stack([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2, 2)
 
 

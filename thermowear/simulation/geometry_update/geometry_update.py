@@ -13,8 +13,7 @@ from ...contact.search.refinement import Rule
 from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import WornFace, nodes_of
 from ...errors import CaseError, ComputationError
-from ...geometry.mesh.shapes import scaled_jacobians
-from ...geometry.mesh.tagged import TaggedMesh
+from ...geometry.mesh.tagged import TaggedMesh, scaled_jacobians
 from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.new_face import NewFace
 from ...laws.motions import combined

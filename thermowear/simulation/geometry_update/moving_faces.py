@@ -19,8 +19,7 @@ from ...contact.wear.worn_face import (
     nodes_of,
     ways_between,
 )
-from ...geometry.mesh.shapes import quality, scaled_jacobians
-from ...geometry.mesh.tagged import TaggedMesh
+from ...geometry.mesh.tagged import TaggedMesh, quality, scaled_jacobians
 from ...geometry.moving.moved import MovableBody
 from ...geometry.moving.moved_solid import MovableSolid
 from ...laws.distribution import InPlace

@@ -12,8 +12,7 @@ from ...bulk.mesh_motion import serial_extension
 from ...contact.search.face import Face
 from ...contact.search.pairing import PairedFace, Pairing
 from ...errors import ComputationError
-from ...geometry.mesh.shapes import quality
-from ...geometry.mesh.tagged import TaggedMesh
+from ...geometry.mesh.tagged import TaggedMesh, quality
 from ...geometry.moving.new_face import NewFace
 from ...geometry.moving.remeshed import meshed_anew
 from ..system.system import System

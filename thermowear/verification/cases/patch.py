@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from ...case import load
 from ...case.tables.plane_geometry import PlaneGeometry
-from ...geometry.mesh.gmsh_session import gmsh_model, tagged_mesh
-from ...geometry.meshing.blocks import Interval, add_grid
+from ...geometry.meshing.cells import (
+    Claim,
+    MeshedBody,
+    Sheet,
+    grid,
+    level,
+    mesh_body,
+    tagged_bodies,
+)
 from ...results import Result
 from ..check import Check, compare, compare_worst
 from ..computed import computed
@@ -46,22 +54,18 @@ class PatchGeometry(PlaneGeometry):
         return WIDTH * self.thickness
 
     def build(self, mesh, zone=None):
-        with gmsh_model("patch") as gmsh:
-            spans = ((0.0, HEIGHTS[0]), (-HEIGHTS[1], 0.0))
-            upper, lower = (
-                add_grid(gmsh.model, [Interval(0.0, WIDTH, n)], [Interval(*span, 3)])
-                for n, span in zip(self.columns, spans, strict=True)
-            )
-            gmsh.model.geo.synchronize()
-            for name, grid in (("upper", upper), ("lower", lower)):
-                gmsh.model.addPhysicalGroup(2, grid.surfaces, name=name)
-            curves = (upper.bottom, upper.top, lower.top, lower.bottom)
-            for name, curve in zip(self.surfaces, curves, strict=True):
-                gmsh.model.addPhysicalGroup(1, curve, name=name)
-            gmsh.model.mesh.generate(2)
-            if self.triangles:
-                gmsh.model.mesh.splitQuadrangles(1.0)
-            tagged = tagged_mesh(gmsh.model, self.bodies, self.surfaces)
+        spans = {"upper": (0.0, HEIGHTS[0]), "lower": (-HEIGHTS[1], 0.0)}
+        bodies: dict[str, MeshedBody] = {}
+        claims: dict[str, Claim] = {}
+        for (name, span), n in zip(spans.items(), self.columns, strict=True):
+            ends = np.linspace(0.0, WIDTH, n + 1), np.linspace(*span, 4)
+            bodies[name] = mesh_body([Sheet(grid(*ends))], order=1)
+            claims |= {f"{name}_face": level(1, 0.0), f"{name}_end": level(1, sum(span))}
+        tagged = tagged_bodies(bodies, claims)
+        if self.triangles:
+            halves = tagged.cells[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+            tags = np.repeat(tagged.cell_tags, 2)
+            tagged = replace(tagged, cell_type="triangle", cells=halves, cell_tags=tags)
         tagged.points[:] = _distorted(tagged.points)
         return tagged
 

@@ -10,9 +10,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..contents import MeshContents, numbering, shown
-from .elements import elements_2, elements_4, entities, nodes_2, nodes_4
-from .numbers import Binary, Numbers, Text
+from .contents import MeshContents, numbering, shown
+from .gmsh_numbers import Binary, Numbers, Text, elements_2, elements_4, entities, nodes_2, nodes_4
 
 _NUMBERS = ("Entities", "Nodes", "Elements")
 _READ = ("MeshFormat", "PhysicalNames", *_NUMBERS)
@@ -42,13 +41,14 @@ def read_gmsh(data: bytes) -> MeshContents:
     if form.version == 2:
         sources.pop("Entities", None)
         tags, points = nodes_2(sources["Nodes"])
-        blocks = elements_2(sources["Elements"], form.binary)
+        blocks = elements_2(sources["Elements"])
     else:
         groups = entities(sources["Entities"], form.minor) if "Entities" in sources else {}
         tags, points = nodes_4(sources["Nodes"], form.minor)
         blocks = elements_4(sources["Elements"], form.minor, groups)
     for source in sources.values():
-        source.finished()
+        if source.left_over():
+            raise ValueError(f"the section ${source.name} holds more data than announced")
     positions = numbering(tags)
     return MeshContents(points, [block.named(names, positions) for block in blocks])
 
@@ -85,27 +85,21 @@ def _sections(data: bytes) -> Iterator[tuple[str, bytes]]:
 
 @dataclass(frozen=True)
 class _Format:
-    """Major and minor version, and encoding of numbers."""
+    """Major and minor version, byte order (empty: text), and number of bytes of a ``size_t``."""
 
     version: int
     minor: int
     order: str
-    """``""`` for text, ``"<"`` or ``">"`` for binary files."""
     size: int
-    """Number of bytes of a ``size_t``."""
-
-    @property
-    def binary(self) -> bool:
-        return bool(self.order)
 
     def numbers(self, sections: dict[str, bytes], name: str) -> Numbers:
-        body = sections[name]
-        if not self.binary:
+        body, count = sections[name], None
+        if not self.order:
             return Text(name, body)
         if self.version == 2:
-            count, _, body = body.partition(b"\n")
-            return Binary(name, body, self.order, self.size, int(count))
-        return Binary(name, body, self.order, self.size, None)
+            first, _, body = body.partition(b"\n")
+            count = int(first)
+        return Binary(name, body, self.order, self.size, count)
 
 
 def _format(body: bytes) -> _Format:

@@ -1,8 +1,9 @@
-"""Curved quadrilaterals without a mesh generator: cells in a parameter plane, and a map.
+"""Curved quadrilaterals and hexahedra without a mesh generator: cells of parameters, and a map.
 
-A sheet holds cells by their corners in two plane parameters and the map to the section. Nodes
-of cells of any order are images of equally spaced points, so nodes of a curved boundary lie on it
-exactly and the interior ones follow the map.
+A sheet holds cells by their corners in two plane parameters and the map to the section, a lattice
+the element ends of three parameters and the map to space. Nodes of cells of any order are images of
+equally spaced parameters, so nodes of a curved boundary lie on it exactly and the interior ones
+follow the map. Surfaces are named by predicates of their facets.
 """
 
 from __future__ import annotations
@@ -12,10 +13,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..mesh.limits import check_count
-from ..mesh.nodes import reference_nodes
-from ..mesh.orders import boundary
+from ..mesh.nodes import boundary, reference_nodes
 from ..mesh.tagged import TaggedMesh
+from .divisions import MOST_HEXAHEDRA, check_count
+
+ORDER = 3
+"""Order of cells on arcs; nodes lie on an arc, points between them within 3e-4 h⁴/R³ of it."""
+
+Claim = Callable[[np.ndarray], np.ndarray]
+"""Predicate of a surface: mask of boundary facets, given by their nodes (n_facets, nodes, gdim)."""
 
 
 @dataclass(frozen=True)
@@ -27,13 +33,13 @@ class Sheet:
     corners : ndarray, shape (n_cells, 4, 2)
         Corners in order around each cell, of either orientation.
     place : callable
-        Map from parameters to coordinates, both of shape (..., 2) [m].
+        Map from parameters to coordinates, both of shape (..., 2), by default the identity [m].
     zone : str
         Zone of the body with a material of its own; empty for the body itself.
     """
 
     corners: np.ndarray
-    place: Callable[[np.ndarray], np.ndarray]
+    place: Callable[[np.ndarray], np.ndarray] = np.asarray
     zone: str = ""
 
 
@@ -108,9 +114,34 @@ def mesh_body(sheets: list[Sheet], order: int) -> MeshedBody:
     return MeshedBody(points, cells, boundary("quadrilateral", order, cells), zones)
 
 
-def tagged_bodies(
-    bodies: dict[str, MeshedBody], surfaces: dict[str, Callable[[np.ndarray], np.ndarray]]
-) -> TaggedMesh:
+def level(axis: int, value: float) -> Claim:
+    """Predicate of the facets with all nodes at a coordinate."""
+    return lambda p: np.all(
+        np.abs(p[..., axis] - value) < 1e-9 * np.ptp(p, axis=(0, 1)).max(), axis=1
+    )
+
+
+def between(first: float, last: float, axis: int = 0) -> Claim:
+    """Predicate of the facets whose midpoint is in a range of a coordinate."""
+
+    def claim(p):
+        middle = p[..., axis].mean(axis=1)
+        return (first < middle) & (middle < last)
+
+    return claim
+
+
+def both(*claims: Claim) -> Claim:
+    """Predicate of the facets that fulfil all of some predicates."""
+    return lambda p: np.logical_and.reduce([claim(p) for claim in claims])
+
+
+def every(p: np.ndarray) -> np.ndarray:
+    """Predicate of all facets, for those that no other surface claims."""
+    return np.ones(len(p), dtype=bool)
+
+
+def tagged_bodies(bodies: dict[str, MeshedBody], surfaces: dict[str, Claim]) -> TaggedMesh:
     """Assemble meshed bodies and name their boundary.
 
     Parameters
@@ -118,9 +149,8 @@ def tagged_bodies(
     bodies : dict of str to MeshedBody
         Bodies by name, body 1 first.
     surfaces : dict of str to callable
-        Predicate of each surface, named ``body_surface``: maps the coordinates of the nodes of
-        boundary facets, shape (n_facets, nodes, gdim), to a mask; a facet belongs to the first
-        surface of its body whose predicate is true.
+        Predicate of each surface, named ``body_surface``; a facet belongs to the first surface of
+        its body whose predicate is true.
     """
     names = [*bodies, *(zone for body in bodies.values() for zone in body.zones)]
     shift, points, cells, cell_tags, facets, facet_tags = 0, [], [], [], [], []
@@ -175,3 +205,46 @@ def _joined(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     _, label = connected_components(links, directed=False)
     _, first = np.unique(label, return_index=True)
     return flat[first], label.reshape(nodes.shape[:2]).astype(np.int64)
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Cells in the space of three parameters.
+
+    Attributes
+    ----------
+    ends : tuple of ndarray
+        Element ends along each parameter, increasing.
+    place : callable
+        Orientation-preserving map from parameters to coordinates, both of shape (..., 3), by
+        default the identity [m].
+    closed : bool
+        True if the second parameter, an angle, is periodic.
+    """
+
+    ends: tuple[np.ndarray, np.ndarray, np.ndarray]
+    place: Callable[[np.ndarray], np.ndarray] = np.asarray
+    closed: bool = False
+
+
+def mesh_lattice(lattice: Lattice, order: int) -> MeshedBody:
+    """Mesh a lattice with cells of an order."""
+    check_count(*(len(ends) - 1 for ends in lattice.ends), most=MOST_HEXAHEDRA)
+    u, v, w = (_parameters(ends, order) for ends in lattice.ends)
+    if lattice.closed:
+        v = v[:-1]
+    shape = (len(u), len(v), len(w))
+    points = lattice.place(np.stack(np.meshgrid(u, v, w, indexing="ij"), axis=-1).reshape(-1, 3))
+    first = np.indices([len(ends) - 1 for ends in lattice.ends]).reshape(3, -1, 1) * order
+    within = np.rint(order * reference_nodes("hexahedron", order)).astype(np.int64)
+    place = first + within.T[:, None]
+    place[1] %= len(v)
+    cells = np.ravel_multi_index(tuple(place), shape)
+    return MeshedBody(points, cells, boundary("hexahedron", order, cells))
+
+
+def _parameters(ends: np.ndarray, order: int) -> np.ndarray:
+    """Parameters of the nodes of a row of elements."""
+    within = np.arange(order) / order
+    inner = ends[:-1, None] + np.diff(ends)[:, None] * within
+    return np.append(inner.ravel(), ends[-1])

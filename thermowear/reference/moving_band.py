@@ -26,14 +26,8 @@ class MovingBand:
 
     Attributes
     ----------
-    flux : float
-        q [W/m²].
-    half_width : float
-        b [m].
-    speed : float
-        v > 0 [m/s].
-    conductivity : float [W/(m K)]
-    diffusivity : float [m²/s]
+    flux, half_width, speed, conductivity, diffusivity : float
+        q [W/m²], b [m], v > 0 [m/s], k [W/(m K)], κ [m²/s].
     """
 
     flux: float

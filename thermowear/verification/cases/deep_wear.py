@@ -12,11 +12,12 @@ from math import log2, pi
 import numpy as np
 
 from ...results import Result
-from ..check import Check, along, compare
+from ..check import Check, along, compare, compare_each
 from ..starter import run_starter
+from .scars import FACE, volume_error
 
 STARTER = "annular-punch"
-RADII = (0.022, 0.025, 0.04, 0.07, 0.1, 0.115, 0.118)
+RADII = np.array([0.022, 0.025, 0.04, 0.07, 0.1, 0.115, 0.118])
 AREA = pi * (0.12**2 - 0.02**2)
 HEIGHT, WORN, LAST = 0.05, 0.01, 0.001
 FINE = ("mesh.degree=8", "mesh.elements=12")
@@ -25,7 +26,6 @@ SIZES = (0.04, 0.02, 0.01, 0.005)
 AMBIENT = 293.15
 LOW = "steady principle for a punch of the worn height"
 LATE = "punch of the same final height, worn by its last millimetre only"
-FACE = "integral of the wear over the face"
 SMALL = "same case with updates at each 0.25 % of the height"
 ORDER = "four runs, with the update interval halved each time"
 _SCATTER = 1e-2
@@ -33,12 +33,11 @@ _SCATTER = 1e-2
 so that the order from three runs scatters by 0.05."""
 
 
-def checks() -> Iterator[Check]:
+def deep_wear() -> Iterator[Check]:
     """Final volumes, shapes and temperatures; influence of the update interval."""
     worn = deep("wear.update=0.007", *FINE)
     summary = worn.summary
-    error = 1 + summary["geometry_volume_error"]
-    yield compare("worst update: volume lost by the mesh [1]", error, 1.0, 1e-6, FACE)
+    yield volume_error(worn)
     slanted = 1.0 / summary["geometry_smallest_scaled_jacobian"]
     yield Check("1 / smallest scaled Jacobian [1]", slanted, 1.0, slanted, 10.0, "a rectangle")
     lost = summary["geometry_volume_1_m3"]
@@ -74,8 +73,8 @@ def _against_low_punch(worn: Result, height: float) -> Iterator[Check]:
     yield from _shapes(worn, low, LOW, "its mean")
     for body in (1, 2):
         found, known = (
-            along(result.interface, RADII, getattr(result.interface, f"temperature_{body}"))
-            for result in (worn, low)
+            along(i, RADII, getattr(i, f"temperature_{body}"))
+            for i in (worn.interface, low.interface)
         )
         for r, T, exact in zip(RADII, found, known, strict=True):
             name = f"temperature of body {body} at r = {1e3 * r:g} mm [K], of its rise"
@@ -88,9 +87,9 @@ def _shapes(worn: Result, known: Result, source: str, origin: str) -> Iterator[C
     for face in (worn.interface, known.interface):
         mean = float(face.weight @ face.shape / face.weight.sum()) if origin == "its mean" else 0.0
         profiles.append(along(face, RADII, face.shape - mean))
-    for r, found, exact in zip(RADII, *profiles, strict=True):
-        name = f"shape at r = {1e3 * r:g} mm from {origin} [m], of its range"
-        yield compare(name, found, exact, 1e-3, source, known.summary["shape_range_m"])
+    name, size = f"shape at r = {{:g}} mm from {origin} [m], of its range", "shape_range_m"
+    (found, exact), scale = profiles, known.summary[size]
+    yield from compare_each(name, 1e3 * RADII, found, exact, 1e-3, source, scale)
 
 
 def _updates() -> Iterator[Check]:
@@ -106,19 +105,16 @@ def _updates() -> Iterator[Check]:
     name = f"order, updates at {sizes}: hottest point in the mean over the run [1]"
     yield Check(name, order, 1.0, max(1.0 - order, 0.0), _SCATTER, ORDER)
     chosen, fine = deep(*COARSE), deep("wear.update=0.0025", *COARSE)
-    means = _mean_of_hottest(chosen), _mean_of_hottest(fine)
-    rows = [("hottest point in the mean over the run [K], of its rise", means)]
-    for key, name in (
-        ("max_temperature_K", "hottest point [K], of its rise"),
-        ("max_pressure_Pa", "largest pressure [Pa]"),
-        ("wear_volume_1_m3", "volume worn off [m³]"),
-        ("shape_range_m", "range of the shape [m]"),
+    for name, value in (
+        ("hottest point in the mean over the run [K], of its rise", _mean_of_hottest),
+        ("hottest point [K], of its rise", lambda result: result.summary["max_temperature_K"]),
+        ("largest pressure [Pa]", lambda result: result.summary["max_pressure_Pa"]),
+        ("volume worn off [m³]", lambda result: result.summary["wear_volume_1_m3"]),
+        ("range of the shape [m]", lambda result: result.summary["shape_range_m"]),
     ):
-        rows.append((name, (chosen.summary[key], fine.summary[key])))
-    for name, (found, known) in rows:
+        found, known = value(chosen), value(fine)
         scale = known - AMBIENT if "rise" in name else None
-        label = f"{name}, updates as they are chosen"
-        yield compare(label, found, known, 5e-3, SMALL, scale)
+        yield compare(f"{name}, updates as they are chosen", found, known, 5e-3, SMALL, scale)
 
 
 def _mean_of_hottest(result: Result) -> float:

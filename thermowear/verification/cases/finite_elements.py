@@ -15,8 +15,7 @@ from ...laws.motions import RigidMotion, rotation, translation
 from ...results import Result
 from ...simulation.from_case import model_of
 from ..check import Check, compare
-from ..computed import computed
-from ..starter import starter
+from ..starter import computed, starter
 
 PRINCIPLE = "steady state from the principle of minimum wear dissipation power"
 EDGE = 2e-3
@@ -36,35 +35,27 @@ def running_in(
     ----------
     label : str
         Label of the run in the output.
-    name : str
-        Starter case.
-    *overrides : str
-        ``KEY=VALUE`` each.
-    without : tuple of str
-        Tables to leave out.
+    name, *overrides, without
+        See `starter`.
     """
     case = starter(name, *overrides, without=without)
     direct = computed(case)
     reached = computed(starter(name, *overrides, _TRANSIENT, _UNWORN, without=without))
     name = f"{name}, {label}" if label else name
     inner = away_from_ends(case, direct)
-    yield compare(
-        f"{name}: pressure after running-in minus the steady one, root mean square [Pa]",
-        _mean_square(direct, reached.interface.pressure - direct.interface.pressure, inner),
-        0.0,
-        0.01,
-        PRINCIPLE,
-        scale=_mean_square(direct, direct.interface.pressure, inner),
-    )
-    off = _without_motion(case, direct, reached.interface.shape - direct.interface.shape, inner)
-    size = float(np.ptp(direct.interface.shape[inner]))
-    measures = {
-        "root mean square": (_mean_square(direct, off, inner), 0.01),
-        "largest": (float(np.abs(off[inner]).max()), 0.02),
-    }
-    for measure, (found, allowed) in measures.items():
+    steady = direct.interface
+    off = reached.interface.pressure - steady.pressure
+    found, size = (_mean_square(direct, p, inner) for p in (off, steady.pressure))
+    quantity = f"{name}: pressure after running-in minus the steady one, root mean square [Pa]"
+    yield compare(quantity, found, 0.0, 0.01, PRINCIPLE, size)
+    off = _without_motion(case, direct, reached.interface.shape - steady.shape, inner)
+    size = float(np.ptp(steady.shape[inner]))
+    for measure, found, allowed in (
+        ("root mean square", _mean_square(direct, off, inner), 0.01),
+        ("largest", float(np.abs(off[inner]).max()), 0.02),
+    ):
         quantity = f"{name}: worn shape after running-in minus the steady one, {measure} [m]"
-        yield compare(quantity, found, 0.0, allowed, PRINCIPLE, scale=size)
+        yield compare(quantity, found, 0.0, allowed, PRINCIPLE, size)
 
 
 def away_from_ends(case: Case, result: Result) -> np.ndarray:
@@ -93,8 +84,7 @@ def _without_motion(
     profile = result.profile
     points = np.column_stack([profile.x, profile.y, profile.z])
     normals = np.column_stack([profile.normal_x, profile.normal_y, profile.normal_z])
-    motions = [_motion(case, name) for name in case.holder.free]
-    closing = [(motion.at(points) * normals).sum(axis=1) for motion in motions]
+    closing = [(_motion(case, m).at(points) * normals).sum(axis=1) for m in case.holder.free]
     modes = np.column_stack([np.ones(len(points)), *closing])
     amplitudes = np.linalg.lstsq(modes[inner], heights[inner], rcond=None)[0]
     return heights - modes @ amplitudes

@@ -1,8 +1,12 @@
-"""Half-spaces under a constant heat flux from t = 0 on.
+"""Half-spaces under a heat flux from t = 0 on.
 
 One half-space under a constant flux (Carslaw and Jaeger, Conduction of Heat in Solids, 1959,
 section 2.9), and two in contact that share their friction heat. The surface temperature depends on
 the effusivity ``e = √(k ρ c)`` only: a flux q raises it by ``2 q √(t/π)/e``.
+
+With constant deceleration of a brake, the flux ``q (1 - t/t_s)`` falls to zero in the stopping
+time. A flux ``a t`` raises the surface temperature by ``4 a t^(3/2)/(3 e √π)``. The maximum is at
+half the stopping time (Fazekas, SAE Technical Paper 530221, 1953).
 """
 
 from __future__ import annotations
@@ -104,3 +108,27 @@ def surface_rises(
 def _ierfc(x: np.ndarray) -> np.ndarray:
     """Integral of the complementary error function from x to infinity."""
     return np.exp(-(x**2)) / sqrt(pi) - x * erfc(x)
+
+
+def braking_rise(effusivity: float, flux: float, stop: float, time) -> np.ndarray:
+    """Temperature rise of the surface since the start of braking, also after the stop [K].
+
+    Parameters
+    ----------
+    effusivity : float
+        e, the sum for two bodies in perfect contact that share the heat [W √s/(m² K)].
+    flux : float
+        q at the start of braking [W/m²].
+    stop : float
+        t_s, stopping time [s].
+    time : array_like
+        Time since the start, >= 0 [s].
+    """
+    t = np.asarray(time)
+    slowing = 4 * flux / (3 * stop) * (np.maximum(t - stop, 0.0) ** 1.5 - t**1.5)
+    return (2 * flux * np.sqrt(t) + slowing) / (effusivity * sqrt(pi))
+
+
+def braking_peak(effusivity: float, flux: float, stop: float) -> float:
+    """Largest rise ``(2 q/(3 e)) √(2 t_s/π)``, at t_s/2 [K]; parameters as in `braking_rise`."""
+    return 2 * flux / (3 * effusivity) * sqrt(2 * stop / pi)

@@ -13,10 +13,9 @@ from ...errors import CaseError
 from ...results import TABLES
 from ..names import PICTURES
 from ..tables import read
-from .case_lines import table_lines
 from .columns import AT_TIMES, ShownTable, output_times, shown_table
-from .figures import BalanceFigure, Figure, balances, key_figures
-from .verdict import Verdict, verdict
+from .figures import BalanceFigure, Figure, Verdict, balances, key_figures, verdict
+from .unit_format import table_lines
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 

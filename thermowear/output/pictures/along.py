@@ -9,7 +9,16 @@ import numpy as np
 from .. import tables
 from ..coordinates import read_summary
 from ..names import states
-from .panels import BODIES, abscissa, column, from_zero, plot_along, time_colors, time_legend
+from .panels import (
+    BODIES,
+    abscissa,
+    column,
+    from_zero,
+    plot_along,
+    plot_columns,
+    time_colors,
+    time_legend,
+)
 
 _FLAT = 1e-12  # range of the shape up to which a face is flat but for rounding errors [m]
 _SAME = 1e-3
@@ -129,12 +138,11 @@ def draw_track(folder: Path) -> None:
             moving = tables.read(path.with_name(path.name.replace("track", "interface")))
             both = ((moving, "wear_1"), (tables.read(path), "wear_2"))
             for axis, (data, name) in zip(axes, both, strict=True):
-                axis.plot(data.drawn("x"), data.drawn(name), color=color, label=label)
-        for axis, (data, name) in zip(axes, both, strict=True):
-            axis.set_ylabel(data.quantities[name].axis)
+                plot_columns(axis, data, "x", name, color=color, label=label)
+                axis.set_ylabel(data.quantities[name].axis)
+        for axis in axes:
             axis.invert_yaxis()
         time_legend(axes[0])
-        axes[1].set_xlabel(data.quantities["x"].axis)
 
 
 def _at_times(folder: Path, stem: str) -> dict[str, Path]:

@@ -9,12 +9,12 @@ from ..maps import draw_colors, triangulated
 from ..panels import label_coordinates
 from ..scales import COLORS, add_color_bar, color_limits, contact_window, inside, proportion, whole
 from ..section import read_section
-from .states import FrameSequence, FrameState
+from .states import FrameSequence, FrameState, ScenePanel
 
 _SCALE = 0.05  # width of the colour bar relative to the panel
 
 
-class SectionPanel:
+class SectionPanel(ScenePanel):
     """Panel with deformed 2D bodies: whole, or a window around a small contact."""
 
     def __init__(self, frames: FrameSequence):
@@ -31,7 +31,6 @@ class SectionPanel:
         self._drawn: list = []
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         self._axis, name = axis, self._frames.field
         label_coordinates(axis, self._frames.states[-1].interface)
         axis.set_anchor("W")
@@ -41,14 +40,13 @@ class SectionPanel:
         add_color_bar(axis, COLORS[name], self.limits, self._largest, **options)
 
     def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
         while self._drawn:
             self._drawn.pop().remove()
         section = self.sections[state.time]
         self._drawn = section.draw(self._axis, self._frames.field, self.limits, self.window)
 
 
-class SolidPanel:
+class SolidPanel(ScenePanel):
     """Panel with undeformed 3D bodies and a fixed camera."""
 
     def __init__(self, frames: FrameSequence):
@@ -63,7 +61,6 @@ class SolidPanel:
         )
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         name, (width, height) = self._frames.field, self._solids.PIXELS
         axis.set_axis_off()
         options = {"ax": axis, "label": FIELDS[name].axis, "shrink": 0.8}
@@ -72,7 +69,6 @@ class SolidPanel:
         self._image = axis.imshow(blank, interpolation="antialiased")
 
     def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
         surfaces = self._surfaces(state)
         self._image.set_data(self._solids.render(surfaces, self._frames.field, self.limits))
 
@@ -80,7 +76,7 @@ class SolidPanel:
         return self._solids.clipped(self._solids.read_grid(state.file), self._y)
 
 
-class FaceMap:
+class FaceMap(ScenePanel):
     """Panel with a map of a quantity over the contact face."""
 
     def __init__(self, frames: FrameSequence, name: str):
@@ -90,7 +86,6 @@ class FaceMap:
         self._drawn: list = []
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         self._axis, data = axis, self._frames.states[-1].interface
         label_coordinates(axis, data)
         window = whole(np.stack([data.drawn("x"), data.drawn("y")], axis=1))
@@ -101,7 +96,6 @@ class FaceMap:
         add_color_bar(axis, colors, self._limits, self._limits[1], **options)
 
     def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
         while self._drawn:
             self._drawn.pop().remove()
         x, y, values = map(state.interface.drawn, ("x", "y", self._name))

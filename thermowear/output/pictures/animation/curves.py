@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ..panels import BODIES, abscissa, clipped_top
-from .states import FrameSequence, FrameState
+from .states import FrameSequence, FrameState, ScenePanel
 
 _AXIS_END = 1.06  # end of an axis relative to the largest value
 _FAINT = {"color": "0.6", "linewidth": 1.2}
@@ -19,22 +19,14 @@ _STYLES = {
 """Styles by body, so that coinciding curves are both visible."""
 
 
-class CurvePanel:
-    """Curves along the contact with fixed axes.
-
-    Parameters
-    ----------
-    frames : FrameSequence
-    names : sequence of str
-        Columns of ``interface.csv``.
-    """
+class CurvePanel(ScenePanel):
+    """Columns of ``interface.csv`` along the contact, with fixed axes."""
 
     def __init__(self, frames: FrameSequence, names: Sequence[str]):
         self._states, self._names = frames.states, names
         self._lines: dict[str, Line2D] = {}
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         positions = [_curve(state, name)[0] for state in self._states for name in self._names]
         axis.set_xlim(min(x.min() for x in positions), max(x.max() for x in positions))
         axis.set_xlabel(abscissa(self._states[-1].interface)[0])
@@ -43,7 +35,6 @@ class CurvePanel:
             axis.legend(fontsize="small", ncols=4, handlelength=1.5, **where)
 
     def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
         for name, line in self._lines.items():
             line.set_data(*_curve(state, name))
 
@@ -56,7 +47,6 @@ class PressureCurve(CurvePanel):
         self._end = "steady" if frames.ends_steady else "end"
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         first, last = self._states[0], self._states[-1]
         for state, line, label in ((first, "--", "start"), (last, "-", self._end)):
             if state.interface["pressure"].max() > 0:
@@ -73,7 +63,6 @@ class WearCurves(CurvePanel):
     """Wear depths of bodies, downwards, with their ends in grey."""
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         first, last = self._states[0], self._states[-1]
         for name in self._names:
             axis.plot(*_curve(last, name), label="_" if self._lines else "end", **_FAINT)
@@ -98,7 +87,7 @@ def _curve(state: FrameState, name: str) -> tuple[np.ndarray, np.ndarray]:
     return abscissa(state.interface)[1], state.interface.drawn(name)
 
 
-class TimeCurve:
+class TimeCurve(ScenePanel):
     """History of the largest temperature or pressure, with a mark at the current time."""
 
     def __init__(self, frames: FrameSequence):
@@ -109,7 +98,6 @@ class TimeCurve:
         self._time, self._drawn = self._history["time"], self._history.drawn(self._name)
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         shown = self._history.quantities
         axis.plot(self._time, self._drawn, color="0.45")
         if not self._even:
@@ -123,7 +111,6 @@ class TimeCurve:
         (self._dot,) = axis.plot([], [], "o", color="tab:red", markersize=6, clip_on=False)
 
     def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
         time = max(state.time, self._time[0])
         self._mark.set_xdata([time, time])
         self._dot.set_data([time], [np.interp(time, self._time, self._drawn)])

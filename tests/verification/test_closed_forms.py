@@ -3,8 +3,8 @@
 import pytest
 
 from thermowear.verification import minimality
+from thermowear.verification.check import printed
 from thermowear.verification.closed_forms import CLOSED_FORMS
-from thermowear.verification.closed_forms.rows import printed
 
 
 @pytest.mark.parametrize("name", CLOSED_FORMS)

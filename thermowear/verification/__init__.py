@@ -5,20 +5,18 @@ from __future__ import annotations
 from .cases.annular_punch import annular_punch, running_in
 from .cases.beam_shakedown import beam_shakedown
 from .cases.blocks import pressure_conductance, two_slabs
-from .cases.deep_wear import deep_wear
+from .cases.contact_methods import methods_agree, patch
+from .cases.finite_elements import optimal_shape
 from .cases.fretting_wear import fretting_cylinder, fretting_wear
 from .cases.fuel_fretting import fuel_fretting
+from .cases.geometry_updates import block_on_ring, deep_wear, pin_on_disc
 from .cases.growing import growing_cylinder, growing_sphere
 from .cases.hertz import flat_punch, hertz_line, hertz_sphere
 from .cases.instability import half_plane_instability, sliding_rod
-from .cases.methods_agree import methods_agree
 from .cases.mindlin import mindlin
 from .cases.minimality import minimality
 from .cases.moving_band import moving_band
-from .cases.optimal_shape import optimal_shape
-from .cases.patch import patch
 from .cases.reciprocating import reciprocating
-from .cases.scars import block_on_ring, pin_on_disc
 from .cases.special_cases import SPECIAL_CASES
 from .cases.temperature_dependent import temperature_dependent
 from .cases.transient_heat import braking_stop, step_flux

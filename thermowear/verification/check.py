@@ -87,6 +87,17 @@ def compare_each(
         yield compare(quantity.format(place), found, known, allowed, source, scale)
 
 
+def printed(quantity: str, computed: float, text: str) -> Check:
+    """Compare a number with a tabulated one, to half a unit of its last digit."""
+    mantissa, _, power = text.partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    half_unit = 0.5 * 10.0 ** (int(power or 0) - decimals)
+    known = float(text)  # ties in rounding are allowed
+    return compare(
+        quantity, computed, known, half_unit / abs(known) * (1 + 1e-9), "closed form, tabulated"
+    )
+
+
 def identified(id: str, checks: Checks) -> Checks:
     """Checks of a case with its id."""
     return lambda: (replace(check, id=id) for check in checks())

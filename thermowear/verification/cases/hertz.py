@@ -8,8 +8,7 @@ from math import pi, sqrt
 import numpy as np
 
 from ...reference import hertz as reference
-from ...reference.elastic_sphere import sphere_on_half_space
-from ...reference.hertz import contact_modulus, line_contact, point_contact
+from ...reference.hertz import contact_modulus, line_contact, point_contact, sphere_on_half_space
 from ...results import Result
 from ..check import Check, along, compare, compare_each
 from ..starter import run_starter

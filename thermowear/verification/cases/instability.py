@@ -127,26 +127,10 @@ def _stability(
     conductance: float = 1e-4,
     fineness: int = 6,
 ) -> Result:
-    """Run the stability analysis of a block between planes of symmetry.
+    """Run the stability analysis of a block between planes of symmetry, at a speed [m/s].
 
-    Parameters
-    ----------
-    speed : float
-        Sliding speed [m/s].
-    sizes : dict of str to float
-        Dimensions of the geometry ``stacked-blocks`` [m].
-    poisson_ratio : float
-        Poisson's ratio of the steel.
-    pressing : dict of str to str
-        Table ``load``.
-    wear : float
-        Archard's k of the steel [1/Pa].
-    insulator : tuple of float
-        Young's modulus [Pa] and Poisson's ratio.
-    conductance : float
-        Contact conductance, nearly insulating [W/(m² K)].
-    fineness : int
-        Number of elements of the mesh, and their degree.
+    Sizes in m, Archard's k of the steel in 1/Pa, Young's modulus [Pa] and Poisson's ratio of the
+    insulator, conductance (nearly insulating) in W/(m² K); fineness: number and degree of elements.
     """
 
     def body(modulus: float, ratio: float, conductivity: float, expansion: float) -> dict:

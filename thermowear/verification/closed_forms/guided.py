@@ -11,9 +11,9 @@ from ...laws.principle.solvability import SelfLocking
 from ...laws.principle.wear_vectors import wear_vectors
 from ...reference import guided_face as reference
 from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
-from ..check import Check, compare
+from ..check import Check, compare, printed
 from . import patches as cases
-from .rows import CLOSED_FORM, EXPONENTS, MPA, dissipation, printed, worst
+from .patches import CLOSED_FORM, EXPONENTS, MPA, dissipation, worst
 
 SHIGLEY = "Budynas and Nisbett, Shigley's Mechanical Engineering Design, long-shoe law"
 _SYMMETRIC = ArcBlock(reference.RADIUS, reference.WIDTH, -0.5, 0.5, 0.0)

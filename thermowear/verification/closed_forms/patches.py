@@ -18,7 +18,10 @@ from ...laws import PowerWear, rotation, translation
 from ...laws.principle.patch import ContactPatch, contact_patch
 from ...laws.principle.steady import SteadyWear
 from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
+from ..check import Check, compare, compare_worst
 
+CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, closed form"
+EXPONENTS, MPA = (0.5, 1.0, 2.0), 1e6
 DOWN = (0.0, 0.0, -1.0)
 POINTS = 40
 
@@ -244,3 +247,17 @@ def disk_brake(
         sliding=np.column_stack([-np.sin(φ), np.cos(φ), zero]),
     )
     return SpecialCase(patch, np.array(load), (wear_law(b, a),))
+
+
+def worst(quantity: str, computed, exact, allowed: float = 1e-9) -> Check:
+    """Compare values at points with a formula, at the point of largest deviation."""
+    quantity = f"{quantity}, at the point of largest deviation"
+    return compare_worst(quantity, computed, exact, allowed, CLOSED_FORM)
+
+
+def dissipation(case: SpecialCase, name: str) -> Check:
+    """Compare ``D_w = ∫ p·w' dS`` with the power of the load, ``F·V``."""
+    steady = case.steady()
+    quantity = f"wear dissipation power{name} [W]"
+    power = float(case.load @ steady.velocity)
+    return compare(quantity, steady.dissipation, power, 1e-9, "D_w = F·V")

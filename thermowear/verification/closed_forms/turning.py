@@ -8,9 +8,9 @@ import numpy as np
 
 from ...laws import LocalState
 from ...reference import annular_punch as ring
-from ..check import Check, compare
+from ..check import Check, compare, printed
 from . import patches as cases
-from .rows import CLOSED_FORM, MPA, dissipation, printed, worst
+from .patches import CLOSED_FORM, MPA, dissipation, worst
 
 
 def case_8() -> Iterator[Check]:

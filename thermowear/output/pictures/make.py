@@ -13,25 +13,23 @@ from ...balances import violated
 from ...errors import CaseError, ComputationError
 from ..coordinates import read_summary
 from ..tables import MissingColumnError
-from .along import draw_friction, draw_interface, draw_profile, draw_track, draw_wear
+from . import curves, maps
 from .animation import FPS, check_animation, has_frames
-from .histories import draw_cycles, draw_heat, draw_history, draw_loads
-from .maps import draw_interface_maps, draw_wear_maps, is_surface
 from .modes import draw_modes
 
 _ALONG_A_LINE: dict[str, Callable[[Path], None]] = {
-    "interface": draw_interface,
-    "profile": draw_profile,
-    "wear": draw_wear,
+    "interface": curves.draw_interface,
+    "profile": curves.draw_profile,
+    "wear": curves.draw_wear,
 }
-_OVER_A_SURFACE = {"interface": draw_interface_maps, "wear": draw_wear_maps}
+_OVER_A_SURFACE = {"interface": maps.draw_interface_maps, "wear": maps.draw_wear_maps}
 _OTHERS = {
-    "history": draw_history,
-    "heat": draw_heat,
-    "friction": draw_friction,
-    "loads": draw_loads,
-    "cycles": draw_cycles,
-    "track": draw_track,
+    "history": curves.draw_history,
+    "heat": curves.draw_heat,
+    "friction": curves.draw_friction,
+    "loads": curves.draw_loads,
+    "cycles": curves.draw_cycles,
+    "track": curves.draw_track,
     "mode": draw_modes,
 }
 _TIMEOUT = 180.0  # seconds for the rendering process
@@ -59,7 +57,7 @@ def make_pictures(folder: Path) -> list[str]:
             f"{folder}: contains no interface.csv; not a results folder of a finished run"
         )
     notes = []
-    first = _OVER_A_SURFACE if is_surface(folder) else _ALONG_A_LINE
+    first = _OVER_A_SURFACE if maps.is_surface(folder) else _ALONG_A_LINE
     for name, draw in (first | _OTHERS).items():
         try:
             if name == "wear" or (folder / f"{name}.csv").is_file():

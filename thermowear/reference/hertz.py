@@ -16,6 +16,13 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import gamma, hyp2f1
 
+_NODES = 240
+"""Number of Gauss points over the contact."""
+_WAVES = 240.0
+"""Largest order of the series times a/R, as resolved by the Gauss rule."""
+_TERMS = 3
+"""Number of powers ``(1 - (r/a)²)^(j - 1/2)`` of the pressure."""
+
 
 @dataclass(frozen=True)
 class Hertz:
@@ -57,14 +64,6 @@ def point_contact(force: float, radius: float, modulus: float) -> Hertz:
 def flat_punch(x: np.ndarray, force: float, half_width: float) -> np.ndarray:
     """Rigid flat punch on a half-plane, force per length: ``P/(π √(a² - x²))`` [Pa]."""
     return force / (pi * np.sqrt(half_width**2 - x**2))
-
-
-_NODES = 240
-"""Number of Gauss points over the contact."""
-_WAVES = 240.0
-"""Largest order of the series times a/R, as resolved by the Gauss rule."""
-_TERMS = 3
-"""Number of powers ``(1 - (r/a)²)^(j - 1/2)`` of the pressure."""
 
 
 def sphere_on_half_space(

@@ -21,6 +21,15 @@ MODULI = (200e9, 70e9)
 FACES = (("matching", (4, 4), 1e-10), ("not matching", (4, 7), 1e-3))
 """Label, numbers of elements along the contact, and tolerance."""
 METHODS, PENALTY = ("condensed", "nitsche", "penalty"), 1e15
+CONDENSED = "same case with condensed contact"
+THEORY = "penalty error proportional to 1/penalty (Kikuchi and Oden, Contact Problems, 1988, ch. 3)"
+HALF_WIDTH = 0.496e-3
+COMPARED = {
+    "hertz": ((0.0, 0.95 * HALF_WIDTH), (1e16, 1e17, 1e18)),
+    "annular punch": ((0.025, 0.115), (1e14, 1e15, 1e16)),
+}
+"""Range of the compared pressures, and penalties."""
+_PUNCH = ("analysis.type=initial", "mesh.degree=6", "mesh.elements=16")
 
 
 class PatchGeometry(PlaneGeometry):
@@ -105,20 +114,9 @@ def patch() -> Iterator[Check]:
         yield compare(f"approach, {note} [m]", approach, shortened, allowed, SOURCE)
 
 
-CONDENSED = "same case with condensed contact"
-THEORY = "penalty error proportional to 1/penalty (Kikuchi and Oden, Contact Problems, 1988, ch. 3)"
-HALF_WIDTH = 0.496e-3
-CASES = {
-    "hertz": ((0.0, 0.95 * HALF_WIDTH), (1e16, 1e17, 1e18)),
-    "annular punch": ((0.025, 0.115), (1e14, 1e15, 1e16)),
-}
-"""Range of the compared pressures, and penalties."""
-_PUNCH = ("analysis.type=initial", "mesh.degree=6", "mesh.elements=16")
-
-
 def methods_agree() -> Iterator[Check]:
     """Pressure away from edges; convergence order of the penalty error."""
-    for case, (ends, penalties) in CASES.items():
+    for case, (ends, penalties) in COMPARED.items():
         x = np.linspace(*ends, 400)
         condensed = _solved(case, "condensed")
         compared = {

@@ -34,6 +34,23 @@ EDGE = 2e-3
 _UNWORN = "wear.update=never"
 """The steady state refers to the unworn bodies, so the running-in must not thin them."""
 _TRANSIENT = "analysis={type='transient', until='steady', steady_tolerance=1e-3, tolerance=1e-3}"
+_HOT_SHOE = (
+    "bodies.shoe.conductivity=180 W/(m K)",
+    "bodies.shoe.expansion=2.3e-5 1/K",
+    "bodies.lining.conductivity=1.5 W/(m K)",
+    "bodies.lining.expansion=1.5e-5 1/K",
+    "bodies.drum.conductivity=50 W/(m K)",
+    "bodies.drum.expansion=1.1e-5 1/K",
+    "heat={conductance='1e4 W/(m^2 K)', advection='spread', "
+    "cooling={drum_rim='300 W/(m^2 K)', shoe_inside='100 W/(m^2 K)'}}",
+)
+"""Heat data of the drum brake, our own: with less cooling its steady state would be unstable."""
+_DESIGNS = {"block-on-disk": (), "drum-brake": _HOT_SHOE, "annular-punch": ()}
+_OTHER_MESH = ("mesh.elements=17", "mesh.degree=6", "mesh.grading=0.4")
+_TIMES = (1e-6, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0)
+"""Output times relative to the end time of the run."""
+_WORN = 5.0
+"""Depth worn in a run, relative to the depth of the design."""
 
 
 def running_in(
@@ -111,25 +128,6 @@ def _motion(case: Case, name: str) -> RigidMotion:
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
 _TURNS = {"rotation": (0.0, 0.0, 1.0), "rotation-x": (1.0, 0.0, 0.0), "rotation-y": (0.0, 1.0, 0.0)}
-
-
-_HOT_SHOE = (
-    "bodies.shoe.conductivity=180 W/(m K)",
-    "bodies.shoe.expansion=2.3e-5 1/K",
-    "bodies.lining.conductivity=1.5 W/(m K)",
-    "bodies.lining.expansion=1.5e-5 1/K",
-    "bodies.drum.conductivity=50 W/(m K)",
-    "bodies.drum.expansion=1.1e-5 1/K",
-    "heat={conductance='1e4 W/(m^2 K)', advection='spread', "
-    "cooling={drum_rim='300 W/(m^2 K)', shoe_inside='100 W/(m^2 K)'}}",
-)
-"""Heat data of the drum brake, our own: with less cooling its steady state would be unstable."""
-_DESIGNS = {"block-on-disk": (), "drum-brake": _HOT_SHOE, "annular-punch": ()}
-_OTHER_MESH = ("mesh.elements=17", "mesh.degree=6", "mesh.grading=0.4")
-_TIMES = (1e-6, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0)
-"""Output times relative to the end time of the run."""
-_WORN = 5.0
-"""Depth worn in a run, relative to the depth of the design."""
 
 
 def optimal_shape() -> Iterator[Check]:

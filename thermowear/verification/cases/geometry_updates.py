@@ -25,6 +25,21 @@ CIRCLE = "circle with the radius of the ring"
 FACE = "integral of the wear over the face"
 PIN_RADIUS = 50e-3
 CAP = f"{RIGID}: cap that a flat cuts off a sphere"
+DEEP = "annular-punch"
+PLACES = np.array([0.022, 0.025, 0.04, 0.07, 0.1, 0.115, 0.118])
+AREA = pi * (0.12**2 - 0.02**2)
+HEIGHT, WORN, LAST = 0.05, 0.01, 0.001
+FINE = ("mesh.degree=8", "mesh.elements=12")
+COARSE = ("mesh.degree=6", "mesh.elements=4")
+INTERVALS = (0.04, 0.02, 0.01, 0.005)
+AMBIENT = 293.15
+LOW = "steady principle for a punch of the worn height"
+LATE = "punch of the same final height, worn by its last millimetre only"
+SMALL = "same case with updates at each 0.25 % of the height"
+ORDER = "four runs, with the update interval halved each time"
+_SCATTER = 1e-2
+"""Tolerance of the mean order of four runs: the last interval of a run is shorter than the others,
+so that the order from three runs scatters by 0.05."""
 
 
 def block_on_ring() -> Iterator[Check]:
@@ -85,23 +100,6 @@ def volume_error(result: Result) -> Check:
     return compare("worst update: volume lost by the mesh [1]", error, 1.0, 1e-6, FACE)
 
 
-STARTER = "annular-punch"
-RADII = np.array([0.022, 0.025, 0.04, 0.07, 0.1, 0.115, 0.118])
-AREA = pi * (0.12**2 - 0.02**2)
-HEIGHT, WORN, LAST = 0.05, 0.01, 0.001
-FINE = ("mesh.degree=8", "mesh.elements=12")
-COARSE = ("mesh.degree=6", "mesh.elements=4")
-SIZES = (0.04, 0.02, 0.01, 0.005)
-AMBIENT = 293.15
-LOW = "steady principle for a punch of the worn height"
-LATE = "punch of the same final height, worn by its last millimetre only"
-SMALL = "same case with updates at each 0.25 % of the height"
-ORDER = "four runs, with the update interval halved each time"
-_SCATTER = 1e-2
-"""Tolerance of the mean order of four runs: the last interval of a run is shorter than the others,
-so that the order from three runs scatters by 0.05."""
-
-
 def deep_wear() -> Iterator[Check]:
     """Final volumes, shapes and temperatures; influence of the update interval."""
     worn = deep("wear.update=0.007", *FINE)
@@ -127,9 +125,9 @@ def deep_wear() -> Iterator[Check]:
 
 def deep(*overrides: str, height: float = HEIGHT, worn: float = WORN) -> Result:
     """Transient until a depth is worn off, at the steady wear rate [m]."""
-    end = worn / run_starter(STARTER, *COARSE).summary["rigid_wear_velocity_m_per_s"]
+    end = worn / run_starter(DEEP, *COARSE).summary["rigid_wear_velocity_m_per_s"]
     transient = f'analysis={{type="transient", end_time="{end!r} s", tolerance=1e-3}}'
-    return run_starter(STARTER, transient, f"geometry.punch_height={height!r} m", *overrides)
+    return run_starter(DEEP, transient, f"geometry.punch_height={height!r} m", *overrides)
 
 
 def _against_low_punch(worn: Result, height: float) -> Iterator[Check]:
@@ -138,14 +136,14 @@ def _against_low_punch(worn: Result, height: float) -> Iterator[Check]:
     That punch has a flat face. Thermal displacement along the inclined worn face closes its gap by
     the slope times the relative displacement, 0.8e-3 of the range.
     """
-    low = run_starter(STARTER, *FINE, f"geometry.punch_height={height!r} m")
+    low = run_starter(DEEP, *FINE, f"geometry.punch_height={height!r} m")
     yield from _shapes(worn, low, LOW, "its mean")
     for body in (1, 2):
         found, known = (
-            along(i, RADII, getattr(i, f"temperature_{body}"))
+            along(i, PLACES, getattr(i, f"temperature_{body}"))
             for i in (worn.interface, low.interface)
         )
-        for r, T, exact in zip(RADII, found, known, strict=True):
+        for r, T, exact in zip(PLACES, found, known, strict=True):
             name = f"temperature of body {body} at r = {1e3 * r:g} mm [K], of its rise"
             yield compare(name, T, exact, 1e-3, LOW, exact - AMBIENT)
 
@@ -155,10 +153,10 @@ def _shapes(worn: Result, known: Result, source: str, origin: str) -> Iterator[C
     profiles = []
     for face in (worn.interface, known.interface):
         mean = float(face.weight @ face.shape / face.weight.sum()) if origin == "its mean" else 0.0
-        profiles.append(along(face, RADII, face.shape - mean))
+        profiles.append(along(face, PLACES, face.shape - mean))
     name, size = f"shape at r = {{:g}} mm from {origin} [m], of its range", "shape_range_m"
     (found, exact), scale = profiles, known.summary[size]
-    yield from compare_each(name, 1e3 * RADII, found, exact, 1e-3, source, scale)
+    yield from compare_each(name, 1e3 * PLACES, found, exact, 1e-3, source, scale)
 
 
 def _updates() -> Iterator[Check]:
@@ -167,10 +165,10 @@ def _updates() -> Iterator[Check]:
     Between updates the conduction path is too long by the gap wear, on average over the run. At the
     end the gap wear is zero.
     """
-    hottest = [_mean_of_hottest(deep(f"wear.update={size}", *COARSE)) for size in SIZES]
+    hottest = [_mean_of_hottest(deep(f"wear.update={size}", *COARSE)) for size in INTERVALS]
     changes = np.diff(hottest)
     order = log2(changes[0] / changes[-1]) / (len(changes) - 1)
-    sizes = ", ".join(f"{100 * size:g} %" for size in SIZES)
+    sizes = ", ".join(f"{100 * size:g} %" for size in INTERVALS)
     name = f"order, updates at {sizes}: hottest point in the mean over the run [1]"
     yield Check(name, order, 1.0, max(1.0 - order, 0.0), _SCATTER, ORDER)
     chosen, fine = deep(*COARSE), deep("wear.update=0.0025", *COARSE)

@@ -18,6 +18,13 @@ from ..section import read_section
 from .states import FrameSequence, FrameState, ScenePanel
 
 _SCALE = 0.05  # width of the colour bar relative to the panel
+_AXIS_END = 1.06  # end of an axis relative to the largest value
+_FAINT = {"color": "0.6", "linewidth": 1.2}
+_STYLES = {
+    "wear_1": {"color": BODIES[0], "linestyle": "-"},
+    "wear_2": {"color": BODIES[1], "linestyle": "--"},
+}
+"""Styles by body, so that coinciding curves are both visible."""
 
 
 class SectionPanel(ScenePanel):
@@ -117,15 +124,6 @@ def face_maps(frames: FrameSequence) -> list[FaceMap]:
     depths = {name: frames.states[-1].interface[name].max() for name in ("wear_1", "wear_2")}
     deepest = max(depths, key=lambda name: depths[name])
     return [FaceMap(frames, name) for name in ("pressure", *([deepest] * (depths[deepest] > 0)))]
-
-
-_AXIS_END = 1.06  # end of an axis relative to the largest value
-_FAINT = {"color": "0.6", "linewidth": 1.2}
-_STYLES = {
-    "wear_1": {"color": BODIES[0], "linestyle": "-"},
-    "wear_2": {"color": BODIES[1], "linestyle": "--"},
-}
-"""Styles by body, so that coinciding curves are both visible."""
 
 
 class CurvePanel(ScenePanel):

@@ -14,14 +14,10 @@ import time
 
 import numpy as np
 
-from thermowear.verification.cases import growing_cylinder, growing_sphere
-from thermowear.verification.cases.growing import SPEED
+from thermowear.verification.cases.growing import CYLINDER, SPEED, SPHERE
 from thermowear.verification.starter import run_starter
 
-LOADS = {
-    "cylinder": (growing_cylinder, growing_cylinder.FORCE / growing_cylinder.THICKNESS / 2, 1),
-    "sphere": (growing_sphere, growing_sphere.FORCE / np.pi, 2),
-}
+SHAPES = {"cylinder": CYLINDER, "sphere": SPHERE}
 METHODS = ("condensed", "penalty", "nitsche")
 FIRST, LAST = 3, 6
 """Range of the half-width over that of the unworn contact, by the closed form."""
@@ -29,23 +25,23 @@ FIRST, LAST = 3, 6
 
 def ratios(shape: str, method: str, elements: int) -> tuple[int, np.ndarray]:
     """Number of steps, and the largest pressure over the uniform one from `FIRST` on."""
-    case, load, power = LOADS[shape]
-    law = case.law(1.0, case.COEFFICIENT)
+    case = SHAPES[shape]
+    law = case.law(case.coefficient)
     end = float(law.distance(law.start * LAST)) / SPEED
     overrides = (
         f"analysis.end_time={end!r} s",
         f"mesh.elements={elements}",
         f'contact.method="{method}"',
     )
-    history = run_starter(case.STARTER, *overrides).history
+    history = run_starter(case.starter, *overrides).history
     distance = np.array([row.time for row in history]) * SPEED
     late = law.half_width(distance) >= FIRST * law.start
     peak = np.array([row.max_pressure for row in history])[late]
-    return len(history) - 1, peak * law.elastic_half_width(distance[late]) ** power / load
+    return len(history) - 1, peak * law.elastic_half_width(distance[late]) ** case.power / case.load
 
 
 def main(arguments: list[str]) -> None:
-    shapes = [a for a in arguments if a in LOADS] or list(LOADS)
+    shapes = [a for a in arguments if a in SHAPES] or list(SHAPES)
     methods = [a for a in arguments if a in METHODS] or list(METHODS)
     meshes = [int(a) for a in arguments if a.isdigit()] or [40, 80, 160]
     print("shape     method     elements  steps  from 3 a0 on: number, smallest, largest    cpu s")

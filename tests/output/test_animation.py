@@ -11,8 +11,7 @@ from thermowear import CaseError
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
 from thermowear.output.pictures.animation import make
-from thermowear.output.pictures.animation.bodies import SectionPanel
-from thermowear.output.pictures.animation.curves import top
+from thermowear.output.pictures.animation.panels import SectionPanel, top
 from thermowear.output.pictures.animation.scene import duration
 from thermowear.output.pictures.animation.states import read_frames
 from thermowear.output.pictures.section import outline

@@ -10,8 +10,7 @@ import pytest
 import thermowear as tw
 from thermowear.output.atomic_write import atomic_write, final_name
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint, write_checkpoint
-from thermowear.output.folder import finite
-from thermowear.output.lock import Lock
+from thermowear.output.folder import Lock, finite
 from thermowear.output.resuming import read_run
 from thermowear.output.tables import RowWriter, read
 from thermowear.results import HistoryRow

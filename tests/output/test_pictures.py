@@ -11,8 +11,7 @@ from thermowear import CaseError
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
 from thermowear.output.pictures import make
-from thermowear.output.pictures.along import draw_interface
-from thermowear.output.pictures.histories import draw_heat, draw_history
+from thermowear.output.pictures.curves import draw_heat, draw_history, draw_interface
 from thermowear.output.pictures.make import make_pictures
 
 from ..conftest import COLD_RUNNING_IN, HOT

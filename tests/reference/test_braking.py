@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from thermowear.reference.braking import highest_rise, surface_rise
+from thermowear.reference.half_space import braking_peak, braking_rise
 
 EFFUSIVITY, FLUX, STOP = 13400.0, 2e6, 4.0
 
@@ -19,11 +19,11 @@ def test_duhamel(time):
     kink = np.sqrt(max(time - STOP, 0.0))
     total, _ = quad(left, 0.0, np.sqrt(time), points=[kink] if kink else None)
     expected = total / (EFFUSIVITY * np.sqrt(np.pi))
-    assert surface_rise(EFFUSIVITY, FLUX, STOP, time) == pytest.approx(expected, rel=1e-8)
+    assert braking_rise(EFFUSIVITY, FLUX, STOP, time) == pytest.approx(expected, rel=1e-8)
 
 
 def test_hottest_half_way():
     time = np.linspace(0.0, 20.0, 2001)
-    rises = surface_rise(EFFUSIVITY, FLUX, STOP, time)
+    rises = braking_rise(EFFUSIVITY, FLUX, STOP, time)
     assert time[rises.argmax()] == pytest.approx(STOP / 2)
-    assert rises.max() == pytest.approx(highest_rise(EFFUSIVITY, FLUX, STOP), rel=1e-12)
+    assert rises.max() == pytest.approx(braking_peak(EFFUSIVITY, FLUX, STOP), rel=1e-12)

@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.reference.elastic_sphere import normal_compliance, sphere_on_half_space
-from thermowear.reference.hertz import contact_modulus, point_contact
+from thermowear.reference.hertz import (
+    contact_modulus,
+    normal_compliance,
+    point_contact,
+    sphere_on_half_space,
+)
 
 STEEL = (210e9, 0.3)
 RADIUS = 10e-3

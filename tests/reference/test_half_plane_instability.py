@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from thermowear.reference.half_plane_instability import ConductorOnInsulator
+from thermowear.reference.instability import ConductorOnInsulator
 
 E, ν = 2.1e11, 0.3
 PAIR = ConductorOnInsulator(

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import erfc
 
-from thermowear.reference.heated_slab import HeatedSlab
-from thermowear.reference.step_flux import HalfSpace
+from thermowear.reference.half_space import HalfSpace
+from thermowear.reference.slabs import HeatedSlab
 
 SLAB = HeatedSlab(0.03, 50.0, 7800 * 460.0)
 DEEP = HalfSpace(50.0, 7800 * 460.0)

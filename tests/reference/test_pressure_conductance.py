@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.reference.pressure_conductance import (
+from thermowear.reference.slabs import (
     block_temperatures,
     conductance,
     harmonic_mean,

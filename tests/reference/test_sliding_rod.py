@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
-from thermowear.reference.sliding_rod import SlidingRod
+from thermowear.reference.instability import SlidingRod
 
 ROD = SlidingRod(0.05, 2.1e11, 1.2e-5, 50.0, 3.7e6, 0.3)
 

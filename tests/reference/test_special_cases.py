@@ -1,12 +1,14 @@
 """Closed forms of steady wear, against equilibrium by another integration and against print."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import dblquad, quad
 from scipy.optimize import brentq
 
-from thermowear.reference import annular_punch, block_on_disk, brake_block, disk_brake, flat_face
-from thermowear.reference.drum_brake import DrumBrakeShoe
+from thermowear.reference import annular_punch, flat_face, guided_face
+from thermowear.reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
 
 EXPONENTS = (0.3, 0.5, 1.0, 2.0, 4.0)
 
@@ -72,7 +74,7 @@ def test_centred_punch():
 def test_arc_is_in_equilibrium(b, friction):
     """requirement: vertical components of pressure and friction, summed over small pieces."""
     α = np.linspace(-0.4, 0.9, 200001)
-    p = block_on_disk.steady_pressure(α, 800.0, 0.03, 0.02, -0.4, 0.9, friction, b)
+    p = ArcBlock(0.03, 0.02, -0.4, 0.9, friction, b).pressure(α, 800.0)
     middle, dα = (p[1:] + p[:-1]) / 2, np.diff(α)
     centre = (α[1:] + α[:-1]) / 2
     vertical = middle * (np.cos(centre) + friction * np.sin(centre)) * dα * 0.03 * 0.02
@@ -81,42 +83,43 @@ def test_arc_is_in_equilibrium(b, friction):
 
 
 def test_arcs_in_print():
-    data = (block_on_disk.FORCE, block_on_disk.RADIUS, block_on_disk.WIDTH)
-    for b, text in block_on_disk.SYMMETRIC.items():
-        p = block_on_disk.steady_pressure(0.0, *data, -0.5, 0.5, 0.77, b) / 1e6
+    force, size = guided_face.FORCE, (guided_face.RADIUS, guided_face.WIDTH)
+    for b, text in guided_face.SYMMETRIC.items():
+        p = ArcBlock(*size, -0.5, 0.5, 0.77, b).pressure(0.0, force) / 1e6
         assert p == pytest.approx(float(text), abs=0.51e-6)
-    for sense, text in block_on_disk.ASYMMETRIC.items():
-        p = block_on_disk.steady_pressure(0.0, *data, -0.2, 0.7, sense * 0.3, 1.0) / 1e6
+    for sense, text in guided_face.ASYMMETRIC.items():
+        p = ArcBlock(*size, -0.2, 0.7, sense * 0.3, 1.0).pressure(0.0, force) / 1e6
         assert p == pytest.approx(float(text), abs=0.51e-6)
-    peak = block_on_disk.symmetric_peak(*data, 0.5) / 1e6
+    peak = ArcBlock(*size, -0.5, 0.5, 0.3).symmetric_peak(force) / 1e6
     assert peak == pytest.approx(5.430441, abs=0.51e-6)
 
 
 def test_descent_of_the_block():
     """requirement: ``Z (F/I)^b`` is the wear rate where the face is horizontal."""
-    integral = block_on_disk.bearing_integral(0.03, 0.02, -0.4, 0.9, 0.3, 2.0)
-    p = block_on_disk.steady_pressure(0.0, 800.0, 0.03, 0.02, -0.4, 0.9, 0.3, 2.0)
-    assert block_on_disk.vertical_rate(800.0, integral, 3e-20, 2.0) == pytest.approx(3e-20 * p**2)
+    face = ArcBlock(0.03, 0.02, -0.4, 0.9, 0.3, 2.0)
+    p = face.pressure(0.0, 800.0)
+    assert face.rate(800.0, 3e-20) == pytest.approx(3e-20 * p**2, abs=0.0)
 
 
 @pytest.mark.parametrize("b", EXPONENTS)
 @pytest.mark.parametrize("friction", [-0.9, 0.0, 0.4])
 def test_lever_is_in_equilibrium(b, friction):
     data = (0.03, 0.11, 0.05, 0.02)
+    face = LeverBlock(*data, friction, b)
 
     def moment(z):
-        p = float(brake_block.steady_pressure(z, 90.0, *data, friction, b))
+        p = float(face.pressure(z, 90.0))
         return p * (z + friction * data[2]) * data[3]
 
     assert quad(moment, *data[:2], epsabs=0, epsrel=1e-12)[0] == pytest.approx(90.0, rel=1e-10)
 
 
 def test_levers_in_print():
-    data = (brake_block.INNER, brake_block.OUTER, brake_block.OFFSET, brake_block.WIDTH)
-    for (b, sense), texts in brake_block.ENDS.items():
-        for z, text in zip(data[:2], texts, strict=True):
-            friction = sense * brake_block.FRICTION
-            p = brake_block.steady_pressure(z, brake_block.MOMENT, *data, friction, b)
+    lever = guided_face.LEVER
+    for (b, sense), texts in guided_face.LEVER_ENDS.items():
+        face = replace(lever, b=b, friction=sense * lever.friction)
+        for z, text in zip((lever.inner, lever.outer), texts, strict=True):
+            p = face.pressure(z, guided_face.LEVER_MOMENT)
             digits = len(text.partition(".")[2])
             assert p / 1e6 == pytest.approx(float(text), abs=0.51 * 10.0**-digits)
 
@@ -124,12 +127,12 @@ def test_levers_in_print():
 @pytest.mark.parametrize("b", EXPONENTS)
 def test_friction_that_locks(b):
     """requirement: where the moment of friction takes up that of the pressure."""
-    data = (0.03, 0.11, 0.05)
+    face = LeverBlock(0.03, 0.11, 0.05, 0.02, 0.0, b)
 
     def integral(friction):
-        return brake_block.bearing_integral(*data, 0.02, -friction, b)
+        return replace(face, friction=-friction).bearing_integral()
 
-    assert brake_block.locking_friction(*data, b) == pytest.approx(brentq(integral, 0.1, 9.0))
+    assert face.locking_friction() == pytest.approx(brentq(integral, 0.1, 9.0))
 
 
 SHOE = {"radius": 0.15, "pivot_distance": 0.125, "width": 0.04, "start": 0.0}
@@ -189,9 +192,9 @@ def test_straight_pad(b, a):
     p = annular_punch.steady_pressure(r, 700.0, *data[:2], b, a, data[2])
     np.testing.assert_allclose(p**b * r**a, p[0] ** b * r[0] ** a)
     if a == b:
-        assert disk_brake.uniform_wear_force(p[0], *data) == pytest.approx(700.0)
+        assert annular_punch.uniform_wear_force(p[0], *data) == pytest.approx(700.0)
         torque = quad(lambda r: 0.4 * force(r) * r, *data[:2])[0]
-        known = disk_brake.uniform_wear_torque(700.0, 0.4, *data[:2])
+        known = annular_punch.uniform_wear_torque(700.0, 0.4, *data[:2])
         assert torque == pytest.approx(known, rel=1e-10)
 
 
@@ -204,7 +207,7 @@ def test_tilting_pad_is_in_equilibrium(lift, a):
     def total(arm):
         def integrand(r, φ):
             x, y = r * np.cos(φ), r * np.sin(φ)
-            p = disk_brake.tilted_pressure(x, y, force, centre, inner, outer, angle, a, lift)
+            p = annular_punch.tilted_pressure(x, y, force, centre, inner, outer, angle, a, lift)
             return float(p) * arm(x, y, φ) * r
 
         return dblquad(integrand, -angle / 2, angle / 2, inner, outer)[0]

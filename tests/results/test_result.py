@@ -59,7 +59,7 @@ def test_a_new_table_is_written_down_once(tmp_path):
             assert read(path).drawn("thickness") == pytest.approx([3.0], rel=1e-12)
         versions = {"status": "done", "versions": {"thermowear": "0.1.0"}}
         (tmp_path / "run.json").write_text(json.dumps(versions))
-        (shown,) = read_contents(tmp_path).tables
+        (shown,) = read_contents(tmp_path)["tables"]
         assert shown.caption == "Film at the end"
         assert [head.axis for head in shown.heads] == ["x [mm]", "film thickness [µm]"]
     finally:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.reference.drum_brake import DrumBrakeShoe
+from thermowear.reference.guided_face import DrumBrakeShoe
 
 from .space import BRAKE, changed
 

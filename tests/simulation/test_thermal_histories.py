@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from thermowear.reference.heated_slab import HeatedSlab
+from thermowear.reference.slabs import HeatedSlab
 
 from ..case.starter import GONE, solved
 

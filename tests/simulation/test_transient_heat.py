@@ -10,7 +10,7 @@ import tomli_w
 import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.output import tables as csv_tables
-from thermowear.reference.sliding_rod import SlidingRod
+from thermowear.reference.instability import SlidingRod
 from thermowear.simulation.heat.linearisation import HeatSteps
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.interface.sdirk import advance

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import math
 import os
 import platform
+import weakref
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import cache
@@ -21,11 +23,34 @@ from ..results import TABLES
 from ..results.quantity import table_of
 from .atomic_write import final_name, write_text
 from .checkpoint import CHECKPOINT, write_checkpoint
-from .frames import remove_frames, write_frame
-from .lock import Lock
+from .frames import remove_frames, write_fields, write_frame
 from .names import FRAMES, is_ours, name_at
 from .tables import RowWriter, write_points
-from .vtu import write_fields
+
+
+class Lock:
+    """Exclusive lock of a folder, released when the process ends in any way.
+
+    Parameters
+    ----------
+    path : Path
+        Folder to lock.
+
+    Raises
+    ------
+    CaseError
+        If another run has locked the folder.
+    """
+
+    def __init__(self, path: Path):
+        handle = os.open(path, os.O_RDONLY)
+        self.release = weakref.finalize(self, os.close, handle)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise CaseError(f"-o {path}: in use by another run") from None
+        except OSError:  # a file system without locks
+            return
 
 
 class ResultsFolder:

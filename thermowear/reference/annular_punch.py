@@ -1,8 +1,13 @@
-"""Annular punch rotating on a plate (special case 8 of Páczelt and Mróz).
+"""Annular punch rotating on a plate, and pad on a rotating disk (special cases 8 and 9).
 
 Closed forms of the flat face: Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, with the
-constants from equilibrium. The tables are converged numerical solutions for the data set `DATA`,
-obtained with other meshes and other pressure spaces.
+constants from equilibrium. The tables are converged numerical solutions for the starter case of the
+annular punch, obtained with other meshes and other pressure spaces.
+
+The pad covers ``ri < r < ro`` and an angle θ, symmetric about the x axis; the disk rotates at ω, so
+that ``v = ω r``. Without tilting its pressure is that of a part of a ring; with free tilting,
+``p^b v^a`` is linear in x and y. For a = b the pad without tilting has ``p = p_a ri/r``, uniform
+wear in machine design.
 """
 
 from __future__ import annotations
@@ -11,25 +16,6 @@ from math import cos, log, pi, sin
 
 import numpy as np
 from scipy.integrate import quad
-
-DATA = {
-    "inner_radius": 0.02,
-    "outer_radius": 0.12,
-    "punch_height": 0.05,
-    "plate_radius": 0.14,
-    "plate_height": 0.1,
-    "young_modulus": 2e11,
-    "poisson_ratio": 0.3,
-    "conductivity": 50.0,
-    "expansion": 1.2e-5,
-    "mean_pressure": 50e6,
-    "friction": 0.25,
-    "conductance": 1e6,
-    "cooling": 2000.0,
-    "coefficient": 2e-13,
-}
-"""Data in SI; one material, cooling to ambient at the punch's top and the plate's bottom."""
-
 
 STEADY_PRESSURE = {
     0.5: (2.0, "390677", ("976.694", "244.173", "79.730", "27.130"), "2.4547e8"),
@@ -139,6 +125,62 @@ def friction_power(
 def power_integral(power: float, low: float, high: float) -> float:
     """Integral ``∫ r^(power - 1) dr``."""
     return log(high / low) if power == 0 else (high**power - low**power) / power
+
+
+def uniform_wear_force(largest: float, inner: float, outer: float, angle: float) -> float:
+    """Force for a = b: ``F = θ p_a ri (ro - ri)``, with p_a the pressure at the inner edge [N]."""
+    return angle * largest * inner * (outer - inner)
+
+
+def uniform_wear_torque(force: float, friction: float, inner: float, outer: float) -> float:
+    """Torque for a = b: ``mu F (ri + ro)/2`` [N m]."""
+    return friction * force * (inner + outer) / 2
+
+
+def tilted_pressure(
+    x,
+    y,
+    force: float,
+    centre: tuple[float, float],
+    inner: float,
+    outer: float,
+    angle: float,
+    a: float,
+    lift: float = 0.0,
+) -> np.ndarray:
+    """Pressure of a pad that may tilt, for b = 1 and full contact [Pa].
+
+    ``p = (A + B x + C y) r^-a``, with A, B, C from the three equations of equilibrium, whose
+    integrals over r and over the angle have closed forms.
+
+    Parameters
+    ----------
+    x, y : array_like [m]
+    force : float [N]
+    centre : tuple of float
+        Point of application of the load [m].
+    inner, outer, angle
+        Dimensions of the pad.
+    a : float
+    lift : float
+        ``mu h``, friction times the height of the joint above the face, for a disk that rotates
+        towards decreasing angles φ [m]: moments are ``∫ p (x + mu h sin φ) dS`` and
+        ``∫ p (y - mu h cos φ) dS``.
+    """
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    half = angle / 2
+    c0, c1, c2, s2 = angle, 2 * sin(half), half + sin(angle) / 2, half - sin(angle) / 2
+    r1, r2, r3 = (power_integral(power - a, inner, outer) for power in (2, 3, 4))
+    # columns: A, B x, C y; rows: force and both moments
+    system = np.array(
+        [
+            [r1 * c0, r2 * c1, 0.0],
+            [r2 * c1, r3 * c2, lift * r2 * s2],
+            [-lift * r1 * c1, -lift * r2 * c2, r3 * s2],
+        ]
+    )
+    A, B, C = np.linalg.solve(system, force * np.array([1.0, *centre]))
+    return (A + B * x + C * y) * np.hypot(x, y) ** -a
 
 
 RADII = np.array([20, 25, 40, 70, 100, 115, 120]) * 1e-3

@@ -22,14 +22,9 @@ class MindlinLine:
 
     Attributes
     ----------
-    force : float
-        P [N/m].
-    radius : float
-        Relative radius R, ``1/R = 1/R1 + 1/R2`` [m].
-    modulus : float
-        Contact modulus E*, ``1/E* = (1 - ν1²)/E1 + (1 - ν2²)/E2`` [Pa].
-    friction : float
-        mu.
+    force, radius, modulus, friction : float
+        P [N/m], relative radius R, ``1/R = 1/R1 + 1/R2`` [m], contact modulus E*,
+        ``1/E* = (1 - ν1²)/E1 + (1 - ν2²)/E2`` [Pa], and mu.
     """
 
     force: float
@@ -110,14 +105,8 @@ class MindlinSphere:
 
     Attributes
     ----------
-    force : float
-        P [N].
-    radius : float
-        Contact radius a [m].
-    compliance : float
-        ``(2 - ν1)/G1 + (2 - ν2)/G2`` [1/Pa].
-    friction : float
-        mu.
+    force, radius, compliance, friction : float
+        P [N], contact radius a [m], ``(2 - ν1)/G1 + (2 - ν2)/G2`` [1/Pa], and mu.
     """
 
     force: float

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -71,6 +71,31 @@ def compare_worst(
     at = int(np.abs(computed - exact).argmax())
     scale = scale or float(np.abs(exact).max())
     return compare(quantity, computed[at], exact[at], allowed, source, scale)
+
+
+def compare_each(
+    quantity: str,
+    places: Iterable,
+    computed: Iterable[float],
+    exact: Iterable[float],
+    allowed: float,
+    source: str,
+    scale: float | None = None,
+) -> Iterator[Check]:
+    """Compare values at several places, which the quantity names in a replacement field."""
+    for place, found, known in zip(places, computed, exact, strict=True):
+        yield compare(quantity.format(place), found, known, allowed, source, scale)
+
+
+def printed(quantity: str, computed: float, text: str) -> Check:
+    """Compare a number with a tabulated one, to half a unit of its last digit."""
+    mantissa, _, power = text.partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    half_unit = 0.5 * 10.0 ** (int(power or 0) - decimals)
+    known = float(text)  # ties in rounding are allowed
+    return compare(
+        quantity, computed, known, half_unit / abs(known) * (1 + 1e-9), "closed form, tabulated"
+    )
 
 
 def identified(id: str, checks: Checks) -> Checks:

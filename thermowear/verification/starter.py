@@ -1,4 +1,4 @@
-"""Runs of starter cases with a few keys changed."""
+"""Completed runs for comparison with references, and starter cases with a few keys changed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,23 @@ from ..case import load
 from ..case.starters import starter_text
 from ..case.tables.schema import Case
 from ..results import Result
-from .computed import computed
+from ..simulation import run
+
+
+def computed(case: Case) -> Result:
+    """Compute a case to its end.
+
+    Raises
+    ------
+    ComputationError
+        If it stopped early, or its balances do not hold.
+    KeyboardInterrupt
+        If a stop was requested during the run.
+    """
+    result = run(case)
+    if result.stopped is not None:
+        raise result.stopped
+    return result
 
 
 def starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:

@@ -13,12 +13,25 @@ from ...balances import violated
 from ...errors import CaseError, ComputationError
 from ..coordinates import read_summary
 from ..tables import MissingColumnError
-from .along import draw_friction, draw_interface, draw_profile, draw_track, draw_wear
+from . import curves, maps
 from .animation import FPS, check_animation, has_frames
-from .histories import draw_cycles, draw_heat, draw_history, draw_loads
-from .maps import draw_interface_maps, draw_wear_maps, is_surface
 from .modes import draw_modes
 
+_ALONG_A_LINE: dict[str, Callable[[Path], None]] = {
+    "interface": curves.draw_interface,
+    "profile": curves.draw_profile,
+    "wear": curves.draw_wear,
+}
+_OVER_A_SURFACE = {"interface": maps.draw_interface_maps, "wear": maps.draw_wear_maps}
+_OTHERS = {
+    "history": curves.draw_history,
+    "heat": curves.draw_heat,
+    "friction": curves.draw_friction,
+    "loads": curves.draw_loads,
+    "cycles": curves.draw_cycles,
+    "track": curves.draw_track,
+    "mode": draw_modes,
+}
 _TIMEOUT = 180.0  # seconds for the rendering process
 _ANIMATION_TIMEOUT = 1800.0  # seconds for the rendering process of an animation
 
@@ -44,7 +57,8 @@ def make_pictures(folder: Path) -> list[str]:
             f"{folder}: contains no interface.csv; not a results folder of a finished run"
         )
     notes = []
-    for name, draw in _pictures(folder).items():
+    first = _OVER_A_SURFACE if maps.is_surface(folder) else _ALONG_A_LINE
+    for name, draw in (first | _OTHERS).items():
         try:
             if name == "wear" or (folder / f"{name}.csv").is_file():
                 draw(folder)
@@ -57,21 +71,6 @@ def make_pictures(folder: Path) -> list[str]:
     if has_frames(folder):
         reasons["the animation"] = _animate(folder, folder / "animation.gif", FPS)
     return notes + [f"{what} could not be drawn: {why}" for what, why in reasons.items() if why]
-
-
-def _pictures(folder: Path) -> dict[str, Callable]:
-    """Functions that draw curves or maps, by the names of their pictures."""
-    along = {"interface": draw_interface, "profile": draw_profile, "wear": draw_wear}
-    over = {"interface": draw_interface_maps, "wear": draw_wear_maps}
-    return (over if is_surface(folder) else along) | {
-        "history": draw_history,
-        "heat": draw_heat,
-        "friction": draw_friction,
-        "loads": draw_loads,
-        "cycles": draw_cycles,
-        "track": draw_track,
-        "mode": draw_modes,
-    }
 
 
 def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
@@ -101,13 +100,8 @@ def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
 
 def _animate(folder: Path, path: Path, fps: float) -> str:
     """Draw an animation; returns the reason of a failure, empty on success."""
-    return _render(
-        "animation.make",
-        str(folder.resolve()),
-        str(path.resolve()),
-        str(fps),
-        timeout=_ANIMATION_TIMEOUT,
-    )
+    arguments = str(folder.resolve()), str(path.resolve()), str(fps)
+    return _render("animation.make", *arguments, timeout=_ANIMATION_TIMEOUT)
 
 
 def _render(module: str, *arguments: str, timeout: float = _TIMEOUT) -> str:

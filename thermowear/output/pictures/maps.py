@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.tri import Triangulation
 
 from .. import tables
-from .along import final_time, interface_panels, worn_bodies
+from .curves import final_time, interface_panels, worn_bodies
 from .panels import MAP_STYLE, label_coordinates, panels
 from .scales import COLORS
 

@@ -102,6 +102,13 @@ def plot_along(axis: Axes, data: TableColumns, name: str, line: str = "-", **opt
     axis.set_xlabel(label)
 
 
+def plot_columns(axis: Axes, data: TableColumns, x: str, y: str, **options) -> None:
+    """Plot a column over another one, and label both axes."""
+    axis.plot(data.drawn(x), data.drawn(y), **options)
+    axis.set_xlabel(data.quantities[x].axis)
+    axis.set_ylabel(data.quantities[y].of_both.axis)
+
+
 def label_coordinates(axis: Axes, data: TableColumns) -> None:
     """Label the axes of a map or section, which has the same scale in both directions."""
     axis.set_aspect("equal")

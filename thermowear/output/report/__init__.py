@@ -1,6 +1,6 @@
 """``report.html``: a self-contained page made from the files of a results folder."""
 
 from ..names import is_report
-from .write import write_report
+from .contents import write_report
 
 __all__ = ["is_report", "write_report"]

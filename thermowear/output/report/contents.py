@@ -1,73 +1,88 @@
-"""Contents of a report, read from the files of a results folder."""
+"""``report.html``: its contents, read from the files of a results folder, and its rendering."""
 
 from __future__ import annotations
 
 import base64
 import json
+import os
+import re
 import tomllib
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ...errors import CaseError
 from ...results import TABLES
-from ..names import PICTURES
+from ..atomic_write import write_text
+from ..names import PICTURES, is_report
 from ..tables import read
-from .case_lines import table_lines
-from .columns import AT_TIMES, ShownTable, output_times, shown_table
-from .figures import BalanceFigure, Figure, balances, key_figures
-from .verdict import Verdict, verdict
+from .columns import AT_TIMES, output_times, shown_table
+from .figures import balances, key_figures, verdict
+from .unit_format import NOTHING, table_lines
 
 _PNG = b"\x89PNG\r\n\x1a\n"
+_UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-@dataclass(frozen=True)
-class Picture:
-    """Picture of a report, encoded as base64 text."""
+def write_report(folder: Path) -> Path:
+    """Write ``report.html``, one file with embedded pictures and style.
 
-    name: str
-    caption: str
-    data: str
-
-
-@dataclass(frozen=True)
-class ReportContents:
-    """Contents of a report.
-
-    Attributes
+    Parameters
     ----------
-    title : str
-    verdict : Verdict
-    balances : list of BalanceFigure
-    groups : dict of str to list of Figure
-    pictures : list of Picture
-    drawable : bool
-        True if there are results to draw pictures from.
-    tables : list of ShownTable
-    case : list of tuple of str
-        Name and content of each table of the case.
-    case_text : str
-        Full text of ``case.resolved.toml``.
-    run : list of tuple of str
-        Record of the run: status, times, versions.
     folder : Path
+        Results of a run, finished or not.
+
+    Returns
+    -------
+    Path
+        Path of the report.
+
+    Raises
+    ------
+    CaseError
+        If the folder has no results or a ``report.html`` of other origin, or cannot be written.
     """
+    path = folder / "report.html"
+    text = page(read_contents(folder))
+    if os.path.lexists(path) and not is_report(path):
+        raise CaseError(
+            f"{path}: exists and is not a report of this program; move it away or rename it"
+        )
+    try:
+        write_text(path, text)
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be written: {error.strerror}") from None
+    return path
 
-    title: str
-    verdict: Verdict
-    balances: list[BalanceFigure]
-    groups: dict[str, list[Figure]]
-    pictures: list[Picture]
-    drawable: bool
-    tables: list[ShownTable]
-    case: list[tuple[str, str]]
-    case_text: str
-    run: list[tuple[str, str]]
-    folder: Path
+
+def page(contents: dict[str, Any]) -> str:
+    """Render the contents as HTML; all text is escaped."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader(__package__, "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        finalize=_printable,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("report.html").render(report=contents)
 
 
-def read_contents(folder: Path) -> ReportContents:
-    """Read a results folder, finished or not.
+def _printable(value: object) -> object:
+    """Text without characters that are invalid in HTML; a dash for None."""
+    if value is None:
+        return NOTHING
+    return _UNPRINTABLE.sub("\ufffd", value) if type(value) is str else value
+
+
+def read_contents(folder: Path) -> dict[str, Any]:
+    """Read the contents of a report from a results folder, of a run that finished or not.
+
+    Returns
+    -------
+    dict
+        Variables of the template, by the names used there.
 
     Raises
     ------
@@ -84,19 +99,19 @@ def read_contents(folder: Path) -> ReportContents:
         summary_file, case_file = folder / "summary.json", folder / "case.resolved.toml"
         summary = _object(summary_file) if summary_file.is_file() else {}
         text, case = _toml(case_file) if case_file.is_file() else ("", {})
-        return ReportContents(
-            title=str(summary.get("title") or case.get("title") or folder.absolute().name),
-            verdict=verdict(run, summary),
-            balances=balances(summary),
-            groups=key_figures(summary),
-            pictures=list(_pictures(folder)),
-            drawable=(folder / "interface.csv").is_file(),
-            tables=list(_tables(folder, summary)),
-            case=table_lines(case, "case"),
-            case_text=text,
-            run=table_lines(run, "run"),
-            folder=folder,
-        )
+        return {
+            "title": str(summary.get("title") or case.get("title") or folder.absolute().name),
+            "verdict": verdict(run, summary),
+            "balances": balances(summary),
+            "groups": key_figures(summary),
+            "pictures": list(_pictures(folder)),
+            "drawable": (folder / "interface.csv").is_file(),
+            "tables": list(_tables(folder, summary)),
+            "case": table_lines(case, "case"),
+            "case_text": text,
+            "run": table_lines(run, "run"),
+            "folder": folder,
+        }
     except (FileNotFoundError, NotADirectoryError):
         raise CaseError(f"{folder}: contains no run.json; not a results folder") from None
     except OSError as error:
@@ -129,7 +144,8 @@ def _pictures(folder: Path):
         path = folder / f"{name}.png"
         content = path.read_bytes() if path.is_file() else b""
         if content.startswith(_PNG):
-            yield Picture(name, caption, base64.b64encode(content).decode("ascii"))
+            encoded = base64.b64encode(content).decode("ascii")
+            yield {"name": name, "caption": caption, "data": encoded}
 
 
 def _tables(folder: Path, summary: dict[str, Any]):

@@ -1,9 +1,13 @@
-"""Assignment of swept keys to colours, line styles and columns of panels."""
+"""Reading of a sweep, and assignment of its keys to colours, line styles and columns of panels."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import csv
+import json
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -12,8 +16,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
-from .keys import Axis
-from .record import VariantRecord
+from .keys import Axis, axis
 
 LINES = ("-", "--", "-.", ":")
 _LEGEND_LIMIT = 6
@@ -24,6 +27,77 @@ _MOST_COLUMNS = 6
 _LOG_RATIO = 30.0
 """Smallest ratio of largest to smallest value for a logarithmic axis; the values must also be more
 evenly spaced on it."""
+
+
+@dataclass(frozen=True)
+class VariantRecord:
+    """Completed variants of a sweep.
+
+    Attributes
+    ----------
+    axes : tuple of Axis
+        Swept keys.
+    indices : ndarray of int, shape (n, n_axes)
+        Index of the value of each key in each variant.
+    folders : list of Path
+        Results folder of each variant.
+    numbers : dict of str to ndarray, shape (n,)
+        Columns of ``sweep.csv`` other than the swept keys.
+    """
+
+    axes: tuple[Axis, ...]
+    indices: np.ndarray
+    folders: list[Path]
+    numbers: dict[str, np.ndarray]
+
+    def groups(self, keys: Sequence[int]) -> Iterator[tuple[list[str], np.ndarray]]:
+        """Words of each combination of values of some keys, and the mask of its variants."""
+        for combination in np.unique(self.indices[:, keys], axis=0):
+            words = [self.axes[k].words[i] for k, i in zip(keys, combination, strict=True)]
+            yield words, (self.indices[:, keys] == combination).all(axis=1)
+
+    def named(self, keys: Sequence[int], words: Sequence[str]) -> list[str]:
+        """Words of some keys with the keys."""
+        return [f"{self.axes[k].key} = {word}" for k, word in zip(keys, words, strict=True)]
+
+
+def read_sweep(folder: Path) -> VariantRecord:
+    """Read the completed variants of a sweep.
+
+    Raises
+    ------
+    ValueError
+        If the folder contains no sweep.
+    """
+    over = json.loads((folder / "run.json").read_text("utf-8"))["over"]
+    with (folder / "sweep.csv").open(encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    try:
+        status = header.index("status")
+        keys = header[1:status]
+        indices = np.array(list(product(*(range(len(values)) for values in over.values()))))
+        axes = tuple(
+            axis(key, written, _different(rows, k + 1, indices[:, k]), keys[k])
+            for k, (key, written) in enumerate(over.items())
+        )
+        done = [row for row in rows if row[status] == "done"]
+        cells = zip(header, *done, strict=True)
+        numbers = {name: np.array(column, dtype=float) for name, *column in [*cells][status + 1 :]}
+        variants = [int(row[0]) for row in done]
+        folders = [folder / f"{number:03d}" for number in variants]
+        return VariantRecord(axes, indices[np.array(variants, dtype=int) - 1], folders, numbers)
+    except (IndexError, KeyError, ValueError) as error:
+        raise ValueError(f"{folder}: run.json and sweep.csv are not of the same sweep") from error
+
+
+def _different(rows: list[list[str]], column: int, place: np.ndarray) -> Sequence[float | str]:
+    """Distinct values of a key, in the order given by the user."""
+    first = [int(np.argmax(place == k)) for k in range(place.max() + 1)]
+    cells = [rows[k][column] for k in first]
+    try:
+        return [float(cell) for cell in cells]
+    except ValueError:
+        return cells
 
 
 @dataclass(frozen=True)
@@ -50,6 +124,12 @@ class Layout:
     def axis(self) -> Axis:
         """Axis of the key shown by colour."""
         return self.record.axes[self.colored]
+
+    @property
+    def others(self) -> list[int]:
+        """Indices of the other keys with several values."""
+        axes = self.record.axes
+        return [k for k in range(len(axes)) if k != self.colored and len(axes[k].words) > 1]
 
     @property
     def continuous(self) -> bool:
@@ -89,11 +169,8 @@ def lay_out(record: VariantRecord) -> Layout:
     colored, *rest = [k for k in order if sizes[k] > 1] or [0]
     lined = next((k for k in rest if sizes[k] <= len(LINES)), None)
     rest = sorted(k for k in rest if k != lined)
-    columns = []
-    for combination in np.unique(record.indices[:, rest], axis=0)[:_MOST_COLUMNS]:
-        chosen = (record.indices[:, rest] == combination).all(axis=1)
-        named = (_named(record.axes[k], index) for k, index in zip(rest, combination, strict=True))
-        columns.append((", ".join(named), chosen))
+    groups = list(record.groups(rest))[:_MOST_COLUMNS]
+    columns = [(", ".join(record.named(rest, words)), chosen) for words, chosen in groups]
     return Layout(record, colored, lined, columns)
 
 
@@ -103,10 +180,6 @@ def is_wide(numbers) -> bool:
         return False
     linear, logarithmic = (np.diff(np.sort(x)) for x in (numbers, np.log(numbers)))
     return bool(logarithmic.min() / logarithmic.max() > linear.min() / linear.max())
-
-
-def _named(axis: Axis, index: int) -> str:
-    return f"{axis.key} = {axis.words[index]}"
 
 
 def add_legend(figure: Figure, location: str, title: str, handles: Sequence[Artist]) -> None:

@@ -1,4 +1,4 @@
-"""Fretting wear of a cylinder on a block under gross slip."""
+"""Fretting wear of a cylinder on a flat under gross slip, also with adaptive cycle jumps."""
 
 from __future__ import annotations
 
@@ -12,36 +12,42 @@ from ..starter import run_starter
 
 FORCE, THICKNESS, RADIUS, AMPLITUDE, FRICTION = 18.5, 1e-3, 6e-3, 25e-6, 0.9
 FLAT, CYLINDER = 2.9e-14, 1.9e-14  # 1/Pa
+CYCLES, TOLERANCE = 18000, 1e-2
 GROWTH = "quasi-steady growth for elastic bodies, to first order in (a0/a)²"
 MCCOLL = (
     "data of McColl, Ding and Leen, Wear 256 (2004) 1114; Llavori's runs with meshes that move and "
     "finite sliding"
 )
-DEPTHS = {1000: 0.373e-6, 5000: 1.125e-6}
+FINER = "same case with cycle jumps four times smaller"
+DEPTHS = {1000: 0.373e-6, 5000: 1.125e-6, 10000: 1.808e-6, CYCLES: 2.7055e-6}
 """Wear depth of the flat by number of cycles [m]."""
+BOUND = 9.657e-10
+"""Worn section of the flat under gross slip after all cycles [m²]."""
 
 
-def checks() -> Iterator[Check]:
+def fretting_wear() -> Iterator[Check]:
     """Both bodies wear, against measured and published results; only the cylinder wears."""
     cycles = rubbed(CYLINDER, FLAT)
-    for number, depth in DEPTHS.items():
-        quantity = f"depth of the flat after {number} cycles [m]"
-        yield compare(quantity, cycles[number].max_wear_2, depth, 3e-2, MCCOLL)
+    yield from _depths(cycles, 5000, 3e-2)
     last = cycles[5000]
     bound = FORCE * 4 * AMPLITUDE * last.cycle
     for body, k, volume in (("cylinder", CYLINDER, 1), ("flat", FLAT, 2)):
-        quantity = f"worn volume over its bound, {body} [1]"
         found = getattr(last, f"wear_volume_{volume}") / (k * bound)
-        yield compare(quantity, found, 0.97, 5e-3, MCCOLL)
-    yield from _balance(last, CYLINDER + FLAT, "both wear")
+        yield compare(f"worn volume over its bound, {body} [1]", found, 0.97, 5e-3, MCCOLL)
+    known, energy = (CYLINDER + FLAT) / FRICTION, "k/mu times the dissipated energy"
+    found = last.wear_volume_1 + last.wear_volume_2
+    yield compare("worn volume, both wear [m³]", found, known * last.dissipated, 1e-9, energy)
     last = rubbed(CYLINDER + FLAT, None)[5000]
-    law = growing_line(
-        FORCE / THICKNESS, RADIUS, contact_modulus((200e9, 0.3), (200e9, 0.3)), CYLINDER + FLAT
-    )
-    slid = last.wear_volume_1 / ((CYLINDER + FLAT) * FORCE)
+    modulus = contact_modulus((200e9, 0.3), (200e9, 0.3))
+    law = growing_line(FORCE / THICKNESS, RADIUS, modulus, CYLINDER + FLAT)
+    depth = float(law.elastic_depth(last.wear_volume_1 / ((CYLINDER + FLAT) * FORCE)))
     quantity = "depth of the cylinder, which alone wears [m]"
-    yield compare(quantity, last.max_wear_1, float(law.elastic_depth(slid)), 1e-2, GROWTH)
-    yield from _balance(last, CYLINDER + FLAT, "the cylinder wears")
+    yield compare(quantity, last.max_wear_1, depth, 1e-2, GROWTH)
+    found, quantity = (
+        last.wear_volume_1 + last.wear_volume_2,
+        "worn volume, the cylinder wears [m³]",
+    )
+    yield compare(quantity, found, known * last.dissipated, 1e-9, energy)
 
 
 def rubbed(cylinder: float, flat: float | None) -> dict[int, CycleRow]:
@@ -50,28 +56,58 @@ def rubbed(cylinder: float, flat: float | None) -> dict[int, CycleRow]:
     laws = ", ".join(
         f'{body}={{coefficient="{k} 1/Pa", per="pressure"}}' for body, k in wear.items()
     )
-    result: Result = run_starter(
+    places = ", ".join(f'"{x} m"' for x in (0, AMPLITUDE, 0, -AMPLITUDE, 0))
+    times = '"0 s", "1 s", "2 s", "3 s", "4 s"'
+    history = f"time=[{times}], tangential_displacement=[{places}]"
+    result = run_starter(
         "cylinder-stick-slip",
         "geometry.zone=0.22 mm",
         "mesh={degree=2, elements=44, grading=1.0}",
-        f'load={{force="{FORCE} N", history={{{_cycle_history(AMPLITUDE)}}}}}',
+        f'load={{force="{FORCE} N", history={{{history}}}}}',
         f"contact.friction={FRICTION}",
         f"wear={{{laws}}}",
         'analysis={type="fretting", increments=5, cycles=5000, jump=250}',
     )
+    return _by_number(result)
+
+
+def fretting_cylinder() -> Iterator[Check]:
+    """Depths, worn section and energy in 18 000 cycles; cycle-jump error, actual and estimated."""
+    result = run_starter("cylinder-fretting")
+    found, last = _by_number(result), result.interface
+    yield from _depths(found, CYCLES, 6e-2)
+    end = found[CYCLES]
+    bound = FLAT * FORCE / THICKNESS * 4 * AMPLITUDE * CYCLES
+    yield compare("full-slip bound of the worn section [m²]", bound, BOUND, 1e-4, MCCOLL)
+    section = end.wear_volume_2 / THICKNESS
+    yield compare("worn section of the flat [m²]", section, 0.97 * BOUND, 3e-2, MCCOLL)
+    worn = last.x[last.wear_2 > 0.01 * last.wear_2.max()]
+    half_width = float(worn.max() - worn.min()) / 2
+    yield compare("half-width of the worn flat [m]", half_width, 0.257e-3, 5e-2, MCCOLL)
+    energy = (CYLINDER + FLAT) / FRICTION * end.dissipated
+    volume = end.wear_volume_1 + end.wear_volume_2
+    yield compare("worn volume [m³]", volume, energy, 1e-9, "k/mu times the energy dissipated")
+    # the cycle-jump error is proportional to the square of the jump
+    estimated = max(row.error for row in found.values()) / TOLERANCE
+    quantity = "largest estimated cycle-jump error over the tolerance [1]"
+    yield Check(quantity, estimated, 0.0, estimated, 1.0, "tolerance")
+    fine = _by_number(run_starter("cylinder-fretting", f"analysis.tolerance={TOLERANCE / 16}"))
+    smaller, quantity = len(fine) / len(found), "ratio of the numbers of cycle jumps [1]"
+    yield Check(quantity, smaller, 4.0, abs(smaller / 4 - 1), 0.25, FINER)
+    for number in DEPTHS:
+        for name, unit in (("max_wear_1", "m"), ("max_wear_2", "m"), ("wear_volume_2", "m³")):
+            coarse, exact = (getattr(rows[number], name) for rows in (found, fine))
+            quantity = f"{name} after {number} cycles [{unit}]"
+            yield compare(quantity, coarse, exact, 1e-2, FINER)
+
+
+def _depths(cycles: dict[int, CycleRow], most: int, allowed: float) -> Iterator[Check]:
+    for number in filter(lambda number: number <= most, DEPTHS):
+        quantity = f"depth of the flat after {number} cycles [m]"
+        yield compare(quantity, cycles[number].max_wear_2, DEPTHS[number], allowed, MCCOLL)
+
+
+def _by_number(result: Result) -> dict[int, CycleRow]:
+    """Computed cycles by their numbers."""
     assert result.friction is not None
     return {row.cycle: row for row in result.friction.cycles}
-
-
-def _cycle_history(amplitude: float) -> str:
-    """History of one cycle, as text of the case."""
-    places = ", ".join(f'"{x} m"' for x in (0, amplitude, 0, -amplitude, 0))
-    return f'time=["0 s", "1 s", "2 s", "3 s", "4 s"], tangential_displacement=[{places}]'
-
-
-def _balance(row: CycleRow, coefficient: float, note: str) -> Iterator[Check]:
-    """Shear traction is mu p in the slip zone: wear volume from the dissipated energy."""
-    found = row.wear_volume_1 + row.wear_volume_2
-    known = coefficient / FRICTION * row.dissipated
-    quantity = f"worn volume, {note} [m³]"
-    yield compare(quantity, found, known, 1e-9, "k/mu times the dissipated energy")

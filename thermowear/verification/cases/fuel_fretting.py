@@ -33,39 +33,32 @@ ROLLING = "rolling in the hole"
 MINDLIN = "Cattaneo and Mindlin (Johnson, Contact Mechanics, 1985, section 7.2)"
 
 
-def checks() -> Iterator[Check]:
+def fuel_fretting() -> Iterator[Check]:
     """Energy, volume per cycle, depth and width of the worn zone; stick-slip before gross slip."""
-    result = run_starter(STARTER, "analysis.cycles=20000", "analysis.output_times=[]")
-    yield from _energy(result)
-    yield from _volumes(result)
+    summary = run_starter(STARTER, "analysis.cycles=20000", "analysis.output_times=[]").summary
+    known = COEFFICIENT / FRICTION * summary["dissipated_energy_J"]
+    for body in (1, 2):
+        found = summary[f"wear_volume_{body}_m3"]
+        yield compare(f"worn volume, body {body} [m³]", found, known, 1e-9, ENERGY)
+    # reduced by the sticking at the turning points
+    push = 0.1
+    compliance = _pushed(push, 1).summary["tangential_displacement_m"] / push
+    known = COEFFICIENT * FORCE * (_weighted_slip() - 4 * compliance * FRICTION * FORCE)
+    for body in (1, 2):
+        found = summary[f"wear_volume_per_cycle_{body}_m3"]
+        yield compare(f"worn volume of a cycle, body {body} [m³]", found, known, 1e-3, SLIDING)
     yield from _zone()
     yield from _sticking()
 
 
-def _energy(result: Result) -> Iterator[Check]:
-    for body in (1, 2):
-        found = result.summary[f"wear_volume_{body}_m3"]
-        known = COEFFICIENT / FRICTION * result.summary["dissipated_energy_J"]
-        yield compare(f"worn volume, body {body} [m³]", found, known, 1e-9, ENERGY)
-
-
-def _volumes(result: Result) -> Iterator[Check]:
-    """Wear volume per cycle, reduced by the sticking at the turning points."""
-    push = 0.1
-    history = f'time=["0 s", "1 s"], tangential_force=["0 N", "{push} N"]'
-    stuck = run_starter(
-        STARTER,
+def _pushed(force: float, increments: int, *overrides: str) -> Result:
+    """Tube without wear that is pushed sideways."""
+    history = f'time=["0 s", "1 s"], tangential_force=["0 N", "{force} N"]'
+    keys = (
         f"load.history={{{history}}}",
-        "analysis={type='fretting', increments=1}",
-        without=("wear",),
+        f"analysis={{type='fretting', increments={increments}}}",
     )
-    compliance = stuck.summary["tangential_displacement_m"] / push
-    slid = _weighted_slip() - 4 * compliance * FRICTION * FORCE
-    for body in (1, 2):
-        found = result.summary[f"wear_volume_per_cycle_{body}_m3"]
-        known = COEFFICIENT * FORCE * slid
-        quantity = f"worn volume of a cycle, body {body} [m³]"
-        yield compare(quantity, found, known, 1e-3, SLIDING)
+    return run_starter(STARTER, *keys, *overrides, without=("wear",))
 
 
 def _weighted_slip() -> float:
@@ -83,52 +76,35 @@ def _weighted_slip() -> float:
 def _zone() -> Iterator[Check]:
     """First cycles: the contact passes each point twice per cycle, with little wear."""
     count = 400
-    result = run_starter(
-        STARTER,
-        f"analysis={{type='fretting', increments=16, cycles={count}, jump={count}}}",
-        "mesh.elements=96",
-    )
+    analysis = f"analysis={{type='fretting', increments=16, cycles={count}, jump={count}}}"
+    result = run_starter(STARTER, analysis, "mesh.elements=96")
     i, travel = result.interface, AMPLITUDE * HOLE / CLEARANCE
     inside = np.linspace(-0.6, 0.6, 61) * travel
-    for body, path in ((1, TUBE), (2, HOLE)):
+    for body, path, wear in ((1, TUBE, i.wear_1), (2, HOLE, i.wear_2)):
         passed = 2 * COEFFICIENT * FORCE / THICKNESS * CLEARANCE / path * count
-        found = along(i, inside, i.wear_1 if body == 1 else i.wear_2).mean()
         quantity = f"mean depth where the contact passes, body {body} [m]"
-        yield compare(quantity, found, passed, 2e-2, ROLLING)
+        yield compare(quantity, along(i, inside, wear).mean(), passed, 2e-2, ROLLING)
     assert result.friction is not None
-    row = result.friction.cycles[-1]
+    found = result.friction.cycles[-1].contact_area / THICKNESS / 2
     reach = travel * TUBE / HOLE + HERTZ.normal.half_width
     quantity = "half-width of the zone swept by the contact [m]"
-    yield compare(quantity, row.contact_area / THICKNESS / 2, reach, 4e-2, ROLLING)
+    yield compare(quantity, found, reach, 4e-2, ROLLING)
 
 
 def _sticking() -> Iterator[Check]:
     """Partial slip with a stick zone. A thick-walled tube approximates a half-space."""
     push = 0.5 * FRICTION * FORCE
-    history = f'time=["0 s", "1 s"], tangential_force=["0 N", "{push} N"]'
-    result = run_starter(
-        STARTER,
-        f"load.history={{{history}}}",
-        "analysis={type='fretting', increments=10}",
+    thick = (
         "geometry={type='tube-in-support', tube_radius='4.75 mm', tube_wall='4 mm', "
-        "support_clearance='0.05 mm', support_thickness='6 mm', thickness='10 mm'}",
-        "mesh.elements=80",
-        without=("wear",),
+        "support_clearance='0.05 mm', support_thickness='6 mm', thickness='10 mm'}"
     )
+    result = _pushed(push, 10, thick, "mesh.elements=80")
     assert result.friction is not None
     found, line = result.friction.last, push / THICKNESS
-    c = HERTZ.stick_half_width(line)
-    yield compare(
-        "half-width of the stick zone [m]",
-        result.summary["stick_area_m2"] / THICKNESS / 2,
-        c,
-        3e-2,
-        MINDLIN,
-    )
+    width, known = result.summary["stick_area_m2"] / THICKNESS / 2, HERTZ.stick_half_width(line)
+    yield compare("half-width of the stick zone [m]", width, known, 3e-2, MINDLIN)
     for place in (0.0, 0.4):
-        x = place * HERTZ.normal.half_width
-        shear = np.interp([-x, x], found.x, -found.shear).mean()
-        quantity = f"shear at {place:g} of the half-width [Pa]"
-        limit = FRICTION * HERTZ.normal.peak
-        known = float(HERTZ.shear(x, line))
-        yield compare(quantity, float(shear), known, 2e-2, MINDLIN, scale=limit)
+        x, limit = place * HERTZ.normal.half_width, FRICTION * HERTZ.normal.peak
+        shear = float(np.interp([-x, x], found.x, -found.shear).mean())
+        quantity, known = f"shear at {place:g} of the half-width [Pa]", float(HERTZ.shear(x, line))
+        yield compare(quantity, shear, known, 2e-2, MINDLIN, scale=limit)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...reference.hertz import contact_modulus
 from ...reference.mindlin import MindlinLine
-from ...results import FrictionInterface, Result
+from ...results import FrictionInterface
 from ..check import Check, compare, compare_worst
 from ..starter import run_starter
 
@@ -18,9 +18,19 @@ EXACT = MindlinLine(FORCE, 6e-3, contact_modulus((200e9, 0.3), (200e9, 0.3)), 0.
 AWAY = 0.05  # of the half-width: excluded distance from the edges of the stick zones
 
 
-def checks() -> Iterator[Check]:
+def mindlin() -> Iterator[Check]:
     """Stick zone and shear on loading, half unloaded and reversed; energy per cycle."""
-    result = pushed()
+    force = PUSH * THICKNESS
+    steps = ", ".join(f'"{f:g} N"' for f in (0, force, 0, -force, 0, force))
+    times = ", ".join(f'"{t} s"' for t in range(6))
+    result = run_starter(
+        "cylinder-stick-slip",
+        f"load.history={{time=[{times}], tangential_force=[{steps}]}}",
+        f"analysis.output_times=[{times}]",
+        "mesh.elements=120",
+        "mesh.grading=1.0",
+        "mesh.degree=2",
+    )
     assert result.friction is not None
     outputs = result.friction.outputs
     yield from _state(outputs[1.0], PUSH, None)
@@ -29,22 +39,6 @@ def checks() -> Iterator[Check]:
     lost = {row.time: row.dissipated for row in result.friction.rows}
     cycle = (lost[5.0] - lost[1.0]) / THICKNESS
     yield compare("energy of a cycle [J/m]", cycle, EXACT.loss_per_cycle(PUSH), 2e-2, JOHNSON)
-
-
-def pushed(*overrides: str) -> Result:
-    """One cycle after loading, based on the starter case."""
-    force = PUSH * THICKNESS
-    steps = ", ".join(f'"{f:g} N"' for f in (0, force, 0, -force, 0, force))
-    times = ", ".join(f'"{t} s"' for t in range(6))
-    return run_starter(
-        "cylinder-stick-slip",
-        f"load.history={{time=[{times}], tangential_force=[{steps}]}}",
-        f"analysis.output_times=[{times}]",
-        "mesh.elements=120",
-        "mesh.grading=1.0",
-        "mesh.degree=2",
-        *overrides,
-    )
 
 
 def _state(

@@ -21,6 +21,7 @@ from ...laws.principle.functionals import (
 )
 from ...laws.principle.minimum import Minimum, least_wear_dissipation, minimise
 from ...laws.principle.perturbation import admissible_changes
+from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
 from ..check import Check, compare
 from ..closed_forms import patches
 from ..closed_forms.patches import SpecialCase
@@ -39,7 +40,9 @@ def special_cases() -> dict[str, SpecialCase]:
     """One per case, with both senses, one or two wearing bodies, full and partial contact."""
     r, w = patches.along(0.02, 0.12)
     α, v = patches.along(0.6, 1.5)
-    arc = (1000.0, 0.02, 0.01, FRICTION)
+    arc, turned = (ArcBlock(0.02, 0.01, -0.2, 0.7, friction) for friction in (FRICTION, -FRICTION))
+    lever = LeverBlock(0.05, 0.15, 0.04, 0.01, FRICTION)
+    shoe = DrumBrakeShoe(0.15, 0.125, 0.04, 0.3, 2.1, -FRICTION)
     cone = patches.annular_punch(2.0, 1.0, 1e5, r, 2 * np.pi * r * w, 1.1, FRICTION, 0.2)
     torus = patches.annular_punch(
         1.0, 0.5, 1e5, 0.1 + 0.02 * np.cos(α), 2 * np.pi * (0.1 + 0.02 * np.cos(α)) * 0.02 * v, α,
@@ -49,16 +52,14 @@ def special_cases() -> dict[str, SpecialCase]:
     return {
         "case 1": patches.punch(2.0, 1e4, 0.06, 0.08, 5e-3),
         "case 2": patches.tilting_punch(0.5),
-        "case 3, +": patches.block_on_disk(1.0, (-0.2, 0.7), *arc, sense=1),
-        "case 3, -": patches.block_on_disk(2.0, (-0.2, 0.7), *arc, sense=-1),
-        "case 4": _with_second_body(patches.ring_segment(0.5, (-0.2, 0.7), *arc, sense=1), a=0.5),
-        "case 5, +": patches.brake_block(2.0, 1, 200.0, 0.05, 0.15, 0.04, 0.01, FRICTION),
-        "case 5, -": patches.brake_block(0.5, -1, 200.0, 0.05, 0.15, 0.04, 0.01, FRICTION),
+        "case 3, +": patches.block_on_disk(arc, 1000.0),
+        "case 3, -": patches.block_on_disk(replace(turned, b=2.0), 1000.0),
+        "case 4": _with_second_body(patches.ring_segment(replace(arc, b=0.5), 1000.0), a=0.5),
+        "case 5, +": patches.brake_block(replace(lever, b=2.0), 200.0),
+        "case 5, -": patches.brake_block(replace(lever, b=0.5, friction=-FRICTION), 200.0),
         "case 6": patches.tilting_block(1.5, 1, block[0], 62.0, *block[1:]),
         "case 6, parting": patches.tilting_block(1.0, 1, block[0], 82.0, *block[1:]),
-        "case 7, leading": patches.drum_brake(
-            1.0, -1, 476.0, 0.15, 0.125, 0.04, (0.3, 2.1), FRICTION
-        ),
+        "case 7, leading": patches.drum_brake(shoe, 476.0),
         "case 8, cone": _with_second_body(cone, a=2.0),
         "case 8, torus": torus,
         "case 9": patches.disk_brake(
@@ -74,7 +75,7 @@ def _with_second_body(case: SpecialCase, a: float) -> SpecialCase:
     return SpecialCase(case.patch, case.load, (first, second))
 
 
-def checks() -> Iterator[Check]:
+def minimality() -> Iterator[Check]:
     """Numbers of random admissible pressures whose functional is at most the minimum."""
     rng = np.random.default_rng(0)
     for name, case in special_cases().items():

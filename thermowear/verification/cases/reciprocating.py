@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...results import Result
-from ..check import Check, compare, compare_worst
+from ..check import Check, compare, compare_each, compare_worst
 from ..starter import run_starter
 
 STARTER = "punch-on-strip-reciprocating"
@@ -17,66 +16,50 @@ SLIDING = "k F times the sliding distance"
 END = "uniform wear of the punch and of the trough, see `reciprocating_problem`"
 IN_PLACE = "running-in of both faces with stationary contact, at the same mean speed"
 LAW = '{coefficient="1e-7 1/MPa", per="pressure"}'
-PLACES = (0.0, 0.4, 0.8)
+PLACES = np.array([0.0, 0.4, 0.8])
+"""Positions relative to the half-width of a face."""
 
 
-def checks() -> Iterator[Check]:
+def reciprocating() -> Iterator[Check]:
     """Volumes, final rates, wear of one body only, and the limit of small strokes."""
     long = run_starter(STARTER, "analysis={type='reciprocating', cycles=50000}")
-    yield from _volumes(long)
-    yield from _rates(long)
+    worn = COEFFICIENT * FORCE * (SPEED * long.summary["time_s"])
+    for body in (1, 2):
+        found = long.summary[f"wear_volume_{body}_m3"]
+        yield compare(f"worn volume, body {body} [m³]", found, worn, 1e-9, SLIDING)
+    assert long.track is not None
+    i, track = long.interface, long.track.last
+    for name, x, rate, half, allowed in (
+        ("punch", i.x, i.wear_rate_1, HALF_WIDTH, 1e-2),
+        ("strip", track.x, track.wear_rate_2, HALF_WIDTH + AMPLITUDE, 2e-2),
+    ):
+        known = np.full(len(PLACES), _rate(half))
+        found = np.interp(PLACES * half, x, rate)
+        quantity = f"wear rate at {{:g}} of the half-width, {name} [m/s]"
+        yield from compare_each(quantity, PLACES, found, known, allowed, END)
     yield from _one_body()
     yield from _short_strokes()
 
 
-def _volumes(result: Result) -> Iterator[Check]:
-    slid = SPEED * result.summary["time_s"]
-    for body in (1, 2):
-        found = result.summary[f"wear_volume_{body}_m3"]
-        known = COEFFICIENT * FORCE * slid
-        yield compare(f"worn volume, body {body} [m³]", found, known, 1e-9, SLIDING)
-
-
-def _rates(result: Result) -> Iterator[Check]:
-    assert result.track is not None
-    i, track = result.interface, result.track.last
-    sides = (
-        ("punch", i.x, i.wear_rate_1, HALF_WIDTH, 1e-2),
-        ("strip", track.x, track.wear_rate_2, HALF_WIDTH + AMPLITUDE, 2e-2),
-    )
-    for body, x, rate, half, allowed in sides:
-        known = COEFFICIENT * FORCE * SPEED / (2 * half * THICKNESS)
-        for place in PLACES:
-            found = float(np.interp(place * half, x, rate))
-            quantity = f"wear rate at {place:g} of the half-width, {body} [m/s]"
-            yield compare(quantity, found, known, allowed, END)
+def _rate(half: float) -> float:
+    """Uniform wear rate over a half-width [m/s]."""
+    return COEFFICIENT * FORCE * SPEED / (2 * half * THICKNESS)
 
 
 def _one_body() -> Iterator[Check]:
     """Wear of one body: on a long strip a punch that wears alone has a uniform pressure."""
-    alone = run_starter(
-        STARTER,
-        f"wear={{punch={LAW}}}",
-        "contact.friction=0",
-        "analysis={type='reciprocating', cycles=2000}",
-    )
+    cycles = "analysis={{type='reciprocating', cycles={}}}".format
+    alone = run_starter(STARTER, f"wear={{punch={LAW}}}", "contact.friction=0", cycles(2000))
     i, known = alone.interface, FORCE / (2 * HALF_WIDTH * THICKNESS)
-    inside = np.abs(i.x) <= 0.8 * HALF_WIDTH
-    quantity = (
-        "pressure at the point of largest deviation within 0.8 of the half-width, punch wears [Pa]"
-    )
+    inside, place = np.abs(i.x) <= 0.8 * HALF_WIDTH, "at the point of largest deviation within"
+    quantity = f"pressure {place} 0.8 of the half-width, punch wears [Pa]"
     yield compare_worst(quantity, i.pressure[inside], known, 1e-3, "a uniform pressure")
-    alone = run_starter(
-        STARTER, f"wear={{strip={LAW}}}", "analysis={type='reciprocating', cycles=20000}"
-    )
+    alone = run_starter(STARTER, f"wear={{strip={LAW}}}", cycles(20000))
     assert alone.track is not None
     track, half = alone.track.last, HALF_WIDTH + AMPLITUDE
-    known = COEFFICIENT * FORCE * SPEED / (2 * half * THICKNESS)
     inside = np.abs(track.x) <= 0.9 * half
-    quantity = (
-        "wear rate at the point of largest deviation within 0.9 of the trough, strip wears [m/s]"
-    )
-    yield compare_worst(quantity, track.wear_rate_2[inside], known, 1e-2, END)
+    quantity = f"wear rate {place} 0.9 of the trough, strip wears [m/s]"
+    yield compare_worst(quantity, track.wear_rate_2[inside], _rate(half), 1e-2, END)
 
 
 def _short_strokes() -> Iterator[Check]:
@@ -86,23 +69,15 @@ def _short_strokes() -> Iterator[Check]:
         "contact.friction=0",
         "mesh={degree=3, elements=24, grading=1.0}",
     )
-    short = run_starter(
-        STARTER,
-        "analysis={type='reciprocating', end_time='20 s', tolerance=1e-4}",
-        "motion={amplitude='0.05 mm', frequency='200 Hz'}",
-        *mesh,
-    )
-    in_place = run_starter(
-        STARTER,
-        "analysis={type='transient', end_time='20 s'}",
-        "motion={velocity='40 mm/s'}",
-        *mesh,
-    )
+    stroke = "motion={amplitude='0.05 mm', frequency='200 Hz'}"
+    analysis = "analysis={type='reciprocating', end_time='20 s', tolerance=1e-4}"
+    short = run_starter(STARTER, analysis, stroke, *mesh)
+    analysis, motion = "analysis={type='transient', end_time='20 s'}", "motion={velocity='40 mm/s'}"
+    in_place = run_starter(STARTER, analysis, motion, *mesh)
     for body in (1, 2):
-        for place in PLACES:
-            found, known = (
-                float(np.interp(place * HALF_WIDTH, i.x, getattr(i, f"wear_{body}")))
-                for i in (short.interface, in_place.interface)
-            )
-            quantity = f"depth at {place:g} of the half-width, short strokes, body {body} [m]"
-            yield compare(quantity, found, known, 1e-2, IN_PLACE)
+        found, known = (
+            np.interp(PLACES * HALF_WIDTH, i.x, getattr(i, f"wear_{body}"))
+            for i in (short.interface, in_place.interface)
+        )
+        quantity = f"depth at {{:g}} of the half-width, short strokes, body {body} [m]"
+        yield from compare_each(quantity, PLACES, found, known, 1e-2, IN_PLACE)

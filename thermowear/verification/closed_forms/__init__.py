@@ -7,9 +7,8 @@ references only. Tabulated numbers must agree to the last digit.
 from __future__ import annotations
 
 from ..check import Checks, identified
-from .arcs import case_3, case_4
 from .flat import case_1, case_2, case_6
-from .levers import case_5, case_7
+from .guided import case_3, case_4, case_5, case_7
 from .turning import case_8, case_9
 
 _CASES = (case_1, case_2, case_3, case_4, case_5, case_6, case_7, case_8, case_9)

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...reference import flat_face
-from ..check import Check, compare
+from ..check import Check, compare, printed
 from . import patches as cases
-from .rows import CLOSED_FORM, EXPONENTS, MPA, dissipation, printed, worst
+from .patches import CLOSED_FORM, EXPONENTS, MPA, dissipation, worst
 
 
 def case_1() -> Iterator[Check]:

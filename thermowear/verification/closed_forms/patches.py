@@ -1,8 +1,8 @@
 """Special cases of Páczelt and Mróz as contact patches, built from their geometry.
 
 No formula for a pressure is used: the principle gets points, normals, sliding directions and
-free motions of the holder only. Faces are integrated by Gauss's rule; points of interest are added
-with zero area.
+free motions of the holder only; the closed forms provide just the dimensions. Faces are integrated
+by Gauss's rule; points of interest are added with zero area.
 """
 
 from __future__ import annotations
@@ -17,7 +17,11 @@ import numpy as np
 from ...laws import PowerWear, rotation, translation
 from ...laws.principle.patch import ContactPatch, contact_patch
 from ...laws.principle.steady import SteadyWear
+from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
+from ..check import Check, compare, compare_worst
 
+CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, closed form"
+EXPONENTS, MPA = (0.5, 1.0, 2.0), 1e6
 DOWN = (0.0, 0.0, -1.0)
 POINTS = 40
 
@@ -84,62 +88,44 @@ def tilting_punch(b: float, probes: Sequence[float] = ()) -> SpecialCase:
 
 
 def block_on_disk(
-    b: float,
-    ends: tuple[float, float],
-    force: float,
-    radius: float,
-    width: float,
-    friction: float,
-    sense: int,
-    probes: Sequence[float] = (),
-    side: int = -1,
+    face: ArcBlock, force: float, probes: Sequence[float] = (), side: int = -1
 ) -> SpecialCase:
-    """Case 3: block above a disk; in the sense +1 the disk rotates anticlockwise.
+    """Case 3: block above a disk; with positive friction the disk rotates anticlockwise.
 
     With its normal upwards (`side` +1) it is a segment inside a ring, see `ring_segment`.
     """
-    α, w = along(*ends, probes)
+    α, w = along(face.start, face.end, probes)
     outward = np.column_stack([np.sin(α), np.cos(α)])  # outward normal of the disk
     clockwise = np.column_stack([np.cos(α), -np.sin(α)])
     patch = contact_patch(
-        radius * outward,
-        w * radius * width,
+        face.radius * outward,
+        w * face.radius * face.width,
         side * outward,
         [translation((0.0, side))],
         speed=0.3,
-        friction=friction,
-        sliding=-side * sense * clockwise,
+        friction=abs(face.friction),
+        sliding=-side * np.copysign(1, face.friction) * clockwise,
     )
-    return SpecialCase(patch, np.array([force]), (wear_law(b),))
+    return SpecialCase(patch, np.array([force]), (wear_law(face.b),))
 
 
 ring_segment = partial(block_on_disk, side=1)
-"""Case 4: segment pressed up inside a ring; in the sense +1 the ring rotates clockwise."""
+"""Case 4: segment inside a ring; with positive friction the ring rotates clockwise."""
 
 
-def brake_block(
-    b: float,
-    sense: int,
-    moment: float,
-    inner: float,
-    outer: float,
-    offset: float,
-    width: float,
-    friction: float,
-    probes: Sequence[float] = (),
-) -> SpecialCase:
-    """Case 5: block on a lever about the origin; at +1 the strip moves away from the pivot."""
-    z, w = along(inner, outer, probes)
+def brake_block(face: LeverBlock, moment: float, probes: Sequence[float] = ()) -> SpecialCase:
+    """Case 5: block on a lever; with positive friction the strip moves away from the pivot."""
+    z, w = along(face.inner, face.outer, probes)
     patch = contact_patch(
-        np.column_stack([np.full_like(z, offset), 0 * z, z]),
-        w * width,
+        np.column_stack([np.full_like(z, face.offset), 0 * z, z]),
+        w * face.width,
         (1.0, 0.0, 0.0),
         [rotation((0.0, 1.0, 0.0), (0.0, 0.0, 0.0))],
         speed=2.0,
-        friction=friction,
-        sliding=(0.0, 0.0, -sense),
+        friction=abs(face.friction),
+        sliding=(0.0, 0.0, -np.copysign(1, face.friction)),
     )
-    return SpecialCase(patch, np.array([moment]), (wear_law(b),))
+    return SpecialCase(patch, np.array([moment]), (wear_law(face.b),))
 
 
 def tilting_block(
@@ -172,31 +158,21 @@ def tilting_block(
     return SpecialCase(patch, np.array([force, moment]), (wear_law(b),))
 
 
-def drum_brake(
-    b: float,
-    sense: int,
-    moment: float,
-    radius: float,
-    pivot_distance: float,
-    width: float,
-    ends: tuple[float, float],
-    friction: float,
-    probes: Sequence[float] = (),
-) -> SpecialCase:
-    """Case 7: shoe inside a drum; trailing at +1, for anticlockwise rotation of the drum."""
-    θ, w = along(*ends, probes)
+def drum_brake(face: DrumBrakeShoe, moment: float, probes: Sequence[float] = ()) -> SpecialCase:
+    """Case 7: shoe inside a drum; trailing with positive friction, as the drum turns."""
+    θ, w = along(face.start, face.end, probes)
     outward = np.column_stack([np.cos(θ), np.sin(θ)])
     clockwise = np.column_stack([np.sin(θ), -np.cos(θ)])
     patch = contact_patch(
-        radius * outward,
-        w * radius * width,
+        face.radius * outward,
+        w * face.radius * face.width,
         outward,
-        [rotation((0.0, 0.0, -1.0), (pivot_distance, 0.0))],
+        [rotation((0.0, 0.0, -1.0), (face.pivot_distance, 0.0))],
         speed=3.0,
-        friction=friction,
-        sliding=sense * clockwise,
+        friction=abs(face.friction),
+        sliding=np.copysign(1, face.friction) * clockwise,
     )
-    return SpecialCase(patch, np.array([moment]), (wear_law(b),))
+    return SpecialCase(patch, np.array([moment]), (wear_law(face.b),))
 
 
 def annular_punch(
@@ -271,3 +247,17 @@ def disk_brake(
         sliding=np.column_stack([-np.sin(φ), np.cos(φ), zero]),
     )
     return SpecialCase(patch, np.array(load), (wear_law(b, a),))
+
+
+def worst(quantity: str, computed, exact, allowed: float = 1e-9) -> Check:
+    """Compare values at points with a formula, at the point of largest deviation."""
+    quantity = f"{quantity}, at the point of largest deviation"
+    return compare_worst(quantity, computed, exact, allowed, CLOSED_FORM)
+
+
+def dissipation(case: SpecialCase, name: str) -> Check:
+    """Compare ``D_w = ∫ p·w' dS`` with the power of the load, ``F·V``."""
+    steady = case.steady()
+    quantity = f"wear dissipation power{name} [W]"
+    power = float(case.load @ steady.velocity)
+    return compare(quantity, steady.dissipation, power, 1e-9, "D_w = F·V")

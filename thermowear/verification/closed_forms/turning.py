@@ -8,10 +8,9 @@ import numpy as np
 
 from ...laws import LocalState
 from ...reference import annular_punch as ring
-from ...reference import disk_brake as pad
-from ..check import Check, compare
+from ..check import Check, compare, printed
 from . import patches as cases
-from .rows import CLOSED_FORM, MPA, dissipation, printed, worst
+from .patches import CLOSED_FORM, MPA, dissipation, worst
 
 
 def case_8() -> Iterator[Check]:
@@ -84,11 +83,11 @@ def case_9() -> Iterator[Check]:
         yield dissipation(case, name)
         if same:
             largest = float(np.mean(steady.pressure * r / inner))
-            carried = pad.uniform_wear_force(largest, *radii, angle)
+            carried = ring.uniform_wear_force(largest, *radii, angle)
             quantity = f"force θ p_a ri (ro - ri){name} [N]"
             yield compare(quantity, force, carried, 1e-9, CLOSED_FORM)
             torque = case.patch.moment(steady.pressure, (0.0, 0.0, 0.0))[2]
-            known = pad.uniform_wear_torque(force, friction, *radii)
+            known = ring.uniform_wear_torque(force, friction, *radii)
             yield compare(f"torque{name} [N m]", torque, known, 1e-9, CLOSED_FORM)
     for height in (0.0, 0.01, 0.02):
         a, angle, force, friction = rng.uniform((0.5, 0.8, 100, 0.1), (2.0, 1.5, 1e4, 0.5))
@@ -97,6 +96,6 @@ def case_9() -> Iterator[Check]:
         case = cases.disk_brake(1.0, a, force, (0.06, 0.1), angle, centre, friction, height)
         name = f", tilting, a = {a:.3g}, mu = {friction:.3g}, height {1e3 * height:g} mm"
         x, y = case.patch.points[:, 0], case.patch.points[:, 1]
-        exact = pad.tilted_pressure(x, y, force, centre, 0.06, 0.1, angle, a, lift)
+        exact = ring.tilted_pressure(x, y, force, centre, 0.06, 0.1, angle, a, lift)
         yield worst(f"pressure{name} [Pa]", case.steady().pressure, exact)
         yield dissipation(case, name)

@@ -10,8 +10,7 @@ from ...frames import frame_files
 from ...names import FRAMES
 from ..maps import is_surface
 from ..scales import COLORS
-from .bodies import SectionPanel, SolidPanel, face_maps
-from .curves import TimeCurve, contact_curves
+from .panels import SectionPanel, SolidPanel, TimeCurve, contact_curves, face_maps
 from .scene import Scene
 from .states import read_frames
 from .writers import GIF, MP4, common_palette, ffmpeg, write_gif, write_mp4

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ..panels import STYLE
-from .states import FrameSequence, FrameState
+from .states import FrameSequence, FrameState, ScenePanel
 
 _DPI = 100
 _WIDTH, _HEIGHT = 9.0, 5.6  # inches
@@ -19,16 +19,6 @@ _FLAT = 0.4
 """Height over width of the bodies below which they are above the curves, else beside them."""
 _SCALE = 1.5  # width of colour bar and labels of the bodies [inches]
 _STYLE = STYLE | {"font.size": 9}
-
-
-class ScenePanel(Protocol):
-    """Interface of the panels of the picture."""
-
-    def prepare(self, axis) -> None:
-        """Draw the static elements."""
-
-    def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
 
 
 class Scene:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,16 +20,13 @@ _STEADY = 1e-2  # distance from the steady state up to which the final state is 
 
 @dataclass(frozen=True)
 class FrameState:
-    """State of the results at one time.
+    """State of the results at one time [s].
 
     Attributes
     ----------
     time : float
-        Time [s].
-    interface : TableColumns
-        Columns of ``interface.csv``.
-    track : TableColumns or None
-        Columns of ``track.csv``, in reciprocating analyses.
+    interface, track : TableColumns
+        Columns of ``interface.csv``, and of ``track.csv`` in reciprocating analyses.
     file : Path
         File of the fields.
     """
@@ -67,6 +65,18 @@ class FrameSequence:
     ends_steady: bool
 
 
+class ScenePanel(ABC):
+    """Panel of the picture; its axes do not change from state to state."""
+
+    @abstractmethod
+    def prepare(self, axis) -> None:
+        """Draw the static elements."""
+
+    @abstractmethod
+    def show(self, state: FrameState) -> None:
+        """Update the panel to a state."""
+
+
 def read_frames(folder: Path) -> FrameSequence:
     """Read all data of an animation except the fields.
 
@@ -75,32 +85,26 @@ def read_frames(folder: Path) -> FrameSequence:
     ValueError
         If a file does not have the expected columns.
     """
-    states = [
-        FrameState(
-            f.time, tables.read(f.file("interface")), _track(f.file("track")), f.file("fields")
-        )
-        for f in frame_files(folder / FRAMES)
-    ]
     name = next(name for name in _HISTORIES if (folder / name).is_file())
     history = tables.read(folder / name)
     end = float(history["time"][-1])
-    states = [state for state in states if state.time < end]
-    last = tables.read(folder / "interface.csv")
-    states.append(FrameState(end, last, _track(folder / "track.csv"), folder / "fields.vtu"))
+    states = [
+        _state(f.time, f.file("interface"), f.file("track"), f.file("fields"))
+        for f in frame_files(folder / FRAMES)
+    ]
+    last = _state(end, *(folder / n for n in ("interface.csv", "track.csv", "fields.vtu")))
+    case = tomllib.loads((folder / "case.resolved.toml").read_text("utf-8"))
     distance = read_summary(folder).get("distance_from_steady")
     return FrameSequence(
-        states=states,
-        title=_title(folder),
+        states=[*(state for state in states if state.time < end), last],
+        title=case.get("title", ""),
         history=history,
         even=name != "history.csv" or (folder / "heat.csv").is_file(),
-        field="temperature" if np.isfinite(last["temperature_1"]).all() else "von_mises",
+        field="temperature" if np.isfinite(last.interface["temperature_1"]).all() else "von_mises",
         ends_steady=distance is not None and distance <= _STEADY,
     )
 
 
-def _track(path: Path) -> tables.TableColumns | None:
-    return tables.read(path) if path.is_file() else None
-
-
-def _title(folder: Path) -> str:
-    return tomllib.loads((folder / "case.resolved.toml").read_text("utf-8")).get("title", "")
+def _state(time: float, interface: Path, track: Path, fields: Path) -> FrameState:
+    worn = tables.read(track) if track.is_file() else None
+    return FrameState(time, tables.read(interface), worn, fields)

@@ -1,4 +1,7 @@
-"""Panels of an animation with fixed axes: curves along the contact, and time histories."""
+"""Panels of an animation: bodies, contact face, curves along the contact, and time histories.
+
+Axes and colour ranges are those of all frames.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,14 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ..panels import BODIES, abscissa, clipped_top
-from .states import FrameSequence, FrameState
+from ....results import FIELDS
+from ..maps import draw_colors, triangulated
+from ..panels import BODIES, abscissa, clipped_top, label_coordinates
+from ..scales import COLORS, add_color_bar, color_limits, contact_window, inside, proportion, whole
+from ..section import read_section
+from .states import FrameSequence, FrameState, ScenePanel
 
+_SCALE = 0.05  # width of the colour bar relative to the panel
 _AXIS_END = 1.06  # end of an axis relative to the largest value
 _FAINT = {"color": "0.6", "linewidth": 1.2}
 _STYLES = {
@@ -19,22 +27,113 @@ _STYLES = {
 """Styles by body, so that coinciding curves are both visible."""
 
 
-class CurvePanel:
-    """Curves along the contact with fixed axes.
+class SectionPanel(ScenePanel):
+    """Panel with deformed 2D bodies: whole, or a window around a small contact."""
 
-    Parameters
-    ----------
-    frames : FrameSequence
-    names : sequence of str
-        Columns of ``interface.csv``.
-    """
+    def __init__(self, frames: FrameSequence):
+        self._frames = frames
+        self.sections = {s.time: read_section(s.file).displaced() for s in frames.states}
+        sections = self.sections.values()
+        points = np.concatenate([section.points for section in sections])
+        interfaces = [state.interface for state in frames.states]
+        self.window = contact_window(interfaces, points) or whole(points)
+        self.shape = proportion(self.window)
+        seen = [s.fields[frames.field][inside(s.points, self.window)] for s in sections]
+        self.limits = color_limits(*seen)
+        self._largest = max(values.max() for values in seen)
+        self._drawn: list = []
+
+    def prepare(self, axis) -> None:
+        self._axis, name = axis, self._frames.field
+        label_coordinates(axis, self._frames.states[-1].interface)
+        axis.set_anchor("W")
+        axis.grid(visible=False)
+        place = axis.inset_axes([1.03, 0.0, _SCALE * min(1.0, self.shape), 1.0])
+        options = {"cax": place, "label": FIELDS[name].axis}
+        add_color_bar(axis, COLORS[name], self.limits, self._largest, **options)
+
+    def show(self, state: FrameState) -> None:
+        while self._drawn:
+            self._drawn.pop().remove()
+        section = self.sections[state.time]
+        self._drawn = section.draw(self._axis, self._frames.field, self.limits, self.window)
+
+
+class SolidPanel(ScenePanel):
+    """Panel with undeformed 3D bodies and a fixed camera."""
+
+    def __init__(self, frames: FrameSequence):
+        from .. import solids
+
+        self._frames, self._solids = frames, solids
+        self.shape = solids.PIXELS[1] / solids.PIXELS[0]
+        self._y = solids.middle(frames.states[-1].interface)
+        surfaces = (self._surfaces(state) for state in frames.states)
+        self.limits = color_limits(
+            *(np.concatenate([surface[frames.field] for surface in parts]) for parts in surfaces)
+        )
+
+    def prepare(self, axis) -> None:
+        name, (width, height) = self._frames.field, self._solids.PIXELS
+        axis.set_axis_off()
+        options = {"ax": axis, "label": FIELDS[name].axis, "shrink": 0.8}
+        add_color_bar(axis, COLORS[name], self.limits, self.limits[1], **options)
+        blank = np.full((height, width, 3), 255, dtype=np.uint8)
+        self._image = axis.imshow(blank, interpolation="antialiased")
+
+    def show(self, state: FrameState) -> None:
+        surfaces = self._surfaces(state)
+        self._image.set_data(self._solids.render(surfaces, self._frames.field, self.limits))
+
+    def _surfaces(self, state: FrameState) -> list:
+        return self._solids.clipped(self._solids.read_grid(state.file), self._y)
+
+
+class FaceMap(ScenePanel):
+    """Panel with a map of a quantity over the contact face."""
+
+    def __init__(self, frames: FrameSequence, name: str):
+        self._frames, self._name = frames, name
+        highest = max(float(state.interface.drawn(name).max()) for state in frames.states)
+        self._limits = (0.0, highest)
+        self._drawn: list = []
+
+    def prepare(self, axis) -> None:
+        self._axis, data = axis, self._frames.states[-1].interface
+        label_coordinates(axis, data)
+        window = whole(np.stack([data.drawn("x"), data.drawn("y")], axis=1))
+        axis.set(xlim=window[:2], ylim=window[2:])
+        axis.grid(visible=False)
+        colors = COLORS[self._name.split("_")[0]]
+        options = {"ax": axis, "label": data.quantities[self._name].wrapped}
+        add_color_bar(axis, colors, self._limits, self._limits[1], **options)
+
+    def show(self, state: FrameState) -> None:
+        while self._drawn:
+            self._drawn.pop().remove()
+        x, y, values = map(state.interface.drawn, ("x", "y", self._name))
+        low, high = self._limits
+        colored = draw_colors(
+            self._axis, triangulated(x, y), values, self._name, vmin=low, vmax=high
+        )
+        self._drawn.append(colored)
+
+
+def face_maps(frames: FrameSequence) -> list[FaceMap]:
+    """Maps of the pressure, and of the wear depth of the body with the deeper wear."""
+    depths = {name: frames.states[-1].interface[name].max() for name in ("wear_1", "wear_2")}
+    deepest = max(depths, key=lambda name: depths[name])
+    return [FaceMap(frames, name) for name in ("pressure", *([deepest] * (depths[deepest] > 0)))]
+
+
+class CurvePanel(ScenePanel):
+    """Columns of ``interface.csv`` along the contact, with fixed axes."""
 
     def __init__(self, frames: FrameSequence, names: Sequence[str]):
         self._states, self._names = frames.states, names
         self._lines: dict[str, Line2D] = {}
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         positions = [_curve(state, name)[0] for state in self._states for name in self._names]
         axis.set_xlim(min(x.min() for x in positions), max(x.max() for x in positions))
         axis.set_xlabel(abscissa(self._states[-1].interface)[0])
@@ -43,7 +142,6 @@ class CurvePanel:
             axis.legend(fontsize="small", ncols=4, handlelength=1.5, **where)
 
     def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
         for name, line in self._lines.items():
             line.set_data(*_curve(state, name))
 
@@ -56,7 +154,6 @@ class PressureCurve(CurvePanel):
         self._end = "steady" if frames.ends_steady else "end"
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         first, last = self._states[0], self._states[-1]
         for state, line, label in ((first, "--", "start"), (last, "-", self._end)):
             if state.interface["pressure"].max() > 0:
@@ -73,7 +170,6 @@ class WearCurves(CurvePanel):
     """Wear depths of bodies, downwards, with their ends in grey."""
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         first, last = self._states[0], self._states[-1]
         for name in self._names:
             axis.plot(*_curve(last, name), label="_" if self._lines else "end", **_FAINT)
@@ -98,7 +194,7 @@ def _curve(state: FrameState, name: str) -> tuple[np.ndarray, np.ndarray]:
     return abscissa(state.interface)[1], state.interface.drawn(name)
 
 
-class TimeCurve:
+class TimeCurve(ScenePanel):
     """History of the largest temperature or pressure, with a mark at the current time."""
 
     def __init__(self, frames: FrameSequence):
@@ -109,7 +205,6 @@ class TimeCurve:
         self._time, self._drawn = self._history["time"], self._history.drawn(self._name)
 
     def prepare(self, axis) -> None:
-        """Draw the static elements."""
         shown = self._history.quantities
         axis.plot(self._time, self._drawn, color="0.45")
         if not self._even:
@@ -123,7 +218,6 @@ class TimeCurve:
         (self._dot,) = axis.plot([], [], "o", color="tab:red", markersize=6, clip_on=False)
 
     def show(self, state: FrameState) -> None:
-        """Update the panel to a state."""
         time = max(state.time, self._time[0])
         self._mark.set_xdata([time, time])
         self._dot.set_data([time], [np.interp(time, self._time, self._drawn)])

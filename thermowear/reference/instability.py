@@ -1,0 +1,195 @@
+"""Thermoelastic instability of a rod, and of a half-plane, that slide on an insulator."""
+
+from __future__ import annotations
+
+import cmath
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar, newton
+
+_POLE = -(pi**2) / 4
+"""z of the slowest thermal decay in a rod whose end is insulated."""
+
+
+@dataclass(frozen=True)
+class SlidingRod:
+    """Rod pressed on a sliding wall, with friction heat and wear.
+
+    Its far end is fixed and kept at ambient temperature; its other end is pressed by an
+    interference d0 on a rigid insulating wall. With Poisson's ratio 0 the rod is equivalent to a
+    wider column. Friction heat lengthens the rod, which increases the pressure and thereby the
+    heat, without bound above a critical speed: the simplest case of thermoelastic instability (J.
+    R. Barber, Proc. R. Soc. A 312 (1969) 381), stabilised by wear (T. A. Dow and R. A. Burton, J.
+    Lubr. Technol. 95 (1973) 71).
+
+    A mode growing as ``exp(s t)`` has the temperature ``sinh(x √(s/κ))``, x from the far end. The
+    pressure due to its elongation by the heat ``mu p v``, minus wear, equals p if ::
+
+        s = (E v/L) [α mu/(ρ c) (1 - sech(L √(s/κ))) - k_w],
+
+    in terms of ``z = s L²/κ``, ``r = v/vcr`` and ``w = k_w ρ c/(α mu)`` ::
+
+        z = 2 r (1 - sech √z - w).
+
+    Attributes
+    ----------
+    length, young_modulus, expansion, conductivity, capacity, friction : float
+        L [m], E [Pa], α [1/K], k [W/(m K)], ρ c [J/(m³ K)], and mu.
+    wear : float
+        k_w: worn length per pressure and distance [1/Pa].
+    """
+
+    length: float
+    young_modulus: float
+    expansion: float
+    conductivity: float
+    capacity: float
+    friction: float
+    wear: float = 0.0
+
+    @property
+    def critical_speed(self) -> float:
+        """Critical speed without wear, ``vcr = 2 k/(E α mu L)``; the rod is stable below [m/s]."""
+        E, α, mu = self.young_modulus, self.expansion, self.friction
+        return 2 * self.conductivity / (E * α * mu * self.length)
+
+    @property
+    def critical_speed_with_wear(self) -> float:
+        """Critical speed with wear, for k_w up to ``α mu/(ρ c)`` [m/s].
+
+        The critical mode is oscillatory: z is imaginary, so ``Re sech √z = 1 - w``.
+        """
+        if self.wear == 0.0:
+            return self.critical_speed
+
+        def excess(a):
+            return (1 - _sech(2j * a**2)).real - self._worn
+
+        z = 2j * brentq(excess, 0.0, pi / 2, xtol=1e-300, rtol=1e-14) ** 2
+        return self.critical_speed * abs(z) / (2 * (1 - _sech(z)).imag)
+
+    def pressure(self, interference: float, speed: float) -> float:
+        """Pressure ``(E d0/L)/(1 - v/vcr)``, steady below the critical speed, without wear [Pa]."""
+        cold = self.young_modulus * interference / self.length
+        return cold / (1 - speed / self.critical_speed)
+
+    def growth_rate(self, speed: float) -> complex:
+        """Growth rate s of the mode that grows fastest, or decays most slowly, at a speed [1/s].
+
+        With wear the mode may be oscillatory; then the rate with positive imaginary part. Without
+        wear the stationary mode of a changed interference, s = 0, is left out.
+        """
+        r, w = speed / self.critical_speed, self._worn
+        z = _unworn(r) if w == 0.0 else _worn(r, w)
+        return z * self.conductivity / self.capacity / self.length**2
+
+    @property
+    def _worn(self) -> float:
+        return self.wear * self.capacity / (self.expansion * self.friction)
+
+
+def _unworn(r: float) -> complex:
+    """Root z without wear, real and right of the pole."""
+
+    def excess(z):
+        return 2 * r * ((1 - _sech(z)).real / z if abs(z) > 1e-9 else 0.5 - 5 * z / 24) - 1
+
+    return complex(brentq(excess, _POLE * (1 - 1e-12), 2 * r, xtol=1e-300, rtol=1e-14))
+
+
+def _worn(r: float, w: float) -> complex:
+    """Root z with wear: the larger one of two real roots, or one of a complex pair.
+
+    ``sech √z`` is a Laplace transform of a density, so it is convex right of the pole.
+    """
+
+    def excess(z):
+        return 2 * r * (1 - _sech(z) - w) - z
+
+    limits = _POLE * (1 - 1e-6), 2 * r
+    top = minimize_scalar(
+        lambda z: -excess(z).real, bounds=limits, method="bounded", options={"xatol": 1e-9}
+    ).x
+    if excess(top).real >= 0:
+        return complex(brentq(lambda z: excess(z).real, top, 2 * r, xtol=1e-300, rtol=1e-14))
+    step = 1e-3 * (top - _POLE)
+    bend = np.diff([excess(top + i * step).real for i in (-1, 0, 1)], 2)[0] / step**2
+    pair = newton(excess, top + cmath.sqrt(-2 * excess(top).real / bend), tol=1e-15, maxiter=200)
+    return complex(pair.real, abs(pair.imag))
+
+
+def _sech(z: complex) -> complex:
+    """Function ``sech √z``."""
+    return 1 / cmath.cosh(cmath.sqrt(z))
+
+
+@dataclass(frozen=True)
+class ConductorOnInsulator:
+    """Conducting half-plane sliding on an insulator, with friction heat and wear.
+
+    The pressure varies as ``cos(m x)`` along the face, superposed on a mean value, and so do
+    friction heat and temperature of the conductor (plane strain). Thermal expansion raises the face
+    where the pressure is high: above a critical speed the wave grows (R. A. Burton, V. Nerlikar and
+    S. R. Kilaparti, Wear 24 (1973) 177). The insulator is elastic or rigid and may slide in any
+    direction.
+
+    A mode growing as ``exp(s t)`` decays with depth as ``exp(-λ y)``, ``s = κ (λ² - m²)``. The
+    thermoelastic potential of that temperature and the stress function for a traction-free face
+    raise it by ``2 α (1 + ν) T/(λ + m)`` for a temperature ``T = mu v p/(k λ)``; the pressure
+    flattens both bodies by ``2 p/(E* m)``, and wear removes ``k_w v p/s``. Equilibrium requires ::
+
+        2 s λ (λ + m)/(E* m) + k_w v λ (λ + m) = 2 α (1 + ν) mu v s/k.
+
+    Without wear this is ``λ (λ + m) = 2 m² v/vcr``, with ``λ = m`` at the critical speed.
+
+    Attributes
+    ----------
+    wave_length : float
+        ``2 π/m`` [m].
+    modulus : float
+        E* of both, ``1/E* = Σ (1 - ν²)/E``, without the term of a rigid insulator [Pa].
+    poisson_ratio, expansion, conductivity, friction, capacity : float
+        ν, α [1/K] and k [W/(m K)] of the conductor, mu, and its ρ c [J/(m³ K)].
+    wear : float
+        k_w: wear depth of both together per pressure and distance [1/Pa].
+    """
+
+    wave_length: float
+    modulus: float
+    poisson_ratio: float
+    expansion: float
+    conductivity: float
+    friction: float
+    capacity: float = 1.0
+    wear: float = 0.0
+
+    @property
+    def wave_number(self) -> float:
+        """Wave number ``m = 2 π/wave_length`` [1/m]."""
+        return 2 * pi / self.wave_length
+
+    @property
+    def critical_speed(self) -> float:
+        """Critical speed without wear, ``2 k m/(mu α (1 + ν) E*)``: waves decay below it [m/s]."""
+        lift = self.expansion * (1 + self.poisson_ratio)
+        return 2 * self.conductivity * self.wave_number / (self.friction * lift * self.modulus)
+
+    def growth_rate(self, speed: float) -> complex:
+        """Growth rate s of the mode that grows fastest, or decays most slowly [1/s].
+
+        With wear the mode may be oscillatory; then the rate with positive imaginary part. Without
+        wear the stationary mode of an uneven face, s = 0, is left out.
+        """
+        m, κ = self.wave_number, self.conductivity / self.capacity
+        r = speed / self.critical_speed
+        if self.wear == 0.0:
+            λ = m * (sqrt(1 + 8 * r) - 1) / 2
+            return complex(κ * (λ**2 - m**2))
+        # divided by λ + m, in terms of λ/m: (λ² - 1) λ + worn λ - 2 r (λ - 1) = 0
+        worn = self.wear * speed * self.modulus / (2 * κ * m)
+        roots = np.roots([1.0, 0.0, worn - 1 - 2 * r, 2 * r])
+        rates = κ * m**2 * (roots[roots.real > 0] ** 2 - 1)
+        fastest = rates[np.argmax(rates.real)]
+        return complex(fastest.real, abs(fastest.imag))

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter, model_validator
 
-from ...laws.coefficients.table1d import Table1D
+from ...laws.coefficients import Table1D
 from ...laws.expressions import Expression
 from ...laws.interfaces import INTERFACE_VARIABLES
 from ..values import units
@@ -18,7 +18,7 @@ from .multipliers import must_increase, must_match
 
 
 class PressureConductanceTable(Section):
-    """Conductance proportional to the pressure, see `laws.coefficients.conductance`.
+    """Conductance proportional to the pressure, see `laws.coefficients`.
 
     Attributes
     ----------

@@ -12,7 +12,7 @@ from pydantic import Field, PlainSerializer, PlainValidator, TypeAdapter, create
 
 from ...errors import quoted
 from ...laws.by_name import registered_laws
-from ...laws.coefficients.constant import Constant
+from ...laws.coefficients import Constant
 from ...laws.expressions import Expression
 from ...laws.formulas import FormulaLaw, FormulaWear
 from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law

@@ -7,8 +7,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from ...laws.coefficients.multipliers import Multipliers
-from ...laws.coefficients.table1d import Table1D
+from ...laws.coefficients import Multipliers, Table1D
 from ..values import units
 from ..values.section import KeyFault, Number, Section
 

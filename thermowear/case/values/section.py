@@ -6,6 +6,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Switch = Annotated[bool, Field(strict=True)]
+Fault = tuple[str, str]
+"""Path of the key at fault, and the message."""
 
 
 class KeyFault(ValueError):

@@ -20,10 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .dimensions import Dimension
-from .functions import EXTREMES, FUNCTIONS, KNOWN
-from .tokens import Token, fault, tokens
-from .tree import Node, evaluate
-from .unit_text import unit_end
+from .tokens import Token, fault, tokens, unit_end
+from .tree import EXTREMES, FUNCTIONS, KNOWN, Node, evaluate
 
 Units = Callable[[str], tuple[float, Dimension]]
 """Map from the text of a unit to SI factor and dimension; `ValueError` if it is invalid."""

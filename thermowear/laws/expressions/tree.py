@@ -2,23 +2,55 @@
 
 A node is a constant in SI, the name of a variable, or a tuple of an operation and its operands:
 ``"+"`` and ``"*"`` have any number of them, ``"-"`` (negative) and ``"/"`` (reciprocal) one,
-``"^"`` two; the others are in `functions`. Derivatives are taken with respect to one variable;
+``"^"`` two; the others are `FUNCTIONS` and `EXTREMES`. Derivatives are taken with respect to one variable;
 at kinks (``abs``, ``min``, ``max``) they are one-sided.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial, reduce
 from typing import Any
 
 import numpy as np
 
-from .functions import EXTREMES, FUNCTIONS, Function
-
 Node = float | str | tuple[Any, ...]
 Pair = tuple[np.ndarray, np.ndarray]
 """Value and derivative, both of the shape of the variables or scalars."""
+Pointwise = Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Function:
+    """Function of one variable.
+
+    Attributes
+    ----------
+    value, slope : callable
+        Function and derivative, elementwise.
+    power : float or None
+        Exponent of the unit of the argument in that of the value; None if both are dimensionless.
+    """
+
+    value: Pointwise
+    slope: Pointwise
+    power: float | None = None
+
+
+FUNCTIONS = {
+    "exp": Function(np.exp, np.exp),
+    "log": Function(np.log, lambda x: 1 / x),
+    "log10": Function(np.log10, lambda x: 1 / (x * np.log(10.0))),
+    "sqrt": Function(np.sqrt, lambda x: 0.5 / np.sqrt(x), power=0.5),
+    "abs": Function(np.abs, np.sign, power=1.0),
+    "tanh": Function(np.tanh, lambda x: 1 - np.tanh(x) ** 2),
+    "sin": Function(np.sin, np.cos),
+    "cos": Function(np.cos, lambda x: -np.sin(x)),
+}
+EXTREMES = {"min": np.less_equal, "max": np.greater_equal}
+"""Functions of several arguments of equal dimension, with the comparison that keeps the first."""
+KNOWN = (*FUNCTIONS, *EXTREMES)
 
 
 def evaluate(node: Node, values: Mapping[str, np.ndarray], by: str) -> Pair:

@@ -7,7 +7,7 @@ from ...case.tables.conductance import PressureConductanceTable, TabulatedConduc
 from ...case.tables.law_values import law_of
 from ...case.tables.schema import Case
 from ...case.tables.wear import BodyWearTable
-from ...laws.coefficients.multipliers import Multipliers
+from ...laws.coefficients import Multipliers
 from ...laws.distribution import DutyFactor, InPlace
 from ...laws.interfaces import Law
 from ...laws.power_wear import PowerWear

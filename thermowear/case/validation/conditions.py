@@ -1,12 +1,13 @@
-"""Consistency checks of holder, loads and sliding motion."""
+"""Consistency checks of holder, loads, sliding motion and heat."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from ..tables.geometry import Geometry
+from ..tables.heat import HeatTable
 from ..tables.schema import Case
-from .faults import Fault
+from ..values.section import Fault
 
 _FREE = {
     "axisymmetric": ("z",),
@@ -15,6 +16,8 @@ _FREE = {
     "3d": ("x", "y", "z", "rotation-x", "rotation-y"),
 }
 """Free rigid motions of the holder by model."""
+SURFACES = ("cooling", "temperature", "flux", "power")
+"""Keys of heat that are tables by surface."""
 
 
 def holder(case: Case) -> Iterator[Fault]:
@@ -109,11 +112,7 @@ def surface_pressure(case: Case) -> Iterator[Fault]:
     for name in load.pressure:
         if name in refused:
             yield f"load.pressure.{name}", refused[name]
-    if not load.pressure:
-        return
-    if case.analysis.type == "fretting":
-        yield "load.pressure", "is not supported in a fretting analysis"
-    alone = case.force() is None and case.approach() is None
+    alone = load.pressure and case.force() is None and case.approach() is None
     if alone and type(geometry).expected_zone is not Geometry.expected_zone:
         yield (
             "load",
@@ -124,26 +123,87 @@ def surface_pressure(case: Case) -> Iterator[Fault]:
 
 def motion(case: Case) -> Iterator[Fault]:
     """Only the velocity component that the geometry can slide with."""
-    if case.motion is None or case.model not in case.geometry.models:
-        return
-    if case.analysis.type == "reciprocating":  # see `oscillation`
+    motion, type_ = case.motion, case.analysis.type
+    if motion is None or case.model not in case.geometry.models or type_ == "reciprocating":
         return
     for key in ("amplitude", "frequency"):
-        if getattr(case.motion, key) is not None:
-            yield f"motion.{key}", f"requires a reciprocating analysis, not {case.analysis.type}"
-    across = case.geometry.slides_across and case.motion.velocity is not None
-    if across and case.motion.angular_velocity is None:
+        if getattr(motion, key) is not None:
+            yield f"motion.{key}", f"requires a reciprocating analysis, not {type_}"
+    if (
+        case.geometry.slides_across
+        and motion.velocity is not None
+        and motion.angular_velocity is None
+    ):
         return  # the velocity alone defines the sliding
-    turns = case.model == "axisymmetric" or case.geometry.rotation_center is not None
-    needed, other = "angular_velocity", "velocity"
-    if not turns:
+    axisymmetric = case.model == "axisymmetric"
+    what = f"{case.model} models"
+    needed, other = "velocity", "angular_velocity"
+    if axisymmetric or case.geometry.rotation_center is not None:
         needed, other = other, needed
-    what = "axisymmetric models" if case.model == "axisymmetric" else case.geometry.type
-    what = what if turns else f"{case.model} models"
-    given = getattr(case.motion, needed)
-    if getattr(case.motion, other) is not None:
+        what = what if axisymmetric else case.geometry.type
+    if getattr(motion, other) is not None:
         yield f"motion.{other}", f"not supported; {what} needs motion.{needed}"
-    elif given is None:
+    elif getattr(motion, needed) is None:
         yield f"motion.{needed}", f"missing; {what} needs it"
-    elif case.model == "axisymmetric" and given < 0:
+    elif axisymmetric and getattr(motion, needed) < 0:
         yield "motion.angular_velocity", "must be greater than 0 in an axisymmetric model"
+
+
+def heat(case: Case) -> Iterator[Fault]:
+    """Heat needs a source and a sink that geometry and analysis support."""
+    heat = case.heat
+    if heat is None:
+        if case.analysis.type == "stability":
+            yield "heat", "missing; required in a stability analysis"
+        return
+    yield from _surfaces(case, heat)
+    if heat.advection != "none" and not case.geometry.passes:
+        yield "heat.advection", _not_advected(case)
+    elif heat.advection != "none" and case.motion is None:
+        yield "heat.advection", "needs [motion]: without it body 2 does not pass by"
+    elif heat.advection == "resolved" and case.motion is not None and case.motion.history:
+        yield (
+            "heat.advection",
+            '"resolved" needs a constant speed, without motion.history: use "spread" or "none"',
+        )
+    if case.analysis.type in ("fretting", "reciprocating"):  # do not support heat
+        return
+    if heat.transient and case.analysis.type != "transient":
+        yield "heat.transient", f"requires a transient analysis, not {case.analysis.type}"
+    elif not heat.transient:
+        keys = [] if heat.initial is None else ["initial"]
+        if case.analysis.type == "transient":  # the others have no histories at all
+            keys += heat.histories
+        for key in keys:
+            yield f"heat.{key}", "requires temperatures in time: heat.transient = true"
+
+
+def _surfaces(case: Case, heat: HeatTable) -> Iterator[Fault]:
+    """Thermal boundary conditions: heat sink, and at most one condition per surface."""
+    lasts = not heat.transient  # a stability analysis needs a steady base state
+    leaves = heat.advection == "resolved" and case.geometry.rotation_center is None
+    if lasts and not leaves and not heat.cooling and not heat.temperature:
+        yield "heat", "needs heat.cooling or heat.temperature: there is no heat sink"
+    if heat.ambient_history is not None and not heat.cooling and not leaves:
+        yield "heat.ambient_history", "has no effect: no surface has heat.cooling"
+    for table in ("cooling", "flux", "power"):
+        for name in getattr(heat, table):
+            if name in heat.temperature:
+                yield f"heat.{table}.{name}", "this surface already has a prescribed temperature"
+    for name in heat.power:
+        if name in heat.flux:
+            yield f"heat.power.{name}", "this surface already has a prescribed flux"
+    for table in SURFACES:
+        for name in getattr(heat, table):
+            if name in case.geometry.contact:
+                yield (
+                    f"heat.{table}.{name}",
+                    "a contact face exchanges heat with the other body only",
+                )
+
+
+def _not_advected(case: Case) -> str:
+    moving = case.geometry.bodies[1]
+    if case.geometry.sector != 1.0:
+        return f"heat is already distributed around the {moving}, which is modelled by its section"
+    return f"{moving} does not pass under the other body, as a strip, a disk or a drum does"

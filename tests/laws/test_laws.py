@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.case.values.expressions import expression
+from thermowear.case.values.units import expression
 from thermowear.errors import CaseError, ComputationError
 from thermowear.laws import LocalState, PowerWear
 from thermowear.laws.by_name import registered_laws

@@ -8,8 +8,7 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 from ..case.values import units
-from ..case.values.expressions import expression
-from ..case.values.units import in_python
+from ..case.values.units import expression, in_python
 from ..errors import CaseError
 from ..laws import load_history, time_course
 from ..laws.coefficients import Constant

@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, PlainSerializer, PlainValidator, TypeAdapter, ValidationInfo
+from pydantic import PlainSerializer, PlainValidator, TypeAdapter, ValidationInfo
 
-from ...errors import quoted
 from ..values import units
-from ..values.section import Section, Switch
-from .conductance import Conductance
+from ..values.section import Section, Switch, number_or
 from .history import TemperatureHistory, TimeHistory
+from .laws import Conductance
 
-
-def _parse_partition(value: Any) -> Any:
-    """Convert a number to float; one message for all values outside [0, 1]."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if number and math.isfinite(value) and 0 <= value <= 1:
-        return float(value)
-    if value == "effusivity":
-        return value
-    raise ValueError(f'found {quoted(value)}; must be at least 0 and at most 1, or "effusivity"')
-
-
-Partition = Annotated[float | Literal["effusivity"], BeforeValidator(_parse_partition)]
-
-
+_PARTITION = number_or(
+    "effusivity",
+    where=lambda share: 0 <= share <= 1,
+    allowed='at least 0 and at most 1, or "effusivity"',
+)
 _CONSTANT = TypeAdapter(units.Temperature)
 
 
@@ -61,7 +50,7 @@ class HeatTable(Section):
 
     conductance: Conductance | None = None
     gap_conductance: units.HeatTransfer | None = None
-    partition: Partition = 0.5
+    partition: Annotated[float | Literal["effusivity"], _PARTITION] = 0.5
     advection: Literal["none", "resolved", "spread"] = "none"
     transient: Switch = False
     initial: units.Temperature | None = None

@@ -11,8 +11,7 @@ from ...laws.load_history import KEYS, LoadHistory
 from ...laws.time_course import TimeCourse, TimeFunction
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
-from ..values.paths import UserFile
-from ..values.section import KeyFault, Section, Switch
+from ..values.section import KeyFault, Section, Switch, UserFile
 from .multipliers import NotNegative, must_increase, must_match
 
 _PATH = TypeAdapter(UserFile)

@@ -249,32 +249,25 @@ class Parser:
         while self._accept(",") is not None:
             arguments.append(self._deeper(self._sum))
         self._close(opened)
-        if name in EXTREMES:
-            return self._extreme(token, arguments)
-        if len(arguments) > 1:
+        first, *others = arguments
+        if name in EXTREMES and not others:
+            raise fault(token.start, f"{name} has at least two arguments")
+        if name in FUNCTIONS and others:
             raise fault(token.start, f"{name} has one argument, found {len(arguments)}")
-        (argument,) = arguments
-        power = FUNCTIONS[name].power
-        if power is None and not argument.dimension.none:
-            raise fault(
-                argument.start,
-                f"the argument of {name} must be dimensionless, found {argument.dimension}",
-            )
-        dimension = Dimension() if power is None else argument.dimension.to(power)
-        return self._folded((name, argument.node), dimension, arguments, token.start)
-
-    def _extreme(self, token: Token, arguments: list[Parsed]) -> Parsed:
-        if len(arguments) < 2:
-            raise fault(token.start, f"{token.text} has at least two arguments")
-        first = arguments[0]
-        for other in arguments[1:]:
+        for other in others:
             if not other.dimension.same(first.dimension):
                 raise fault(
-                    other.start,
-                    f"{token.text} of the units {first.dimension} and {other.dimension}",
+                    other.start, f"{name} of the units {first.dimension} and {other.dimension}"
                 )
-        node = (token.text, *(argument.node for argument in arguments))
-        return self._folded(node, first.dimension, arguments, token.start)
+        power = FUNCTIONS[name].power if name in FUNCTIONS else 1.0
+        if power is None and not first.dimension.none:
+            raise fault(
+                first.start,
+                f"the argument of {name} must be dimensionless, found {first.dimension}",
+            )
+        dimension = first.dimension.to(power or 0.0)
+        node = (name, *(argument.node for argument in arguments))
+        return self._folded(node, dimension, arguments, token.start)
 
     def _folded(self, node: Node, dimension: Dimension, parts: list[Parsed], start: int) -> Parsed:
         """Parsed part, folded to a constant if it has no variables.

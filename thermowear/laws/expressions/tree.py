@@ -2,8 +2,8 @@
 
 A node is a constant in SI, the name of a variable, or a tuple of an operation and its operands:
 ``"+"`` and ``"*"`` have any number of them, ``"-"`` (negative) and ``"/"`` (reciprocal) one,
-``"^"`` two; the others are `FUNCTIONS` and `EXTREMES`. Derivatives are taken with respect to one variable;
-at kinks (``abs``, ``min``, ``max``) they are one-sided.
+``"^"`` two; the others are `FUNCTIONS` and `EXTREMES`. Derivatives are taken with respect to one
+variable; at kinks (``abs``, ``min``, ``max``) they are one-sided.
 """
 
 from __future__ import annotations

@@ -35,6 +35,8 @@ class TimeHistory(Section):
 
     COLUMNS: ClassVar[dict[str, str]]
     """Columns of a CSV file, with a suitable unit for each; empty for plain numbers."""
+    ALTERNATIVES: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """Pairs of columns of which only one can be given."""
 
     time: tuple[units.Instant, ...]
     repeat: Switch = False
@@ -60,16 +62,21 @@ class TimeHistory(Section):
             raise
 
     @model_validator(mode="after")
-    def _in_order(self):
+    def _lists(self):
         must_increase("time", self.time)
         if self.repeat and len(self.time) < 2:
             raise KeyFault("repeat", "needs at least two instants in time")
+        for first, second in self.ALTERNATIVES:
+            if getattr(self, first) is not None and getattr(self, second) is not None:
+                raise KeyFault(second, f"only one of {first} and {second} can be given")
+        for key in self.COLUMNS:
+            values = getattr(self, key)
+            if key == "time" or values is None:
+                continue
+            must_match(key, values, self.time, "times")
+            if self.repeat and abs(values[-1] - values[0]) > _CLOSED * max(map(abs, values)):
+                raise KeyFault("repeat", f"the last value of {key} must equal the first one")
         return self
-
-    def _closes(self, key: str, values: tuple[float, ...]) -> None:
-        """Reject periodic values that differ between start and end."""
-        if self.repeat and abs(values[-1] - values[0]) > _CLOSED * max(map(abs, values)):
-            raise KeyFault("repeat", f"the last value of {key} must equal the first one")
 
     @property
     def course(self) -> TimeCourse:
@@ -103,10 +110,8 @@ class FactorHistory(TimeHistory):
 
     @model_validator(mode="after")
     def _fits(self):
-        must_match("factor", self.factor, self.time, "times")
         if not any(self.factor):
             raise KeyFault("factor", "at least one value must be greater than 0")
-        self._closes("factor", self.factor)
         return self
 
     @property
@@ -128,12 +133,6 @@ class TemperatureHistory(TimeHistory):
 
     temperature: tuple[units.Temperature, ...]
 
-    @model_validator(mode="after")
-    def _fits(self):
-        must_match("temperature", self.temperature, self.time, "times")
-        self._closes("temperature", self.temperature)
-        return self
-
     @property
     def function(self) -> TimeFunction:
         """Temperature [K] as a function of time."""
@@ -150,6 +149,7 @@ class History(TimeHistory):
         "tangential_force": "N",
         "tangential_displacement": "um",
     }
+    ALTERNATIVES = ("force", "approach"), ("tangential_force", "tangential_displacement")
 
     force: tuple[units.LeastForce, ...] | None = None
     approach: tuple[units.Length, ...] | None = None
@@ -159,15 +159,6 @@ class History(TimeHistory):
 
     @model_validator(mode="after")
     def _fits(self):
-        pairs = ("force", "approach"), ("tangential_force", "tangential_displacement")
-        for first, second in pairs:
-            if getattr(self, first) is not None and getattr(self, second) is not None:
-                raise KeyFault(second, f"only one of {first} and {second} can be given")
-        for key in (key for pair in pairs for key in pair):
-            values = getattr(self, key)
-            if values is not None:
-                must_match(key, values, self.time, "times")
-                self._closes(key, values)
         if self.force is not None and not any(self.force):
             raise KeyFault("force", "at least one value must be greater than 0 N")
         start = self.cycle_start
@@ -179,10 +170,7 @@ class History(TimeHistory):
                     f"{self.time[-1]:g} s, the ends of time",
                 )
             if not self.loads.ends_as(start):
-                raise KeyFault(
-                    "cycle_start",
-                    "the loads at both ends of the cycle must be equal",
-                )
+                raise KeyFault("cycle_start", "the loads at both ends of the cycle must be equal")
         return self
 
     @property

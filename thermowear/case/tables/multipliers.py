@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, Generic, TypeVar
 
 from pydantic import Field, model_validator
 
@@ -13,6 +13,8 @@ from ..values.section import KeyFault, Number, Section
 
 Positive = Annotated[Number, Field(gt=0.0)]
 NotNegative = Annotated[Number, Field(ge=0.0)]
+At = TypeVar("At", bound=float)
+Factor = TypeVar("Factor", bound=float)
 
 
 def must_increase(key: str, values: tuple[float, ...]) -> None:
@@ -29,7 +31,7 @@ def must_match(key: str, values: tuple[float, ...], places: tuple[float, ...], w
         raise KeyFault(key, f"has {len(values)} values for {len(places)} {what}")
 
 
-class MultiplierTable(Section):
+class MultiplierTable(Section, Generic[At, Factor]):
     """Piecewise linear factor of one variable, constant beyond the ends.
 
     Attributes
@@ -39,8 +41,8 @@ class MultiplierTable(Section):
     factor : tuple of float
     """
 
-    at: tuple[float, ...]
-    factor: tuple[Positive, ...]
+    at: tuple[At, ...]
+    factor: tuple[Factor, ...]
 
     @model_validator(mode="after")
     def _fits(self):
@@ -54,28 +56,11 @@ class MultiplierTable(Section):
         return Table1D(self.at, self.factor)
 
 
-class TemperatureTable(MultiplierTable):
-    """Factor that depends on the temperature [K]."""
-
-    at: tuple[units.Temperature, ...]
-
-
-class ExpansionTable(TemperatureTable):
-    """Factor of the secant coefficient of expansion, which may be 0."""
-
-    factor: tuple[NotNegative, ...]
-
-
-class PressureTable(MultiplierTable):
-    """Factor that depends on the pressure [Pa]."""
-
-    at: tuple[units.LeastPressure, ...]
-
-
-class SpeedTable(MultiplierTable):
-    """Factor that depends on the sliding speed [m/s]."""
-
-    at: tuple[units.Speed, ...]
+TemperatureTable = MultiplierTable[units.Temperature, Positive]
+PressureTable = MultiplierTable[units.LeastPressure, Positive]
+SpeedTable = MultiplierTable[units.Speed, Positive]
+ExpansionTable = MultiplierTable[units.Temperature, NotNegative]
+"""Factor of the secant coefficient of expansion, which may be 0."""
 
 
 class MultiplierTables(Section):
@@ -88,11 +73,9 @@ class MultiplierTables(Section):
     @property
     def depends_on(self) -> tuple[str, ...]:
         """Variables with a table: temperature, pressure, speed."""
-        names = ("temperature", "pressure", "speed")
-        return tuple(name for name in names if getattr(self, name) is not None)
+        return tuple(name for name, table in self if table is not None)
 
     @property
     def multipliers(self) -> Multipliers:
         """Factors as a law."""
-        tables = (self.temperature, self.pressure, self.speed)
-        return Multipliers(*(None if table is None else table.table for table in tables))
+        return Multipliers(**{name: getattr(self, name).table for name in self.depends_on})

@@ -29,7 +29,7 @@ from ...laws.registry import Role
 from ..values import units
 from ..values.section import KeyFault, Number, Section
 from ..values.units import expression, quantity
-from .multipliers import must_increase, must_match
+from .tabulated import must_increase, must_match
 
 _COEFFICIENT: TypeAdapter[float] = TypeAdapter(Annotated[Number, Field(ge=0.0)])
 _CONDUCTANCE: TypeAdapter[float] = TypeAdapter(units.HeatTransfer)

@@ -10,7 +10,7 @@ from ...errors import quoted
 from ..values import units
 from ..values.section import Number, Section
 from .geometry import Geometry
-from .multipliers import ExpansionTable, TemperatureTable
+from .tabulated import ExpansionTable, TemperatureTable
 
 
 class Properties(Section):

@@ -16,13 +16,11 @@ from ...laws.plausible import typical_value
 from ..values import units
 from ..values.section import Number, Section, Switch, number_or
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
-from .driving import HolderTable, LoadTable, MotionTable
+from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .geometry import AnyGeometry, Pressing
-from .heat import HeatTable
-from .history import FactorHistory, TimeHistory
 from .laws import Friction, law_of
 from .materials import BodyTable, Properties, material_of
-from .multipliers import MultiplierTables
+from .tabulated import FactorHistory, MultiplierTables, TimeHistory
 from .wear import WearTable
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]

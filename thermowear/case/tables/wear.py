@@ -23,7 +23,7 @@ from ...laws.interfaces import Law
 from ..values.section import KeyFault, Number, Section, number_or
 from ..values.units import parse, registry
 from .laws import RateOfWear, wear_rate_of
-from .multipliers import MultiplierTables
+from .tabulated import MultiplierTables
 
 _EXAMPLE = "2e-7 1/MPa"
 _OF_POWER = ("coefficient", "per", "pressure_exponent", "velocity_exponent")

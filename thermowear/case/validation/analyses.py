@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import reduce
 from typing import Any
 
 from ..tables.analyses import Fretting, Reciprocating, Transient
-from ..tables.history import History
 from ..tables.schema import Case
+from ..tables.tabulated import History
 from ..values.section import Fault
 
-_ONLY_IN = {
+_ONLY_IN: dict[str, tuple[str, ...]] = {
     "load.history": ("transient", "fretting"),
     "wear.cycles": ("fretting", "reciprocating"),
     "wear.max_jump": ("fretting", "reciprocating"),
@@ -48,7 +47,10 @@ def supported(case: Case) -> Iterator[Fault]:
 
 def _given(case: Case, path: str) -> Any:
     """Value at the path of a key."""
-    return reduce(lambda table, key: getattr(table, key, None), path.split("."), case)
+    found: Any = case
+    for key in path.split("."):
+        found = getattr(found, key, None)
+    return found
 
 
 def condensed_only(case: Case) -> Iterator[Fault]:

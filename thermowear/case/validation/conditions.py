@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..tables.conditions import HeatTable
 from ..tables.geometry import Geometry
-from ..tables.heat import HeatTable
 from ..tables.schema import Case
 from ..values.section import Fault
 

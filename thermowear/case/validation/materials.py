@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..tables.materials import Properties
 from ..tables.schema import Case
 from ..values.section import Fault
 
@@ -36,7 +37,8 @@ def materials(case: Case) -> Iterator[Fault]:
         name = part if part in case.bodies else geometry.zones.get(part, part)
         if name not in case.bodies:
             continue
-        path, table, in_set = f"bodies.{name}", case.bodies[name], geometry.set_of.get(part)
+        table: Properties = case.bodies[name]
+        path, in_set = f"bodies.{name}", geometry.set_of.get(part)
         if in_set is not None:
             path, table = f"{path}.materials.{in_set}", case.bodies[name].materials[in_set]
         own = part == name or in_set is not None

@@ -1,4 +1,4 @@
-"""Expression trees, evaluated with their derivative (forward-mode differentiation).
+"""Expressions as trees, evaluated with their derivative (forward-mode differentiation).
 
 A node is a constant in SI, the name of a variable, or a tuple of an operation and its operands:
 ``"+"`` and ``"*"`` have any number of them, ``"-"`` (negative) and ``"/"`` (reciprocal) one,
@@ -112,3 +112,41 @@ _OPERATIONS: dict[str, Callable[..., Pair]] = {
     **{name: partial(_call, function) for name, function in FUNCTIONS.items()},
     **{name: _repeated(partial(_extreme, keeps)) for name, keeps in EXTREMES.items()},
 }
+
+
+@dataclass(frozen=True)
+class Expression:
+    """Arithmetic expression in physical variables.
+
+    Attributes
+    ----------
+    text : str
+        Text as written.
+    node : Node
+    variables : frozenset of str
+        Variables that occur in it.
+    """
+
+    text: str
+    node: Node
+    variables: frozenset[str]
+
+    @property
+    def constant(self) -> float | None:
+        """Value of an expression without variables."""
+        return self.node if isinstance(self.node, float) else None
+
+    def value(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Value in SI at arrays of the variables, of their common shape."""
+        return self._both(at, "")[0]
+
+    def slope(self, at: Mapping[str, np.ndarray], by: str) -> np.ndarray:
+        """Derivative with respect to a variable, in SI."""
+        return self._both(at, by)[1]
+
+    def _both(self, at: Mapping[str, np.ndarray], by: str) -> tuple[np.ndarray, np.ndarray]:
+        shape = np.broadcast_shapes(*(np.shape(values) for values in at.values()))
+        arrays = {name: np.asarray(values, dtype=float) for name, values in at.items()}
+        with np.errstate(all="ignore"):  # the caller checks for finite values
+            value, slope = evaluate(self.node, arrays, by)
+        return np.zeros(shape) + value, np.zeros(shape) + slope

@@ -16,8 +16,20 @@ _FREE = {
     "3d": ("x", "y", "z", "rotation-x", "rotation-y"),
 }
 """Free rigid motions of the holder by model."""
+_NEEDS_FREE = {
+    "approach": ("z", "moves the holder along the load direction; add"),
+    "tangential_force": ("x", "requires a holder that is free along x: add"),
+}
+"""Free motion of the holder that a load requires, and the message without it."""
+_NEEDS_MODEL = {"moments": "3d", "moment": "plane", "lever": "plane"}
+"""Models that a load requires."""
 SURFACES = ("cooling", "temperature", "flux", "power")
 """Keys of heat that are tables by surface."""
+_EXCLUSIVE = (
+    *((table, "temperature") for table in ("cooling", "flux", "power")),
+    ("power", "flux"),
+)
+"""Pairs of these tables of which a surface can have only one."""
 
 
 def holder(case: Case) -> Iterator[Fault]:
@@ -49,56 +61,45 @@ def holder(case: Case) -> Iterator[Fault]:
 def load(case: Case) -> Iterator[Fault]:
     """One normal load, compatible with the free motions of the holder."""
     load, history, free = case.load, case.load.history, case.holder.free
-    given = [x is not None for x in (load.force, load.mean_pressure, load.approach)]
-    turns_only = free == ("rotation",)
+    given = sum(x is not None for x in (load.force, load.mean_pressure, load.approach))
+    wrong = None
     if history is not None and (history.force is not None or history.approach is not None):
-        if sum(given) > 0:
-            yield "load", "load.history already prescribes the force or the approach"
-    elif turns_only and load.moment is not None:
-        if sum(given) > 0 or load.lever is not None or load.point is not None:
-            yield (
-                "load",
-                "a holder that can only rotate needs either a moment, or a force with its lever",
-            )
+        if given:
+            wrong = "load.history already prescribes the force or the approach"
+    elif free == ("rotation",) and load.moment is not None:
+        if given or load.lever is not None or load.point is not None:
+            wrong = "a holder that can only rotate needs either a moment, or a force with its lever"
     elif not free:
-        if sum(given) > 0 or not (load.surfaces or load.pressure):
-            yield (
-                "load",
+        if given or not (load.surfaces or load.pressure):
+            wrong = (
                 "a fixed holder (holder.free = []) needs load.surfaces or load.pressure, and "
-                "nothing else",
+                "nothing else"
             )
     elif load.surfaces:
         yield "load.surfaces", "requires a fixed holder (holder.free = [])"
-    elif sum(given) > 1 or (sum(given) == 0 and not load.pressure):
-        yield "load", "needs exactly one of force, mean_pressure and approach"
+    elif given > 1 or (given == 0 and not load.pressure):
+        wrong = "needs exactly one of force, mean_pressure and approach"
+    if wrong is not None:
+        yield "load", wrong
     if load.mean_pressure is not None and case.geometry.contact_area() is None:
         yield "load.mean_pressure", "this geometry has no nominal contact area; give the force"
-    if not free and case.analysis.type == "steady":
-        yield (
-            "holder.free",
-            "is empty: no steady state, as wear unloads the contact; use a transient analysis",
-        )
-    if load.approach is not None and case.analysis.type == "steady":
-        yield (
-            "load.approach",
-            "no steady state, as wear unloads the contact; a steady analysis needs a force",
-        )
-    if load.approach is not None and "z" not in free:
-        yield "load.approach", 'moves the holder along the load direction; add "z" to holder.free'
+    if case.analysis.type == "steady":
+        unloads = "no steady state, as wear unloads the contact;"
+        if not free:
+            yield "holder.free", f"is empty: {unloads} use a transient analysis"
+        if load.approach is not None:
+            yield "load.approach", f"{unloads} a steady analysis needs a force"
     if load.lever is not None and load.point is not None:
         yield "load.lever", "only one of lever and point can be given"
     for key in ("lever", "point", "moment", "moments"):
         if getattr(load, key) is not None and not case.holder.turns:
             yield f"load.{key}", "requires a holder that can rotate (holder.free)"
-    needs = {"moments": "3d", "moment": "plane", "lever": "plane"}
-    for key, model in needs.items():
+    for key, model in _NEEDS_MODEL.items():
         if getattr(load, key) is not None and model not in case.model:
             yield f"load.{key}", f"requires a {model} model"
-    if load.tangential_force is not None and "x" not in free:
-        yield (
-            "load.tangential_force",
-            'requires a holder that is free along x: add "x" to holder.free',
-        )
+    for key, (direction, text) in _NEEDS_FREE.items():
+        if getattr(load, key) is not None and direction not in free:
+            yield f"load.{key}", f'{text} "{direction}" to holder.free'
 
 
 def surface_pressure(case: Case) -> Iterator[Fault]:
@@ -186,20 +187,15 @@ def _surfaces(case: Case, heat: HeatTable) -> Iterator[Fault]:
         yield "heat", "needs heat.cooling or heat.temperature: there is no heat sink"
     if heat.ambient_history is not None and not heat.cooling and not leaves:
         yield "heat.ambient_history", "has no effect: no surface has heat.cooling"
-    for table in ("cooling", "flux", "power"):
+    for table, taken in _EXCLUSIVE:
         for name in getattr(heat, table):
-            if name in heat.temperature:
-                yield f"heat.{table}.{name}", "this surface already has a prescribed temperature"
-    for name in heat.power:
-        if name in heat.flux:
-            yield f"heat.power.{name}", "this surface already has a prescribed flux"
+            if name in getattr(heat, taken):
+                yield f"heat.{table}.{name}", f"this surface already has a prescribed {taken}"
     for table in SURFACES:
         for name in getattr(heat, table):
             if name in case.geometry.contact:
-                yield (
-                    f"heat.{table}.{name}",
-                    "a contact face exchanges heat with the other body only",
-                )
+                text = "a contact face exchanges heat with the other body only"
+                yield f"heat.{table}.{name}", text
 
 
 def _not_advected(case: Case) -> str:

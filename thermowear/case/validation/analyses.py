@@ -22,7 +22,7 @@ _NOT_IN = {
     "load.pressure": ("fretting",),
 }
 """Analyses that do not support a table."""
-CONSTANT = ("fretting", "reciprocating", "stability")
+_CONSTANT = ("fretting", "reciprocating", "stability")
 """Analyses in which all properties are constant."""
 _FACTORS = ("conductivity_factor", "expansion_factor")
 _UNVARIED = ("moment", "moments", "tangential_force", "surfaces")
@@ -88,7 +88,7 @@ def _factors(case: Case) -> Iterator[str]:
 
 def varying(case: Case) -> Iterator[Fault]:
     """Variables of laws and tables of factors that are available in the analysis."""
-    type_, constant = case.analysis.type, case.analysis.type in CONSTANT
+    type_, constant = case.analysis.type, case.analysis.type in _CONSTANT
     tables = {"contact.friction_factor": case.contact.friction_factor}
     tables |= {f"wear.{name}.factor": law.factor for name, law in case.wear.items()}
     for path, table in tables.items():

@@ -51,7 +51,7 @@ def parse_expression(
     ValueError
         One-line message with the position of the fault in the text.
     """
-    found = _Parser(text, known, units).parse()
+    found = _ExpressionParser(text, known, units).parse()
     dimension = units(unit)[1] if unit else Dimension()
     if not found.dimension.same(dimension):
         needed = unit or "a dimensionless number"
@@ -76,7 +76,7 @@ class _Parsed(NamedTuple):
         return self.node if isinstance(self.node, float) else None
 
 
-class _Parser:
+class _ExpressionParser:
     """Parser of one expression, see `parse_expression`."""
 
     def __init__(self, text: str, variables: Mapping[str, Dimension], units: Units):

@@ -63,11 +63,20 @@ class MultiplierTable(Section, Generic[At, Factor]):
         return Table1D(self.at, self.factor)
 
 
-TemperatureTable = MultiplierTable[units.Temperature, Positive]
-PressureTable = MultiplierTable[units.LeastPressure, Positive]
-SpeedTable = MultiplierTable[units.Speed, Positive]
-ExpansionTable = MultiplierTable[units.Temperature, NotNegative]
-"""Factor of the secant coefficient of expansion, which may be 0."""
+class TemperatureTable(MultiplierTable[units.Temperature, Positive]):
+    """Factor that depends on the temperature [K]."""
+
+
+class ExpansionTable(MultiplierTable[units.Temperature, NotNegative]):
+    """Factor of the secant coefficient of expansion, which may be 0."""
+
+
+class PressureTable(MultiplierTable[units.LeastPressure, Positive]):
+    """Factor that depends on the pressure [Pa]."""
+
+
+class SpeedTable(MultiplierTable[units.Speed, Positive]):
+    """Factor that depends on the sliding speed [m/s]."""
 
 
 class MultiplierTables(Section):

@@ -9,7 +9,7 @@ from dolfinx import fem
 
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial, kinematics_of
-from thermowear.case.tables.driving import MotionTable
+from thermowear.case.tables.conditions import MotionTable
 from thermowear.contact.operators.sliding import sliding
 from thermowear.parallel import sum_over_ranks
 

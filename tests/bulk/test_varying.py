@@ -12,7 +12,7 @@ from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.heat.varying import thermal_forces, varying_conduction, varying_expansion
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.case.tables.multipliers import ExpansionTable, TemperatureTable
+from thermowear.case.tables.tabulated import ExpansionTable, TemperatureTable
 
 from ..conftest import two_blocks
 

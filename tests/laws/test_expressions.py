@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from thermowear.case.values.expressions import expression
+from thermowear.case.values.units import expression
 
 from ..conftest import examples
 

@@ -5,14 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.case.values.expressions import expression
+from thermowear.case.values.units import expression
 from thermowear.errors import CaseError, ComputationError
 from thermowear.laws import LocalState, PowerWear
 from thermowear.laws.by_name import registered_laws
-from thermowear.laws.coefficients.conductance import PressureConductance, harmonic_mean
-from thermowear.laws.coefficients.constant import Constant
-from thermowear.laws.coefficients.multipliers import Multiplied, Multipliers
-from thermowear.laws.coefficients.table1d import Table1D
+from thermowear.laws.coefficients import (
+    Constant,
+    Multiplied,
+    Multipliers,
+    PressureConductance,
+    Table1D,
+    harmonic_mean,
+)
 from thermowear.laws.formulas import FormulaLaw, FormulaWear
 from thermowear.laws.from_python import interface_law, wear_rate
 from thermowear.laws.plausible import require_interface_law, require_wear_rate

@@ -7,7 +7,7 @@ import pint
 import pytest
 
 import thermowear as tw
-from thermowear.laws.coefficients.constant import Constant
+from thermowear.laws.coefficients import Constant
 from thermowear.laws.interfaces import LocalState
 
 from ..case.starter import STEADY

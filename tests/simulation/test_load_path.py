@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from thermowear.case.tables.history import History
+from thermowear.case.tables.tabulated import History
 from thermowear.model import FrettingAnalysis
 from thermowear.simulation.cycles.load_path import (
     by_fixed_jumps,

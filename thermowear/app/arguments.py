@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from .. import __version__
 from ..errors import CaseError
@@ -22,18 +23,13 @@ def parser() -> argparse.ArgumentParser:
 
     run = _command(commands, "run", "compute a case")
     _add_case(run)
-    run.add_argument("-o", "--output", metavar="DIR", type=Path, help="default: results/<case>")
+    _add_output(run, "DIR", help="default: results/<case>")
     existing = run.add_mutually_exclusive_group()
-    existing.add_argument("--overwrite", action="store_true", help="replace existing results")
-    existing.add_argument(
-        "--resume", action="store_true", help="continue the run that was stopped in DIR"
-    )
+    _add_flag(existing, "--overwrite", "replace existing results")
+    _add_flag(existing, "--resume", "continue the run that was stopped in DIR")
     run.add_argument("--no-pictures", dest="pictures", action="store_false")
-    run.add_argument(
-        "--accuracy",
-        action="store_true",
-        help="repeat the case one degree lower and higher, and print all three side by side",
-    )
+    compared = "repeat the case one degree lower and higher, and print all three side by side"
+    _add_flag(run, "--accuracy", compared)
 
     sweep = _command(commands, "sweep", "compute all combinations of values of keys")
     _add_case(sweep)
@@ -44,10 +40,8 @@ def parser() -> argparse.ArgumentParser:
         required=True,
         help="a key and its values, such as load.force='1 kN,2 kN'; can be repeated",
     )
-    sweep.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="default: results/<case>-sweep"
-    )
-    sweep.add_argument("--overwrite", action="store_true", help="replace existing results")
+    _add_output(sweep, "DIR", help="default: results/<case>-sweep")
+    _add_flag(sweep, "--overwrite", "replace existing results")
     sweep.add_argument("--no-pictures", dest="pictures", action="store_false")
     sweep.add_argument(
         "--processes",
@@ -60,40 +54,35 @@ def parser() -> argparse.ArgumentParser:
 
     init = _command(commands, "init", "write a starter case to edit")
     init.add_argument("name", metavar="NAME")
-    init.add_argument("-o", "--output", metavar="FILE", type=Path, help="default: NAME.toml")
-    init.add_argument("--overwrite", action="store_true")
+    _add_output(init, "FILE", help="default: NAME.toml")
+    _add_flag(init, "--overwrite")
 
-    validate = _command(commands, "validate", "check a case without computing it")
-    _add_case(validate)
+    _add_case(_command(commands, "validate", "check a case without computing it"))
 
     mesh = _command(commands, "mesh", "write the mesh of a case (.msh .vtu .xdmf .inp)")
     _add_case(mesh)
-    mesh.add_argument("-o", "--output", metavar="FILE", type=Path, required=True)
-    mesh.add_argument("--overwrite", action="store_true")
+    _add_output(mesh, "FILE", required=True)
+    _add_flag(mesh, "--overwrite")
 
     shape = _command(commands, "shape", "write the steady worn shape of a contact face")
     _add_case(shape)
-    shape.add_argument("-o", "--output", metavar="FILE", type=Path, required=True)
+    _add_output(shape, "FILE", required=True)
     shape.add_argument(
         "--body", metavar="NAME", help="body whose face is shaped; default: the body in the holder"
     )
-    shape.add_argument("--overwrite", action="store_true")
+    _add_flag(shape, "--overwrite")
 
     verify = _command(commands, "verify", "verify against reference solutions")
     verify.add_argument("ids", metavar="ID", nargs="*", help="default: all but the slow ones")
-    verify.add_argument(
-        "--slow", action="store_true", help="include cases that take more than two minutes"
-    )
-    verify.add_argument("--json", action="store_true", help="print the checks as JSON")
+    _add_flag(verify, "--slow", "include cases that take more than two minutes")
+    _add_flag(verify, "--json", "print the checks as JSON")
 
     plot = _command(commands, "plot", "redraw the pictures of a results folder")
     plot.add_argument("folder", metavar="DIR", type=Path)
 
     animate = _command(commands, "animate", "animate a run with analysis.frames")
     animate.add_argument("folder", metavar="DIR", type=Path)
-    animate.add_argument(
-        "-o", "--output", metavar="FILE", type=Path, help=".gif or .mp4; default: DIR/animation.gif"
-    )
+    _add_output(animate, "FILE", help=".gif or .mp4; default: DIR/animation.gif")
     animate.add_argument("--fps", metavar="N", type=_rate, default=8.0, help="frames per second")
 
     report = _command(commands, "report", "write report.html of a results folder")
@@ -119,6 +108,14 @@ def _command(commands, name: str, text: str) -> argparse.ArgumentParser:
     command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
     command.set_defaults(command=name)
     return command
+
+
+def _add_flag(command, name: str, text: str | None = None) -> None:
+    command.add_argument(name, action="store_true", help=text)
+
+
+def _add_output(command: argparse.ArgumentParser, metavar: str, **settings: Any) -> None:
+    command.add_argument("-o", "--output", metavar=metavar, type=Path, **settings)
 
 
 def _add_case(command: argparse.ArgumentParser) -> None:

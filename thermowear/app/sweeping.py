@@ -74,19 +74,11 @@ def sweep(
 
 @dataclass(frozen=True)
 class Job:
-    """Variant to be computed by any process."""
+    """Variant to be computed by any process: plain tables, as quantities belong to a process."""
 
     number: int
-    case: Case
+    tables: dict[str, Any]
     path: Path
-
-    def __reduce__(self):
-        """Pickle the case as plain tables, as quantities belong to a process's unit registry."""
-        return _job, (self.number, as_plain(self.case), self.path)
-
-
-def _job(number: int, tables: dict[str, Any], path: Path) -> Job:
-    return Job(number, load(tables), path)
 
 
 @dataclass(frozen=True)
@@ -116,7 +108,10 @@ def run_sweep(chosen) -> int:
     path = chosen.output or Path("results") / f"{chosen.case.stem}-sweep"
     folder = SweepFolder(path, over, keys, chosen.overwrite)
     report = _Report(folder, found)
-    jobs = [Job(v.number, v.case, folder.variant(v.number)) for v in found]
+    jobs = [
+        Job(v.number, plain, folder.variant(v.number))
+        for v, plain in zip(found, tables, strict=True)
+    ]
     try:
         _compute_all(found, jobs, chosen.processes, report)
     except BaseException as error:
@@ -170,9 +165,9 @@ def _computed(series, job: Job) -> Ended:
     began, phases, summary = time.perf_counter(), Phases(), None
     problem: BaseException | None = None
     try:
-        folder = ResultsFolder(job.path, as_plain(job.case), 1, overwrite=True)
+        folder = ResultsFolder(job.path, job.tables, 1, overwrite=True)
         try:
-            observer, case = Recorder(series.comm, folder), job.case
+            observer, case = Recorder(series.comm, folder), load(job.tables)
             result = series.run(model_of(case), analysis_of(case), observer, phases)
             with phases("write"):
                 folder.finish(result, phases.seconds)

@@ -1,8 +1,7 @@
 """Case files: schema, units, reading and validation, without dolfinx."""
 
 from .loading import load
-from .tables.geometry import Geometry
-from .tables.geometry_type import known_geometries
+from .tables.geometry import Geometry, known_geometries
 from .tables.schema import Case, as_plain
 
 __all__ = ["Case", "Geometry", "as_plain", "known_geometries", "load"]

@@ -15,8 +15,7 @@ from ..user_files import read_text
 from .tables.schema import Case
 from .validation.checks import check
 from .values.bounds import LARGEST_FILE, MOST_PARTS, check_keys, check_tables
-from .values.paths import FOLDER
-from .values.section import KeyFault, Section
+from .values.section import FOLDER, KeyFault, Section
 
 _MESSAGES = {
     "missing": "missing",

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .coefficients.constant import Constant
+from .coefficients import Constant
 from .formulas import FormulaLaw, FormulaWear
 from .interfaces import Law
 from .plain_function import PlainFunction

@@ -9,9 +9,13 @@ from typing import Literal
 
 import numpy as np
 
-from ..laws.coefficients.conductance import PressureConductance, harmonic_mean
-from ..laws.coefficients.constant import Constant
-from ..laws.coefficients.multipliers import Multiplied, Multipliers
+from ..laws.coefficients import (
+    Constant,
+    Multiplied,
+    Multipliers,
+    PressureConductance,
+    harmonic_mean,
+)
 from ..laws.interfaces import Law
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
@@ -27,7 +31,7 @@ class HardnessConductance:
     Attributes
     ----------
     coefficient : float
-        [1/m], see `laws.coefficients.conductance`.
+        [1/m], see `laws.coefficients`.
     """
 
     coefficient: float

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from ..errors import CaseError
-from ..laws.coefficients.table1d import Table1D
+from ..laws.coefficients import Table1D
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..laws.coefficients.multipliers import Multipliers
+from ..laws.coefficients import Multipliers
 from ..laws.distribution import Distribution, DutyFactor, InPlace, Rings, UniformTrack, rings
 from ..laws.interfaces import Law
 

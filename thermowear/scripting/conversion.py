@@ -8,11 +8,10 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 from ..case.values import units
-from ..case.values.expressions import expression
-from ..case.values.units import in_python
+from ..case.values.units import expression, in_python
 from ..errors import CaseError
 from ..laws import load_history, time_course
-from ..laws.coefficients.constant import Constant
+from ..laws.coefficients import Constant
 from ..laws.formulas import FormulaLaw, FormulaWear
 from ..laws.from_python import interface_law, wear_rate
 from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law

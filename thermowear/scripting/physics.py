@@ -9,7 +9,7 @@ from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
 from ..laws import power_wear
-from ..laws.coefficients.table1d import Table1D
+from ..laws.coefficients import Table1D
 from ..laws.time_course import TimeFunction
 from ..model import heat, interface, material
 from .body import BodySurface, require_surface

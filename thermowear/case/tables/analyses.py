@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
-from ...errors import quoted
 from ..values import units
-from ..values.section import KeyFault, Number, Section
+from ..values.section import KeyFault, Number, Section, number_or
 
 
 class Initial(Section):
@@ -28,12 +27,13 @@ _MINUTES = 120.0  # s; writing a state takes milliseconds
 Frames = Annotated[int, Field(ge=0, le=1000, strict=True)]
 
 
-def _check_distinct(output_times: tuple[float, ...]) -> None:
+def _distinct(output_times: tuple[float, ...]) -> tuple[float, ...]:
     """Reject output times that would be written to the same file."""
     counts = Counter(f"{t:g}" for t in output_times)
     twice = [name for name, count in counts.items() if count > 1]
     if twice:
-        raise KeyFault("output_times", f"contains {twice[0]} s twice (to six digits)")
+        raise ValueError(f"contains {twice[0]} s twice (to six digits)")
+    return output_times
 
 
 class Timed(Section):
@@ -43,7 +43,7 @@ class Timed(Section):
     end_time: units.Time | None = None
     until: Literal["steady"] | None = None
     steady_tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 1e-3
-    output_times: tuple[units.Time, ...] = ()
+    output_times: Annotated[tuple[units.Time, ...], AfterValidator(_distinct)] = ()
     tolerance: Annotated[Number, Field(ge=1e-9, le=0.1)] = 1e-4
     max_steps: Annotated[int, Field(ge=1, strict=True)] = 10_000
     frames: Frames = 0
@@ -51,7 +51,6 @@ class Timed(Section):
 
     @model_validator(mode="after")
     def _outputs(self):
-        _check_distinct(self.output_times)
         if self.end_time is not None:
             late = [t for t in self.output_times if t > self.end_time]
             if late:
@@ -101,11 +100,11 @@ class Stability(Section):
     type: Literal["stability"]
 
 
-def _jump(value: Any) -> Any:
-    whole = isinstance(value, int) and not isinstance(value, bool)
-    if value == "auto" or (whole and value >= 1):
-        return value
-    raise ValueError(f'found {quoted(value)}; must be "auto" or a whole number, at least 1')
+_JUMP = number_or(
+    "auto",
+    where=lambda jump: isinstance(jump, int) and jump >= 1,
+    allowed='"auto" or a whole number, at least 1',
+)
 
 
 class Fretting(Section):
@@ -120,14 +119,9 @@ class Fretting(Section):
 
     type: Literal["fretting"]
     increments: Annotated[int, Field(ge=1, strict=True)] = 20
-    output_times: tuple[units.Instant, ...] = ()
+    output_times: Annotated[tuple[units.Instant, ...], AfterValidator(_distinct)] = ()
     cycles: Annotated[int, Field(ge=1, strict=True)] | None = None
-    jump: Annotated[int | Literal["auto"], BeforeValidator(_jump)] = "auto"
+    jump: Annotated[int | Literal["auto"], _JUMP] = "auto"
     tolerance: Annotated[Number, Field(ge=1e-9, le=0.1)] = 1e-2
     frames: Frames = 0
     checkpoint_every: units.Time = _MINUTES
-
-    @model_validator(mode="after")
-    def _outputs(self):
-        _check_distinct(self.output_times)
-        return self

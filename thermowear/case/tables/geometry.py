@@ -1,24 +1,25 @@
-"""Base class of geometries: keys in the case file and interface to the program.
+"""Base class of geometries: keys in the case file and interface to the program; their selection.
 
 Each geometry is a subclass in the room ``geometry``.
 """
 
 from __future__ import annotations
 
+import importlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, get_args
+from typing import Annotated, Any, ClassVar, get_args
 
-from pydantic import model_validator
+from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
-from ..values.paths import UserFile
-from ..values.section import KeyFault, Section
+from ...errors import quoted
+from ..values.section import KeyFault, Section, UserFile
 from ..values.units import Length
 
 KNOWN: dict[str, type[Geometry]] = {}
-"""Geometries by ``geometry.type``; see `geometry_type.known_geometries`."""
+"""Geometries by ``geometry.type``; see `known_geometries`."""
 
 _APART = 1e7
 """Largest ratio of two lengths of a geometry: coordinates have 16 digits, meshes few layers."""
@@ -155,12 +156,9 @@ class Geometry(Section):
 
     def sizes(self) -> dict[str, float]:
         """Lengths that the mesh is made from, by key [m]."""
-        keys = [key for key, field in type(self).model_fields.items() if _is_length(field)]
-        return {
-            key: getattr(self, key)
-            for key in keys
-            if key not in self.unmeshed and getattr(self, key)
-        }
+        fields = type(self).model_fields.items()
+        keys = (k for k, field in fields if k not in self.unmeshed and _is_length(field))
+        return {key: length for key in keys if (length := getattr(self, key))}
 
     def check_less(self, key: str, other: str) -> None:
         """Reject a length that is not less than another one."""
@@ -245,7 +243,7 @@ class Geometry(Section):
 
         Parameters
         ----------
-        mesh : thermowear.case.tables.schema.Mesh
+        mesh : thermowear.case.tables.schema.MeshTable
         zone : tuple of float, optional
             Contact zone as a range of x; element ends lie at both ends of it unless it is the whole
             face.
@@ -275,3 +273,28 @@ def _is_length(field: FieldInfo) -> bool:
     """Test whether a key holds a length greater than 0, or may do so."""
     optional = (getattr(part, "__metadata__", ()) for part in get_args(field.annotation))
     return any(Length.__metadata__[0] in marks for marks in (field.metadata, *optional))
+
+
+def known_geometries() -> dict[str, type[Geometry]]:
+    """All geometries that a case file can name, sorted by name.
+
+    Imports their room by name where this has not been done yet, as that room imports this one.
+    """
+    importlib.import_module("thermowear.geometry.geometries")
+    return dict(sorted(KNOWN.items()))
+
+
+def _pick(data: Any, info: ValidationInfo) -> Any:
+    if isinstance(data, Geometry):
+        return data
+    if not isinstance(data, dict):
+        raise ValueError(f"found {quoted(data)}; must be a table")
+    known, name = known_geometries(), data.get("type")
+    if "type" not in data:
+        raise KeyFault("type", f"missing; one of: {', '.join(known)}")
+    if not isinstance(name, str) or name not in known:
+        raise KeyFault("type", f"found {quoted(name)}; must be one of: {', '.join(known)}")
+    return known[name].model_validate(data, context=info.context)
+
+
+AnyGeometry = Annotated[SerializeAsAny[Geometry], BeforeValidator(_pick)]

@@ -10,7 +10,7 @@ from ...errors import quoted
 from ..values import units
 from ..values.section import Number, Section
 from .geometry import Geometry
-from .multipliers import ExpansionTable, TemperatureTable
+from .tabulated import ExpansionTable, TemperatureTable
 
 
 class Properties(Section):
@@ -53,29 +53,6 @@ class BodyTable(Properties):
         return bool(self.model_fields_set - {"materials"})
 
 
-def resolve_like(bodies: dict[str, BodyTable], name: str) -> str:
-    """Name of the body at the end of a chain of ``like`` references.
-
-    Raises
-    ------
-    ValueError
-        If the chain names an unknown body, or is circular.
-    """
-    seen = [name]
-    while (other := bodies[seen[-1]].like) is not None:
-        check_named(bodies, other)
-        if other in seen:
-            raise ValueError(f"like = {quoted(other)} is a circular reference")
-        seen.append(other)
-    return seen[-1]
-
-
-def check_named(bodies: dict[str, BodyTable], name: str) -> None:
-    """Raise a `ValueError` if `like` names no body."""
-    if name not in bodies:
-        raise ValueError(f"like = {quoted(name)} names no body; one of: {', '.join(bodies)}")
-
-
 def material_of(
     geometry: Geometry, bodies: dict[str, BodyTable], part: str
 ) -> tuple[str, Properties]:
@@ -91,12 +68,17 @@ def material_of(
     chosen = geometry.set_of.get(part)
     if chosen is None and not bodies[name].has_own and bodies[name].materials:
         chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
-    if chosen is None:
-        found = resolve_like(bodies, name)
-        return f"bodies.{found}", bodies[found]
-    own = bodies[owner].materials[chosen]
-    if own.like is None:
-        return f"bodies.{owner}.materials.{chosen}", own
-    check_named(bodies, own.like)
-    found = resolve_like(bodies, own.like)
-    return f"bodies.{found}", bodies[found]
+    table: Properties = bodies[name]
+    path = f"bodies.{name}"
+    if chosen is not None:
+        path, table = f"bodies.{owner}.materials.{chosen}", bodies[owner].materials[chosen]
+    seen = [path]
+    while (other := table.like) is not None:
+        path = f"bodies.{other}"
+        if other not in bodies:
+            raise ValueError(f"like = {quoted(other)} names no body; one of: {', '.join(bodies)}")
+        if path in seen:
+            raise ValueError(f"like = {quoted(other)} is a circular reference")
+        seen.append(path)
+        table = bodies[other]
+    return path, table

@@ -14,16 +14,13 @@ from ...errors import CaseError, quoted
 from ...laws.interfaces import Law
 from ...laws.plausible import typical_value
 from ..values import units
-from ..values.section import Number, Section, Switch
+from ..values.section import Number, Section, Switch, number_or
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
-from .driving import HolderTable, LoadTable, MotionTable
-from .geometry import Pressing
-from .geometry_type import AnyGeometry
-from .heat import HeatTable
-from .history import FactorHistory, TimeHistory
-from .law_values import Friction, law_of
+from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
+from .geometry import AnyGeometry, Pressing
+from .laws import Friction, law_of
 from .materials import BodyTable, Properties, material_of
-from .multipliers import MultiplierTables
+from .tabulated import FactorHistory, MultiplierTables, TimeHistory
 from .wear import WearTable
 
 Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
@@ -34,21 +31,19 @@ Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
 Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
 
 
-def _pressure_degree(value: Any) -> Any:
-    whole = isinstance(value, int) and not isinstance(value, bool)
-    if value is None or value == "lobatto" or (whole and 1 <= value <= 10):
-        return value
-    raise ValueError(f'found {quoted(value)}; must be a whole number from 1 to 10, or "lobatto"')
+_PRESSURE_DEGREE = number_or(
+    "lobatto",
+    None,
+    where=lambda degree: isinstance(degree, int) and 1 <= degree <= 10,
+    allowed='a whole number from 1 to 10, or "lobatto"',
+)
 
 
-def _variant(value: Any) -> Any:
-    if isinstance(value, bool | float):  # equal to 1 in Python, but not valid here
+def _exact(value: Any) -> Any:
+    """Reject 1.0 and true, which are equal to 1 in Python."""
+    if isinstance(value, bool | float):
         raise ValueError(f"found {quoted(value)}; must be 1, 0 or -1")
     return value
-
-
-PressureDegree = Annotated[int | Literal["lobatto"] | None, BeforeValidator(_pressure_degree)]
-Variant = Annotated[Literal[1, 0, -1] | None, BeforeValidator(_variant)]
 
 
 class FaceMesh(Section):
@@ -103,9 +98,9 @@ class ContactTable(Section):
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
     compliance: units.Compliance | None = None
     method: Literal["condensed", "penalty", "nitsche"] = "condensed"
-    pressure_degree: PressureDegree = None
+    pressure_degree: Annotated[int | Literal["lobatto"] | None, _PRESSURE_DEGREE] = None
     penalty: units.Foundation | None = None
-    theta: Variant = None
+    theta: Annotated[Literal[1, 0, -1] | None, BeforeValidator(_exact)] = None
     gamma: Annotated[Number, Field(gt=0.0)] | None = None
     positioning: Switch = False
 

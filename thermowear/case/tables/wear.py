@@ -19,12 +19,11 @@ from pydantic import (
     model_validator,
 )
 
-from ...errors import quoted
 from ...laws.interfaces import Law
-from ..values.section import KeyFault, Number, Section
+from ..values.section import KeyFault, Number, Section, number_or
 from ..values.units import parse, registry
-from .law_values import RateOfWear, wear_rate_of
-from .multipliers import MultiplierTables
+from .laws import RateOfWear, wear_rate_of
+from .tabulated import MultiplierTables
 
 _EXAMPLE = "2e-7 1/MPa"
 _OF_POWER = ("coefficient", "per", "pressure_exponent", "velocity_exponent")
@@ -145,11 +144,12 @@ class BodyWearTable(Section):
         return float(self.coefficient.to_base_units().magnitude)
 
 
-def _update(value: Any) -> Any:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if value in ("auto", "never") or (number and 0.0 < value <= 1.0):
-        return value
-    raise ValueError(f'found {quoted(value)}; must be "auto", "never", or a number up to 1')
+_UPDATE = number_or(
+    "auto",
+    "never",
+    where=lambda size: 0.0 < size <= 1.0,
+    allowed='"auto", "never", or a number up to 1',
+)
 
 
 class WearTable(Section, Mapping[str, BodyWearTable]):
@@ -172,7 +172,7 @@ class WearTable(Section, Mapping[str, BodyWearTable]):
 
     __pydantic_extra__: dict[str, BodyWearTable]
 
-    update: Annotated[float | Literal["auto", "never"], BeforeValidator(_update)] = "auto"
+    update: Annotated[float | Literal["auto", "never"], _UPDATE] = "auto"
     cycles: Annotated[int, Field(ge=1, strict=True)] | None = None
     max_jump: Annotated[int, Field(ge=1, strict=True)] | None = None
 

@@ -5,18 +5,13 @@ Every check yields the path of the key at fault and a message.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from ...errors import CaseError, note
 from ..tables.analyses import Transient
 from ..tables.schema import Case
-from .courses import courses
-from .equilibrium import holder, load, motion, surface_pressure
-from .faults import Fault
-from .heating import SURFACES, heat
-from .materials import cell_sets, locking, materials
-from .oscillation import counted, fretting, reciprocating
-from .varying import condensed_only, varying
+from ..values.section import Fault
+from . import analyses, conditions, materials
 
 _SLIDING = ("steady", "transient", "reciprocating")
 """Analyses of wear by sliding."""
@@ -34,15 +29,9 @@ def check(case: Case) -> None:
     zone = case.geometry.expected_zone(case.pressing())
     if zone is not None:
         case.geometry.check_zone(zone)
-    _note_defaults(case)
-
-
-def _note_defaults(case: Case) -> None:
-    """Note defaults that change the result and are often set differently."""
     friction = case.contact.nominal_friction
     for name, law in case.wear.items():
-        power = law.rate is None
-        if power and "per" not in law.model_fields_set and friction > 0.0:
+        if law.rate is None and "per" not in law.model_fields_set and friction > 0.0:
             note(
                 f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
                 'Archard\'s k multiplies p: with per = "pressure" it wears '
@@ -53,27 +42,26 @@ def _note_defaults(case: Case) -> None:
 def _names(case: Case) -> Iterator[Fault]:
     """Bodies and surfaces must be defined by the geometry."""
     bodies, surfaces = case.geometry.bodies, case.geometry.surfaces
-    named = tuple(part for part in case.geometry.parts if part not in case.geometry.set_of)
-    yield from _unknown("bodies", case.bodies, named)
-    yield from _unknown("wear", case.wear, bodies)
-    yield from _unknown("mesh.bodies", case.mesh.bodies, bodies)
-    yield from _unknown("load.surfaces", case.load.surfaces, surfaces)
-    yield from _unknown("load.pressure", case.load.pressure, surfaces)
+    zoned = tuple(part for part in case.geometry.parts if part not in case.geometry.set_of)
+    tables = {
+        "bodies": (case.bodies, zoned),
+        "wear": (case.wear, bodies),
+        "mesh.bodies": (case.mesh.bodies, bodies),
+        "load.surfaces": (case.load.surfaces, surfaces),
+        "load.pressure": (case.load.pressure, surfaces),
+    }
+    for table in conditions.SURFACES if case.heat is not None else ():
+        tables[f"heat.{table}"] = (getattr(case.heat, table), surfaces)
+    for table, (found, known) in tables.items():
+        for name in found:
+            if name not in known:
+                yield (
+                    f"{table}.{name}",
+                    f"unknown name in this geometry; must be one of: {', '.join(known)}",
+                )
     for name in bodies:
         if name not in case.bodies:
             yield f"bodies.{name}", "missing; every body of the geometry needs a material"
-    if case.heat is not None:
-        for table in SURFACES:
-            yield from _unknown(f"heat.{table}", getattr(case.heat, table), surfaces)
-
-
-def _unknown(table: str, found: Iterable[str], known: tuple[str, ...]) -> Iterator[Fault]:
-    for name in found:
-        if name not in known:
-            yield (
-                f"{table}.{name}",
-                f"unknown name in this geometry; must be one of: {', '.join(known)}",
-            )
 
 
 def _model(case: Case) -> Iterator[Fault]:
@@ -130,65 +118,59 @@ def _computes_wear(case: Case) -> bool:
 
 
 def _spread(case: Case) -> Iterator[Fault]:
-    moving = case.geometry.bodies[1]
+    geometry, moving, type_ = case.geometry, case.geometry.bodies[1], case.analysis.type
     for name, law in case.wear.items():
+        why = None
         if law.spread == "in-place":
             continue
         if name != moving:
-            yield f"wear.{name}.spread", f"only {moving} passes under the other body; leave it out"
-        elif not case.geometry.passes and case.geometry.sector == 1.0:
-            yield (
-                f"wear.{name}.spread",
-                f"the whole face of {moving} is always in contact; leave it out",
-            )
-        elif case.analysis.type in ("fretting", "reciprocating"):
-            yield (
-                f"wear.{name}.spread",
-                f"not supported in a {case.analysis.type} analysis: body 2 does not pass by",
-            )
-        elif case.analysis.type == "steady" and len(case.wear) == 1 and case.geometry.sector == 1.0:
-            yield (
-                f"wear.{name}.spread",
+            why = f"only {moving} passes under the other body; leave it out"
+        elif not geometry.passes and geometry.sector == 1.0:
+            why = f"the whole face of {moving} is always in contact; leave it out"
+        elif type_ in ("fretting", "reciprocating"):
+            why = f"not supported in a {type_} analysis: body 2 does not pass by"
+        elif type_ == "steady" and len(case.wear) == 1 and geometry.sector == 1.0:
+            why = (
                 "no unique steady pressure: wear spread uniformly along the track does not "
-                "constrain it",
+                "constrain it"
             )
+        if why is not None:
+            yield f"wear.{name}.spread", why
 
 
-def _degrees(case: Case) -> Iterator[Fault]:
-    own = case.contact.pressure_degree
+def _contact(case: Case) -> Iterator[Fault]:
+    contact, own = case.contact, case.contact.pressure_degree
     if isinstance(own, int) and own > case.mesh.degree:
         yield "contact.pressure_degree", f"found {own}; at most mesh.degree = {case.mesh.degree}"
-
-
-def _method(case: Case) -> Iterator[Fault]:
-    keys = {"penalty": "penalty", "theta": "nitsche", "gamma": "nitsche"}
-    for key, method in keys.items():
-        if getattr(case.contact, key) is not None and case.contact.method != method:
+    for key, method in {"penalty": "penalty", "theta": "nitsche", "gamma": "nitsche"}.items():
+        if getattr(contact, key) is not None and contact.method != method:
             yield f"contact.{key}", f'requires method = "{method}"'
-    refused = condensed_only(case)
-    if refused is not None and case.contact.method != "condensed" and case.model != "3d":
-        yield "contact.method", f"{case.contact.method!r} does not support {refused}; use condensed"
 
 
 def _in_space(case: Case) -> Iterator[Fault]:
     if case.model != "3d":
         return
-    if case.contact.method != "condensed":
-        yield "contact.method", f"{case.contact.method!r} does not support 3d models; use condensed"
-    if case.contact.transverse_friction > 0 or case.contact.pressure_degree == "lobatto":
-        key = "transverse_friction" if case.contact.transverse_friction > 0 else "pressure_degree"
-        yield f"contact.{key}", "not supported in 3d models"
+    if case.contact.transverse_friction > 0:
+        yield "contact.transverse_friction", "not supported in 3d models"
+    elif case.contact.pressure_degree == "lobatto":
+        yield "contact.pressure_degree", "not supported in 3d models"
     if case.analysis.type in ("fretting", "reciprocating"):
         yield "analysis.type", f"{case.analysis.type!r} is not supported in 3d models"
 
 
-def _positioning(case: Case) -> Iterator[Fault]:
+def _moving_mesh(case: Case) -> Iterator[Fault]:
+    """Positioning and geometry updates need a mesh that can be moved in this analysis."""
     if case.contact.positioning and not case.geometry.follows_contact:
         yield "contact.positioning", f"the mesh of {case.geometry.type!r} cannot be moved"
     elif case.contact.positioning and getattr(case.geometry, "zone", None) is not None:
         yield (
             "contact.positioning",
             "moves the mesh to the contact zone of the unworn faces; leave out geometry.zone",
+        )
+    if case.wear.update not in ("auto", "never") and case.analysis.type != "transient":
+        yield (
+            "wear.update",
+            f"geometry updates are not supported in a {case.analysis.type} analysis",
         )
 
 
@@ -200,39 +182,28 @@ def _symmetry(case: Case) -> Iterator[Fault]:
         yield "geometry.half", "sliding friction is not symmetric; mesh the whole section"
 
 
-def _update(case: Case) -> Iterator[Fault]:
-    """Intervals of geometry updates in analyses without geometry updates."""
-    if case.wear.update in ("auto", "never"):
-        return
-    if case.analysis.type != "transient":
-        yield (
-            "wear.update",
-            f"geometry updates are not supported in a {case.analysis.type} analysis",
-        )
-
-
 _CHECKS = (
     _names,
     _model,
-    cell_sets,
-    materials,
-    locking,
-    holder,
-    load,
-    surface_pressure,
-    courses,
-    motion,
-    counted,
-    reciprocating,
+    materials.cell_sets,
+    materials.materials,
+    materials.locking,
+    conditions.holder,
+    conditions.load,
+    conditions.surface_pressure,
+    analyses.supported,
+    analyses.histories,
+    conditions.motion,
+    analyses.cycles,
+    analyses.reciprocating,
     _sliding,
     _spread,
-    _update,
-    fretting,
-    heat,
-    varying,
-    _degrees,
-    _method,
+    analyses.fretting,
+    conditions.heat,
+    analyses.varying,
+    _contact,
+    analyses.condensed_only,
     _in_space,
-    _positioning,
+    _moving_mesh,
     _symmetry,
 )

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from ..tables.materials import Properties
 from ..tables.schema import Case
-from .faults import Fault
-from .heating import Need, thermal_needs
+from ..values.section import Fault
 
 _LOCKING = {1: 0.45, 2: 0.499}
 """Largest Poisson ratio by degree, measured for a cylinder on a block with 16 elements in
@@ -38,9 +37,8 @@ def materials(case: Case) -> Iterator[Fault]:
         name = part if part in case.bodies else geometry.zones.get(part, part)
         if name not in case.bodies:
             continue
-        path = f"bodies.{name}"
         table: Properties = case.bodies[name]
-        in_set = geometry.set_of.get(part)
+        path, in_set = f"bodies.{name}", geometry.set_of.get(part)
         if in_set is not None:
             path, table = f"{path}.materials.{in_set}", case.bodies[name].materials[in_set]
         own = part == name or in_set is not None
@@ -53,9 +51,12 @@ def materials(case: Case) -> Iterator[Fault]:
             if own:
                 yield f"{path}.like", str(error)
     missing: dict[str, str] = {}
-    for part, key, why in _required_properties(case):
-        if part in sources and getattr(sources[part][1], key) is None:
-            missing.setdefault(f"{sources[part][0]}.{key}", f"missing; needed{why}")
+    for parts, keys, why in _required(case):
+        for part in parts:
+            for key in keys if part in sources else ():
+                path, material = sources[part]
+                if getattr(material, key) is None:
+                    missing.setdefault(f"{path}.{key}", f"missing; needed{why}")
     yield from missing.items()
 
 
@@ -78,8 +79,21 @@ def cell_sets(case: Case) -> Iterator[Fault]:
                     )
 
 
-def _required_properties(case: Case) -> Iterator[Need]:
-    """Parts, keys of their material that are required, and the reason."""
-    for part in case.geometry.parts:
-        yield from ((part, key, "") for key in ("young_modulus", "poisson_ratio"))
-    yield from thermal_needs(case)
+def _required(case: Case) -> Iterator[tuple[tuple[str, ...], tuple[str, ...], str]]:
+    """Parts, required keys of their materials, and the reason."""
+    heat, geometry = case.heat, case.geometry
+    storing = ("density", "specific_heat")
+    yield geometry.parts, ("young_modulus", "poisson_ratio"), ""
+    if heat is None:
+        return
+    facing = tuple(part for part in geometry.facing if part is not None)
+    yield geometry.parts, ("conductivity", "expansion"), " because the case has a [heat] table"
+    if heat.transient:
+        yield geometry.parts, storing, " because heat.transient is true"
+    if heat.advection == "resolved":
+        moving = geometry.parts_of(geometry.bodies[1])
+        yield moving, storing, ' because heat.advection is "resolved"'
+    if heat.partition == "effusivity":
+        yield facing, storing, ' because heat.partition is "effusivity"'
+    if getattr(heat.conductance, "type", None) == "pressure":
+        yield facing, ("hardness",), ' because heat.conductance is of type "pressure"'

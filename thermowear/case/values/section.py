@@ -1,11 +1,27 @@
-"""Base class of all tables of a case file."""
+"""Base class of all tables of a case file, and types of keys without a unit."""
 
+import os
+from collections.abc import Callable
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationInfo,
+    model_validator,
+)
+
+from ...errors import note, quoted
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Switch = Annotated[bool, Field(strict=True)]
+FOLDER = "folder"
+"""Key of the case file's folder in the validation context."""
+Fault = tuple[str, str]
+"""Path of the key at fault, and the message."""
 
 
 class KeyFault(ValueError):
@@ -52,3 +68,41 @@ def _quantities(key: str, value: Any) -> Any:
                 f"{key}.values.{i}", "must be a number without unit, which is given by the key unit"
             )
     return [f"{number!r} {unit}" for number in numbers]
+
+
+def number_or(*words: Any, where: Callable[[int | float], bool], allowed: str) -> BeforeValidator:
+    """Validator of a word or a number, with one message for all other values."""
+
+    def check(value: Any) -> Any:
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if value in words or (number and where(value)):
+            return value
+        raise ValueError(f"found {quoted(value)}; must be {allowed}")
+
+    return BeforeValidator(check)
+
+
+def _resolve_path(path: str, info: ValidationInfo) -> str:
+    """Absolute path of a file: relative to the folder of the case file, or else to the current one.
+
+    A case without a file of its own (tables in Python) uses the current folder only.
+    """
+    here = os.path.abspath(path)
+    folder = (info.context or {}).get(FOLDER)
+    if folder is None:
+        return here
+    in_folder = os.path.abspath(os.path.join(folder, path))
+    if here == in_folder or not os.path.exists(here):
+        return in_folder
+    if os.path.exists(in_folder):
+        note(f"found {in_folder}, next to the case file; the other file {here} is not read")
+        return in_folder
+    note(
+        f"found {here} in the current folder; paths are relative to the folder of the case "
+        f"file: {folder}"
+    )
+    return here
+
+
+UserFile = Annotated[str, AfterValidator(_resolve_path)]
+"""Type of a key that holds the path of a file, made absolute."""

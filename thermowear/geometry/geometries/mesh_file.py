@@ -11,8 +11,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_serializer, mode
 
 from ...case.tables.geometry import keyed
 from ...case.tables.plane_geometry import HalvableGeometry
-from ...case.values.paths import UserFile
-from ...case.values.section import KeyFault
+from ...case.values.section import KeyFault, UserFile
 from ...case.values.units import Area, Length
 from ..reading.assembly import Named, assemble
 from ..reading.cell_sets import divided, joined

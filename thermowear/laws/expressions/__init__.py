@@ -1,6 +1,7 @@
 """Arithmetic expressions with units in named variables: parser, checked dimensions, derivatives."""
 
 from .dimensions import Dimension
-from .expression import Expression, parse_expression
+from .parser import parse_expression
+from .tree import Expression
 
 __all__ = ["Dimension", "Expression", "parse_expression"]

@@ -15,15 +15,13 @@ variable, a function or a number. A quantity with a compound unit after a ``/`` 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from .dimensions import Dimension
-from .functions import EXTREMES, FUNCTIONS, KNOWN
-from .tokens import Token, fault, tokens
-from .tree import Node, evaluate
-from .unit_text import unit_end
+from .tokens import Token, fault, tokens, unit_end
+from .tree import EXTREMES, FUNCTIONS, KNOWN, Expression, Node, evaluate, variables
 
 Units = Callable[[str], tuple[float, Dimension]]
 """Map from the text of a unit to SI factor and dimension; `ValueError` if it is invalid."""
@@ -33,18 +31,38 @@ _DEEPEST = 30
 _LARGEST_EXPONENT = 100.0
 
 
-@dataclass(frozen=True)
-class Parsed:
-    """Parsed part of an expression.
+def parse_expression(
+    text: str, known: Mapping[str, Dimension], unit: str, units: Units
+) -> Expression:
+    """Parse an expression and check the units in it.
 
-    Attributes
+    Parameters
     ----------
-    node : Node
-    dimension : Dimension
-    start : int
-        Position of its first character.
-    literal : str
-        ``"plain"`` or ``"compound"`` for a quantity with a unit without parentheses.
+    text : str
+    known : mapping of str to Dimension
+        Variables that may occur.
+    unit : str
+        Unit of the value; empty for a dimensionless number.
+    units : callable
+        Map from the text of a unit to its SI factor and dimension.
+
+    Raises
+    ------
+    ValueError
+        One-line message with the position of the fault in the text.
+    """
+    found = _ExpressionParser(text, known, units).parse()
+    dimension = units(unit)[1] if unit else Dimension()
+    if not found.dimension.same(dimension):
+        needed = unit or "a dimensionless number"
+        raise fault(found.start, f"the value has the unit {found.dimension}; needs {needed}")
+    return Expression(text, found.node, variables(found.node))
+
+
+class _Parsed(NamedTuple):
+    """Parsed part of an expression, with the position of its first character.
+
+    `literal` is ``"plain"`` or ``"compound"`` for a quantity with a unit without parentheses.
     """
 
     node: Node
@@ -58,16 +76,8 @@ class Parsed:
         return self.node if isinstance(self.node, float) else None
 
 
-class Parser:
-    """Parser of one expression.
-
-    Parameters
-    ----------
-    text : str
-    variables : mapping of str to Dimension
-        Variables that may occur.
-    units : callable
-    """
+class _ExpressionParser:
+    """Parser of one expression, see `parse_expression`."""
 
     def __init__(self, text: str, variables: Mapping[str, Dimension], units: Units):
         self._text, self._variables, self._units = text, variables, units
@@ -75,14 +85,8 @@ class Parser:
         self._at = 0
         self._depth = 0
 
-    def parse(self) -> Parsed:
-        """Parse the whole expression.
-
-        Raises
-        ------
-        ValueError
-            If the expression is invalid, with the position of the first fault.
-        """
+    def parse(self) -> _Parsed:
+        """Parse the whole expression."""
         if self._next.kind == "end":
             raise ValueError("is empty; needs an expression")
         result = self._sum()
@@ -110,7 +114,7 @@ class Parser:
         self._at += 1
         return token
 
-    def _deeper(self, parse: Callable[[], Parsed]) -> Parsed:
+    def _deeper(self, parse: Callable[[], _Parsed]) -> _Parsed:
         """Parse a nested part, with a limit of depth."""
         if self._depth == _DEEPEST:
             raise fault(self._next.start, f"nested too deeply; at most {_DEEPEST} levels")
@@ -119,7 +123,7 @@ class Parser:
         self._depth -= 1
         return result
 
-    def _sum(self) -> Parsed:
+    def _sum(self) -> _Parsed:
         first = self._product()
         terms, nodes = [first], [first.node]
         while (sign := self._accept("+", "-")) is not None:
@@ -135,7 +139,7 @@ class Parser:
             return first
         return self._folded(("+", *nodes), first.dimension, terms, first.start)
 
-    def _product(self) -> Parsed:
+    def _product(self) -> _Parsed:
         first = self._signed()
         factors, nodes, dimension = [first], [first.node], first.dimension
         while (sign := self._accept("*", "/")) is not None:
@@ -151,16 +155,16 @@ class Parser:
             return first
         return self._folded(("*", *nodes), dimension, factors, first.start)
 
-    def _signed(self) -> Parsed:
+    def _signed(self) -> _Parsed:
         sign = self._accept("+", "-")
         if sign is None:
             return self._power()
         operand = self._deeper(self._signed)
         node = operand.node if sign.text == "+" else ("-", operand.node)
         found = self._folded(node, operand.dimension, [operand], sign.start)
-        return Parsed(found.node, found.dimension, found.start, operand.literal)
+        return _Parsed(found.node, found.dimension, found.start, operand.literal)
 
-    def _power(self) -> Parsed:
+    def _power(self) -> _Parsed:
         base = self._atom()
         sign = self._accept("^")
         if sign is None:
@@ -184,7 +188,7 @@ class Parser:
         parts = [base, exponent]
         return self._folded(("^", base.node, exponent.node), dimension, parts, base.start)
 
-    def _atom(self) -> Parsed:
+    def _atom(self) -> _Parsed:
         token = self._next
         if token.kind == "number":
             return self._quantity()
@@ -193,7 +197,7 @@ class Parser:
         if self._accept("(") is not None:
             inner = self._deeper(self._sum)
             self._close(token)
-            return Parsed(inner.node, inner.dimension, token.start)
+            return _Parsed(inner.node, inner.dimension, token.start)
         if token.kind == "end" or token.text == ")":
             raise fault(token.start, "the expression ends too early; needs a number or a variable")
         raise fault(token.start, f"found {token.text!r}; needs a number or a variable")
@@ -204,7 +208,7 @@ class Parser:
                 raise fault(opened.start, "'(' is not closed")
             raise fault(self._next.start, self._out_of_place())
 
-    def _quantity(self) -> Parsed:
+    def _quantity(self) -> _Parsed:
         """Parse a number and its unit."""
         token = self._next
         number = float(token.text)
@@ -213,7 +217,7 @@ class Parser:
         self._at += 1
         start, end = self._next.start, unit_end(self._text, token.end, self._variables)
         if end <= start:
-            return Parsed(number, Dimension(), token.start)
+            return _Parsed(number, Dimension(), token.start)
         try:
             factor, dimension = self._units(self._text[start:end])
         except ValueError as error:
@@ -223,16 +227,16 @@ class Parser:
         literal = "plain" if self._next.end == end else "compound"
         while self._next.start < end:
             self._at += 1
-        return Parsed(number * factor, dimension, token.start, literal)
+        return _Parsed(number * factor, dimension, token.start, literal)
 
-    def _named(self) -> Parsed:
+    def _named(self) -> _Parsed:
         token = self._next
         self._at += 1
         opened = self._accept("(")
         if opened is not None:
             return self._call(token, opened)
         if token.text in self._variables:
-            return Parsed(token.text, self._variables[token.text], token.start)
+            return _Parsed(token.text, self._variables[token.text], token.start)
         known = ", ".join(self._variables)
         if token.text in KNOWN:
             raise fault(token.start, f"{token.text!r} is a function; its argument is missing")
@@ -241,7 +245,7 @@ class Parser:
             f"{token.text!r} is not a variable; known: {known} (a unit needs a number before it)",
         )
 
-    def _call(self, token: Token, opened: Token) -> Parsed:
+    def _call(self, token: Token, opened: Token) -> _Parsed:
         name = token.text
         if name in self._variables:
             raise fault(token.start, f"{name!r} is a variable, not a function")
@@ -251,45 +255,34 @@ class Parser:
         while self._accept(",") is not None:
             arguments.append(self._deeper(self._sum))
         self._close(opened)
-        if name in EXTREMES:
-            return self._extreme(token, arguments)
-        if len(arguments) > 1:
+        first, *others = arguments
+        if name in EXTREMES and not others:
+            raise fault(token.start, f"{name} has at least two arguments")
+        if name in FUNCTIONS and others:
             raise fault(token.start, f"{name} has one argument, found {len(arguments)}")
-        (argument,) = arguments
-        power = FUNCTIONS[name].power
-        if power is None and not argument.dimension.none:
-            raise fault(
-                argument.start,
-                f"the argument of {name} must be dimensionless, found {argument.dimension}",
-            )
-        dimension = Dimension() if power is None else argument.dimension.to(power)
-        return self._folded((name, argument.node), dimension, arguments, token.start)
-
-    def _extreme(self, token: Token, arguments: list[Parsed]) -> Parsed:
-        if len(arguments) < 2:
-            raise fault(token.start, f"{token.text} has at least two arguments")
-        first = arguments[0]
-        for other in arguments[1:]:
+        for other in others:
             if not other.dimension.same(first.dimension):
                 raise fault(
-                    other.start,
-                    f"{token.text} of the units {first.dimension} and {other.dimension}",
+                    other.start, f"{name} of the units {first.dimension} and {other.dimension}"
                 )
-        node = (token.text, *(argument.node for argument in arguments))
-        return self._folded(node, first.dimension, arguments, token.start)
+        power = FUNCTIONS[name].power if name in FUNCTIONS else 1.0
+        if power is None and not first.dimension.none:
+            raise fault(
+                first.start,
+                f"the argument of {name} must be dimensionless, found {first.dimension}",
+            )
+        dimension = first.dimension.to(power or 0.0)
+        node = (name, *(argument.node for argument in arguments))
+        return self._folded(node, dimension, arguments, token.start)
 
-    def _folded(self, node: Node, dimension: Dimension, parts: list[Parsed], start: int) -> Parsed:
-        """Parsed part, folded to a constant if it has no variables.
-
-        Raises
-        ------
-        ValueError
-            If the constant is not finite: division by zero, or overflow.
-        """
+    def _folded(
+        self, node: Node, dimension: Dimension, parts: list[_Parsed], start: int
+    ) -> _Parsed:
+        """Fold a part without variables to a constant, which must be finite."""
         if any(part.constant is None for part in parts):
-            return Parsed(node, dimension, start)
+            return _Parsed(node, dimension, start)
         with np.errstate(all="ignore"):
             value = float(evaluate(node, {}, "")[0])
         if not np.isfinite(value):
             raise fault(start, f"the value of this part is {value:g}: not a finite number")
-        return Parsed(value, dimension, start)
+        return _Parsed(value, dimension, start)

@@ -1,24 +1,56 @@
-"""Expression trees, evaluated with their derivative (forward-mode differentiation).
+"""Expressions as trees, evaluated with their derivative (forward-mode differentiation).
 
 A node is a constant in SI, the name of a variable, or a tuple of an operation and its operands:
 ``"+"`` and ``"*"`` have any number of them, ``"-"`` (negative) and ``"/"`` (reciprocal) one,
-``"^"`` two; the others are in `functions`. Derivatives are taken with respect to one variable;
-at kinks (``abs``, ``min``, ``max``) they are one-sided.
+``"^"`` two; the others are `FUNCTIONS` and `EXTREMES`. Derivatives are taken with respect to one
+variable; at kinks (``abs``, ``min``, ``max``) they are one-sided.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial, reduce
 from typing import Any
 
 import numpy as np
 
-from .functions import EXTREMES, FUNCTIONS, Function
-
 Node = float | str | tuple[Any, ...]
 Pair = tuple[np.ndarray, np.ndarray]
 """Value and derivative, both of the shape of the variables or scalars."""
+Pointwise = Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Function:
+    """Function of one variable.
+
+    Attributes
+    ----------
+    value, slope : callable
+        Function and derivative, elementwise.
+    power : float or None
+        Exponent of the unit of the argument in that of the value; None if both are dimensionless.
+    """
+
+    value: Pointwise
+    slope: Pointwise
+    power: float | None = None
+
+
+FUNCTIONS = {
+    "exp": Function(np.exp, np.exp),
+    "log": Function(np.log, lambda x: 1 / x),
+    "log10": Function(np.log10, lambda x: 1 / (x * np.log(10.0))),
+    "sqrt": Function(np.sqrt, lambda x: 0.5 / np.sqrt(x), power=0.5),
+    "abs": Function(np.abs, np.sign, power=1.0),
+    "tanh": Function(np.tanh, lambda x: 1 - np.tanh(x) ** 2),
+    "sin": Function(np.sin, np.cos),
+    "cos": Function(np.cos, lambda x: -np.sin(x)),
+}
+EXTREMES = {"min": np.less_equal, "max": np.greater_equal}
+"""Functions of several arguments of equal dimension, with the comparison that keeps the first."""
+KNOWN = (*FUNCTIONS, *EXTREMES)
 
 
 def evaluate(node: Node, values: Mapping[str, np.ndarray], by: str) -> Pair:
@@ -80,3 +112,41 @@ _OPERATIONS: dict[str, Callable[..., Pair]] = {
     **{name: partial(_call, function) for name, function in FUNCTIONS.items()},
     **{name: _repeated(partial(_extreme, keeps)) for name, keeps in EXTREMES.items()},
 }
+
+
+@dataclass(frozen=True)
+class Expression:
+    """Arithmetic expression in physical variables.
+
+    Attributes
+    ----------
+    text : str
+        Text as written.
+    node : Node
+    variables : frozenset of str
+        Variables that occur in it.
+    """
+
+    text: str
+    node: Node
+    variables: frozenset[str]
+
+    @property
+    def constant(self) -> float | None:
+        """Value of an expression without variables."""
+        return self.node if isinstance(self.node, float) else None
+
+    def value(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Value in SI at arrays of the variables, of their common shape."""
+        return self._both(at, "")[0]
+
+    def slope(self, at: Mapping[str, np.ndarray], by: str) -> np.ndarray:
+        """Derivative with respect to a variable, in SI."""
+        return self._both(at, by)[1]
+
+    def _both(self, at: Mapping[str, np.ndarray], by: str) -> tuple[np.ndarray, np.ndarray]:
+        shape = np.broadcast_shapes(*(np.shape(values) for values in at.values()))
+        arrays = {name: np.asarray(values, dtype=float) for name, values in at.items()}
+        with np.errstate(all="ignore"):  # the caller checks for finite values
+            value, slope = evaluate(self.node, arrays, by)
+        return np.zeros(shape) + value, np.zeros(shape) + slope

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from ...case.tables.analyses import Fretting
-from ...case.tables.conductance import PressureConductanceTable, TabulatedConductanceTable
-from ...case.tables.law_values import law_of
+from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
 from ...case.tables.schema import Case
 from ...case.tables.wear import BodyWearTable
-from ...laws.coefficients.multipliers import Multipliers
+from ...laws.coefficients import Multipliers
 from ...laws.distribution import DutyFactor, InPlace
 from ...laws.interfaces import Law
 from ...laws.power_wear import PowerWear

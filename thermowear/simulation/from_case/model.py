@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ...case.tables.history import TemperatureHistory
 from ...case.tables.schema import Case
+from ...case.tables.tabulated import TemperatureHistory
 from ...errors import CaseError
 from ...model.body import Body
 from ...model.heat import Heat

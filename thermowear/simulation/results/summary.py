@@ -6,7 +6,7 @@ import numpy as np
 
 from ...bulk.field import total
 from ...contact.search.zones import contact_zones
-from ...laws.coefficients.constant import Constant
+from ...laws.coefficients import Constant
 from ...results import Result
 from ..system.rigid_modes import applied, guides
 from ..system.system import System

@@ -1,23 +1,100 @@
-"""Time histories: piecewise linear functions of time."""
+"""Tabulated functions: time histories, and factors by temperature, pressure or speed."""
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, Generic, TypeVar
 
-from pydantic import TypeAdapter, ValidationError, ValidationInfo, model_validator
+from pydantic import Field, TypeAdapter, ValidationError, ValidationInfo, model_validator
 
+from ...laws.coefficients import Multipliers, Table1D
 from ...laws.load_history import KEYS, LoadHistory
 from ...laws.time_course import TimeCourse, TimeFunction
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
-from ..values.paths import UserFile
-from ..values.section import KeyFault, Section, Switch
-from .multipliers import NotNegative, must_increase, must_match
+from ..values.section import KeyFault, Number, Section, Switch, UserFile
 
 _PATH = TypeAdapter(UserFile)
 _CLOSED = 1e-9
 """Largest difference between start and end of a closed cycle, relative to the largest value."""
+Positive = Annotated[Number, Field(gt=0.0)]
+NotNegative = Annotated[Number, Field(ge=0.0)]
+At = TypeVar("At", bound=float)
+Factor = TypeVar("Factor", bound=float)
+
+
+def must_increase(key: str, values: tuple[float, ...]) -> None:
+    """Reject a list that is empty or not strictly increasing."""
+    if not values:
+        raise KeyFault(key, "is empty; needs at least one value")
+    if any(b <= a for a, b in pairwise(values)):
+        raise KeyFault(key, "must increase")
+
+
+def must_match(key: str, values: tuple[float, ...], places: tuple[float, ...], what: str) -> None:
+    """Reject a list whose length differs from that of another list."""
+    if len(values) != len(places):
+        raise KeyFault(key, f"has {len(values)} values for {len(places)} {what}")
+
+
+class MultiplierTable(Section, Generic[At, Factor]):
+    """Piecewise linear factor of one variable, constant beyond the ends.
+
+    Attributes
+    ----------
+    at : tuple of float
+        Increasing, in SI.
+    factor : tuple of float
+    """
+
+    at: tuple[At, ...]
+    factor: tuple[Factor, ...]
+
+    @model_validator(mode="after")
+    def _fits(self):
+        must_increase("at", self.at)
+        must_match("factor", self.factor, self.at, "places")
+        return self
+
+    @property
+    def table(self) -> Table1D:
+        """Factor as a piecewise linear function."""
+        return Table1D(self.at, self.factor)
+
+
+class TemperatureTable(MultiplierTable[units.Temperature, Positive]):
+    """Factor that depends on the temperature [K]."""
+
+
+class ExpansionTable(MultiplierTable[units.Temperature, NotNegative]):
+    """Factor of the secant coefficient of expansion, which may be 0."""
+
+
+class PressureTable(MultiplierTable[units.LeastPressure, Positive]):
+    """Factor that depends on the pressure [Pa]."""
+
+
+class SpeedTable(MultiplierTable[units.Speed, Positive]):
+    """Factor that depends on the sliding speed [m/s]."""
+
+
+class MultiplierTables(Section):
+    """Product of tabulated factors."""
+
+    temperature: TemperatureTable | None = None
+    pressure: PressureTable | None = None
+    speed: SpeedTable | None = None
+
+    @property
+    def depends_on(self) -> tuple[str, ...]:
+        """Variables with a table: temperature, pressure, speed."""
+        return tuple(name for name, table in self if table is not None)
+
+    @property
+    def multipliers(self) -> Multipliers:
+        """Factors as a law."""
+        return Multipliers(**{name: getattr(self, name).table for name in self.depends_on})
 
 
 class TimeHistory(Section):
@@ -36,6 +113,8 @@ class TimeHistory(Section):
 
     COLUMNS: ClassVar[dict[str, str]]
     """Columns of a CSV file, with a suitable unit for each; empty for plain numbers."""
+    ALTERNATIVES: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """Pairs of columns of which only one can be given."""
 
     time: tuple[units.Instant, ...]
     repeat: Switch = False
@@ -61,16 +140,21 @@ class TimeHistory(Section):
             raise
 
     @model_validator(mode="after")
-    def _in_order(self):
+    def _lists(self):
         must_increase("time", self.time)
         if self.repeat and len(self.time) < 2:
             raise KeyFault("repeat", "needs at least two instants in time")
+        for first, second in self.ALTERNATIVES:
+            if getattr(self, first) is not None and getattr(self, second) is not None:
+                raise KeyFault(second, f"only one of {first} and {second} can be given")
+        for key in self.COLUMNS:
+            values = getattr(self, key)
+            if key == "time" or values is None:
+                continue
+            must_match(key, values, self.time, "times")
+            if self.repeat and abs(values[-1] - values[0]) > _CLOSED * max(map(abs, values)):
+                raise KeyFault("repeat", f"the last value of {key} must equal the first one")
         return self
-
-    def _closes(self, key: str, values: tuple[float, ...]) -> None:
-        """Reject periodic values that differ between start and end."""
-        if self.repeat and abs(values[-1] - values[0]) > _CLOSED * max(map(abs, values)):
-            raise KeyFault("repeat", f"the last value of {key} must equal the first one")
 
     @property
     def course(self) -> TimeCourse:
@@ -104,10 +188,8 @@ class FactorHistory(TimeHistory):
 
     @model_validator(mode="after")
     def _fits(self):
-        must_match("factor", self.factor, self.time, "times")
         if not any(self.factor):
             raise KeyFault("factor", "at least one value must be greater than 0")
-        self._closes("factor", self.factor)
         return self
 
     @property
@@ -129,12 +211,6 @@ class TemperatureHistory(TimeHistory):
 
     temperature: tuple[units.Temperature, ...]
 
-    @model_validator(mode="after")
-    def _fits(self):
-        must_match("temperature", self.temperature, self.time, "times")
-        self._closes("temperature", self.temperature)
-        return self
-
     @property
     def function(self) -> TimeFunction:
         """Temperature [K] as a function of time."""
@@ -151,6 +227,7 @@ class History(TimeHistory):
         "tangential_force": "N",
         "tangential_displacement": "um",
     }
+    ALTERNATIVES = ("force", "approach"), ("tangential_force", "tangential_displacement")
 
     force: tuple[units.LeastForce, ...] | None = None
     approach: tuple[units.Length, ...] | None = None
@@ -160,15 +237,6 @@ class History(TimeHistory):
 
     @model_validator(mode="after")
     def _fits(self):
-        pairs = ("force", "approach"), ("tangential_force", "tangential_displacement")
-        for first, second in pairs:
-            if getattr(self, first) is not None and getattr(self, second) is not None:
-                raise KeyFault(second, f"only one of {first} and {second} can be given")
-        for key in (key for pair in pairs for key in pair):
-            values = getattr(self, key)
-            if values is not None:
-                must_match(key, values, self.time, "times")
-                self._closes(key, values)
         if self.force is not None and not any(self.force):
             raise KeyFault("force", "at least one value must be greater than 0 N")
         start = self.cycle_start
@@ -180,10 +248,7 @@ class History(TimeHistory):
                     f"{self.time[-1]:g} s, the ends of time",
                 )
             if not self.loads.ends_as(start):
-                raise KeyFault(
-                    "cycle_start",
-                    "the loads at both ends of the cycle must be equal",
-                )
+                raise KeyFault("cycle_start", "the loads at both ends of the cycle must be equal")
         return self
 
     @property

@@ -3,26 +3,37 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import MISSING, fields
 from functools import lru_cache
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, PlainSerializer, PlainValidator, TypeAdapter, create_model
+from pydantic import (
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    TypeAdapter,
+    create_model,
+    model_validator,
+)
 
 from ...errors import quoted
 from ...laws.by_name import registered_laws
-from ...laws.coefficients.constant import Constant
+from ...laws.coefficients import Constant, Table1D
 from ...laws.expressions import Expression
 from ...laws.formulas import FormulaLaw, FormulaWear
 from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
 from ...laws.plausible import require_interface_law, require_wear_rate
 from ...laws.registry import Role
-from ..values.expressions import expression
+from ..values import units
 from ..values.section import KeyFault, Number, Section
-from ..values.units import quantity
+from ..values.units import expression, quantity
+from .tabulated import must_increase, must_match
 
 _COEFFICIENT: TypeAdapter[float] = TypeAdapter(Annotated[Number, Field(ge=0.0)])
+_CONDUCTANCE: TypeAdapter[float] = TypeAdapter(units.HeatTransfer)
+_VARIABLE = re.compile(rf"(?<![\w.])({'|'.join(INTERFACE_VARIABLES)})(?!\w)", re.ASCII)
 
 
 class LawTable(Section):
@@ -87,13 +98,6 @@ def typed_table(
     return table.model_validate(data)
 
 
-def written(value: Any) -> Any:
-    """Law as in a case file."""
-    if isinstance(value, Section):
-        return value.model_dump()
-    return value.text if isinstance(value, Expression) else value
-
-
 def law_of(value: float | Expression | LawTable, name: str, least: float) -> Law:
     """Friction or conductance law of a value of a key.
 
@@ -115,48 +119,114 @@ def wear_rate_of(value: Expression | LawTable) -> Law:
     return value.law if isinstance(value, LawTable) else FormulaWear(value)
 
 
-def checked(value: Any, name: str, least: float) -> Any:
-    """Value of a key, after a check of its law."""
-    require_interface_law(law_of(value, name, least))
-    return value
+class PressureConductanceTable(Section):
+    """Conductance proportional to the pressure, see `laws.coefficients`.
+
+    Attributes
+    ----------
+    coefficient : float
+        [1/m]
+    """
+
+    type: Literal["pressure"]
+    coefficient: units.PerLength
+
+
+class TabulatedConductanceTable(Section):
+    """Conductance tabulated over the pressure: piecewise linear, constant beyond the ends.
+
+    Attributes
+    ----------
+    pressure : tuple of float
+        Increasing [Pa].
+    conductance : tuple of float
+        [W/(m² K)]
+    """
+
+    type: Literal["table"]
+    pressure: tuple[units.LeastPressure, ...]
+    conductance: tuple[units.LeastHeatTransfer, ...]
+
+    @model_validator(mode="after")
+    def _fits(self):
+        must_increase("pressure", self.pressure)
+        must_match("conductance", self.conductance, self.pressure, "pressures")
+        if not any(self.conductance):
+            raise KeyFault("conductance", "at least one value must be greater than 0")
+        return self
+
+    @property
+    def table(self) -> Table1D:
+        """Conductance as a piecewise linear function of the pressure."""
+        return Table1D(self.pressure, self.conductance)
+
+
+_CONDUCTANCES = {"pressure": PressureConductanceTable, "table": TabulatedConductanceTable}
+
+
+def _law(given: Any, role: Role, unit: str, variables: tuple[str, ...], **others: Any) -> Any:
+    """Expression, or table of a law or of one of other types; None for any other value."""
+    if isinstance(given, Expression | Section):
+        return given
+    if isinstance(given, str):
+        return expression(given, unit, variables)
+    return typed_table(role, given, others) if isinstance(given, dict) else None
 
 
 def _friction(given: Any) -> Any:
-    if isinstance(given, Expression | LawTable):
-        return given
-    if isinstance(given, str):
-        found = expression(given, "", INTERFACE_VARIABLES)
-        if found.constant is not None:
-            raise ValueError(
-                f"found {quoted(given)}; must be a number without quotation marks, or an "
-                f"expression in {', '.join(INTERFACE_VARIABLES)}"
-            )
-        return checked(found, "friction", -math.inf)
-    if isinstance(given, dict):
-        return checked(typed_table("friction", given), "friction", -math.inf)
-    return _COEFFICIENT.validate_python(given)
+    found = _law(given, "friction", "", INTERFACE_VARIABLES)
+    if found is None:
+        return _COEFFICIENT.validate_python(given)
+    if isinstance(found, Expression) and found.constant is not None:
+        raise ValueError(
+            f"found {quoted(given)}; must be a number without quotation marks, or an "
+            f"expression in {', '.join(INTERFACE_VARIABLES)}"
+        )
+    require_interface_law(law_of(found, "friction", -math.inf))
+    return found
+
+
+def _conductance(given: Any) -> Any:
+    if isinstance(given, str) and not _VARIABLE.search(given):
+        return _CONDUCTANCE.validate_python(given)
+    found = _law(given, "conductance", "W/(m^2 K)", INTERFACE_VARIABLES, **_CONDUCTANCES)
+    if found is None:
+        return _CONDUCTANCE.validate_python(given)
+    if isinstance(found, Expression | LawTable):
+        require_interface_law(law_of(found, "heat.conductance", 0.0))
+    return found
 
 
 def _wear(given: Any) -> Any:
-    if isinstance(given, Expression | LawTable):
-        return given
-    law: Any
-    if isinstance(given, str):
-        law = expression(given, "m/s", WEAR_VARIABLES)
-    elif isinstance(given, dict):
-        law = typed_table("wear", given)
-    else:
+    found = _law(given, "wear", "m/s", WEAR_VARIABLES)
+    if found is None:
         raise ValueError(
             f"found {quoted(given)}; must be an expression in "
             f"{', '.join(WEAR_VARIABLES)}, or a table with a type"
         )
-    require_wear_rate(wear_rate_of(law))
-    return law
+    require_wear_rate(wear_rate_of(found))
+    return found
+
+
+def _written(value: Any) -> Any:
+    if isinstance(value, Section):
+        return value.model_dump()
+    return value.text if isinstance(value, Expression) else value
+
+
+def _written_conductance(value: Any) -> Any:
+    return _CONDUCTANCE.dump_python(value) if isinstance(value, float) else _written(value)
 
 
 Friction = Annotated[
-    float | Expression | LawTable, PlainValidator(_friction), PlainSerializer(written)
+    float | Expression | LawTable, PlainValidator(_friction), PlainSerializer(_written)
 ]
 """Coefficient of friction: a number, an expression in p, v and T, or a registered law."""
-RateOfWear = Annotated[Expression | LawTable, PlainValidator(_wear), PlainSerializer(written)]
+RateOfWear = Annotated[Expression | LawTable, PlainValidator(_wear), PlainSerializer(_written)]
 """Wear rate: an expression in p, v, T, depth and mu [m/s], or a registered law."""
+Conductance = Annotated[
+    float | PressureConductanceTable | TabulatedConductanceTable | Expression | LawTable,
+    PlainValidator(_conductance),
+    PlainSerializer(_written_conductance),
+]
+"""Constant [W/(m² K)], table, expression in p, v and T, or registered law."""

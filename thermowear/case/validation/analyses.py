@@ -1,0 +1,246 @@
+"""Consistency checks of the analysis: features that it supports, load histories, cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..tables.analyses import Fretting, Reciprocating, Transient
+from ..tables.schema import Case
+from ..tables.tabulated import History
+from ..values.section import Fault
+
+_ONLY_IN: dict[str, tuple[str, ...]] = {
+    "load.history": ("transient", "fretting"),
+    "wear.cycles": ("fretting", "reciprocating"),
+    "wear.max_jump": ("fretting", "reciprocating"),
+}
+"""Analyses that support a key."""
+_NOT_IN = {
+    "heat": ("fretting", "reciprocating"),
+    "motion": ("fretting",),
+    "load.pressure": ("fretting",),
+}
+"""Analyses that do not support a table."""
+_CONSTANT = ("fretting", "reciprocating", "stability")
+"""Analyses in which all properties are constant."""
+_FACTORS = ("conductivity_factor", "expansion_factor")
+_UNVARIED = ("moment", "moments", "tangential_force", "surfaces")
+"""Loads that no history changes."""
+
+
+def supported(case: Case) -> Iterator[Fault]:
+    """Keys and histories that the analysis supports."""
+    type_ = case.analysis.type
+    only_in = dict(_ONLY_IN)
+    if type_ != "fretting":  # refuses motion and heat altogether
+        only_in |= dict.fromkeys(case.histories.keys() - {"load.history"}, ("transient",))
+    elif case.contact.friction_history is not None:
+        only_in["contact.friction_history"] = ("transient",)
+    for path in sorted(only_in):
+        if type_ not in only_in[path] and (path in case.histories or _given(case, path)):
+            yield path, f"requires a {' or '.join(only_in[path])} analysis, not {type_}"
+    for path, refusing in _NOT_IN.items():
+        if type_ in refusing and _given(case, path) not in (None, {}):
+            yield path, f"is not supported in a {type_} analysis"
+
+
+def _given(case: Case, path: str) -> Any:
+    """Value at the path of a key."""
+    found: Any = case
+    for key in path.split("."):
+        found = getattr(found, key, None)
+    return found
+
+
+def condensed_only(case: Case) -> Iterator[Fault]:
+    """Features that require the condensed method."""
+    if case.contact.method != "condensed":
+        for feature in _condensed_features(case):
+            yield (
+                "contact.method",
+                f"{case.contact.method!r} does not support {feature}; use condensed",
+            )
+
+
+def _condensed_features(case: Case) -> Iterator[str]:
+    type_, heat = case.analysis.type, case.heat
+    own = {"reciprocating": "a reciprocating analysis", "fretting": "sticking"}
+    if type_ in own:
+        yield own[type_]
+    if case.model == "3d":
+        yield "3d models"
+    elif type_ == "stability":
+        yield "a stability analysis"
+    elif heat is not None and heat.transient:
+        yield "temperatures in time"
+    elif type_ in ("initial", "transient") and (case.varies or case.contact.friction_history):
+        yield "variable friction, wear or conductance"
+    elif heat is not None and any(_factors(case)):
+        yield "variable conductivity or expansion"
+
+
+def _factors(case: Case) -> Iterator[str]:
+    """Paths of all tables of factors of materials."""
+    for name, body in case.bodies.items():
+        yield from (f"bodies.{name}.{key}" for key in _FACTORS if getattr(body, key) is not None)
+
+
+def varying(case: Case) -> Iterator[Fault]:
+    """Variables of laws and tables of factors that are available in the analysis."""
+    type_, constant = case.analysis.type, case.analysis.type in _CONSTANT
+    tables = {"contact.friction_factor": case.contact.friction_factor}
+    tables |= {f"wear.{name}.factor": law.factor for name, law in case.wear.items()}
+    for path, table in tables.items():
+        if constant and table.depends_on:
+            yield path, f"is not supported in a {type_} analysis"
+        elif table.temperature is not None and case.heat is None:
+            yield f"{path}.temperature", "needs a [heat] table, which computes the temperatures"
+    if constant:
+        yield from ((path, f"is not supported in a {type_} analysis") for path in _factors(case))
+    laws = {"contact.friction": case.contact.friction_law.variables}
+    laws |= {f"wear.{name}.rate": law.variables for name, law in case.wear.items() if law.rate}
+    for path, variables in laws.items():
+        friction = path == "contact.friction"
+        refused = sorted(variables if friction else variables & {"T", "depth"})
+        unsupported = f"depends on {', '.join(refused)}; not supported in a {type_} analysis"
+        if constant and refused and friction:
+            yield path, unsupported
+        if "T" in variables and case.heat is None:
+            yield path, "depends on T; requires a [heat] table"
+        elif constant and refused and not friction:
+            yield path, unsupported
+        elif "depth" in variables and "steady" in (type_, getattr(case.analysis, "until", None)):
+            yield path, "depends on depth, which grows without end: there is no steady state"
+
+
+def histories(case: Case) -> Iterator[Fault]:
+    """Time histories that have an effect, and end the analysis in time."""
+    analysis, history = case.analysis, case.load.history
+    if isinstance(analysis, Transient):
+        if history is not None:
+            yield from _force_history(case, history)
+        if analysis.until is not None and case.histories:
+            which = next(iter(case.histories))
+            yield "analysis.until", f"there is no steady state under {which}; give end_time only"
+    elif isinstance(analysis, Fretting) and history is not None:
+        if history.repeat:
+            yield (
+                "load.history.repeat",
+                "requires a transient analysis; use analysis.cycles in a fretting analysis",
+            )
+        for i, force in enumerate(history.force or ()):
+            if force == 0.0:
+                yield f"load.history.force.{i}", "must be greater than 0 N in a fretting analysis"
+    if case.contact.friction_history is not None:
+        why = None
+        if case.contact.nominal_friction == 0.0:
+            why = "contact.friction is 0"
+        elif case.motion is None and isinstance(analysis, Transient):
+            why = "without [motion] the bodies do not slide"
+        if why is not None:
+            yield "contact.friction_history", f"has no effect: {why}"
+
+
+def _force_history(case: Case, history: History) -> Iterator[Fault]:
+    """Only the force may vary in a transient analysis, without other normal loads."""
+    others = ("approach", "tangential_force", "tangential_displacement")
+    refused = [key for key in others if getattr(history, key) is not None]
+    for key in refused:
+        yield (
+            f"load.history.{key}",
+            "requires a fretting analysis; a transient one supports force only",
+        )
+    if history.force is None and not refused:
+        yield "load.history.force", "missing; required in a transient analysis"
+    if history.cycle_start is not None:
+        yield (
+            "load.history.cycle_start",
+            "requires a fretting analysis; use repeat = true in a transient one",
+        )
+    constant = [key for key in _UNVARIED if getattr(case.load, key)]
+    for key in constant:
+        yield f"load.{key}", "cannot be combined with load.history, which varies the force only"
+    if not case.holder.free and not constant:
+        yield "load.history", "has no effect: the holder is fixed (holder.free = [])"
+
+
+def cycles(case: Case) -> Iterator[Fault]:
+    """The number of cycles is given once; `max_jump` limits automatic jumps only."""
+    analysis, wear = case.analysis, case.wear
+    if wear.cycles is not None and getattr(analysis, "cycles", None) is not None:
+        yield "wear.cycles", "only one of wear.cycles and analysis.cycles can be given"
+    ends = isinstance(analysis, Reciprocating) and analysis.end_time is not None
+    if wear.cycles is not None and ends:
+        yield "wear.cycles", "only one of analysis.end_time and wear.cycles can be given"
+    if isinstance(analysis, Fretting) and analysis.jump != "auto" and wear.max_jump is not None:
+        yield "wear.max_jump", 'requires analysis.jump = "auto"'
+
+
+def fretting(case: Case) -> Iterator[Fault]:
+    """Load history of a fretting analysis, and features that it does not support."""
+    analysis = case.analysis
+    if not isinstance(analysis, Fretting):
+        return
+    history = None if case.load.history is None else case.load.history.loads
+    if history is None:
+        yield "load.history", "missing; required in a fretting analysis"
+    elif history.tangential and case.model == "axisymmetric":
+        yield "load.history", "tangential loads are not supported in axisymmetric models"
+    elif history.tangential and case.geometry.symmetry:
+        yield "geometry.half", "tangential loads are not symmetric; mesh the whole section"
+    else:
+        yield from _cycles_of_loads(case, analysis)
+
+
+def _cycles_of_loads(case: Case, analysis: Fretting) -> Iterator[Fault]:
+    """Cycles need a closed load cycle; output times lie within the history and its repetitions."""
+    assert case.load.history is not None
+    loads, count = case.load.history.loads, case.cycles or 1
+    start, end = loads.time[0], loads.time[-1]
+    if loads.cycle is not None:
+        end += (count - 1) * (end - loads.cycle[0])
+    elif count > 1:
+        yield (
+            "analysis.cycles" if case.wear.cycles is None else "wear.cycles",
+            "no earlier instant of load.history has the loads of its last one: no cycle to repeat",
+        )
+    late = [t for t in analysis.output_times if not start <= t <= end]
+    if late:
+        where = "load.history.time" if count == 1 else "the cycles"
+        limits = f"from {start:g} s to {end:g} s"
+        yield "analysis.output_times", f"{late[0]:g} s lies outside {where}, {limits}"
+
+
+def reciprocating(case: Case) -> Iterator[Fault]:
+    """Reciprocating sliding is along x, in plane models, and has an end."""
+    analysis, motion, count = case.analysis, case.motion, case.cycles
+    if not isinstance(analysis, Reciprocating):
+        return
+    plane = case.model in ("plane-strain", "plane-stress")
+    if not plane or case.geometry.rotation_center or case.geometry.slides_across:
+        yield "model", "a reciprocating analysis needs a plane model with sliding along x"
+    elif case.geometry.symmetry:
+        yield "geometry.half", "reciprocating sliding is not symmetric; mesh the whole section"
+    if "x" in case.holder.free:
+        yield "holder.free", '"x" is not allowed: the motion of body 1 along x is prescribed'
+    if analysis.until == "steady" and case.holder.free != ("z",):
+        yield (
+            "analysis.until",
+            'needs holder.free = ["z"]: otherwise wear rates do not become uniform',
+        )
+    for key, text in {
+        "amplitude": "missing; a reciprocating analysis needs it",
+        "frequency": "missing; a reciprocating analysis needs it",
+        "velocity": "not supported; a reciprocating motion has amplitude and frequency",
+        "angular_velocity": "not supported; a reciprocating motion has amplitude and frequency",
+    }.items():
+        if motion is not None and (getattr(motion, key) is None) == text.startswith("missing"):
+            yield f"motion.{key}", text
+    if motion is not None and motion.frequency is not None and count is not None:
+        end = count / motion.frequency
+        late = [t for t in analysis.output_times if t > end]
+        if late:
+            yield "analysis.output_times", f"{late[0]:g} s lies after the last cycle, {end:g} s"
+    if count is None and analysis.end_time is None and analysis.until is None:
+        yield "analysis.end_time", 'missing; needs end_time, cycles or until = "steady"'

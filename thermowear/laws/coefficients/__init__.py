@@ -1,1 +1,0 @@
-"""Coefficients of the interface: constant, tabulated, proportional to the pressure."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ..laws.load_history import LoadHistory
+from ..laws.time_course import LoadHistory
 
 
 @dataclass(frozen=True)

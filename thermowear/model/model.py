@@ -8,8 +8,7 @@ from functools import cached_property
 from typing import Literal
 
 from ..errors import CaseError
-from ..laws.load_history import LoadHistory
-from ..laws.time_course import TimeFunction
+from ..laws.time_course import LoadHistory, TimeFunction
 from .body import Body
 from .heat import Heat
 from .holder import Holder

@@ -3,12 +3,10 @@
 from .body import BodySurface, MeshBody
 from .conversion import LoadHistory, TimeHistory
 from .face_pair import FacePair
-from .march import MarchState
-from .motion import Rotation, Translation
+from .holding import Rotation, SurfaceHolder, Translation
 from .physics import Heat, Material, PowerWear, PressureConductance
 from .scripted_model import ScriptedModel
-from .solution import ModelSolution, PointValues
-from .surface_holder import SurfaceHolder
+from .solution import MarchState, ModelSolution, PointValues
 
 Body, Interface, Holder, Model = MeshBody, FacePair, SurfaceHolder, ScriptedModel
 

@@ -20,19 +20,19 @@ from ..model.analyses import (
 from ..model.heat import Heat
 from ..model.model import Discretisation, Model
 from ..model.motion import Motion
+from ..results import HistoryRow
 from ..simulation.analyses.run import solve
+from ..simulation.analyses.transient import transient_history
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
 from ..simulation.system.setup_cache import SetupCache
 from ..simulation.system.system import System
 from ..timer import Phases
 from .body import BodySurface, MeshBody
-from .conversion import number, optional
+from .conversion import number
 from .face_pair import FacePair
-from .march import MarchState, march
-from .motion import Rotation, Translation
-from .solution import ModelSolution
-from .surface_holder import SurfaceHolder
+from .holding import Rotation, SurfaceHolder, Translation
+from .solution import MarchState, ModelSolution
 from .user_mesh import UserMeshes, user_meshes
 
 _OF_SECTIONS = ("axisymmetric", "plane-strain", "plane-stress")
@@ -137,9 +137,20 @@ class ScriptedModel:
             State to continue from, of this model or of one with other loads, speeds or laws.
         **settings
             Other attributes of `model.analyses.TransientAnalysis`.
+
+        Raises
+        ------
+        ComputationError
+            If a step fails, or its balances do not hold.
         """
         analysis = _transient(until, settings)
-        yield from march(self.bodies, self.meshes, self._system(analysis), analysis, start)
+        before = None if start is None else start.progress
+        history, passing = transient_history(self._system(analysis), analysis, Observer(), before)
+        for moment in passing:
+            history.keep(moment)
+            row, loop = history.table(HistoryRow)[-1], history.loop
+            after = history.progress(), loop.problem, loop.system
+            yield MarchState(self.bodies, self.meshes, row, *after)
 
     def fretting(self, observer: Observer | None = None, **settings: Any) -> ModelSolution:
         """Stick and slip under the history of the holder, see `model.analyses.FrettingAnalysis`."""
@@ -180,7 +191,9 @@ class ScriptedModel:
                 f"Model.kinematics: found {self.kinematics!r}; must be one of "
                 f"{', '.join(_OF_SECTIONS)} for a mesh of a section, and None in space"
             )
-        thickness = optional(units.Length, self.thickness, "Model.thickness")
+        thickness = self.thickness
+        if thickness is not None:
+            thickness = in_python(units.Length, thickness, "Model.thickness")
         if (self.kinematics in _OF_SECTIONS[1:]) is (thickness is None):
             raise CaseError("Model.thickness: needed for a plane model, and for no other")
         model = Model(

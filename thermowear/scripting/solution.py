@@ -1,4 +1,4 @@
-"""Solution of a model: pressures with their points, fields on the user's meshes, tables."""
+"""Solutions and states of a model: values at contact points, fields on its meshes, tables."""
 
 from __future__ import annotations
 
@@ -11,9 +11,13 @@ import numpy as np
 from dolfinx import fem
 
 from ..errors import CaseError
-from ..results import Result
+from ..results import HistoryRow, Result
+from ..simulation.analyses.transient_history import snapshot_at
+from ..simulation.interface.interface_problem import InterfaceProblem
 from ..simulation.results.fields import with_holder
 from ..simulation.results.recording import Snapshot
+from ..simulation.runtime.checkpoint_data import Progress
+from ..simulation.system.system import System
 from .body import MeshBody
 from .body_fields import on_user_mesh
 from .user_mesh import UserMeshes
@@ -196,3 +200,32 @@ class ModelSolution(ContactResults):
         """Columns of the history in SI; empty for analyses without steps."""
         rows = [asdict(row) for row in self.result.history]
         return {key: np.array([row[key] for row in rows]) for key in (rows[0] if rows else ())}
+
+
+@dataclass(frozen=True)
+class MarchState(ContactResults):
+    """State of a running-in after a step; also a state to continue from.
+
+    Attributes
+    ----------
+    row : HistoryRow
+        Row of the history: time, step, wear volumes, largest pressure and temperature, in SI.
+    progress : Progress
+        Data to continue from.
+    """
+
+    bodies: tuple[MeshBody, ...]
+    meshes: UserMeshes
+    row: HistoryRow
+    progress: Progress
+    problem: InterfaceProblem
+    system: System
+
+    @property
+    def time(self) -> float:
+        """Time [s]."""
+        return self.row.time
+
+    @cached_property
+    def snapshot(self) -> Snapshot:
+        return snapshot_at(self.system, self.problem, self.progress.state)

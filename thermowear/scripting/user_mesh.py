@@ -50,16 +50,16 @@ class UserMeshes:
 
 @dataclass(frozen=True)
 class _Piece:
-    """Mesh of one body: nodes of the cells in gmsh's order, and tagged facets by their corners."""
+    """Mesh of one body: cells with their parts, and tagged facets by their corners."""
 
     name: str
     kind: str
+    order: int
     points: np.ndarray
     cells: np.ndarray
     parts: np.ndarray
     corners: np.ndarray
     tags: np.ndarray
-    order: int
 
 
 def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
@@ -73,7 +73,7 @@ def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
     pieces = [_gathered(body) for body in bodies]
 
     def joined() -> UserMeshes:
-        checked = [_oriented(piece) for piece in pieces if piece is not None]
+        checked = [_oriented(_in_model(piece)) for piece in pieces if piece is not None]
         tagged = _joined([piece for piece, _ in checked], bodies)
         return UserMeshes(tagged.checksum(), tagged, tuple(turned for _, turned in checked))
 
@@ -81,42 +81,41 @@ def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
 
 
 def _gathered(body: MeshBody) -> _Piece | None:
-    """Piece of a body on rank 0, None elsewhere. Every rank calls."""
-    mesh, name = body.mesh, f"Body {body.name!r}"
+    """Piece of a body on rank 0, as in its mesh, None elsewhere. Every rank calls."""
+    mesh = body.mesh
     kind, order = mesh.topology.cell_name(), coordinate_element(mesh).degree
     if kind not in FACETS:
         raise CaseError(
-            f"{name}: has cells of type {kind}; supported are {', '.join(FACETS)} (a mesh of "
-            "a section, or of hexahedra)"
+            f"Body {body.name!r}: has cells of type {kind}; supported are {', '.join(FACETS)} (a "
+            "mesh of a section, or of hexahedra)"
         )
     parts = body.part_of_cells()
     own = np.flatnonzero(parts >= 0)
     dofs, nodes = geometry_dofmap(mesh), mesh.geometry.index_map()
-    cells = nodes.local_to_global(dofs[own].ravel()).reshape(len(own), dofs.shape[1])
     corners = _corners(mesh, dofs, body.facets.indices)
-    shape = corners.shape
-    found = mesh.comm.gather(
-        (
-            mesh.geometry.x[: nodes.size_local],
-            cells,
-            parts[own],
-            nodes.local_to_global(corners.ravel()).reshape(shape),
-            body.facets.values,
-        )
+    cells, ends = (
+        nodes.local_to_global(local.ravel()).reshape(local.shape) for local in (dofs[own], corners)
     )
+    points = mesh.geometry.x[: nodes.size_local]
+    found = mesh.comm.gather((points, cells, parts[own], ends, body.facets.values))
     if found is None:
         return None
-    points, cells, parts, corners, tags = (
-        np.concatenate(each) for each in zip(*found, strict=True)
-    )
-    if not len(cells):
+    columns = (np.concatenate(each) for each in zip(*found, strict=True))
+    return _Piece(body.name, kind, order, *columns)
+
+
+def _in_model(piece: _Piece) -> _Piece:
+    """Piece with points in its section, or in space, and nodes of the cells in gmsh's order."""
+    name, points, kind = f"Body {piece.name!r}", piece.points, piece.kind
+    if not len(piece.cells):
         raise CaseError(f"{name}: has no cells")
-    in_gmsh = np.empty_like(cells)
-    nodes = equispaced(kind, order).points
-    in_gmsh[:, matching(nodes, reference_nodes(kind, order))] = cells
-    return _Piece(
-        body.name, kind, _in_model(points, kind, name), in_gmsh, parts, corners, tags, order
-    )
+    if kind in CORNERS:
+        if np.ptp(points[:, 2]) > _LEVEL * np.ptp(points, axis=0).max():
+            raise CaseError(f"{name}: the mesh of a section must lie in a plane z = const")
+        points = points[:, :2]
+    nodes, in_gmsh = equispaced(kind, piece.order).points, np.empty_like(piece.cells)
+    in_gmsh[:, matching(nodes, reference_nodes(kind, piece.order))] = piece.cells
+    return replace(piece, points=points, cells=in_gmsh)
 
 
 def _corners(mesh, dofs: np.ndarray, facets: np.ndarray) -> np.ndarray:
@@ -125,19 +124,10 @@ def _corners(mesh, dofs: np.ndarray, facets: np.ndarray) -> np.ndarray:
     topology.create_connectivity(tdim - 1, 0)
     vertices = topology.connectivity(tdim, 0).array
     node = np.zeros(vertices.max(initial=0) + 1, dtype=dofs.dtype)
-    node[vertices] = dofs[:, : len(vertices) // len(dofs)].ravel()
+    node[vertices] = dofs[:, : len(vertices) // max(len(dofs), 1)].ravel()
     ends = topology.connectivity(tdim - 1, 0)
     per_facet = len(ends.array) // max(ends.num_nodes, 1)
     return node[ends.array.reshape(-1, per_facet)[facets]]
-
-
-def _in_model(points: np.ndarray, kind: str, name: str) -> np.ndarray:
-    """Coordinates of a section, or in space, shape (n, 2) or (n, 3)."""
-    if kind not in CORNERS:
-        return points
-    if np.ptp(points[:, 2]) > _LEVEL * np.ptp(points, axis=0).max():
-        raise CaseError(f"{name}: the mesh of a section must lie in a plane z = const")
-    return points[:, :2]
 
 
 def _oriented(piece: _Piece) -> tuple[_Piece, np.ndarray]:

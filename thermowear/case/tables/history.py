@@ -7,8 +7,7 @@ from typing import Any, ClassVar
 
 from pydantic import TypeAdapter, ValidationError, ValidationInfo, model_validator
 
-from ...laws.load_history import KEYS, LoadHistory
-from ...laws.time_course import TimeCourse, TimeFunction
+from ...laws.time_course import KEYS, LoadHistory, TimeCourse, TimeFunction
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
 from ..values.paths import UserFile
@@ -142,7 +141,7 @@ class TemperatureHistory(TimeHistory):
 
 
 class History(TimeHistory):
-    """Loads of the holder of body 1 at instants, see `laws.load_history.LoadHistory`."""
+    """Loads of the holder of body 1 at instants, see `laws.time_course.LoadHistory`."""
 
     COLUMNS = {
         "time": "s",

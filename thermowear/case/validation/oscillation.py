@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...laws.load_history import LoadHistory
+from ...laws.time_course import LoadHistory
 from ..tables.analyses import Fretting, Reciprocating
 from ..tables.driving import MotionTable
 from ..tables.schema import Case

@@ -29,6 +29,7 @@ import numpy as np
 
 from .face import Face
 from .projection import overhang, project
+from .smooth_normals import across
 from .surface import Surface
 
 MAX_FACING_COSINE = -0.5
@@ -93,24 +94,6 @@ class Opposite:
         return (self.cosine <= MAX_FACING_COSINE) & inside
 
 
-@dataclass(frozen=True)
-class NormalLines:
-    """Lines from points to the tangent planes of the other face at the opposite points.
-
-    Attributes
-    ----------
-    normals, share, cosine : ndarray
-        See `Opposite`.
-    offset : ndarray, shape (n, gdim)
-        Vectors from the points to the planes [m].
-    """
-
-    normals: np.ndarray
-    offset: np.ndarray
-    share: np.ndarray
-    cosine: np.ndarray
-
-
 def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface):
     """Points of another face opposite to points of a face.
 
@@ -135,7 +118,7 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     facet, t, line = opposite_parameters(
         points, outward, face.softness_at(facet), other, closest, at, locate
     )
-    return Opposite(facet, t, line.normals, line.offset, line.share, line.cosine, overhangs)
+    return Opposite(facet, t, *line, overhangs)
 
 
 def opposite_parameters(
@@ -146,8 +129,10 @@ def opposite_parameters(
     facet: np.ndarray,
     t: np.ndarray,
     locate: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
-) -> tuple[np.ndarray, np.ndarray, NormalLines]:
+) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
+
+    Lines by their normals, offset, share and cosine, see `Opposite`; they end on the tangent plane.
 
     Fixed-point iteration from the closest point: the line along m, or n where faces wear, is
     intersected with the tangent plane of the face.
@@ -171,7 +156,7 @@ def opposite_parameters(
     for _ in range(_MAX_ITERATIONS):
         now = slice(None) if len(moving) == len(points) else moving
         line = _line(points[now], outward[now], softness[now], other, facet[now], t[now])
-        facet[now], t[now] = locate(points[now] + line.offset, moving)
+        facet[now], t[now] = locate(points[now] + line[1], moving)
         before, opposite_points[now] = opposite_points[now].copy(), other.points(facet[now], t[now])
         change = np.linalg.norm(opposite_points[now] - before, axis=1)
         moving = moving[change > _TOLERANCE * other.extent]
@@ -191,9 +176,7 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
         side.smooth_normals(*at)
         for side, at in ((face, (facet, t)), (other, (pairs.facet, pairs.t)))
     )
-    count, dim = len(facet), n_1.shape[1]
-    x_1 = face.tangents(facet, t).reshape(count, -1, dim)
-    x_2 = other.tangents(pairs.facet, pairs.t).reshape(count, -1, dim)
+    x_1, x_2 = face.tangents(facet, t), other.tangents(pairs.facet, pairs.t)
     a_1, a_2 = _parts(pairs.share, other)
     m, length = _direction(a_1 * n_1 - a_2 * n_2, n_1)
     turned = (np.einsum("ni,ni->n", pairs.offset, m) / length)[:, None, None]
@@ -203,12 +186,11 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     along = np.linalg.solve(square, np.einsum("nki,nji->nkj", there, here))
     s = pairs.share[:, None, None]
     tangents = (1 - s) * x_1 + s * np.einsum("nkj,nki->nji", along, x_2)
-    if tangents.shape[1] == 1:
-        return np.linalg.norm(tangents[:, 0], axis=1)
-    return np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
+    return np.linalg.norm(across(tangents), axis=1)
 
 
-def _line(points, outward, softness, other, facet, t) -> NormalLines:
+def _line(points, outward, softness, other, facet, t) -> tuple[np.ndarray, ...]:
+    """Normals, offset to the tangent plane of the other face, share and cosine of points."""
     against, other_softness = other.smooth_normals(facet, t)[0], other.softness_at(facet)
     share = softness / (softness + other_softness)
     normals, _ = _direction((1 - share)[:, None] * outward - share[:, None] * against, outward)
@@ -217,7 +199,7 @@ def _line(points, outward, softness, other, facet, t) -> NormalLines:
     steep = np.minimum(np.einsum("ni,ni->n", along, against), -_MIN_COSINE)
     to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
     cosine = np.einsum("ni,ni->n", outward, against)
-    return NormalLines(normals, to_plane[:, None] * along, share, cosine)
+    return normals, to_plane[:, None] * along, share, cosine
 
 
 def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndarray]:
@@ -228,11 +210,9 @@ def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndar
 
 def _direction(vectors: np.ndarray, otherwise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Unit vectors (n, gdim), substitutes for near-zero vectors, and lengths (n,)."""
-    length = np.linalg.norm(vectors, axis=1)
-    unit = vectors / np.maximum(length, _MIN_SUM_LENGTH)[:, None]
-    return np.where(length[:, None] > _MIN_SUM_LENGTH, unit, otherwise), np.maximum(
-        length, _MIN_SUM_LENGTH
-    )
+    length = np.maximum(np.linalg.norm(vectors, axis=1), _MIN_SUM_LENGTH)
+    unit = vectors / length[:, None]
+    return np.where(length[:, None] > _MIN_SUM_LENGTH, unit, otherwise), length
 
 
 def _across(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from dolfinx import fem
 from ...bulk.bodies import Bodies
 from ...compat import entities_to_geometry_layout, geometry_dofmap
 from ...errors import CaseError
-from ...lagrange import lobatto, on_lattice
+from ...lagrange import lobatto
 from .facets import FacetSet, cell_softness, gathered, owned_facets
 from .surface import Surface, gather_surface
 
@@ -34,11 +34,6 @@ class Face(FacetSet):
     """
 
     reversed: np.ndarray
-
-    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Derivatives of the coordinates along t, shape (n, 2) [m]."""
-        slopes = on_lattice(self._order, t, 1)[1]
-        return np.einsum("nk,nki->ni", slopes, self.nodes[facet])
 
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Arc length along the face from its first end, shape (n,) [m]."""
@@ -69,9 +64,9 @@ class Face(FacetSet):
         corners = np.arange(len(self.nodes))[:, None] + np.arange(2)
         return corners % len(self.nodes) if self.closed else corners
 
-    def _area_vectors(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        tangent = self.tangents(facet, t)
-        return np.column_stack([tangent[:, 1], -tangent[:, 0]])
+    def nearby(self, distance: np.ndarray) -> np.ndarray:
+        # the nearest chord may belong to a neighbour of the nearest curved facet
+        return np.clip(distance.argmin(axis=1)[:, None] + (0, -1, 1), 0, len(self.nodes) - 1)
 
     def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Arc length of each facet from its start to t [m]."""

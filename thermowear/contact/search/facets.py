@@ -12,7 +12,38 @@ from dolfinx import fem
 from ...bulk.bodies import Bodies
 from ...errors import CaseError
 from ...lagrange import on_lattice
-from .smooth_normals import corner_corrections, smooth_normals
+from .smooth_normals import across, corner_corrections, smooth_normals
+
+
+@dataclass(frozen=True)
+class Parallelograms:
+    """Parallelograms, or lines in a section, that approximate the facets.
+
+    Attributes
+    ----------
+    middle : ndarray, shape (n_facets, gdim) [m]
+    sides : ndarray, shape (n_facets, dim, gdim)
+        Tangents along the parameters [m].
+    inverse : ndarray, shape (n_facets, dim, gdim)
+        Parameters per coordinate [1/m].
+    """
+
+    middle: np.ndarray
+    sides: np.ndarray
+    inverse: np.ndarray
+
+    def only(self, facet: int) -> Parallelograms:
+        """Parallelogram of one facet."""
+        chosen = slice(facet, facet + 1)
+        return Parallelograms(self.middle[chosen], self.sides[chosen], self.inverse[chosen])
+
+    def points(self, t: np.ndarray) -> np.ndarray:
+        """Coordinates at parameters of every facet, of shape (..., n_facets, dim) [m]."""
+        return self.middle + np.einsum("...fk,fki->...fi", t - 0.5, self.sides)
+
+    def parameters(self, points: np.ndarray) -> np.ndarray:
+        """Parameters of points (n, gdim) projected on every facet, shape (n, n_facets, dim)."""
+        return 0.5 + np.einsum("fki,nfi->nfk", self.inverse, points[:, None] - self.middle)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,26 +78,27 @@ class FacetSet(ABC):
     name: str = "the contact face"
     wears: bool = False
 
-    @abstractmethod
-    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Derivatives of the coordinates along the parameters [m]."""
-
-    @abstractmethod
-    def _area_vectors(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Normals of the length of `stretch`, outward or inward, shape (n, gdim)."""
-
     @property
     @abstractmethod
     def corner_numbers(self) -> np.ndarray:
         """Corner numbers shared by adjacent facets, shape (n_facets, 2) or (n_facets, 2, 2)."""
 
+    @abstractmethod
+    def nearby(self, distance: np.ndarray) -> np.ndarray:
+        """Candidates for the closest facet by the distances (n, n_facets) from `flattened` ones."""
+
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, gdim) [m]."""
         return np.einsum("nk,nki->ni", on_lattice(self._order, t)[0], self._listed[facet])
 
+    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Derivatives of the coordinates along the parameters, shape (n, dim, gdim) [m]."""
+        slopes = on_lattice(self._order, t, 1)[1:]
+        return np.einsum("dnk,nki->ndi", slopes, self._listed[facet])
+
     def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Outward unit normals, shape (n, gdim)."""
-        normal = self._area_vectors(facet, t) * self.outward[facet, None]
+        normal = across(self.tangents(facet, t)) * self.outward[facet, None]
         return normal / np.linalg.norm(normal, axis=1, keepdims=True)
 
     def smooth_normals(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -74,7 +106,7 @@ class FacetSet(ABC):
 
         Shapes (n, gdim) and (n, gdim - 1, gdim).
         """
-        t = t.reshape(len(t), self.nodes.ndim - 2)
+        t = t.reshape(len(t), self.dim)
         return smooth_normals(self.nodes, self.outward, self._corrections, facet, t)
 
     def softness_at(self, facet: np.ndarray) -> np.ndarray:
@@ -83,7 +115,20 @@ class FacetSet(ABC):
 
     def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Length per parameter or area per parameter area, shape (n,) [m or m²]."""
-        return np.linalg.norm(self._area_vectors(facet, t), axis=1)
+        return np.linalg.norm(across(self.tangents(facet, t)), axis=1)
+
+    @property
+    def dim(self) -> int:
+        """Number of parameters of a facet."""
+        return self.nodes.ndim - 2
+
+    @cached_property
+    def flattened(self) -> Parallelograms:
+        """Best-fit parallelograms, or lines, to the corners of the facets."""
+        inner = tuple(range(1, self.dim + 1))
+        corners = self.nodes[(slice(None), *[slice(None, None, self._order)] * self.dim)]
+        sides = np.stack([np.diff(corners, axis=k).mean(axis=inner) for k in inner], axis=1)
+        return Parallelograms(corners.mean(axis=inner), sides, np.linalg.pinv(sides).mT)
 
     @property
     def extent(self) -> float:

@@ -15,42 +15,13 @@ from dolfinx import fem
 from ...bulk.bodies import Bodies
 from ...bulk.field import reference_element
 from ...compat import coordinate_element, geometry_dofmap
-from ...lagrange import equispaced, gauss, lattice, matching, on_lattice
+from ...lagrange import equispaced, gauss, lattice, matching
 from .facets import FacetSet, cell_softness, gathered, owned_facets
 
 _FLATNESS_TOLERANCE = 1e-9
 """Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
-
-
-@dataclass(frozen=True)
-class Parallelograms:
-    """Parallelograms that approximate the facets.
-
-    Attributes
-    ----------
-    middle : ndarray, shape (n_facets, 3) [m]
-    sides : ndarray, shape (n_facets, 2, 3)
-        Tangents along both parameters [m].
-    inverse : ndarray, shape (n_facets, 2, 3)
-        Parameters per coordinate [1/m].
-    """
-
-    middle: np.ndarray
-    sides: np.ndarray
-    inverse: np.ndarray
-
-    def only(self, facet: int) -> Parallelograms:
-        """Parallelogram of one facet."""
-        chosen = slice(facet, facet + 1)
-        return Parallelograms(self.middle[chosen], self.sides[chosen], self.inverse[chosen])
-
-    def points(self, t: np.ndarray) -> np.ndarray:
-        """Coordinates at parameters of every facet, of shape (..., n_facets, 2) [m]."""
-        return self.middle + np.einsum("...fk,fki->...fi", t - 0.5, self.sides)
-
-    def parameters(self, points: np.ndarray) -> np.ndarray:
-        """Parameters of points (n, 3) projected on every facet, shape (n, n_facets, 2)."""
-        return 0.5 + np.einsum("fki,nfi->nfk", self.inverse, points[:, None] - self.middle)
+_CANDIDATES = 4
+"""Number of candidates for the closest facet to a point: the nearest in flat approximation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +36,13 @@ class Surface(FacetSet):
 
     corners: np.ndarray
 
-    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Derivatives of the coordinates along both parameters, shape (n, 2, 3) [m]."""
-        slopes = on_lattice(self._order, t, 1)[1:]
-        return np.einsum("dnk,nki->ndi", slopes, self._listed[facet])
+    @property
+    def corner_numbers(self) -> np.ndarray:
+        return self.corners
+
+    def nearby(self, distance: np.ndarray) -> np.ndarray:
+        count = min(_CANDIDATES, distance.shape[1])
+        return np.sort(np.argpartition(distance, count - 1, axis=1)[:, :count], axis=1)
 
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """NaN: points of a surface have no order."""
@@ -84,15 +58,6 @@ class Surface(FacetSet):
         t, w = gauss(self._order + 4, dim=2)
         facet = np.repeat(np.arange(len(self.nodes)), len(w))
         return self.stretch(facet, np.tile(t, (len(self.nodes), 1))).reshape(-1, len(w)) @ w
-
-    @cached_property
-    def flattened(self) -> Parallelograms:
-        """Best-fit parallelograms to the corners of the facets."""
-        corners = self.nodes[:, :: self._order, :: self._order]
-        along = (corners[:, 1] - corners[:, 0]).mean(axis=1)
-        across = (corners[:, :, 1] - corners[:, :, 0]).mean(axis=1)
-        sides = np.stack([along, across], axis=1)
-        return Parallelograms(corners.mean(axis=(1, 2)), sides, np.linalg.pinv(sides).mT)
 
     @cached_property
     def flat(self) -> np.ndarray:
@@ -130,13 +95,6 @@ class Surface(FacetSet):
         within = first + np.arange(count * inner**2)
         result[:, 1:-1, 1:-1] = within.reshape(count, inner, inner)
         return result
-
-    @property
-    def corner_numbers(self) -> np.ndarray:
-        return self.corners
-
-    def _area_vectors(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        return np.cross(*np.moveaxis(self.tangents(facet, t), 1, 0))
 
 
 def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None = None) -> Surface:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..solvers.lemke import lemke
+from ..solvers.signorini import saddle_point
 from .coulomb import CoulombProblem, CoulombSolution, jacobian, residual, scales, violated
 
 _MAX_ITERATIONS = 30
@@ -98,21 +99,20 @@ def _sticking(problem: CoulombProblem, closed: np.ndarray) -> np.ndarray | None:
     """Unknowns with sticking contact at the given coefficients; None if singular."""
     total, k = len(problem.offset), len(problem.force)
     held = np.flatnonzero(np.tile(closed, total // len(closed)))
-    size = np.sqrt(np.diag(problem.compliance)[held])
-    border = problem.modes[held] / size[:, None]
-    stretch = np.abs(border).max(axis=0, initial=0.0)
-    if np.any(stretch == 0):
+    modes = problem.modes[held]
+    if not np.all(np.any(modes != 0.0, axis=0)):
         return None
-    border = border / stretch
-    compliance = problem.compliance[np.ix_(held, held)] / np.outer(size, size)
-    matrix = np.block([[compliance, -border], [-border.T, np.zeros((k, k))]])
-    right = np.concatenate([-problem.offset[held] / size, -problem.force / stretch])
-    try:
-        solution = np.linalg.solve(matrix, right) / np.concatenate([size, stretch])
-    except np.linalg.LinAlgError:
+    found = saddle_point(
+        problem.compliance[np.ix_(held, held)],
+        modes,
+        modes,
+        problem.offset[held, None],
+        problem.force[:, None],
+    )
+    if found is None:
         return None
     result = np.zeros(total + k)
-    result[held], result[total:] = solution[: len(held)], solution[len(held) :]
+    result[held], result[total:] = found[: len(held), 0], found[len(held) :, 0]
     return result
 
 

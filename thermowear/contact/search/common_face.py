@@ -180,8 +180,8 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     a_1, a_2 = _parts(pairs.share, other)
     m, length = _direction(a_1 * n_1 - a_2 * n_2, n_1)
     turned = (np.einsum("ni,ni->n", pairs.offset, m) / length)[:, None, None]
-    here = _across(x_1 + turned * a_1[..., None] * turn_1, m)
-    there = _across(x_2 + turned * a_2[..., None] * turn_2, m)
+    here = _without(x_1 + turned * a_1[..., None] * turn_1, m)
+    there = _without(x_2 + turned * a_2[..., None] * turn_2, m)
     square = np.einsum("nki,nli->nkl", there, there)
     along = np.linalg.solve(square, np.einsum("nki,nji->nkj", there, here))
     s = pairs.share[:, None, None]
@@ -215,7 +215,7 @@ def _direction(vectors: np.ndarray, otherwise: np.ndarray) -> tuple[np.ndarray, 
     return np.where(length[:, None] > _MIN_SUM_LENGTH, unit, otherwise), length
 
 
-def _across(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:
+def _without(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:
     """Vectors (n, k, gdim) without their component along unit vectors (n, gdim)."""
     along = np.einsum("nki,ni->nk", vectors, directions)
     return vectors - along[:, :, None] * directions[:, None]

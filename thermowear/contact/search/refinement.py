@@ -89,11 +89,9 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
     facet, t = pairs.facet[meeting], pairs.t[meeting]
     cuts = []
     for f in range(len(face_1.nodes)):
-        inner = np.sort(t[facet == f])
-        inner = inner[(inner > sliver) & (inner < 1 - sliver)]
-        if len(inner):
-            inner = inner[np.concatenate([[True], np.diff(inner) > 1e-9])]
-        cuts.append(np.concatenate([[0.0], inner, [1.0]]))
+        inner = np.sort(t[(facet == f) & (t > sliver) & (t < 1 - sliver)])
+        separate = np.diff(inner, prepend=-1.0) > 1e-9
+        cuts.append(np.concatenate([[0.0], inner[separate], [1.0]]))
     return cuts
 
 

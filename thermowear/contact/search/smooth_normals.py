@@ -51,8 +51,8 @@ def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarr
     own, _ = _raw(nodes, outward, facet, np.tile(ends, (len(nodes), 1)))
     _, number = np.unique(corners.reshape(-1), return_inverse=True)
     # on an arc the error at facet ends scales as the facet size to the power of its order
-    across = nodes.reshape(len(nodes), -1, nodes.shape[-1])[:, [0, -1]]
-    size = np.linalg.norm(across[:, 1] - across[:, 0], axis=1)
+    first, last = nodes.reshape(len(nodes), -1, nodes.shape[-1])[:, [0, -1]].swapaxes(0, 1)
+    size = np.linalg.norm(last - first, axis=1)
     weight = np.repeat((size.min() / size) ** (nodes.shape[1] - 1), len(ends))
     summed = np.column_stack([np.bincount(number, weight * component) for component in own.T])
     mean = summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300)

@@ -1,8 +1,7 @@
 """The interface: contact points, traces, condensation, contact and heat exchange."""
 
-from .friction.loads import Loads
 from .friction.stick_slip import advance, follow
-from .friction.stick_slip_state import StickSlipState
+from .friction.stick_slip_state import Loads, StickSlipState
 from .full.full_system import FullContact, FullSolution
 from .operators.condensation import CondensedContact, condense
 from .operators.heat import InterfaceHeat, ThermalState

@@ -13,8 +13,7 @@ from ..case.values.units import in_python
 from ..errors import CaseError
 from ..laws import time_course
 from ..laws.coefficients.constant import Constant
-from ..laws.formulas import FormulaLaw, FormulaWear
-from ..laws.from_python import interface_law, wear_rate
+from ..laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
 from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
 from ..laws.plausible import require_interface_law
 from ..laws.time_course import TimeCourse, TimeFunction

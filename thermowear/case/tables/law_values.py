@@ -11,13 +11,12 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, PlainSerializer, PlainValidator, TypeAdapter, create_model
 
 from ...errors import quoted
-from ...laws.by_name import registered_laws
 from ...laws.coefficients.constant import Constant
 from ...laws.expressions import Expression
 from ...laws.formulas import FormulaLaw, FormulaWear
 from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
 from ...laws.plausible import require_interface_law, require_wear_rate
-from ...laws.registry import Role
+from ...laws.registry import Role, registered_laws
 from ..values.expressions import expression
 from ..values.section import KeyFault, Number, Section
 from ..values.units import quantity

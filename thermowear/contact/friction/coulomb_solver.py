@@ -1,4 +1,4 @@
-"""Semismooth Newton method for frictional contact, with fallback starts where it fails."""
+"""Semismooth Newton method for frictional contact with fallback starts, and gross slip."""
 
 from __future__ import annotations
 
@@ -8,13 +8,17 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..solvers.lemke import lemke
-from ..solvers.signorini import saddle_point
+from ..solvers.signorini import saddle_point, solve_contact
 from .coulomb import CoulombProblem, CoulombSolution, jacobian, residual, scales, violated
 
 _MAX_ITERATIONS = 30
 _TOLERANCE = 1e-12
 _SPRING_RATIOS = (1e-3, 1e-2, 1e-1, 1.0)  # relative to the contact stiffness, tried in turn
 _MAX_SPRING_UPDATES = 20
+
+
+class FullSliding(ComputationError):
+    """Error for a tangential force that exceeds the friction limit."""
 
 
 def solve_directly(
@@ -182,3 +186,32 @@ def _complementary(problem: CoulombProblem) -> np.ndarray | None:
     x = spread @ solution[: 3 * m] * size
     forward, back = solution[4 * m :].reshape(2, k)
     return scale * np.concatenate([x, np.linalg.solve(mixing, forward - back)])
+
+
+def refuse_sliding(problem: CoulombProblem, pressed: bool) -> None:
+    """Raise if the contact in gross slip carries less than the tangential force.
+
+    In gross slip the shear is a multiple of the pressure, which then solves a Signorini problem.
+    """
+    m, k = len(problem.friction), int(pressed)
+    asked = problem.force[k]
+    across = problem.modes[m : 2 * m, k] * np.sign(asked)
+    drag = problem.friction * np.sign(across)  # τ = drag λ opposes the force
+    compliance = problem.compliance[:m, :m] + problem.compliance[:m, m : 2 * m] * drag
+    modes = problem.modes[:m, :k]
+    carrying = modes + drag[:, None] * problem.modes[m : 2 * m, :k]
+    sliding = solve_contact(
+        compliance, problem.offset[:m], modes, problem.force[:k], force_modes=carrying
+    )
+    λ = sliding.coefficients
+    if not np.any(λ > 0):
+        raise ComputationError(
+            "contact: the bodies do not touch, so that nothing balances a tangential force; give a "
+            "tangential displacement, or press"
+        )
+    most = problem.modes[:m, k] @ λ + problem.modes[m : 2 * m, k] @ (drag * λ)
+    if abs(asked) >= (1 - 1e-9) * abs(most):
+        raise FullSliding(
+            f"contact: body 1 slides; friction carries {abs(most):.6g} N, and the tangential force "
+            f"is {abs(asked):.6g} N. Give a smaller force, or a tangential displacement"
+        )

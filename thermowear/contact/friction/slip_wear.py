@@ -23,6 +23,7 @@ import numpy as np
 
 from ...laws.interfaces import Law, LocalState
 from ..search.pairing import Pairing
+from ..wear.track import hat_functions
 from .stick_slip_state import StickSlipState
 
 
@@ -46,16 +47,10 @@ class WornProfile:
 
     def interpolation(self, slip: float) -> np.ndarray:
         """Matrix L: coefficients at the contact from those of the profile at a slip [m], (m, m)."""
-        m = len(self.places)
-        if self.shift_per_slip * slip == 0.0:
-            return np.eye(m)
-        places, at = self.places, self.places - self.shift_per_slip * slip
-        upper = np.clip(np.searchsorted(places, at), 1, m - 1)
-        part = (at - places[upper - 1]) / (places[upper] - places[upper - 1])
-        part = np.clip(part, 0.0, 1.0)
-        result, rows = np.zeros((m, m)), np.arange(m)
-        result[rows, upper - 1], result[rows, upper] = 1 - part, part
-        return result
+        shift = self.shift_per_slip * slip
+        if shift == 0.0:
+            return np.eye(len(self.places))
+        return hat_functions(self.places, self.places - shift)
 
     def wear_transfer(self, slip: float) -> np.ndarray:
         """Coefficients of the profile from the depths worn at the contact, shape (m, m)."""
@@ -169,13 +164,9 @@ class IncrementWear:
         cls, wear: SlipWear, before: StickSlipState, areas: np.ndarray, displacement: float
     ) -> IncrementWear:
         """Wear of an increment that ends at a displacement of body 1 along +x [m]."""
-        m = len(areas)
-        wear_transfer = np.reshape(
-            [profile.wear_transfer(displacement) for profile in wear.profiles], (-1, m, m)
-        )
-        interpolation = np.reshape(
-            [profile.interpolation(displacement) for profile in wear.profiles], (-1, m, m)
-        )
+        shape, profiles = (-1, len(areas), len(areas)), wear.profiles
+        wear_transfer = np.reshape([own.wear_transfer(displacement) for own in profiles], shape)
+        interpolation = np.reshape([own.interpolation(displacement) for own in profiles], shape)
         return cls(wear, before, areas, wear_transfer, interpolation @ wear_transfer)
 
     def value(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:

@@ -17,11 +17,9 @@ from ..operators.tangential import FrictionalContact
 from ..solvers.signorini import solve_contact
 from ..wear.implicit_step import newton_with_wear
 from .coulomb import CoulombProblem, CoulombSolution
-from .coulomb_solver import solve_directly, solve_patiently
-from .gross_slip import FullSliding, refuse_sliding
-from .loads import Loads
+from .coulomb_solver import FullSliding, refuse_sliding, solve_directly, solve_patiently
 from .slip_wear import IncrementWear, SlipWear
-from .stick_slip_state import Status, StickSlipState, unloaded
+from .stick_slip_state import Loads, Status, StickSlipState, unloaded
 
 _MAX_HALVINGS = 6
 _WEAR_TOLERANCE = 1e-6  # of the depth worn in the increment

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...laws.principle.wear_vectors import wear_vectors
+from ...laws.principle.patch import wear_vectors
 from ...reference import block_on_disk as arc
 from ..check import Check, compare
 from . import patches as cases

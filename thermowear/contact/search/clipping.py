@@ -76,8 +76,8 @@ def _outlines(face: Surface) -> _Outlines:
     ring = np.array(_CORNERS, dtype=float)
     part = np.arange(_EDGE_SEGMENTS + 1)[:, None] / _EDGE_SEGMENTS
     t = ring[:, None] + part * (np.roll(ring, -1, axis=0) - ring)[:, None]
-    shape, places = (len(face.nodes), 4, _EDGE_SEGMENTS + 1), t.reshape(-1, 2)
-    facet, at = np.repeat(np.arange(shape[0]), len(places)), np.tile(places, (shape[0], 1))
+    shape = (len(face.nodes), 4, _EDGE_SEGMENTS + 1)
+    facet, at = face.on_each(t.reshape(-1, 2))
     points, normals = face.points(facet, at), face.smooth_normals(facet, at)[0]
     return _Outlines(
         points.reshape(*shape, 3),

@@ -7,7 +7,6 @@ The chain is replicated on all ranks, so that pairing needs no communication. Fa
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from dolfinx import fem
@@ -38,17 +37,13 @@ class Face(FacetSet):
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Arc length along the face from its first end, shape (n,) [m]."""
         start = np.concatenate([[0.0], np.cumsum(self.sizes)])
-        return start[facet] + self._length_within(facet, t)
+        x, w = lobatto(self.order + 5)
+        within = self.stretch(np.repeat(facet, len(x)), (t[:, None] * x).ravel())
+        return start[facet] + t * (within.reshape(-1, len(x)) @ w)
 
     def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Parameters in the direction of the facet in its cell, shape (n, 1)."""
         return np.where(self.reversed[facet], 1 - t, t)[:, None]
-
-    @cached_property
-    def sizes(self) -> np.ndarray:
-        """Lengths of the facets, shape (n_facets,) [m]."""
-        every = np.arange(len(self.nodes))
-        return self._length_within(every, np.ones(len(every)))
 
     @property
     def closed(self) -> bool:
@@ -67,12 +62,6 @@ class Face(FacetSet):
     def nearby(self, distance: np.ndarray) -> np.ndarray:
         # the nearest chord may belong to a neighbour of the nearest curved facet
         return np.clip(distance.argmin(axis=1)[:, None] + (0, -1, 1), 0, len(self.nodes) - 1)
-
-    def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Arc length of each facet from its start to t [m]."""
-        x, w = lobatto(self._order + 5)
-        at = (t[:, None] * x).ravel()
-        return t * (self.stretch(np.repeat(facet, len(x)), at).reshape(-1, len(x)) @ w)
 
 
 def gather_face(

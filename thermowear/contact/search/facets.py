@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 
@@ -11,7 +12,7 @@ from dolfinx import fem
 
 from ...bulk.bodies import Bodies
 from ...errors import CaseError
-from ...lagrange import on_lattice
+from ...lagrange import lobatto, on_lattice
 from .smooth_normals import across, corner_corrections, smooth_normals
 
 
@@ -89,11 +90,11 @@ class FacetSet(ABC):
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, gdim) [m]."""
-        return np.einsum("nk,nki->ni", on_lattice(self._order, t)[0], self._listed[facet])
+        return np.einsum("nk,nki->ni", on_lattice(self.order, t)[0], self._listed[facet])
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along the parameters, shape (n, dim, gdim) [m]."""
-        slopes = on_lattice(self._order, t, 1)[1:]
+        slopes = on_lattice(self.order, t, 1)[1:]
         return np.einsum("dnk,nki->ndi", slopes, self._listed[facet])
 
     def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
@@ -122,11 +123,40 @@ class FacetSet(ABC):
         """Number of parameters of a facet."""
         return self.nodes.ndim - 2
 
+    @property
+    def order(self) -> int:
+        """Order of the geometry."""
+        return self.nodes.shape[1] - 1
+
+    @cached_property
+    def sizes(self) -> np.ndarray:
+        """Lengths or areas of the facets, shape (n_facets,) [m or m²]."""
+        return self.integrals()
+
+    @property
+    def lengths(self) -> np.ndarray:
+        """Lengths of the facets, on a surface square roots of their areas, (n_facets,) [m]."""
+        return self.sizes ** (1 / self.dim)
+
+    def integrals(self, factor: Callable[[np.ndarray], np.ndarray] | None = None) -> np.ndarray:
+        """Integrals over the facets of a function of points (n, gdim), by default 1."""
+        t, weights = lobatto(self.order + 5, self.dim)
+        facet, at = self.on_each(t)
+        density = self.stretch(facet, at)
+        if factor is not None:
+            density = density * factor(self.points(facet, at))
+        return density.reshape(-1, len(weights)) @ weights
+
+    def on_each(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Facets and parameters of the same places on all facets."""
+        count = len(self.nodes)
+        return np.repeat(np.arange(count), len(t)), np.concatenate([t] * count)
+
     @cached_property
     def flattened(self) -> Parallelograms:
         """Best-fit parallelograms, or lines, to the corners of the facets."""
         inner = tuple(range(1, self.dim + 1))
-        corners = self.nodes[(slice(None), *[slice(None, None, self._order)] * self.dim)]
+        corners = self.nodes[(slice(None), *[slice(None, None, self.order)] * self.dim)]
         sides = np.stack([np.diff(corners, axis=k).mean(axis=inner) for k in inner], axis=1)
         return Parallelograms(corners.mean(axis=inner), sides, np.linalg.pinv(sides).mT)
 
@@ -134,10 +164,6 @@ class FacetSet(ABC):
     def extent(self) -> float:
         """Size of the face [m]."""
         return float(np.ptp(self.nodes.reshape(-1, self.nodes.shape[-1]), axis=0).max())
-
-    @property
-    def _order(self) -> int:
-        return self.nodes.shape[1] - 1
 
     @property
     def _listed(self) -> np.ndarray:

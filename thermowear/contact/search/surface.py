@@ -15,7 +15,7 @@ from dolfinx import fem
 from ...bulk.bodies import Bodies
 from ...bulk.field import reference_element
 from ...compat import coordinate_element, geometry_dofmap
-from ...lagrange import equispaced, gauss, lattice, matching
+from ...lagrange import equispaced, lattice, matching
 from .facets import FacetSet, cell_softness, gathered, owned_facets
 
 _FLATNESS_TOLERANCE = 1e-9
@@ -53,24 +53,16 @@ class Surface(FacetSet):
         return t
 
     @cached_property
-    def sizes(self) -> np.ndarray:
-        """Areas of the facets, shape (n_facets,) [m²]."""
-        t, w = gauss(self._order + 4, dim=2)
-        facet = np.repeat(np.arange(len(self.nodes)), len(w))
-        return self.stretch(facet, np.tile(t, (len(self.nodes), 1))).reshape(-1, len(w)) @ w
-
-    @cached_property
     def flat(self) -> np.ndarray:
         """True for facets that are parallelograms, shape (n_facets,)."""
-        as_flat = self.flattened.points(lattice(self._order, dim=2)[:, None])
+        as_flat = self.flattened.points(lattice(self.order, dim=2)[:, None])
         off = np.abs(as_flat.swapaxes(0, 1) - self._listed).max(axis=(1, 2))
         return off < _FLATNESS_TOLERANCE * np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
 
     @cached_property
     def middle_normals(self) -> np.ndarray:
         """Outward unit normals in the middle of the facets, shape (n_facets, 3)."""
-        every = np.arange(len(self.nodes))
-        return self.normals(every, np.full((len(every), 2), 0.5))
+        return self.normals(*self.on_each(np.full((1, 2), 0.5)))
 
     def numbers(self, degree: int) -> np.ndarray:
         """Coefficient numbers of continuous polynomials.

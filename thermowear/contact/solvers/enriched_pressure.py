@@ -89,15 +89,10 @@ def _compliance(pairing: Pairing, influence: Influence, basis: np.ndarray, answe
     probe = details @ signs
     found = answer(probe)
     found = found - opened @ np.linalg.solve(known, weighted.T @ found)
-    sizes = _sizes(pairing)
+    side = pairing.sides[0]
+    sizes = side.face.lengths[side.facet]  # of the facets of body 1 at the points
     softness = (pairing.weights * probe) @ found / ((pairing.weights * probe**2) @ sizes)
     mixed = (pairing.weights[:, None] * basis).T @ opened
     local = (softness * sizes * pairing.weights)[:, None] * details
     result = mixed @ np.linalg.solve(known, mixed.T) + details.T @ local
     return (result + result.T) / 2
-
-
-def _sizes(pairing: Pairing) -> np.ndarray:
-    """Size of the facet of body 1 at each point, shape (n,) [m]."""
-    face, dim = pairing.sides[0].face, pairing.points.shape[1]
-    return face.sizes[pairing.sides[0].facet] ** (1 / (dim - 1))

@@ -11,8 +11,7 @@ from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
 from ..laws.time_course import LoadHistory, TimeFunction
-from ..model.holder import Holder
-from ..model.motion import Motion
+from ..model.holder import Holder, Motion
 from .body import BodySurface, require_surface
 from .conversion import each_quantity, quantities
 from .physics import by_surface

@@ -10,7 +10,7 @@ from ..case.values.units import in_python
 from ..errors import CaseError
 from ..laws import power_wear
 from ..laws.time_course import TimeFunction
-from ..model import heat, interface, material
+from ..model import body, heat, interface
 from .body import BodySurface, require_surface
 from .conversion import number, quantities
 
@@ -33,7 +33,7 @@ _OF_SURFACES = {
 
 def Material(
     young_modulus: Any, poisson_ratio: float, *, name: str = "Material", **properties: Any
-) -> material.Material:
+) -> body.Material:
     """Material of a body.
 
     Parameters
@@ -44,13 +44,13 @@ def Material(
         Name in messages.
     **properties : float or quantity
         ``expansion``, ``conductivity``, ``density``, ``specific_heat``, ``hardness`` and other
-        attributes of `model.material.Material`.
+        attributes of `model.body.Material`.
     """
     poisson = number(poisson_ratio, f"{name}.poisson_ratio", -1.0, 0.5)
     if poisson in (-1.0, 0.5):
         raise CaseError(f"{name}.poisson_ratio: found {poisson}; must be within -1 and 0.5")
     given = quantities(name, _OF_MATERIALS, {"young_modulus": young_modulus, **properties})
-    return material.Material(poisson_ratio=poisson, label=name, **given)
+    return body.Material(poisson_ratio=poisson, label=name, **given)
 
 
 def Heat(**settings: Any) -> heat.Heat:

@@ -18,8 +18,8 @@ from ..model.analyses import (
     TransientAnalysis,
 )
 from ..model.heat import Heat
+from ..model.holder import Motion
 from ..model.model import Discretisation, Model
-from ..model.motion import Motion
 from ..results import HistoryRow
 from ..simulation.analyses.run import solve
 from ..simulation.analyses.transient import transient_history

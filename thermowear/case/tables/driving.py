@@ -88,7 +88,7 @@ class LoadTable(Section):
 
 
 class MotionTable(Section):
-    """Sliding motion, see `model.motion.Motion`.
+    """Sliding motion, see `model.holder.Motion`.
 
     Attributes
     ----------

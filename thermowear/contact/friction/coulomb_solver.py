@@ -21,7 +21,7 @@ class FullSliding(ComputationError):
     """Error for a tangential force that exceeds the friction limit."""
 
 
-def solve_directly(
+def solve_by_newton(
     problem: CoulombProblem, closed: np.ndarray, near: np.ndarray | None = None
 ) -> CoulombSolution | None:
     """Solve by Newton's method in a few iterations; None if it fails.
@@ -39,11 +39,11 @@ def solve_directly(
         if solution is not None and not violated(problem, solution):
             return solution
     start = _sticking(problem, closed)
-    return None if start is None else _from(problem, start)
+    return None if start is None else _verified_from(problem, start)
 
 
-def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolution:
-    """Solve a problem for which `solve_directly` fails; same arguments.
+def solve_with_fallbacks(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolution:
+    """Solve a problem for which `solve_by_newton` fails; same arguments.
 
     Newton's method starts from solutions with a spring between holder and load, which exist in
     gross slip too, and finally from the solution by complementary pivoting.
@@ -53,8 +53,8 @@ def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolut
     ComputationError
         If no solution is found.
     """
-    for start in _better_starts(problem, closed):
-        solution = _from(problem, start)
+    for start in _fallback_starts(problem, closed):
+        solution = _verified_from(problem, start)
         if solution is not None:
             return solution
     raise ComputationError(
@@ -63,7 +63,7 @@ def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolut
     )
 
 
-def _from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
+def _verified_from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
     """Verified solution from a start, with full steps, otherwise with damped ones."""
     for damped in (False, True):
         solution = _newton(problem, start, damped)
@@ -85,12 +85,12 @@ def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> Coul
         except np.linalg.LinAlgError:
             return None
         if damped:
-            step = _shortened(problem, unknowns, step, float(np.linalg.norm(error)))
+            step = _damped(problem, unknowns, step, float(np.linalg.norm(error)))
         unknowns = unknowns + step
     return None
 
 
-def _shortened(problem: CoulombProblem, unknowns, step, merit: float) -> np.ndarray:
+def _damped(problem: CoulombProblem, unknowns, step, merit: float) -> np.ndarray:
     """Longest of the successively halved steps that reduces the residual, or the shortest."""
     for halvings in range(8):
         trial = step / 2**halvings
@@ -120,15 +120,15 @@ def _sticking(problem: CoulombProblem, closed: np.ndarray) -> np.ndarray | None:
     return result
 
 
-def _better_starts(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]:
+def _fallback_starts(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]:
     for part in _SPRING_RATIOS:
-        yield from _sprung(problem, closed, part)
-    start = _complementary(problem)
+        yield from _with_spring(problem, closed, part)
+    start = _by_lemke(problem)
     if start is not None:
         yield start
 
 
-def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterator[np.ndarray]:
+def _with_spring(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterator[np.ndarray]:
     """Solutions with a spring between the holder and its load, its anchor updated each time.
 
     ``Rᵀ x = F - k (d - d0)`` adds ``R k⁻¹ Rᵀ`` to the compliance and eliminates the free motions;
@@ -144,7 +144,7 @@ def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterato
         offset = problem.offset - modes @ (anchor + force / spring)
         sprung = CoulombProblem(softer, offset, modes[:, :0], force[:0], problem.friction)
         start = _sticking(sprung, closed) if start is None else start
-        solution = None if start is None else _from(sprung, start)
+        solution = None if start is None else _verified_from(sprung, start)
         if solution is None:
             return
         start = solution.stacked
@@ -152,7 +152,7 @@ def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterato
         yield np.concatenate([start, anchor])
 
 
-def _complementary(problem: CoulombProblem) -> np.ndarray | None:
+def _by_lemke(problem: CoulombProblem) -> np.ndarray | None:
     """Unknowns by Lemke's method for one tangential direction; None if it ends on a ray.
 
     With ``τ = b_1 - b_2`` the conditions are the copositive complementarity problem of Stewart and
@@ -188,7 +188,7 @@ def _complementary(problem: CoulombProblem) -> np.ndarray | None:
     return scale * np.concatenate([x, np.linalg.solve(mixing, forward - back)])
 
 
-def refuse_sliding(problem: CoulombProblem, pressed: bool) -> None:
+def check_gross_slip(problem: CoulombProblem, pressed: bool) -> None:
     """Raise if the contact in gross slip carries less than the tangential force.
 
     In gross slip the shear is a multiple of the pressure, which then solves a Signorini problem.

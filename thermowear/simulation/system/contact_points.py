@@ -16,7 +16,7 @@ from ...contact.search.refinement import OVERHANG_TOLERANCE, SLIVER
 from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import directions_between
 from ...laws.motions import RigidMotion
-from ...model.facing import Facing
+from ...model.body import Facing
 from ...model.model import Model
 from .initial_shape import initial_gap
 from .wear_shares import LEAST

@@ -17,38 +17,3 @@ from .search.pairing import Pairing, pair
 from .search.surface import Surface
 from .search.zones import contact_zones
 from .solvers.signorini import SignoriniSolution, solve_contact
-
-__all__ = [
-    "CondensedContact",
-    "Face",
-    "FrictionalContact",
-    "FullContact",
-    "FullSolution",
-    "InterfaceHeat",
-    "Loads",
-    "Pairing",
-    "RigidHolder",
-    "RigidMode",
-    "SignoriniSolution",
-    "Sliding",
-    "StickSlipState",
-    "Surface",
-    "ThermalState",
-    "advance",
-    "condense",
-    "condense_distortion",
-    "condense_heat",
-    "condense_tangential",
-    "contact_zones",
-    "follow",
-    "gap_trace",
-    "gather_face",
-    "hold",
-    "normal_traction",
-    "pair",
-    "pressure_basis",
-    "sliding",
-    "solve_contact",
-    "value_trace",
-    "vector_trace",
-]

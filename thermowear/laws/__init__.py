@@ -27,27 +27,6 @@ _PRINCIPLE = {
 }
 """Names imported lazily: reading a case needs no optimisation library."""
 
-__all__ = [  # noqa: PLE0604
-    "Distribution",
-    "DutyFactor",
-    "InPlace",
-    "Law",
-    "LocalState",
-    "PowerWear",
-    "RigidMotion",
-    "Rings",
-    "UniformTrack",
-    "interface_law",
-    "parameter",
-    "registered",
-    "registered_laws",
-    "rings",
-    "rotation",
-    "translation",
-    "wear_rate",
-    *(name for names in _PRINCIPLE.values() for name in names),
-]
-
 
 def __getattr__(name: str) -> Any:
     for module, names in _PRINCIPLE.items():

@@ -14,25 +14,3 @@ from .interface import ContactMethod, HardnessConductance, Interface
 from .meshes import MeshSource
 from .model import Discretisation, Model
 from .wear import CircularTrack, EvenTrack, FaceWear
-
-__all__ = [
-    "Analysis",
-    "Body",
-    "CircularTrack",
-    "ContactMethod",
-    "Discretisation",
-    "EvenTrack",
-    "FaceWear",
-    "FrettingAnalysis",
-    "HardnessConductance",
-    "Heat",
-    "Holder",
-    "Interface",
-    "Material",
-    "MeshSource",
-    "Model",
-    "Motion",
-    "ReciprocatingAnalysis",
-    "StaticAnalysis",
-    "TransientAnalysis",
-]

@@ -9,22 +9,3 @@ from .scripted_model import ScriptedModel
 from .solution import MarchState, ModelSolution, PointValues
 
 Body, Interface, Holder, Model = MeshBody, FacePair, SurfaceHolder, ScriptedModel
-
-__all__ = [
-    "Body",
-    "BodySurface",
-    "Heat",
-    "Holder",
-    "Interface",
-    "LoadHistory",
-    "MarchState",
-    "Material",
-    "Model",
-    "ModelSolution",
-    "PointValues",
-    "PowerWear",
-    "PressureConductance",
-    "Rotation",
-    "TimeHistory",
-    "Translation",
-]

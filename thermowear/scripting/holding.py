@@ -75,7 +75,7 @@ class SurfaceHolder:
         )
         loads = {"force": self._largest("force"), "approach": self._largest("approach")}
         loads |= {key: getattr(self, key) for key in ("tangential_force", "closing_moment")}
-        on_surfaces = {
+        on_surfaces: dict[str, Any] = {
             key: by_surface(kind, getattr(self, key), f"Holder.{key}")
             for key, kind in _ON_SURFACES.items()
         }

@@ -17,7 +17,9 @@ its adjoint, which conserves volume.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -147,27 +149,29 @@ class IncrementWear:
         State at the start of the increment.
     areas : ndarray, shape (m,)
         Areas of the basis functions [m²].
-    wear_transfer : ndarray, shape (n_wearing, m, m)
-        Coefficients in the profile of each body from its depth worn at the contact.
-    depth_per_wear : ndarray, shape (n_wearing, m, m)
-        Depth of the profile at the contact from the depth worn at the contact.
+    displacement : float
+        Displacement of body 1 along +x at the end of the increment [m].
     """
 
     wear: SlipWear
     before: StickSlipState
     areas: np.ndarray
-    wear_transfer: np.ndarray
-    depth_per_wear: np.ndarray
+    displacement: float
 
-    @classmethod
-    def at(
-        cls, wear: SlipWear, before: StickSlipState, areas: np.ndarray, displacement: float
-    ) -> IncrementWear:
-        """Wear of an increment that ends at a displacement of body 1 along +x [m]."""
-        shape, profiles = (-1, len(areas), len(areas)), wear.profiles
-        wear_transfer = np.reshape([own.wear_transfer(displacement) for own in profiles], shape)
-        interpolation = np.reshape([own.interpolation(displacement) for own in profiles], shape)
-        return cls(wear, before, areas, wear_transfer, interpolation @ wear_transfer)
+    @cached_property
+    def wear_transfer(self) -> np.ndarray:
+        """Profile of each body from its depth worn at the contact, shape (n_wearing, m, m)."""
+        return self._of_profiles(WornProfile.wear_transfer)
+
+    @cached_property
+    def depth_per_wear(self) -> np.ndarray:
+        """Depth of each profile at the contact from the depth worn there, (n_wearing, m, m)."""
+        return self._of_profiles(WornProfile.interpolation) @ self.wear_transfer
+
+    def _of_profiles(self, matrix: Callable[[WornProfile, float], np.ndarray]) -> np.ndarray:
+        m = len(self.areas)
+        each = [matrix(profile, self.displacement) for profile in self.wear.profiles]
+        return np.reshape(each, (-1, m, m))
 
     def value(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
         """Depth at the contact, shape (m,) [m]."""

@@ -78,7 +78,7 @@ def advance(
     after = solve(no_slope[0], no_slope, state)
     if wear is None:
         return after
-    by_slip = IncrementWear.at(wear, state, mean.sum(axis=1), displacement)
+    by_slip = IncrementWear(wear, state, mean.sum(axis=1), displacement)
     if by_slip.value(after.pressure, after).any():
         after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
     depths = by_slip.profiles(after)

@@ -32,6 +32,7 @@ from .projection import overhang, project
 from .smooth_normals import across
 from .surface import Surface
 
+Line = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 MAX_FACING_COSINE = -0.5
 """Largest cosine between the outward normals of points that can meet."""
 _MIN_COSINE = 0.3
@@ -109,7 +110,7 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     Opposite
     """
 
-    def locate(points: np.ndarray, _) -> tuple[np.ndarray, np.ndarray]:
+    def locate(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return project(other, points)[:2]
 
     points, outward = face.points(facet, t), face.smooth_normals(facet, t)[0]
@@ -128,8 +129,8 @@ def opposite_parameters(
     other: Face | Surface,
     facet: np.ndarray,
     t: np.ndarray,
-    locate: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
-) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
+    locate: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+) -> tuple[np.ndarray, np.ndarray, Line]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
 
     Lines by their normals, offset, share and cosine, see `Opposite`; they end on the tangent plane.
@@ -147,8 +148,7 @@ def opposite_parameters(
     facet, t : ndarray
         Closest points on it.
     locate : callable
-        Closest facets and parameters on the other face, from positions (m, gdim) and the indices of
-        the points.
+        Closest facets and parameters on the other face, from positions (m, gdim).
     """
     facet, t = facet.copy(), t.copy()
     opposite_points = other.points(facet, t)
@@ -156,7 +156,7 @@ def opposite_parameters(
     for _ in range(_MAX_ITERATIONS):
         now = slice(None) if len(moving) == len(points) else moving
         line = _line(points[now], outward[now], softness[now], other, facet[now], t[now])
-        facet[now], t[now] = locate(points[now] + line[1], moving)
+        facet[now], t[now] = locate(points[now] + line[1])
         before, opposite_points[now] = opposite_points[now].copy(), other.points(facet[now], t[now])
         change = np.linalg.norm(opposite_points[now] - before, axis=1)
         moving = moving[change > _TOLERANCE * other.extent]
@@ -189,7 +189,7 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
     return np.linalg.norm(across(tangents), axis=1)
 
 
-def _line(points, outward, softness, other, facet, t) -> tuple[np.ndarray, ...]:
+def _line(points, outward, softness, other, facet, t) -> Line:
     """Normals, offset to the tangent plane of the other face, share and cosine of points."""
     against, other_softness = other.smooth_normals(facet, t)[0], other.softness_at(facet)
     share = softness / (softness + other_softness)

@@ -150,7 +150,7 @@ class ScriptedModel:
             history.keep(moment)
             row, loop = history.table(HistoryRow)[-1], history.loop
             after = history.progress(), loop.problem, loop.system
-            yield MarchState(self.bodies, self.meshes, row, *after)
+            yield MarchState(self.meshes, row, *after)
 
     def fretting(self, observer: Observer | None = None, **settings: Any) -> ModelSolution:
         """Stick and slip under the history of the holder, see `model.analyses.FrettingAnalysis`."""
@@ -174,7 +174,7 @@ class ScriptedModel:
         end, result = solve(system, analysis, observer)
         if result.stopped is not None:
             raise result.stopped
-        return ModelSolution(self.bodies, self.meshes, end, result)
+        return ModelSolution(self.meshes, end, result)
 
     def _system(self, analysis: Analysis, observer: Observer | None = None) -> System:
         observer = observer or Observer()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
@@ -72,36 +73,33 @@ def coefficient_law(given: Any, name: str, unit: str, least: float) -> Law:
     least : float
         Smallest value that an expression may have.
     """
-
-    def law() -> Law:
-        if not isinstance(given, str):
-            return interface_law(given)
-        found = expression(given, unit, INTERFACE_VARIABLES)
-        constant = found.constant
-        return FormulaLaw(found, name, least) if constant is None else Constant(constant)
-
-    result = _named(law, name)
-    if isinstance(result, Constant):
-        number(result.number, name, least=0.0)
-    else:
-        _named(lambda: require_interface_law(result), name)
-    return result
+    with _faults_of(name):
+        if isinstance(given, str):
+            found = expression(given, unit, INTERFACE_VARIABLES)
+            constant = found.constant
+            law = FormulaLaw(found, name, least) if constant is None else Constant(constant)
+        else:
+            law = interface_law(given)
+        if not isinstance(law, Constant):
+            require_interface_law(law)
+    if isinstance(law, Constant):
+        number(law.number, name, least=0.0)
+    return law
 
 
 def rate_law(given: Any, name: str) -> Law:
     """Wear rate from an expression with units, a law, or a function of p, v, T, depth and mu."""
-
-    def law() -> Law:
+    with _faults_of(name):
         if isinstance(given, str):
-            return wear_rate(FormulaWear(expression(given, "m/s", WEAR_VARIABLES), name))
+            given = FormulaWear(expression(given, "m/s", WEAR_VARIABLES), name)
         return wear_rate(given)
 
-    return _named(law, name)
 
-
-def _named(read: Callable[[], Any], name: str) -> Any:
+@contextmanager
+def _faults_of(name: str) -> Iterator[None]:
+    """Name of the argument in messages."""
     try:
-        return read()
+        yield
     except (ValueError, CaseError) as error:
         raise CaseError(f"{name}: {error}") from None
 

@@ -120,12 +120,13 @@ def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
     """
     pieces = [_gathered(body) for body in bodies]
 
-    def joined() -> UserMeshes:
+    def joined() -> tuple[str, TaggedMesh, tuple[np.ndarray, ...]]:
         checked = [_oriented(_in_model(piece)) for piece in pieces if piece is not None]
         tagged = _joined([piece for piece, _ in checked], bodies)
-        return UserMeshes(tagged.checksum(), tagged, bodies, tuple(turned for _, turned in checked))
+        return tagged.checksum(), tagged, tuple(turned for _, turned in checked)
 
-    return on_root(bodies[0].mesh.comm, joined)
+    checksum, tagged, reversed_cells = on_root(bodies[0].mesh.comm, joined)
+    return UserMeshes(checksum, tagged, bodies, reversed_cells)
 
 
 def _gathered(body: MeshBody) -> _Piece | None:

@@ -6,11 +6,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from dolfinx import fem
 
 from ...bulk.bodies import Bodies
+from ...compat import geometry_dofmap
 from ...errors import CaseError
 from ...lagrange import lobatto, on_lattice
 from .smooth_normals import across, corner_corrections, smooth_normals
@@ -175,39 +177,57 @@ class FacetSet(ABC):
         return corner_corrections(self.nodes, self.outward, self.corner_numbers)
 
 
-def gathered(comm, surface: str, *columns: np.ndarray) -> list[np.ndarray]:
-    """Gather columns of values, one row per facet of this rank, from all ranks."""
-    parts = comm.allgather(columns)
-    result = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    if len(result[0]) == 0:
-        raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
-    return result
+class FacetTable(NamedTuple):
+    """Facets of a surface from all ranks: nodes, their numbers, centre of the cell, and owner."""
+
+    nodes: np.ndarray
+    numbers: np.ndarray
+    inside: np.ndarray
+    original_cell: np.ndarray
+    rank: np.ndarray
+    cell: np.ndarray
+    local_facet: np.ndarray
+    softness: np.ndarray
 
 
-def owned_facets(bodies: Bodies, surface: str) -> tuple[np.ndarray, np.ndarray]:
-    """Cells of this rank with a facet on a surface, and its local facet index.
+def gather_facets(
+    bodies: Bodies, surface: str, nodes_of_facet: np.ndarray, softness: fem.Function | None
+) -> FacetTable:
+    """Gather the facets of a surface from the ranks that own their cells; every rank calls.
 
-    Returns
-    -------
-    cells, local_facets : ndarray of int, shape (n,)
+    Parameters
+    ----------
+    bodies : Bodies
+    surface : str
+    nodes_of_facet : ndarray of int, shape (n_facets, n_nodes)
+        Indices of the nodes of each facet of a cell.
+    softness : dolfinx.fem.Function or None
+        Constant on each cell; None: 1.
     """
-    topology = bodies.mesh.topology
+    mesh, topology = bodies.mesh, bodies.mesh.topology
     tdim, fdim = topology.dim, topology.dim - 1
-    to_cells = topology.connectivity(fdim, tdim)
-    to_facets = topology.connectivity(tdim, fdim)
-    facets = bodies.facets(surface)
-    cells = np.array([to_cells.links(f)[0] for f in facets], dtype=np.int32)
-    mine = cells < topology.index_map(tdim).size_local
-    facets, cells = facets[mine], cells[mine]
-    local = np.array(
-        [np.flatnonzero(to_facets.links(c) == f)[0] for c, f in zip(cells, facets, strict=True)],
-        dtype=np.int32,
+    to_cells, to_facets = topology.connectivity(fdim, tdim), topology.connectivity(tdim, fdim)
+    found = [(to_cells.links(facet)[0], facet) for facet in bodies.facets(surface)]
+    mine = [(c, facet) for c, facet in found if c < topology.index_map(tdim).size_local]
+    cells = np.array([c for c, _ in mine], dtype=np.int32)
+    local = np.array([np.flatnonzero(to_facets.links(c) == f)[0] for c, f in mine], dtype=np.int32)
+    of_cells, x = geometry_dofmap(mesh)[cells], mesh.geometry.x[:, :tdim]
+    of_facets = np.take_along_axis(of_cells, nodes_of_facet[local], axis=1)
+    soft = np.ones(len(cells))
+    if softness is not None:
+        soft = softness.x.array[softness.function_space.dofmap.list[cells, 0]].astype(float)
+    columns = FacetTable(
+        x[of_facets],
+        np.asarray(mesh.geometry.input_global_indices)[of_facets],
+        x[of_cells].mean(axis=1),
+        topology.original_cell_index[cells],
+        np.full(len(cells), mesh.comm.rank),
+        cells,
+        local,
+        soft,
     )
-    return cells, local
-
-
-def cell_softness(cells: np.ndarray, softness: fem.Function | None) -> np.ndarray:
-    """Softness of cells of this rank, by default 1, shape (n,) [1/Pa]."""
-    if softness is None:
-        return np.ones(len(cells))
-    return softness.x.array[softness.function_space.dofmap.list[cells, 0]].astype(float)
+    parts = mesh.comm.allgather(columns)
+    table = FacetTable(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    if len(table.rank) == 0:
+        raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
+    return table

@@ -14,9 +14,9 @@ from dolfinx import fem
 
 from ...bulk.bodies import Bodies
 from ...bulk.field import reference_element
-from ...compat import coordinate_element, geometry_dofmap
+from ...compat import coordinate_element
 from ...lagrange import equispaced, lattice, matching
-from .facets import FacetSet, cell_softness, gathered, owned_facets
+from .facets import FacetSet, FacetTable, gather_facets
 
 _FLATNESS_TOLERANCE = 1e-9
 """Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
@@ -91,32 +91,17 @@ class Surface(FacetSet):
 
 def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None = None) -> Surface:
     """Gather the facets of a surface from all ranks, in the order of cells in the mesh file."""
-    mesh = bodies.mesh
-    cells, local = owned_facets(bodies, surface)
-    of_cells = geometry_dofmap(mesh)[cells]
-    of_facets = np.take_along_axis(of_cells, _grids(mesh)[local], axis=1)
-    numbers = np.asarray(mesh.geometry.input_global_indices)
-    original, nodes, numbers, inside, rank, cells, local, facet_softness = gathered(
-        mesh.comm,
-        surface,
-        mesh.topology.original_cell_index[cells],
-        mesh.geometry.x[of_facets],
-        numbers[of_facets],
-        mesh.geometry.x[of_cells].mean(axis=1),
-        np.full(len(cells), mesh.comm.rank),
-        cells,
-        local,
-        cell_softness(cells, softness),
-    )
-    order = np.lexsort((local, original))
-    n = int(np.sqrt(nodes.shape[1]))
-    nodes = nodes[order].reshape(-1, n, n, 3)
-    corners = numbers[order].reshape(-1, n, n)[:, :: n - 1, :: n - 1]
+    table = gather_facets(bodies, surface, _grids(bodies.mesh), softness)
+    order = np.lexsort((table.local_facet, table.original_cell))
+    table = FacetTable(*(column[order] for column in table))
+    n = int(np.sqrt(table.nodes.shape[1]))
+    nodes = table.nodes.reshape(-1, n, n, 3)
+    corners = table.numbers.reshape(-1, n, n)[:, :: n - 1, :: n - 1]
     first, second = nodes[:, -1, 0] - nodes[:, 0, 0], nodes[:, 0, -1] - nodes[:, 0, 0]
-    from_inside = nodes.mean(axis=(1, 2)) - inside[order]
+    from_inside = nodes.mean(axis=(1, 2)) - table.inside
     outward = np.sign(np.einsum("fi,fi->f", np.cross(first, second), from_inside))
-    owner = rank[order], cells[order], local[order]
-    return Surface(nodes, outward, *owner, corners, softness=facet_softness[order], name=surface)
+    owner = table.rank, table.cell, table.local_facet
+    return Surface(nodes, outward, *owner, corners, softness=table.softness, name=surface)
 
 
 def _grids(mesh) -> np.ndarray:

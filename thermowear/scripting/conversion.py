@@ -77,7 +77,7 @@ def coefficient_law(given: Any, name: str, unit: str, least: float) -> Law:
         if isinstance(given, str):
             found = expression(given, unit, INTERFACE_VARIABLES)
             constant = found.constant
-            law = FormulaLaw(found, name, least) if constant is None else Constant(constant)
+            law: Law = FormulaLaw(found, name, least) if constant is None else Constant(constant)
         else:
             law = interface_law(given)
         if not isinstance(law, Constant):

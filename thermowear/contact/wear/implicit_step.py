@@ -101,8 +101,10 @@ class WearRates:
         """Wear rates, shape (n_wearing, n) [m/s]."""
         rates = np.zeros_like(self.factors)
         for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
-            local = law.value(LocalState(pressure, *self.states[row]))
-            rates[row] = spread.rate(self.factors[row] * local)
+            local = self.factors[row] * law.value(LocalState(pressure, *self.states[row]))
+            rates[row] = spread.share * local
+            if spread.rows is not None:
+                rates[row] += spread.reach(len(pressure)) @ (spread.rows @ local)
         return rates
 
     def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:

@@ -12,20 +12,26 @@ import pytest
 from thermowear.app.cli import main
 
 from .conftest import COLD_RUNNING_IN, DEMOS, HOT
+from .scripting import on_ranks
 
 pytestmark = pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 
 ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
-def thermowear(ranks, *arguments):
-    """Run the program on some ranks."""
-    command = [sys.executable, "-m", "thermowear", *map(str, arguments)]
+def thermowear(ranks, *arguments, module="thermowear", timeout=300):
+    """Run the program, or another module, on some ranks."""
+    command = [sys.executable, "-m", module, *map(str, arguments)]
     if ranks > 1:
         command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command]
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("PMIX", "PRTE_"))}
     return subprocess.run(
-        command, capture_output=True, text=True, check=False, env=environment | ROOT, timeout=300
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment | ROOT,
+        timeout=timeout,
     )
 
 
@@ -100,6 +106,31 @@ def test_an_error_ends_all_ranks_with_one_message(tmp_path, arguments, message):
     assert done.returncode == 1
     assert done.stderr.count(message) == 1
     assert "Traceback" not in done.stderr
+
+
+def test_a_model_in_python_on_a_distributed_mesh(tmp_path):
+    """requirement: two ranks give the interface and the fields of the serial model to 1e-8."""
+    serial = on_ranks.computed()
+    done = thermowear(2, "steady", tmp_path, module="tests.scripting.on_ranks")
+    assert done.returncode == 0, done.stderr
+    for rank in (0, 1):
+        parallel = np.load(tmp_path / f"found_{rank}.npz")
+        for name, expected in serial.items():
+            scale = np.nanmax(np.abs(expected))
+            np.testing.assert_allclose(
+                parallel[name], expected, rtol=0.0, atol=1e-8 * scale, err_msg=name
+            )
+
+
+@pytest.mark.parametrize(
+    ("fault", "message"),
+    [("empty", "Body 'plate': has no cells"), ("bent", "must lie in a plane z = const")],
+)
+def test_a_fault_of_a_user_s_mesh_is_raised_on_all_ranks(tmp_path, fault, message):
+    """requirement: no deadlock; each rank raises the error that rank 0 finds."""
+    done = thermowear(2, fault, tmp_path, module="tests.scripting.on_ranks", timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert all(message in (tmp_path / f"fault_{rank}.txt").read_text() for rank in (0, 1))
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.laws import LocalState
-from thermowear.model.facing import Facing
+from thermowear.model.body import Facing
 from thermowear.simulation.from_case import model_of
 
 from .bad import Bad, assert_refused, faults

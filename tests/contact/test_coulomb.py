@@ -16,9 +16,9 @@ from thermowear.contact.friction.coulomb import (
     violated,
 )
 from thermowear.contact.friction.coulomb_solver import (
-    _complementary,
-    solve_directly,
-    solve_patiently,
+    _by_lemke,
+    solve_by_newton,
+    solve_with_fallbacks,
 )
 from thermowear.contact.solvers.signorini import solve_contact
 
@@ -52,8 +52,8 @@ def random_problem(seed, directions=1, forced=False):
 
 def solve(problem):
     everywhere = np.ones(len(problem.friction), dtype=bool)
-    solution = solve_directly(problem, everywhere)
-    return solve_patiently(problem, everywhere) if solution is None else solution
+    solution = solve_by_newton(problem, everywhere)
+    return solve_with_fallbacks(problem, everywhere) if solution is None else solution
 
 
 def violations(problem, solution):
@@ -93,7 +93,7 @@ def test_pivoting_finds_the_same():
     """requirement: the last resort of the solver is a method of its own."""
     for seed in range(20):
         problem = random_problem(seed)
-        solution, unknowns = solve(problem), _complementary(problem)
+        solution, unknowns = solve(problem), _by_lemke(problem)
         scale = np.abs(solution.stacked).max()
         np.testing.assert_allclose(solution.stacked, unknowns, atol=1e-8 * scale)
 

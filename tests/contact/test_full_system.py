@@ -18,8 +18,8 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.full.equations import Loading
 from thermowear.contact.full.full_system import FullContact, step_length
-from thermowear.contact.full.loading import Loading
 from thermowear.contact.full.stabilisation import default_penalty, nitsche_stiffness
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace, vector_trace

@@ -6,10 +6,9 @@ import itertools
 import numpy as np
 import pytest
 
-from thermowear.contact.friction.loads import Loads
 from thermowear.contact.friction.slip_wear import SlipWear, WornProfile
 from thermowear.contact.friction.stick_slip import follow
-from thermowear.contact.friction.stick_slip_state import Status, unloaded
+from thermowear.contact.friction.stick_slip_state import Loads, Status, unloaded
 from thermowear.laws import PowerWear
 from thermowear.reference.growing_contact import growing_line
 from thermowear.reference.mindlin import MindlinLine

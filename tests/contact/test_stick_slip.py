@@ -18,9 +18,8 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.friction import stick_slip
-from thermowear.contact.friction.loads import Loads
 from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
-from thermowear.contact.friction.stick_slip_state import Status, unloaded
+from thermowear.contact.friction.stick_slip_state import Loads, Status, unloaded
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.tangential import condense_tangential
 from thermowear.contact.search.face import gather_face

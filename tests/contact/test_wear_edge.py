@@ -43,13 +43,13 @@ def test_forces_stay_and_a_smooth_pressure_is_weak_contact(face):
     amounts = np.random.default_rng(1).random(space.basis.shape[1])
     pressure = space.basis @ amounts
     assert space.force_modes.T @ amounts == pytest.approx(contact.weak(pressure).sum(), rel=1e-13)
-    assert contact.weighted.sum(axis=0) @ (space.seen @ amounts) == pytest.approx(
+    assert contact.weighted.sum(axis=0) @ (space.projection @ amounts) == pytest.approx(
         contact.weak(pressure).sum(), rel=1e-12
     )
     smooth = 2.0 + 3.0 * x
     amounts = np.linalg.lstsq(space.basis, smooth, rcond=None)[0]
     np.testing.assert_allclose(space.basis @ amounts, smooth, rtol=1e-12)
-    np.testing.assert_allclose(space.own @ amounts, 0.0, atol=1e-11)
+    np.testing.assert_allclose(space.local_compliance @ amounts, 0.0, atol=1e-11)
     work = amounts @ space.compliance(contact.compliance) @ amounts
     nodal = 2.0 + 3.0 * np.arange(FACETS + 1)
     assert work == pytest.approx(nodal @ contact.compliance @ nodal, rel=1e-10)

@@ -8,7 +8,6 @@ import pytest
 from thermowear.case.values.units import expression
 from thermowear.errors import CaseError, ComputationError
 from thermowear.laws import LocalState, PowerWear
-from thermowear.laws.by_name import registered_laws
 from thermowear.laws.coefficients import (
     Constant,
     Multiplied,
@@ -17,9 +16,9 @@ from thermowear.laws.coefficients import (
     Table1D,
     harmonic_mean,
 )
-from thermowear.laws.formulas import FormulaLaw, FormulaWear
-from thermowear.laws.from_python import interface_law, wear_rate
+from thermowear.laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
 from thermowear.laws.plausible import require_interface_law, require_wear_rate
+from thermowear.laws.registry import registered_laws
 
 P = np.array([1e5, 2e6, 7e6, 3e7])
 V = np.array([0.05, 0.2, 0.5, 1.0])

@@ -10,11 +10,10 @@ from scipy.optimize import brentq
 
 from thermowear.errors import ComputationError
 from thermowear.laws import InPlace, PowerWear, UniformTrack, steady_pressure
-from thermowear.laws.by_name import registered_laws
-from thermowear.laws.formulas import FormulaWear
-from thermowear.laws.from_python import wear_rate
+from thermowear.laws.formulas import FormulaWear, wear_rate
 from thermowear.laws.interfaces import WEAR_VARIABLES, LocalState
 from thermowear.laws.plain_function import PlainFunction
+from thermowear.laws.registry import registered_laws
 
 N = 40
 RADIUS = np.linspace(0.02, 0.12, N)

@@ -95,3 +95,15 @@ def test_only_the_relative_motion_matters():
     )
     np.testing.assert_allclose(passing, back, rtol=1e-12)
     assert np.abs(forth - back).max() > 0.01 * back.max()
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_the_partition_counts_from_the_first_surface(backwards):
+    """requirement: a fraction into the first surface given, whichever body is held."""
+    words = (*COARSE, "heat.partition=0.2", "heat.conductance=1e4 W/(m^2 K)")
+    model, face, case = python_model(STEADY, *words, backwards=backwards)
+    assert (face.one.body is model.bodies[0]) is not backwards
+    into_one = replace(face, partition=0.8 if backwards else 0.2)
+    same(replace(model, interfaces=[into_one]).steady().result, tw.run(case))
+    with pytest.raises(tw.CaseError, match=r"^Interface\.partition: found 1\.5; must be a number"):
+        replace(model, interfaces=[replace(face, partition=1.5)])

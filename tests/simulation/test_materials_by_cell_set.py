@@ -11,7 +11,7 @@ from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.case.tables.schema import as_plain
 from thermowear.errors import CaseError
 from thermowear.geometry.moving.remeshed import meshed_anew
-from thermowear.model.facing import Facing
+from thermowear.model.body import Facing
 from thermowear.simulation.from_case import model_of
 
 from ..layered import layered_case, write_layered

@@ -1,8 +1,7 @@
 """The interface: contact points, traces, condensation, contact and heat exchange."""
 
-from .friction.loads import Loads
 from .friction.stick_slip import advance, follow
-from .friction.stick_slip_state import StickSlipState
+from .friction.stick_slip_state import Loads, StickSlipState
 from .full.full_system import FullContact, FullSolution
 from .operators.condensation import CondensedContact, condense
 from .operators.heat import InterfaceHeat, ThermalState
@@ -18,38 +17,3 @@ from .search.pairing import Pairing, pair
 from .search.surface import Surface
 from .search.zones import contact_zones
 from .solvers.signorini import SignoriniSolution, solve_contact
-
-__all__ = [
-    "CondensedContact",
-    "Face",
-    "FrictionalContact",
-    "FullContact",
-    "FullSolution",
-    "InterfaceHeat",
-    "Loads",
-    "Pairing",
-    "RigidHolder",
-    "RigidMode",
-    "SignoriniSolution",
-    "Sliding",
-    "StickSlipState",
-    "Surface",
-    "ThermalState",
-    "advance",
-    "condense",
-    "condense_distortion",
-    "condense_heat",
-    "condense_tangential",
-    "contact_zones",
-    "follow",
-    "gap_trace",
-    "gather_face",
-    "hold",
-    "normal_traction",
-    "pair",
-    "pressure_basis",
-    "sliding",
-    "solve_contact",
-    "value_trace",
-    "vector_trace",
-]

@@ -1,14 +1,18 @@
-"""Laws defined by a formula: an expression of the case file, or a plain function of arrays."""
+"""Laws by a formula: an expression of the case file, a plain function of arrays, or a number."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..errors import ComputationError
-from .interfaces import INTERFACE_VARIABLES, UNITS, WEAR_VARIABLES, Formula, LocalState
+from .coefficients.constant import Constant
+from .interfaces import INTERFACE_VARIABLES, UNITS, WEAR_VARIABLES, Formula, Law, LocalState
+from .plain_function import PlainFunction
+from .plausible import require_wear_rate
 from .power_wear import floored
 
 
@@ -82,3 +86,35 @@ def required(
     )
     bound = "finite" if least == -np.inf else f"finite and at least {least:g}"
     raise ComputationError(f"{name}: {float(found.flat[first]):.4g} at {where}; must be {bound}")
+
+
+def wear_rate(given: Law | Callable[..., np.ndarray]) -> Law:
+    """Wear rate from a law, or from a function of some of ``p, v, T, depth, mu`` [m/s].
+
+    Raises
+    ------
+    ValueError
+        If the rate is negative or falls with the pressure.
+    CaseError
+        If the function has other parameters, or returns no array of their shape.
+    """
+    law = _law(given, FormulaWear)
+    require_wear_rate(law)
+    return law
+
+
+def interface_law(given: Law | float | Callable[..., np.ndarray]) -> Law:
+    """Friction or conductance from a law, a number, or a function of some of ``p, v, T``.
+
+    Raises
+    ------
+    CaseError
+        If the function has other parameters.
+    """
+    return Constant(float(given)) if isinstance(given, int | float) else _law(given, FormulaLaw)
+
+
+def _law(given: Any, kind: type[FormulaLaw]) -> Law:
+    if hasattr(given, "value"):
+        return given
+    return kind(PlainFunction.of(given, kind.NAMES), getattr(given, "__name__", "law"))

@@ -6,7 +6,9 @@ keys of its table; `parameter` defines the unit and the bounds of each.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import importlib
+import pkgutil
+from collections.abc import Callable, Mapping
 from dataclasses import field
 from typing import Any, Literal, TypeVar
 
@@ -14,7 +16,7 @@ Role = Literal["wear", "friction", "conductance"]
 Registered = TypeVar("Registered", bound=type)
 
 REGISTERED: dict[str, dict[str, type]] = {"wear": {}, "friction": {}, "conductance": {}}
-"""Laws by role and name; `by_name` imports the modules of `named` first."""
+"""Laws by role and name; `registered_laws` imports the modules of `named` first."""
 
 
 def parameter(unit: str, example: str, *, default: Any = None, **bounds: float) -> Any:
@@ -45,3 +47,11 @@ def registered(role: Role, name: str) -> Callable[[Registered], Registered]:
         return law
 
     return register
+
+
+def registered_laws(role: Role) -> Mapping[str, type]:
+    """Laws of a role by name: modules of the folder `named`, and laws of the user."""
+    named = importlib.import_module(f"{__package__}.named")
+    for module in pkgutil.iter_modules(named.__path__):
+        importlib.import_module(f"{named.__name__}.{module.name}")
+    return REGISTERED[role]

@@ -1,4 +1,4 @@
-"""Piecewise linear course of values in time, constant beyond its ends or periodic."""
+"""Piecewise linear functions of time, constant beyond their ends or periodic; load histories."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+_CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
+KEYS = ("force", "approach", "tangential_force", "tangential_displacement")
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,70 @@ class TimeFunction:
     def at(self, time: float) -> float:
         """Value at a time [s]."""
         return self.course.value(self.values, time)
+
+    def corners(self, end: float) -> tuple[float, ...]:
+        """Corner times after 0 and up to a time, repetitions included [s]."""
+        return self.course.corners(end)
+
+
+@dataclass(frozen=True)
+class LoadHistory:
+    """Loads at instants, with straight lines between them.
+
+    Attributes
+    ----------
+    course : TimeCourse
+    force, approach : tuple of float or None
+        Along the load direction [N, m]; at most one of them. Neither: the constant load.
+    tangential_force, tangential_displacement : tuple of float or None
+        Along x [N, m]; at most one of them.
+    cycle_start : float or None
+        Start of the cycle that may be repeated up to the end; by default the first of the instants
+        with the loads of the last one [s].
+    """
+
+    course: TimeCourse
+    force: tuple[float, ...] | None = None
+    approach: tuple[float, ...] | None = None
+    tangential_force: tuple[float, ...] | None = None
+    tangential_displacement: tuple[float, ...] | None = None
+    cycle_start: float | None = None
+
+    @property
+    def time(self) -> tuple[float, ...]:
+        """Instants [s]."""
+        return self.course.time
+
+    @property
+    def cycle(self) -> tuple[float, float] | None:
+        """Begin and end of the cycle that may be repeated [s]; None if there is none."""
+        starts = self.time[:-1] if self.cycle_start is None else (self.cycle_start,)
+        closed = [start for start in starts if self.ends_as(start)]
+        return (closed[0], self.time[-1]) if closed else None
+
+    @property
+    def tangential(self) -> bool:
+        """True if the holder has a tangential displacement or force."""
+        return self.tangential_force is not None or self.tangential_displacement is not None
+
+    def ends_as(self, time: float) -> bool:
+        """True if the loads at an instant equal those of the last one."""
+        now, last = self.at(time), self.at(self.time[-1])
+        sizes = {key: max(map(abs, getattr(self, key))) for key in now}
+        return all(abs(now[key] - last[key]) <= _CLOSED * sizes[key] for key in now)
+
+    def at(self, time: float) -> dict[str, float]:
+        """Values of the given loads, by key, at a time [s]."""
+        given = {key: getattr(self, key) for key in KEYS}
+        return {
+            key: self.course.value(values, time)
+            for key, values in given.items()
+            if values is not None
+        }
+
+    def factor_at(self, time: float) -> float:
+        """Force at a time [s] relative to the largest one; 1 where the force is constant."""
+        return 1.0 if self.force is None else self.at(time)["force"] / max(self.force)
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Corner times after 0 and up to a time, repetitions included [s]."""

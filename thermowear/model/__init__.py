@@ -7,34 +7,10 @@ from .analyses import (
     StaticAnalysis,
     TransientAnalysis,
 )
-from .body import Body
+from .body import Body, Material
 from .heat import Heat
-from .holder import Holder
+from .holder import Holder, Motion
 from .interface import ContactMethod, HardnessConductance, Interface
-from .material import Material
 from .meshes import MeshSource
 from .model import Discretisation, Model
-from .motion import Motion
 from .wear import CircularTrack, EvenTrack, FaceWear
-
-__all__ = [
-    "Analysis",
-    "Body",
-    "CircularTrack",
-    "ContactMethod",
-    "Discretisation",
-    "EvenTrack",
-    "FaceWear",
-    "FrettingAnalysis",
-    "HardnessConductance",
-    "Heat",
-    "Holder",
-    "Interface",
-    "Material",
-    "MeshSource",
-    "Model",
-    "Motion",
-    "ReciprocatingAnalysis",
-    "StaticAnalysis",
-    "TransientAnalysis",
-]

@@ -1,11 +1,98 @@
-"""Body: its materials and supports."""
+"""Body: its materials and supports; materials of two bodies at the contact points."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
-from .material import Material
+import numpy as np
+
+from ..errors import CaseError
+from ..laws.coefficients.table1d import Table1D
+
+WHY = "the material lies on a contact face"
+
+
+@dataclass(frozen=True)
+class Material:
+    """Isotropic linear elastic and heat-conducting material.
+
+    Attributes
+    ----------
+    young_modulus : float
+        [Pa]
+    poisson_ratio : float
+    expansion : float
+        Secant coefficient of thermal expansion from the ambient temperature [1/K].
+    conductivity : float or None
+        Conductivity at the ambient temperature [W/(m K)].
+    density : float or None
+        [kg/m³]
+    specific_heat : float or None
+        [J/(kg K)]
+    hardness : float or None
+        Hardness of the softer surface layer, for a pressure-dependent contact conductance [Pa].
+    expansion_factor, conductivity_factor : Table1D or None
+        Temperature-dependent factors of both [-, by K]: the thermal strain is
+        ``expansion factor(T) (T - ambient)``.
+    label : str
+        Name of the material in messages.
+    """
+
+    young_modulus: float
+    poisson_ratio: float
+    expansion: float = 0.0
+    conductivity: float | None = None
+    density: float | None = None
+    specific_heat: float | None = None
+    hardness: float | None = None
+    expansion_factor: Table1D | None = None
+    conductivity_factor: Table1D | None = None
+    label: str = field(default="material", compare=False)
+
+    def known(self, name: str, why: str) -> float:
+        """Property that a computation needs.
+
+        Parameters
+        ----------
+        name : str
+        why : str
+            Reason, for the message.
+
+        Raises
+        ------
+        CaseError
+            If the material does not define it.
+        """
+        value = getattr(self, name)
+        if value is None:
+            raise CaseError(f"{self.label}.{name}: missing; {why}")
+        return value
+
+    @property
+    def compliance(self) -> float:
+        """Plane-strain compliance ``(1 - ν²) / E`` [1/Pa]."""
+        return (1 - self.poisson_ratio**2) / self.young_modulus
+
+    @property
+    def capacity(self) -> float | None:
+        """Heat capacity per volume [J/(m³ K)]; None if it is not known."""
+        if self.density is None or self.specific_heat is None:
+            return None
+        return self.density * self.specific_heat
+
+    def effusivity(self, why: str) -> float:
+        """Thermal effusivity ``sqrt(k rho c)`` [W sqrt(s)/(m² K)].
+
+        Raises
+        ------
+        CaseError
+            If the material does not define all three.
+        """
+        return math.sqrt(
+            math.prod(self.known(key, why) for key in ("conductivity", "density", "specific_heat"))
+        )
 
 
 @dataclass(frozen=True)
@@ -44,3 +131,48 @@ class Body:
     def compliance(self) -> float:
         """Plane-strain compliance of the body's own material [1/Pa]."""
         return self.materials[self.name].compliance
+
+
+@dataclass(frozen=True)
+class Facing:
+    """Parts of the bodies that face each other at the contact points.
+
+    Attributes
+    ----------
+    parts : tuple of str
+        Names of the parts.
+    at : tuple of ndarray of int, shape (n,)
+        Index of the part that bears the face of body 1 and of body 2 at each point.
+    """
+
+    parts: tuple[str, ...]
+    at: tuple[np.ndarray, np.ndarray]
+
+    def of(
+        self, materials: Mapping[str, Material], value: Callable[[Material], float]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Material property at the points of both faces, shape (n,) each.
+
+        Parameters
+        ----------
+        materials : mapping of str to Material
+            Materials by part.
+        value : callable
+            Property of a material.
+        """
+
+        def on_face(at: np.ndarray) -> np.ndarray:
+            indices, which = np.unique(at, return_inverse=True)
+            return np.array([value(materials[self.parts[index]]) for index in indices])[which]
+
+        return on_face(self.at[0]), on_face(self.at[1])
+
+    def effusivities(self, materials: Mapping[str, Material]) -> tuple[np.ndarray, np.ndarray]:
+        """Thermal effusivities at the points of both faces [W sqrt(s)/(m² K)].
+
+        Raises
+        ------
+        CaseError
+            If a material on a contact face does not define what it follows from.
+        """
+        return self.of(materials, lambda material: material.effusivity(WHY))

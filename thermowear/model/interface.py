@@ -19,8 +19,7 @@ from ..laws.coefficients import (
 from ..laws.interfaces import Law
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
-from .facing import WHY, Facing
-from .material import Material
+from .body import WHY, Facing, Material
 from .wear import FaceWear
 
 

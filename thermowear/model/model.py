@@ -8,15 +8,12 @@ from functools import cached_property
 from typing import Literal
 
 from ..errors import CaseError
-from ..laws.load_history import LoadHistory
-from ..laws.time_course import TimeFunction
-from .body import Body
+from ..laws.time_course import LoadHistory, TimeFunction
+from .body import Body, Material
 from .heat import Heat
-from .holder import Holder
+from .holder import Holder, Motion
 from .interface import Interface
-from .material import Material
 from .meshes import MeshSource, Zone
-from .motion import Motion
 
 
 @dataclass(frozen=True)

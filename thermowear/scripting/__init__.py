@@ -3,30 +3,10 @@
 from .body import BodySurface, MeshBody
 from .conversion import LoadHistory, TimeHistory
 from .face_pair import FacePair
+from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState
-from .motion import Rotation, Translation
 from .physics import Heat, Material, PowerWear, PressureConductance
 from .scripted_model import ScriptedModel
 from .solution import ModelSolution, PointValues
-from .surface_holder import SurfaceHolder
 
 Body, Interface, Holder, Model = MeshBody, FacePair, SurfaceHolder, ScriptedModel
-
-__all__ = [
-    "Body",
-    "BodySurface",
-    "Heat",
-    "Holder",
-    "Interface",
-    "LoadHistory",
-    "MarchState",
-    "Material",
-    "Model",
-    "ModelSolution",
-    "PointValues",
-    "PowerWear",
-    "PressureConductance",
-    "Rotation",
-    "TimeHistory",
-    "Translation",
-]

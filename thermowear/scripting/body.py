@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import CaseError, quoted
-from ..model.body import Body
-from ..model.material import Material
+from ..model.body import Body, Material
 
 
 @dataclass(frozen=True)

@@ -1,29 +1,54 @@
-"""Conversion of Python arguments: optional quantities, laws, and histories of time."""
+"""Conversion of Python arguments: quantities, laws, and histories of time."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
-from typing import Any, TypeVar
+from typing import Any
 
 from ..case.values import units
 from ..case.values.units import expression, in_python
 from ..errors import CaseError
-from ..laws import load_history, time_course
+from ..laws import time_course
 from ..laws.coefficients import Constant
-from ..laws.formulas import FormulaLaw, FormulaWear
-from ..laws.from_python import interface_law, wear_rate
+from ..laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
 from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
 from ..laws.plausible import require_interface_law
 from ..laws.time_course import TimeCourse, TimeFunction
 
-Key = TypeVar("Key")
+_LOADS = {
+    "force": units.LeastForce,
+    "approach": units.Displacement,
+    "tangential_force": units.SignedForce,
+    "tangential_displacement": units.Displacement,
+}
 
 
-def optional(kind: Any, value: Any, name: str) -> float | None:
-    """Read an argument that may be None; see `case.values.units.in_python`."""
-    return None if value is None else in_python(kind, value, name)
+def quantities(name: str, kinds: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of a function with its quantities in SI; see `case.values.units.in_python`.
+
+    Parameters
+    ----------
+    name : str
+        Name of the function, for messages.
+    kinds : mapping of str to Annotated
+        Type of each quantity.
+    given : mapping of str to object
+        Arguments; None and those without a type are kept.
+    """
+    return {
+        key: in_python(kinds[key], value, f"{name}.{key}")
+        if key in kinds and value is not None
+        else value
+        for key, value in given.items()
+    }
+
+
+def each_quantity(kind: Any, values: Iterable[Any], name: str) -> tuple[float, ...]:
+    """Quantities of a sequence, in SI."""
+    return tuple(in_python(kind, value, name) for value in values)
 
 
 def number(value: Any, name: str, least: float = -math.inf, most: float = math.inf) -> float:
@@ -47,43 +72,38 @@ def coefficient_law(given: Any, name: str, unit: str, least: float) -> Law:
     least : float
         Smallest value that an expression may have.
     """
-
-    def law() -> Law:
-        if not isinstance(given, str):
-            return interface_law(given)
-        found = expression(given, unit, INTERFACE_VARIABLES)
-        constant = found.constant
-        return FormulaLaw(found, name, least) if constant is None else Constant(constant)
-
-    result = _named(law, name)
-    if isinstance(result, Constant):
-        number(result.number, name, least=0.0)
-    else:
-        _named(lambda: require_interface_law(result), name)
-    return result
+    with _faults_of(name):
+        if isinstance(given, str):
+            found = expression(given, unit, INTERFACE_VARIABLES)
+            constant = found.constant
+            law: Law = FormulaLaw(found, name, least) if constant is None else Constant(constant)
+        else:
+            law = interface_law(given)
+        if not isinstance(law, Constant):
+            require_interface_law(law)
+    if isinstance(law, Constant):
+        number(law.number, name, least=0.0)
+    return law
 
 
 def rate_law(given: Any, name: str) -> Law:
     """Wear rate from an expression with units, a law, or a function of p, v, T, depth and mu."""
-
-    def law() -> Law:
+    with _faults_of(name):
         if isinstance(given, str):
-            return wear_rate(FormulaWear(expression(given, "m/s", WEAR_VARIABLES), name))
+            given = FormulaWear(expression(given, "m/s", WEAR_VARIABLES), name)
         return wear_rate(given)
 
-    return _named(law, name)
 
-
-def _named(read: Callable[[], Any], name: str) -> Any:
+@contextmanager
+def _faults_of(name: str) -> Iterator[None]:
+    """Name of the argument in messages."""
     try:
-        return read()
+        yield
     except (ValueError, CaseError) as error:
         raise CaseError(f"{name}: {error}") from None
 
 
-def TimeHistory(
-    time: Sequence[Any], values: Sequence[Any], repeat: bool = False, kind: Any = None
-) -> TimeFunction:
+def TimeHistory(time: Sequence[Any], values: Sequence[Any], repeat: bool = False) -> TimeFunction:
     """Piecewise linear function of time, constant beyond its ends or periodic.
 
     Parameters
@@ -116,27 +136,23 @@ def LoadHistory(
     tangential_displacement: Sequence[Any] | None = None,
     repeat: bool = False,
     cycle_start: Any = None,
-) -> load_history.LoadHistory:
-    """Loads of a holder at instants, see `laws.load_history.LoadHistory`."""
-    given = {
-        "force": (units.LeastForce, force),
-        "approach": (units.Displacement, approach),
-        "tangential_force": (units.SignedForce, tangential_force),
-        "tangential_displacement": (units.Displacement, tangential_displacement),
-    }
-    course, loads = _course(time, repeat, "LoadHistory"), {}
-    for key, (kind, values) in given.items():
+) -> time_course.LoadHistory:
+    """Loads of a holder at instants, see `laws.time_course.LoadHistory`."""
+    loads = force, approach, tangential_force, tangential_displacement
+    course, read = _course(time, repeat, "LoadHistory"), {}
+    for (key, kind), values in zip(_LOADS.items(), loads, strict=True):
         if values is not None:
             name = f"LoadHistory.{key}"
             if len(values) != len(time):
                 raise CaseError(f"{name}: has {len(values)} values for {len(time)} instants")
-            loads[key] = tuple(in_python(kind, value, name) for value in values)
-    start = optional(units.Instant, cycle_start, "LoadHistory.cycle_start")
-    return load_history.LoadHistory(course, **loads, cycle_start=start)
+            read[key] = each_quantity(kind, values, name)
+    if cycle_start is not None:
+        cycle_start = in_python(units.Instant, cycle_start, "LoadHistory.cycle_start")
+    return time_course.LoadHistory(course, **read, cycle_start=cycle_start)
 
 
 def _course(time: Sequence[Any], repeat: bool, name: str) -> TimeCourse:
-    instants = tuple(in_python(units.Instant, value, f"{name}.time") for value in time)
+    instants = each_quantity(units.Instant, time, f"{name}.time")
     if len(instants) < 2 or any(b <= a for a, b in pairwise(instants)):
         raise CaseError(f"{name}.time: needs two or more increasing instants")
-    return time_course.TimeCourse(instants, repeat)
+    return TimeCourse(instants, repeat)

@@ -9,13 +9,12 @@ from typing import Any, Literal
 import numpy as np
 
 from ..case.values import units
-from ..case.values.units import in_python
 from ..errors import CaseError
 from ..laws.time_course import TimeFunction
 from ..model.interface import ContactMethod, HardnessConductance, Interface
 from ..model.wear import FaceWear
 from .body import BodySurface, MeshBody, require_surface
-from .conversion import coefficient_law, number, rate_law
+from .conversion import coefficient_law, number, quantities, rate_law
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,10 @@ class FacePair:
         Contact conductance likewise; None: perfect contact [W/(m² K)].
     wear : mapping of MeshBody to (str, Law, callable or FaceWear)
         Wear rates of the bodies, also as functions of some of p, v, T, depth, mu [m/s].
-    gap_conductance, partition, compliance, transverse_friction, pressure_degree, method
+    partition : float or str
+        Fraction of the friction heat released into the body of `one`; ``"effusivity"``: by the
+        thermal effusivities of both.
+    gap_conductance, compliance, transverse_friction, pressure_degree, method
         See `model.interface.Interface`.
     friction_history : TimeFunction or None
         Time-dependent factor of the friction.
@@ -70,24 +72,28 @@ class FacePair:
         if unknown:
             raise CaseError(f"Interface.wear: {unknown[0]!r} is no body of this interface")
         wear = {bodies.index(body): _face_wear(law, body) for body, law in self.wear.items()}
-        gap = in_python(units.LeastHeatTransfer, self.gap_conductance, "Interface.gap_conductance")
-        soft = self.compliance and in_python(
-            units.Compliance, self.compliance, "Interface.compliance"
-        )
+        kinds = {"gap_conductance": units.LeastHeatTransfer, "compliance": units.Compliance}
+        kept = ("gap_conductance", "friction_history", "pressure_degree", "method")
+        settings = {key: getattr(self, key) for key in kept}
+        if self.compliance:
+            settings["compliance"] = self.compliance
         return Interface(
             faces=(first.name, second.name),
             friction=coefficient_law(self.friction, "Interface.friction", "", least=-np.inf),
-            friction_history=self.friction_history,
             transverse_friction=number(self.transverse_friction, "Interface.transverse_friction"),
             conductance=given,
-            gap_conductance=gap,
-            partition=self.partition,
+            partition=self._into_body_1(first),
             wear=dict(sorted(wear.items())),
             closes_by_wear=closes_by_wear,
-            compliance=soft,
-            pressure_degree=self.pressure_degree,
-            method=self.method,
+            **quantities("Interface", kinds, settings),
         )
+
+    def _into_body_1(self, held: BodySurface) -> float | Literal["effusivity"]:
+        """Fraction of the friction heat released into the held body."""
+        if self.partition == "effusivity":
+            return "effusivity"
+        into_one = number(self.partition, "Interface.partition", 0.0, 1.0)
+        return into_one if held is self.one else 1.0 - into_one
 
 
 def _face_wear(given: Any, body: MeshBody) -> FaceWear:

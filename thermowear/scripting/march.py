@@ -21,7 +21,6 @@ from ..simulation.results.recording import Snapshot
 from ..simulation.runtime.checkpoint_data import Progress, Saved
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.system import System
-from .body import MeshBody
 from .solution import ContactResults
 from .user_mesh import UserMeshes
 
@@ -43,7 +42,6 @@ class MarchState(ContactResults):
         That of the unworn bodies.
     """
 
-    bodies: tuple[MeshBody, ...]
     meshes: UserMeshes
     row: HistoryRow
     progress: Progress
@@ -81,7 +79,6 @@ class MarchState(ContactResults):
 
 
 def march(
-    bodies: tuple[MeshBody, ...],
     meshes: UserMeshes,
     system: System,
     settings: TransientAnalysis,
@@ -108,7 +105,7 @@ def march(
         row = history.table(HistoryRow)[-1]
         loop = history.loop
         state = history.progress(), loop.problem, loop.system, system
-        yield MarchState(bodies, meshes, row, *state)
+        yield MarchState(meshes, row, *state)
 
 
 def _saved(path: Path, system: System) -> Progress:

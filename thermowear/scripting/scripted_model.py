@@ -19,8 +19,8 @@ from ..model.analyses import (
     TransientAnalysis,
 )
 from ..model.heat import Heat
+from ..model.holder import Motion
 from ..model.model import Discretisation, Model
-from ..model.motion import Motion
 from ..simulation.analyses.run import solve
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
@@ -28,12 +28,11 @@ from ..simulation.system.setup_cache import SetupCache
 from ..simulation.system.system import System
 from ..timer import Phases
 from .body import BodySurface, MeshBody
-from .conversion import number, optional
+from .conversion import number
 from .face_pair import FacePair
+from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState, march
-from .motion import Rotation, Translation
 from .solution import ModelSolution
-from .surface_holder import SurfaceHolder
 from .user_mesh import UserMeshes, user_meshes
 
 _OF_SECTIONS = ("axisymmetric", "plane-strain", "plane-stress")
@@ -139,9 +138,16 @@ class ScriptedModel:
             with other loads, speeds or laws.
         **settings
             Other attributes of `model.analyses.TransientAnalysis`.
+
+        Raises
+        ------
+        CaseError
+            If the file is not one of a state of these bodies.
+        ComputationError
+            If a step fails, or its balances do not hold.
         """
         analysis = _transient(until, settings)
-        yield from march(self.bodies, self.meshes, self._system(analysis), analysis, start)
+        yield from march(self.meshes, self._system(analysis), analysis, start)
 
     def fretting(self, observer: Observer | None = None, **settings: Any) -> ModelSolution:
         """Stick and slip under the history of the holder, see `model.analyses.FrettingAnalysis`."""
@@ -165,7 +171,7 @@ class ScriptedModel:
         end, result = solve(system, analysis, observer)
         if result.stopped is not None:
             raise result.stopped
-        return ModelSolution(self.bodies, self.meshes, end, result)
+        return ModelSolution(self.meshes, end, result)
 
     def _system(self, analysis: Analysis, observer: Observer | None = None) -> System:
         observer = observer or Observer()
@@ -182,7 +188,9 @@ class ScriptedModel:
                 f"Model.kinematics: found {self.kinematics!r}; must be one of "
                 f"{', '.join(_OF_SECTIONS)} for a mesh of a section, and None in space"
             )
-        thickness = optional(units.Length, self.thickness, "Model.thickness")
+        thickness = self.thickness
+        if thickness is not None:
+            thickness = in_python(units.Length, thickness, "Model.thickness")
         if (self.kinematics in _OF_SECTIONS[1:]) is (thickness is None):
             raise CaseError("Model.thickness: needed for a plane model, and for no other")
         model = Model(

@@ -1,4 +1,4 @@
-"""Solution of a model: pressures with their points, fields on the user's meshes, tables."""
+"""Solutions and states of a model: values at contact points, fields on its meshes, tables."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from ..results import Result
 from ..simulation.results.fields import with_holder
 from ..simulation.results.recording import Snapshot
 from .body import MeshBody
-from .body_fields import on_user_mesh
 from .user_mesh import UserMeshes
 
 
@@ -86,12 +85,9 @@ class ContactResults(ABC):
 
     Attributes
     ----------
-    bodies : tuple of MeshBody
-        The held body first.
     meshes : UserMeshes
     """
 
-    bodies: tuple[MeshBody, ...]
     meshes: UserMeshes
 
     @property
@@ -114,12 +110,12 @@ class ContactResults(ABC):
     def wear(self, face: Any, body: MeshBody) -> PointValues:
         """Wear depth of the face of a body."""
         depths = self.snapshot.interface.wear_1, self.snapshot.interface.wear_2
-        return self._at_points(face, "wear", "m", depths[self._index(body)])
+        return self._at_points(face, "wear", "m", depths[self.meshes.index(body)])
 
     def surface_temperature(self, face: Any, body: MeshBody) -> PointValues:
         """Temperature of the face of a body; NaN without heat."""
         both = self.snapshot.interface.temperature_1, self.snapshot.interface.temperature_2
-        return self._at_points(face, "temperature", "K", both[self._index(body)])
+        return self._at_points(face, "temperature", "K", both[self.meshes.index(body)])
 
     def temperature(self, body: MeshBody) -> fem.Function:
         """Temperature of a body on its mesh [K]; NaN outside of it. Every rank calls.
@@ -133,9 +129,7 @@ class ContactResults(ABC):
         if system.thermal is None or rise is None:
             raise CaseError("temperature: the model has no heat")
         space, values = system.thermal.conduction.space, rise + system.thermal.ambient
-        return on_user_mesh(
-            self.meshes, self.bodies, self._index(body), system, space, values, "temperature"
-        )
+        return self.meshes.function(body, system, space, values, "temperature")
 
     def displacement(self, body: MeshBody) -> fem.Function:
         """Displacement of a body on its mesh, that of the holder included [m]; NaN outside of it.
@@ -145,9 +139,7 @@ class ContactResults(ABC):
         now = self.snapshot
         values = with_holder(now.system, now.bodies.displacement, now.motion)
         space = now.system.elastic.space
-        return on_user_mesh(
-            self.meshes, self.bodies, self._index(body), now.system, space, values, "displacement"
-        )
+        return self.meshes.function(body, now.system, space, values, "displacement")
 
     def to_dataframe(self):
         """Pandas frame of the interface, a row per contact point; columns in SI."""
@@ -155,16 +147,13 @@ class ContactResults(ABC):
         return frame({f.name: getattr(interface, f.name) for f in fields(interface)})
 
     def _at_points(self, face: Any, name: str, unit: str, values: np.ndarray) -> PointValues:
-        if not hasattr(face, "faces") or not {s.body for s in face.faces} <= set(self.bodies):
+        if not hasattr(face, "faces") or not {s.body for s in face.faces} <= set(
+            self.meshes.bodies
+        ):
             raise CaseError(f"{name}: found {face!r}; must be the interface of the model")
         pairing = self.snapshot.system.pairing
         at = pairing.on_body_1, pairing.position, pairing.weights
         return PointValues(name, unit, values, *at)
-
-    def _index(self, body: MeshBody) -> int:
-        if body not in self.bodies:
-            raise CaseError(f"found {body!r}; must be a body of the model")
-        return self.bodies.index(body)
 
 
 @dataclass(frozen=True)
@@ -177,7 +166,6 @@ class ModelSolution(ContactResults):
         All tables and the summary, as of `thermowear.run`.
     """
 
-    bodies: tuple[MeshBody, ...]
     meshes: UserMeshes
     final: Snapshot
     result: Result

@@ -1,11 +1,13 @@
-"""Tagged mesh of the bodies of a model from users' dolfinx meshes."""
+"""Transfer between users' dolfinx meshes and the mesh of a model: cells with tags, and fields."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from dolfinx import fem
 
+from ..bulk.field import as_function, basis_element, lagrange_space
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
 from ..geometry.mesh.nodes import CORNERS, FACETS, boundary, reference_nodes
@@ -13,6 +15,7 @@ from ..geometry.mesh.tagged import TaggedMesh, compact
 from ..geometry.reading.mesh_checks import oriented
 from ..lagrange import equispaced, matching
 from ..parallel import on_root
+from ..simulation.system.system import System
 from .body import MeshBody
 
 _LEVEL = 1e-9
@@ -25,14 +28,17 @@ class UserMeshes:
 
     Attributes
     ----------
-    tagged : TaggedMesh
     checksum : str
+    tagged : TaggedMesh
+    bodies : tuple of MeshBody
+        The held body first.
     reversed_cells : tuple of (ndarray of bool)
         Mask of the cells of each body, in the order of the user's mesh, with reversed orientation.
     """
 
     checksum: str
     tagged: TaggedMesh = field(compare=False, repr=False)
+    bodies: tuple[MeshBody, ...] = field(compare=False, repr=False)
     reversed_cells: tuple[np.ndarray, ...] = field(compare=False, repr=False)
     path: None = None
 
@@ -46,19 +52,61 @@ class UserMeshes:
         """Names of the surfaces of a body."""
         return tuple(s for s in self.tagged.surfaces if s.rpartition(":")[0] == body.name)
 
+    def index(self, body: MeshBody) -> int:
+        """Index of a body, 0 for the held one."""
+        if body not in self.bodies:
+            raise CaseError(f"found {body!r}; must be a body of the model")
+        return self.bodies.index(body)
+
+    def function(
+        self,
+        body: MeshBody,
+        system: System,
+        space: fem.FunctionSpace,
+        values: np.ndarray,
+        name: str,
+    ) -> fem.Function:
+        """Function on the user's mesh of a body, NaN outside of the body. Every rank calls.
+
+        Nodal values are copied cell by cell: cells have the same nodes in both meshes, apart from
+        those whose orientation was reversed.
+
+        Parameters
+        ----------
+        body : MeshBody
+        system : System
+        space : dolfinx.fem.FunctionSpace
+            Space on the mesh of the system.
+        values : ndarray, shape (n_owned,)
+        name : str
+
+        Raises
+        ------
+        CaseError
+            If the body has been remeshed.
+        """
+        index = self.index(body)
+        if system.worn is not None and system.worn.meshed_anew:
+            raise CaseError(f"{name}: {body.name!r} has been remeshed; its field has no user mesh")
+        first, turned = sum(map(len, self.reversed_cells[:index])), self.reversed_cells[index]
+        by_cell = _by_cell(space, as_function(space, values, name))[first : first + len(turned)]
+        nodes = basis_element(space).points
+        by_cell[turned] = by_cell[turned][:, matching(nodes[:, ::-1], nodes)]
+        return _placed(body, by_cell, space.ufl_element().degree, name)
+
 
 @dataclass(frozen=True)
 class _Piece:
-    """Mesh of one body: nodes of the cells in gmsh's order, and tagged facets by their corners."""
+    """Mesh of one body: cells with their parts, and tagged facets by their corners."""
 
     name: str
     kind: str
+    order: int
     points: np.ndarray
     cells: np.ndarray
     parts: np.ndarray
     corners: np.ndarray
     tags: np.ndarray
-    order: int
 
 
 def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
@@ -71,51 +119,51 @@ def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
     """
     pieces = [_gathered(body) for body in bodies]
 
-    def joined() -> UserMeshes:
-        checked = [_oriented(piece) for piece in pieces if piece is not None]
+    def joined() -> tuple[str, TaggedMesh, tuple[np.ndarray, ...]]:
+        checked = [_oriented(_in_model(piece)) for piece in pieces if piece is not None]
         tagged = _joined([piece for piece, _ in checked], bodies)
-        return UserMeshes(tagged.checksum(), tagged, tuple(turned for _, turned in checked))
+        return tagged.checksum(), tagged, tuple(turned for _, turned in checked)
 
-    return on_root(bodies[0].mesh.comm, joined)
+    checksum, tagged, reversed_cells = on_root(bodies[0].mesh.comm, joined)
+    return UserMeshes(checksum, tagged, bodies, reversed_cells)
 
 
 def _gathered(body: MeshBody) -> _Piece | None:
-    """Piece of a body on rank 0, None elsewhere. Every rank calls."""
-    mesh, name = body.mesh, f"Body {body.name!r}"
+    """Piece of a body on rank 0, as in its mesh, None elsewhere. Every rank calls."""
+    mesh = body.mesh
     kind, order = mesh.topology.cell_name(), coordinate_element(mesh).degree
     if kind not in FACETS:
         raise CaseError(
-            f"{name}: has cells of type {kind}; supported are {', '.join(FACETS)} (a mesh of "
-            "a section, or of hexahedra)"
+            f"Body {body.name!r}: has cells of type {kind}; supported are {', '.join(FACETS)} (a "
+            "mesh of a section, or of hexahedra)"
         )
     parts = body.part_of_cells()
     own = np.flatnonzero(parts >= 0)
     dofs, nodes = geometry_dofmap(mesh), mesh.geometry.index_map()
-    cells = nodes.local_to_global(dofs[own].ravel()).reshape(len(own), dofs.shape[1])
     corners = _corners(mesh, dofs, body.facets.indices)
-    shape = corners.shape
-    found = mesh.comm.gather(
-        (
-            mesh.geometry.x[: nodes.size_local],
-            cells,
-            parts[own],
-            nodes.local_to_global(corners.ravel()).reshape(shape),
-            body.facets.values,
-        )
+    cells, ends = (
+        nodes.local_to_global(local.ravel()).reshape(local.shape) for local in (dofs[own], corners)
     )
+    points = mesh.geometry.x[: nodes.size_local]
+    found = mesh.comm.gather((points, cells, parts[own], ends, body.facets.values))
     if found is None:
         return None
-    points, cells, parts, corners, tags = (
-        np.concatenate(each) for each in zip(*found, strict=True)
-    )
-    if not len(cells):
+    columns = (np.concatenate(each) for each in zip(*found, strict=True))
+    return _Piece(body.name, kind, order, *columns)
+
+
+def _in_model(piece: _Piece) -> _Piece:
+    """Piece with points in its section, or in space, and nodes of the cells in gmsh's order."""
+    name, points, kind = f"Body {piece.name!r}", piece.points, piece.kind
+    if not len(piece.cells):
         raise CaseError(f"{name}: has no cells")
-    in_gmsh = np.empty_like(cells)
-    nodes = equispaced(kind, order).points
-    in_gmsh[:, matching(nodes, reference_nodes(kind, order))] = cells
-    return _Piece(
-        body.name, kind, _in_model(points, kind, name), in_gmsh, parts, corners, tags, order
-    )
+    if kind in CORNERS:
+        if np.ptp(points[:, 2]) > _LEVEL * np.ptp(points, axis=0).max():
+            raise CaseError(f"{name}: the mesh of a section must lie in a plane z = const")
+        points = points[:, :2]
+    nodes, in_gmsh = equispaced(kind, piece.order).points, np.empty_like(piece.cells)
+    in_gmsh[:, matching(nodes, reference_nodes(kind, piece.order))] = piece.cells
+    return replace(piece, points=points, cells=in_gmsh)
 
 
 def _corners(mesh, dofs: np.ndarray, facets: np.ndarray) -> np.ndarray:
@@ -124,19 +172,10 @@ def _corners(mesh, dofs: np.ndarray, facets: np.ndarray) -> np.ndarray:
     topology.create_connectivity(tdim - 1, 0)
     vertices = topology.connectivity(tdim, 0).array
     node = np.zeros(vertices.max(initial=0) + 1, dtype=dofs.dtype)
-    node[vertices] = dofs[:, : len(vertices) // len(dofs)].ravel()
+    node[vertices] = dofs[:, : len(vertices) // max(len(dofs), 1)].ravel()
     ends = topology.connectivity(tdim - 1, 0)
     per_facet = len(ends.array) // max(ends.num_nodes, 1)
     return node[ends.array.reshape(-1, per_facet)[facets]]
-
-
-def _in_model(points: np.ndarray, kind: str, name: str) -> np.ndarray:
-    """Coordinates of a section, or in space, shape (n, 2) or (n, 3)."""
-    if kind not in CORNERS:
-        return points
-    if np.ptp(points[:, 2]) > _LEVEL * np.ptp(points, axis=0).max():
-        raise CaseError(f"{name}: the mesh of a section must lie in a plane z = const")
-    return points[:, :2]
 
 
 def _oriented(piece: _Piece) -> tuple[_Piece, np.ndarray]:
@@ -196,3 +235,37 @@ def _surfaces(piece: _Piece, kind: str, order: int) -> tuple[np.ndarray, list[st
     tagged = np.flatnonzero(named >= 0)
     tagged = tagged[np.argsort(piece.tags[named[tagged]], kind="stable")]
     return facets[tagged], [f"{piece.name}:{tag}" for tag in piece.tags[named[tagged]]]
+
+
+def _by_cell(space: fem.FunctionSpace, function: fem.Function) -> np.ndarray:
+    """Nodal values of all cells on all ranks, in the order of the tagged mesh.
+
+    Shape (n_cells, nodes_per_cell, components).
+    """
+    mesh = space.mesh
+    count = mesh.topology.index_map(mesh.topology.dim).size_local
+    nodal = function.x.array.reshape(-1, space.dofmap.index_map_bs)
+    own = mesh.topology.original_cell_index[:count], nodal[space.dofmap.list[:count]]
+    number, values = (np.concatenate(each) for each in zip(*mesh.comm.allgather(own), strict=True))
+    return values[np.argsort(number)]
+
+
+def _placed(body: MeshBody, by_cell: np.ndarray, degree: int, name: str) -> fem.Function:
+    """Function on a user's mesh from nodal values of the body's cells, in their global order."""
+    mesh, components = body.mesh, by_cell.shape[2]
+    cells = mesh.topology.index_map(mesh.topology.dim)
+    number = cells.local_to_global(np.arange(cells.size_local + cells.num_ghosts, dtype=np.int32))
+    own = number[np.flatnonzero(body.part_of_cells() >= 0)]
+    row = np.full(cells.size_global, -1)
+    row[np.concatenate(mesh.comm.allgather(own))] = np.arange(len(by_cell))
+    local = np.flatnonzero(row[number] >= 0)
+    width = 0 if components == 1 else mesh.geometry.dim
+    space = lagrange_space(mesh, degree, width)
+    result = fem.Function(space, name=name)
+    nodal = np.full((len(result.x.array) // max(width, 1), max(width, 1)), np.nan)
+    dofs = space.dofmap.list[local]
+    nodal[dofs] = 0.0  # out of plane, in a section embedded in space
+    nodal[dofs, :components] = by_cell[row[number[local]]]
+    result.x.array[:] = nodal.ravel()
+    result.x.scatter_forward()
+    return result

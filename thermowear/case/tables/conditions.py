@@ -90,7 +90,7 @@ class LoadTable(Section):
 
 
 class MotionTable(Section):
-    """Sliding motion, see `model.motion.Motion`.
+    """Sliding motion, see `model.holder.Motion`.
 
     Attributes
     ----------

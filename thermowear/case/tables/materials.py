@@ -14,7 +14,7 @@ from .tabulated import ExpansionTable, TemperatureTable
 
 
 class Properties(Section):
-    """Keys of `model.material.Material`, or the name of the body whose material applies (``like``).
+    """Keys of `model.body.Material`, or the name of the body whose material applies (``like``).
 
     Tables of factors are `conductivity_factor` and `expansion_factor`.
     """

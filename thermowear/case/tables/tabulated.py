@@ -9,8 +9,7 @@ from typing import Annotated, Any, ClassVar, Generic, TypeVar
 from pydantic import Field, TypeAdapter, ValidationError, ValidationInfo, model_validator
 
 from ...laws.coefficients import Multipliers, Table1D
-from ...laws.load_history import KEYS, LoadHistory
-from ...laws.time_course import TimeCourse, TimeFunction
+from ...laws.time_course import KEYS, LoadHistory, TimeCourse, TimeFunction
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
 from ..values.section import KeyFault, Number, Section, Switch, UserFile
@@ -218,7 +217,7 @@ class TemperatureHistory(TimeHistory):
 
 
 class History(TimeHistory):
-    """Loads of the holder of body 1 at instants, see `laws.load_history.LoadHistory`."""
+    """Loads of the holder of body 1 at instants, see `laws.time_course.LoadHistory`."""
 
     COLUMNS = {
         "time": "s",

@@ -1,4 +1,4 @@
-"""Semismooth Newton method for frictional contact, with fallback starts where it fails."""
+"""Semismooth Newton method for frictional contact with fallback starts, and gross slip."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..solvers.lemke import lemke
+from ..solvers.signorini import saddle_point, solve_contact
 from .coulomb import CoulombProblem, CoulombSolution, jacobian, residual, scales, violated
 
 _MAX_ITERATIONS = 30
@@ -16,7 +17,11 @@ _SPRING_RATIOS = (1e-3, 1e-2, 1e-1, 1.0)  # relative to the contact stiffness, t
 _MAX_SPRING_UPDATES = 20
 
 
-def solve_directly(
+class FullSliding(ComputationError):
+    """Error for a tangential force that exceeds the friction limit."""
+
+
+def solve_by_newton(
     problem: CoulombProblem, closed: np.ndarray, near: np.ndarray | None = None
 ) -> CoulombSolution | None:
     """Solve by Newton's method in a few iterations; None if it fails.
@@ -34,11 +39,11 @@ def solve_directly(
         if solution is not None and not violated(problem, solution):
             return solution
     start = _sticking(problem, closed)
-    return None if start is None else _from(problem, start)
+    return None if start is None else _verified_from(problem, start)
 
 
-def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolution:
-    """Solve a problem for which `solve_directly` fails; same arguments.
+def solve_with_fallbacks(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolution:
+    """Solve a problem for which `solve_by_newton` fails; same arguments.
 
     Newton's method starts from solutions with a spring between holder and load, which exist in
     gross slip too, and finally from the solution by complementary pivoting.
@@ -48,8 +53,8 @@ def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolut
     ComputationError
         If no solution is found.
     """
-    for start in _better_starts(problem, closed):
-        solution = _from(problem, start)
+    for start in _fallback_starts(problem, closed):
+        solution = _verified_from(problem, start)
         if solution is not None:
             return solution
     raise ComputationError(
@@ -58,7 +63,7 @@ def solve_patiently(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolut
     )
 
 
-def _from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
+def _verified_from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
     """Verified solution from a start, with full steps, otherwise with damped ones."""
     for damped in (False, True):
         solution = _newton(problem, start, damped)
@@ -80,12 +85,12 @@ def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> Coul
         except np.linalg.LinAlgError:
             return None
         if damped:
-            step = _shortened(problem, unknowns, step, float(np.linalg.norm(error)))
+            step = _damped(problem, unknowns, step, float(np.linalg.norm(error)))
         unknowns = unknowns + step
     return None
 
 
-def _shortened(problem: CoulombProblem, unknowns, step, merit: float) -> np.ndarray:
+def _damped(problem: CoulombProblem, unknowns, step, merit: float) -> np.ndarray:
     """Longest of the successively halved steps that reduces the residual, or the shortest."""
     for halvings in range(8):
         trial = step / 2**halvings
@@ -98,33 +103,32 @@ def _sticking(problem: CoulombProblem, closed: np.ndarray) -> np.ndarray | None:
     """Unknowns with sticking contact at the given coefficients; None if singular."""
     total, k = len(problem.offset), len(problem.force)
     held = np.flatnonzero(np.tile(closed, total // len(closed)))
-    size = np.sqrt(np.diag(problem.compliance)[held])
-    border = problem.modes[held] / size[:, None]
-    stretch = np.abs(border).max(axis=0, initial=0.0)
-    if np.any(stretch == 0):
+    modes = problem.modes[held]
+    if not np.all(np.any(modes != 0.0, axis=0)):
         return None
-    border = border / stretch
-    compliance = problem.compliance[np.ix_(held, held)] / np.outer(size, size)
-    matrix = np.block([[compliance, -border], [-border.T, np.zeros((k, k))]])
-    right = np.concatenate([-problem.offset[held] / size, -problem.force / stretch])
-    try:
-        solution = np.linalg.solve(matrix, right) / np.concatenate([size, stretch])
-    except np.linalg.LinAlgError:
+    found = saddle_point(
+        problem.compliance[np.ix_(held, held)],
+        modes,
+        modes,
+        problem.offset[held, None],
+        problem.force[:, None],
+    )
+    if found is None:
         return None
     result = np.zeros(total + k)
-    result[held], result[total:] = solution[: len(held)], solution[len(held) :]
+    result[held], result[total:] = found[: len(held), 0], found[len(held) :, 0]
     return result
 
 
-def _better_starts(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]:
+def _fallback_starts(problem: CoulombProblem, closed: np.ndarray) -> Iterator[np.ndarray]:
     for part in _SPRING_RATIOS:
-        yield from _sprung(problem, closed, part)
-    start = _complementary(problem)
+        yield from _with_spring(problem, closed, part)
+    start = _by_lemke(problem)
     if start is not None:
         yield start
 
 
-def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterator[np.ndarray]:
+def _with_spring(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterator[np.ndarray]:
     """Solutions with a spring between the holder and its load, its anchor updated each time.
 
     ``Rᵀ x = F - k (d - d0)`` adds ``R k⁻¹ Rᵀ`` to the compliance and eliminates the free motions;
@@ -140,7 +144,7 @@ def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterato
         offset = problem.offset - modes @ (anchor + force / spring)
         sprung = CoulombProblem(softer, offset, modes[:, :0], force[:0], problem.friction)
         start = _sticking(sprung, closed) if start is None else start
-        solution = None if start is None else _from(sprung, start)
+        solution = None if start is None else _verified_from(sprung, start)
         if solution is None:
             return
         start = solution.stacked
@@ -148,7 +152,7 @@ def _sprung(problem: CoulombProblem, closed: np.ndarray, part: float) -> Iterato
         yield np.concatenate([start, anchor])
 
 
-def _complementary(problem: CoulombProblem) -> np.ndarray | None:
+def _by_lemke(problem: CoulombProblem) -> np.ndarray | None:
     """Unknowns by Lemke's method for one tangential direction; None if it ends on a ray.
 
     With ``τ = b_1 - b_2`` the conditions are the copositive complementarity problem of Stewart and
@@ -182,3 +186,32 @@ def _complementary(problem: CoulombProblem) -> np.ndarray | None:
     x = spread @ solution[: 3 * m] * size
     forward, back = solution[4 * m :].reshape(2, k)
     return scale * np.concatenate([x, np.linalg.solve(mixing, forward - back)])
+
+
+def check_gross_slip(problem: CoulombProblem, pressed: bool) -> None:
+    """Raise if the contact in gross slip carries less than the tangential force.
+
+    In gross slip the shear is a multiple of the pressure, which then solves a Signorini problem.
+    """
+    m, k = len(problem.friction), int(pressed)
+    asked = problem.force[k]
+    across = problem.modes[m : 2 * m, k] * np.sign(asked)
+    drag = problem.friction * np.sign(across)  # τ = drag λ opposes the force
+    compliance = problem.compliance[:m, :m] + problem.compliance[:m, m : 2 * m] * drag
+    modes = problem.modes[:m, :k]
+    carrying = modes + drag[:, None] * problem.modes[m : 2 * m, :k]
+    sliding = solve_contact(
+        compliance, problem.offset[:m], modes, problem.force[:k], force_modes=carrying
+    )
+    λ = sliding.coefficients
+    if not np.any(λ > 0):
+        raise ComputationError(
+            "contact: the bodies do not touch, so that nothing balances a tangential force; give a "
+            "tangential displacement, or press"
+        )
+    most = problem.modes[:m, k] @ λ + problem.modes[m : 2 * m, k] @ (drag * λ)
+    if abs(asked) >= (1 - 1e-9) * abs(most):
+        raise FullSliding(
+            f"contact: body 1 slides; friction carries {abs(most):.6g} N, and the tangential force "
+            f"is {abs(asked):.6g} N. Give a smaller force, or a tangential displacement"
+        )

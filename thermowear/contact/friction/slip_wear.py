@@ -17,12 +17,15 @@ its adjoint, which conserves volume.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from ...laws.interfaces import Law, LocalState
 from ..search.pairing import Pairing
+from ..wear.track import hat_functions
 from .stick_slip_state import StickSlipState
 
 
@@ -46,16 +49,10 @@ class WornProfile:
 
     def interpolation(self, slip: float) -> np.ndarray:
         """Matrix L: coefficients at the contact from those of the profile at a slip [m], (m, m)."""
-        m = len(self.places)
-        if self.shift_per_slip * slip == 0.0:
-            return np.eye(m)
-        places, at = self.places, self.places - self.shift_per_slip * slip
-        upper = np.clip(np.searchsorted(places, at), 1, m - 1)
-        part = (at - places[upper - 1]) / (places[upper] - places[upper - 1])
-        part = np.clip(part, 0.0, 1.0)
-        result, rows = np.zeros((m, m)), np.arange(m)
-        result[rows, upper - 1], result[rows, upper] = 1 - part, part
-        return result
+        shift = self.shift_per_slip * slip
+        if shift == 0.0:
+            return np.eye(len(self.places))
+        return hat_functions(self.places, self.places - shift)
 
     def wear_transfer(self, slip: float) -> np.ndarray:
         """Coefficients of the profile from the depths worn at the contact, shape (m, m)."""
@@ -152,31 +149,29 @@ class IncrementWear:
         State at the start of the increment.
     areas : ndarray, shape (m,)
         Areas of the basis functions [m²].
-    wear_transfer : ndarray, shape (n_wearing, m, m)
-        Coefficients in the profile of each body from its depth worn at the contact.
-    depth_per_wear : ndarray, shape (n_wearing, m, m)
-        Depth of the profile at the contact from the depth worn at the contact.
+    displacement : float
+        Displacement of body 1 along +x at the end of the increment [m].
     """
 
     wear: SlipWear
     before: StickSlipState
     areas: np.ndarray
-    wear_transfer: np.ndarray
-    depth_per_wear: np.ndarray
+    displacement: float
 
-    @classmethod
-    def at(
-        cls, wear: SlipWear, before: StickSlipState, areas: np.ndarray, displacement: float
-    ) -> IncrementWear:
-        """Wear of an increment that ends at a displacement of body 1 along +x [m]."""
-        m = len(areas)
-        wear_transfer = np.reshape(
-            [profile.wear_transfer(displacement) for profile in wear.profiles], (-1, m, m)
-        )
-        interpolation = np.reshape(
-            [profile.interpolation(displacement) for profile in wear.profiles], (-1, m, m)
-        )
-        return cls(wear, before, areas, wear_transfer, interpolation @ wear_transfer)
+    @cached_property
+    def wear_transfer(self) -> np.ndarray:
+        """Profile of each body from its depth worn at the contact, shape (n_wearing, m, m)."""
+        return self._of_profiles(WornProfile.wear_transfer)
+
+    @cached_property
+    def depth_per_wear(self) -> np.ndarray:
+        """Depth of each profile at the contact from the depth worn there, (n_wearing, m, m)."""
+        return self._of_profiles(WornProfile.interpolation) @ self.wear_transfer
+
+    def _of_profiles(self, matrix: Callable[[WornProfile, float], np.ndarray]) -> np.ndarray:
+        m = len(self.areas)
+        each = [matrix(profile, self.displacement) for profile in self.wear.profiles]
+        return np.reshape(each, (-1, m, m))
 
     def value(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
         """Depth at the contact, shape (m,) [m]."""

@@ -17,11 +17,9 @@ from ..operators.tangential import FrictionalContact
 from ..solvers.signorini import solve_contact
 from ..wear.implicit_step import newton_with_wear
 from .coulomb import CoulombProblem, CoulombSolution
-from .coulomb_solver import solve_directly, solve_patiently
-from .gross_slip import FullSliding, refuse_sliding
-from .loads import Loads
+from .coulomb_solver import FullSliding, check_gross_slip, solve_by_newton, solve_with_fallbacks
 from .slip_wear import IncrementWear, SlipWear
-from .stick_slip_state import Status, StickSlipState, unloaded
+from .stick_slip_state import Loads, Status, StickSlipState, unloaded
 
 _MAX_HALVINGS = 6
 _WEAR_TOLERANCE = 1e-6  # of the depth worn in the increment
@@ -74,13 +72,13 @@ def advance(
         gap = contact.weighted.T @ contact.gap + mean @ (worn + lost)
         compliance = contact.compliance.copy()
         compliance[: len(slope), : len(slope)] += mean @ slope
-        return _solved(contact, friction, state, guess, loads, compliance, gap)
+        return _increment(contact, friction, state, guess, loads, compliance, gap)
 
     no_slope = np.zeros_like(mean)
     after = solve(no_slope[0], no_slope, state)
     if wear is None:
         return after
-    by_slip = IncrementWear.at(wear, state, mean.sum(axis=1), displacement)
+    by_slip = IncrementWear(wear, state, mean.sum(axis=1), displacement)
     if by_slip.value(after.pressure, after).any():
         after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
     depths = by_slip.profiles(after)
@@ -96,7 +94,7 @@ def _tangential_displacement(state: StickSlipState, loads: Loads) -> float:
     return float(state.motion[1] if np.isnan(given) else given)
 
 
-def _solved(contact, friction, state, guess, loads: Loads, compliance, gap) -> StickSlipState:
+def _increment(contact, friction, state, guess, loads: Loads, compliance, gap) -> StickSlipState:
     """State after one increment with a given elastic and local compliance.
 
     The guess is the previous state or one with the same loads.
@@ -107,19 +105,19 @@ def _solved(contact, friction, state, guess, loads: Loads, compliance, gap) -> S
     start = contact.stack(gap, -state.slip) - contact.modes @ fixed
     modes = contact.modes[:, free]
     problem = CoulombProblem(compliance, start, modes, loads.forces[free], friction)
-    closed = _expected(problem, guess.pressure > 0, bool(free[0]))
+    closed = _predicted_active(problem, guess.pressure > 0, bool(free[0]))
     near = None
     if guess is not state:
         near = np.append(contact.stack(guess.pressure, guess.shear), guess.motion[free])
-    solution = solve_directly(problem, closed, near)
+    solution = solve_by_newton(problem, closed, near)
     if solution is None:
         if len(free) > 1 and free[1]:
-            refuse_sliding(problem, bool(free[0]))
-        solution = solve_patiently(problem, closed)
-    return _after(contact, state, solution, free, fixed)
+            check_gross_slip(problem, bool(free[0]))
+        solution = solve_with_fallbacks(problem, closed)
+    return _state_after(contact, state, solution, free, fixed)
 
 
-def _after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipState:
+def _state_after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipState:
     """State at the end of the increment from a solution."""
     x = contact.stack(solution.pressure, solution.shear)
     motion = fixed.copy()
@@ -143,7 +141,7 @@ def _after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipS
     )
 
 
-def _expected(problem: CoulombProblem, closed: np.ndarray, pressed: bool) -> np.ndarray:
+def _predicted_active(problem: CoulombProblem, closed: np.ndarray, pressed: bool) -> np.ndarray:
     """Predicted active coefficients: the current ones, initially those without friction."""
     if np.any(closed):
         return closed

@@ -17,7 +17,7 @@ stationarity conditions of a convex energy.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -28,8 +28,47 @@ from ...bulk.field import without_fixed
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from .loading import Loading
+from ..wear.edge_deflection import EdgeDeflection
 from .newton_matrix import NewtonMatrix
+
+
+@dataclass(frozen=True)
+class Loading:
+    """Gap, loads and local compliance of one contact problem.
+
+    Attributes
+    ----------
+    gap : ndarray, shape (n,)
+        Gap g at the points, wear and given approach included [m].
+    load : ndarray, shape (k,)
+        Load F on the free motions of the holder.
+    compliance : ndarray, shape (n,)
+        Local compliance c >= 0: gap opening per pressure at the point [m/Pa].
+    nodal_loads : ndarray, shape (n_owned,)
+        Nodal loads f [N].
+    thermal_traction : ndarray, shape (n,)
+        Normal traction s of body 1 at zero displacement [Pa].
+    deflection : EdgeDeflection, optional
+        Local deflection of the faces at the edge of the wear.
+    """
+
+    gap: np.ndarray
+    load: np.ndarray
+    compliance: np.ndarray
+    nodal_loads: np.ndarray
+    thermal_traction: np.ndarray
+    deflection: EdgeDeflection | None = None
+
+    def part(self, share: float) -> Loading:
+        """Scaled loading; for a given approach the faces are in first contact at share 0."""
+        lift = 0.0 if len(self.load) else max(0.0, -float(self.gap.min()))
+        return replace(
+            self,
+            gap=self.gap + (1 - share) * lift,
+            load=share * self.load,
+            nodal_loads=share * self.nodal_loads,
+            thermal_traction=share * self.thermal_traction,
+        )
 
 
 @dataclass(frozen=True)
@@ -75,15 +114,6 @@ class _Motions:
     weighted_force_modes: np.ndarray
     springs: np.ndarray
     load: np.ndarray
-
-
-@dataclass(frozen=True)
-class _AtPoints:
-    """Displacement mapped to the points, shape (n,) each: (S + γB) u, S u, (θS + γB_t) u."""
-
-    closing: np.ndarray
-    stress: np.ndarray
-    work: np.ndarray
 
 
 class ContactEquations:
@@ -140,14 +170,13 @@ class ContactEquations:
 
     def _opening(self, displacement: np.ndarray) -> np.ndarray:
         """Gap opening B u at the points, for one or several displacements."""
-        comm = self.elastic.space.mesh.comm
-        return sum_over_ranks(comm, self._trace.T @ displacement)
+        return self._sum(self._trace.T @ displacement)
 
     def residual(self, loading: Loading, displacement: np.ndarray, motion: np.ndarray) -> Residual:
         """Residual of both equations, and the pressure."""
-        point_values, motions = self._at_points(displacement), self._motions(loading)
-        stress = point_values.stress + loading.thermal_traction
-        opening = point_values.closing + self.stiffness * (loading.gap - motions.modes @ motion)
+        motions, (closing, stress, _) = self._motions(loading), self._at_points(displacement)
+        stress = stress + loading.thermal_traction
+        opening = closing + self.stiffness * (loading.gap - motions.modes @ motion)
         trial = -self._softening(loading) * (opening + loading.thermal_traction)
         pressure = np.maximum(trial, 0.0)
         contact = self._work @ (self._scale * pressure)
@@ -213,14 +242,14 @@ class ContactEquations:
         factors, pressure, change : ndarray, shape (n,)
             ``factors · max(0, pressure + length * change)`` is the rest.
         """
-        point_values, motions = self._at_points(step), self._motions(loading)
-        change = self.stiffness * (motions.modes @ motion) - point_values.closing
+        motions, (closing, stress, work) = self._motions(loading), self._at_points(step)
+        change = self.stiffness * (motions.modes @ motion) - closing
         change *= self._softening(loading)
-        factors = motions.weighted_force_modes @ motion - self._scale * point_values.work
+        factors = motions.weighted_force_modes @ motion - self._scale * work
         now = np.maximum(residual.pressure, 0.0)
         constant = self._sum(step @ residual.forces) + motion @ residual.balance - factors @ now
         slope = self._sum(step @ self.elastic_forces(step)) + motion @ motions.springs @ motion
-        slope -= self.theta * (point_values.stress @ (self._scale * point_values.stress))
+        slope -= self.theta * (stress @ (self._scale * stress))
         return constant, slope, factors, residual.pressure, change
 
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
@@ -242,8 +271,9 @@ class ContactEquations:
         """Softening factor φ, shape (n,)."""
         return 1 / (1 + self.stiffness * loading.compliance)
 
-    def _at_points(self, displacement: np.ndarray) -> _AtPoints:
-        return _AtPoints(*self._sum(self._all @ displacement).reshape(3, -1))
+    def _at_points(self, displacement: np.ndarray) -> np.ndarray:
+        """Displacement mapped to the points: (S + γB) u, S u and (θS + γB_t) u, shape (3, n)."""
+        return self._sum(self._all @ displacement).reshape(3, -1)
 
     def _sum(self, values):
         return sum_over_ranks(self.elastic.space.mesh.comm, values)

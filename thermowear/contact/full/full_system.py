@@ -16,8 +16,7 @@ from ...errors import ComputationError
 from ...serialise import serialisable
 from ..solvers.signorini import solve_contact
 from ..wear.edge_deflection import EdgeDeflection
-from .equations import ContactEquations
-from .loading import Loading
+from .equations import ContactEquations, Loading
 
 _TOLERANCE = 1e-10
 _STAGNATION_TOLERANCE = 1e-8

@@ -7,7 +7,6 @@ import numpy as np
 
 from ...bulk.field import reference_element
 from ...bulk.mechanics.elasticity import Elasticity
-from ...lagrange import lobatto
 from ...parallel import sum_over_ranks
 from ..operators.traction import (
     at_points,
@@ -16,7 +15,7 @@ from ..operators.traction import (
     displacement_slopes,
     on_every_facet,
 )
-from ..search.pairing import PairedFace, Pairing
+from ..search.pairing import Pairing
 
 GAMMA = 10.0
 """Default γ0. The stability limit is between 0.6 and 1.8 for ν <= 0.3 and below 4.2 at ν = 0.49,
@@ -96,7 +95,7 @@ def _modulus_over_depth(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
     volume = np.zeros(len(face.nodes))
     for facet in np.flatnonzero(face.rank == comm.rank):
         volume[facet] = _cell_rule(elastic, face.cell[facet])[0].sum()
-    depth = sum_over_ranks(comm, volume) / _areas(elastic, side)
+    depth = sum_over_ranks(comm, volume) / face.integrals(elastic.kinematics.area_factor)
     modulus = at_points(elastic.lame[0], side) + 2 * at_points(elastic.lame[1], side)
     return _largest_at(point, modulus / depth[side.facet])
 
@@ -106,17 +105,6 @@ def _largest_at(point: np.ndarray, values: np.ndarray) -> np.ndarray:
     largest = np.zeros(point.max() + 1)
     np.maximum.at(largest, point, values)
     return largest
-
-
-def _areas(elastic: Elasticity, side: PairedFace) -> np.ndarray:
-    """Area of each facet of a face, shape (n_facets,) [m²]."""
-    face = side.face
-    x, w = lobatto(face.nodes.shape[1] + 4)
-    facet = np.repeat(np.arange(len(face.nodes)), len(x))
-    t = np.tile(x, len(face.nodes))
-    speed = np.linalg.norm(face.tangents(facet, t), axis=1)
-    density = speed * elastic.kinematics.area_factor(face.points(facet, t))
-    return density.reshape(-1, len(x)) @ w
 
 
 def _cell_rule(elastic: Elasticity, cell: int):

@@ -8,7 +8,6 @@ the same image, so that the parts adjoin without gaps, on curved facets too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -46,58 +45,43 @@ def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.nda
     facets, parts, outlines = [], [], _outlines(face_2)
     for facet in range(len(face_1.nodes)):
         facing = face_2.middle_normals @ face_1.middle_normals[facet] <= MAX_FACING_COSINE
-        for ring in _nearby_outlines(face_1, facet, outlines.only(facing)):
+        for ring in _nearby_outlines(face_1, facet, *(column[facing] for column in outlines)):
             pieces = _quadrilaterals(_clipped(ring))
             facets += [facet] * len(pieces)
             parts += pieces
     return np.array(facets, dtype=np.int64), np.array(parts).reshape(-1, 4, 2)
 
 
-@dataclass(frozen=True)
-class _Outlines:
-    """Outlines of facets: points along the edges, from corner to corner.
+def _outlines(face: Surface) -> tuple[np.ndarray, ...]:
+    """Points along the edges of facets from corner to corner, (n, 4, steps + 1, 3) [m].
 
-    Attributes
-    ----------
-    points, normals : ndarray, shape (n, 4, steps + 1, 3)
-    softness : ndarray, shape (n, 4, steps + 1)
-        Softness of the body at the points [1/Pa].
+    With the smooth normals there, and the softness of the body, shape (n, 4, steps + 1) [1/Pa].
     """
-
-    points: np.ndarray
-    normals: np.ndarray
-    softness: np.ndarray
-
-    def only(self, chosen: np.ndarray) -> _Outlines:
-        return _Outlines(self.points[chosen], self.normals[chosen], self.softness[chosen])
-
-
-def _outlines(face: Surface) -> _Outlines:
     ring = np.array(_CORNERS, dtype=float)
     part = np.arange(_EDGE_SEGMENTS + 1)[:, None] / _EDGE_SEGMENTS
     t = ring[:, None] + part * (np.roll(ring, -1, axis=0) - ring)[:, None]
-    shape, places = (len(face.nodes), 4, _EDGE_SEGMENTS + 1), t.reshape(-1, 2)
-    facet, at = np.repeat(np.arange(shape[0]), len(places)), np.tile(places, (shape[0], 1))
+    shape = (len(face.nodes), 4, _EDGE_SEGMENTS + 1)
+    facet, at = face.on_each(t.reshape(-1, 2))
     points, normals = face.points(facet, at), face.smooth_normals(facet, at)[0]
-    return _Outlines(
-        points.reshape(*shape, 3),
-        normals.reshape(*shape, 3),
-        face.softness_at(facet).reshape(shape),
-    )
+    softness = face.softness_at(facet).reshape(shape)
+    return points.reshape(*shape, 3), normals.reshape(*shape, 3), softness
 
 
-def _nearby_outlines(face_1: Surface, facet: int, outlines: _Outlines) -> list[np.ndarray]:
+def _nearby_outlines(face_1: Surface, facet: int, *outlines: np.ndarray) -> list[np.ndarray]:
     """Outlines near a facet of body 1 in its parameters, without redundant points, each (n, 2)."""
     flat = face_1.flattened.only(facet)
-    t = flat.parameters(outlines.points.reshape(-1, 3)).reshape(outlines.softness.shape + (2,))
-    parallel = face_1.flat[facet] and _level(outlines.normals, face_1.middle_normals[facet])
+    points, normals, softness = outlines
+    t = flat.parameters(points.reshape(-1, 3)).reshape(*softness.shape, 2)
+    opposed = np.abs(normals + face_1.middle_normals[facet]).max(initial=0.0) < _TOLERANCE
+    parallel = face_1.flat[facet] and opposed
     margin = 0.0 if parallel else 0.5
     near = (t.min(axis=(1, 2)) < 1 + margin) & (t.max(axis=(1, 2)) > -margin)
     chosen = near.all(axis=1)
-    t, outlines = t[chosen], outlines.only(chosen)
+    t = t[chosen]
     if not parallel and len(t):
         close = np.all((t > -1) & (t < 2), axis=-1)  # points farther away need no accuracy
-        t[close] = _opposite_within(face_1, facet, outlines, close)
+        columns = (column[chosen][close] for column in outlines)
+        t[close] = _opposite_within(face_1, facet, *columns)
     for side in (0.0, 1.0):
         t[np.abs(t - side) < _TOLERANCE] = side
     kept = _necessary_points(t)
@@ -106,23 +90,15 @@ def _nearby_outlines(face_1: Surface, facet: int, outlines: _Outlines) -> list[n
     return [ring if _area(ring) > 0 else ring[::-1] for ring in rings]
 
 
-def _level(normals: np.ndarray, against: np.ndarray) -> bool:
-    """Test whether all normals are opposite to a given one."""
-    return bool(np.abs(normals + against).max(initial=0.0) < _TOLERANCE)
+def _opposite_within(face_1: Surface, facet: int, points, normals, softness) -> np.ndarray:
+    """Parameters, on a facet extended beyond its edges, opposite to points, shape (n, 2)."""
 
-
-def _opposite_within(
-    face_1: Surface, facet: int, outlines: _Outlines, chosen: np.ndarray
-) -> np.ndarray:
-    """Parameters, on a facet extended beyond its edges, opposite to points of outlines (n, 2)."""
-    on = np.full(int(chosen.sum()), facet)
-
-    def locate(points: np.ndarray, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def locate(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         start = face_1.flattened.only(facet).parameters(points)[:, 0]
-        return on[which], within(face_1, points, on[which], start, bounds=(-np.inf, np.inf))
+        on = np.full(len(points), facet)
+        return on, within(face_1, points, on, start, bounds=(-np.inf, np.inf))
 
-    columns = outlines.points[chosen], outlines.normals[chosen], outlines.softness[chosen]
-    return opposite_parameters(*columns, face_1, *locate(columns[0], np.arange(len(on))), locate)[1]
+    return opposite_parameters(points, normals, softness, face_1, *locate(points), locate)[1]
 
 
 def _necessary_points(edges: np.ndarray) -> np.ndarray:

@@ -29,8 +29,10 @@ import numpy as np
 
 from .face import Face
 from .projection import overhang, project
+from .smooth_normals import across
 from .surface import Surface
 
+Line = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 MAX_FACING_COSINE = -0.5
 """Largest cosine between the outward normals of points that can meet."""
 _MIN_COSINE = 0.3
@@ -93,24 +95,6 @@ class Opposite:
         return (self.cosine <= MAX_FACING_COSINE) & inside
 
 
-@dataclass(frozen=True)
-class NormalLines:
-    """Lines from points to the tangent planes of the other face at the opposite points.
-
-    Attributes
-    ----------
-    normals, share, cosine : ndarray
-        See `Opposite`.
-    offset : ndarray, shape (n, gdim)
-        Vectors from the points to the planes [m].
-    """
-
-    normals: np.ndarray
-    offset: np.ndarray
-    share: np.ndarray
-    cosine: np.ndarray
-
-
 def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface):
     """Points of another face opposite to points of a face.
 
@@ -126,7 +110,7 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     Opposite
     """
 
-    def locate(points: np.ndarray, _) -> tuple[np.ndarray, np.ndarray]:
+    def locate(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return project(other, points)[:2]
 
     points, outward = face.points(facet, t), face.smooth_normals(facet, t)[0]
@@ -135,7 +119,7 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     facet, t, line = opposite_parameters(
         points, outward, face.softness_at(facet), other, closest, at, locate
     )
-    return Opposite(facet, t, line.normals, line.offset, line.share, line.cosine, overhangs)
+    return Opposite(facet, t, *line, overhangs)
 
 
 def opposite_parameters(
@@ -145,9 +129,11 @@ def opposite_parameters(
     other: Face | Surface,
     facet: np.ndarray,
     t: np.ndarray,
-    locate: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
-) -> tuple[np.ndarray, np.ndarray, NormalLines]:
+    locate: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+) -> tuple[np.ndarray, np.ndarray, Line]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
+
+    Lines by their normals, offset, share and cosine, see `Opposite`; they end on the tangent plane.
 
     Fixed-point iteration from the closest point: the line along m, or n where faces wear, is
     intersected with the tangent plane of the face.
@@ -162,8 +148,7 @@ def opposite_parameters(
     facet, t : ndarray
         Closest points on it.
     locate : callable
-        Closest facets and parameters on the other face, from positions (m, gdim) and the indices of
-        the points.
+        Closest facets and parameters on the other face, from positions (m, gdim).
     """
     facet, t = facet.copy(), t.copy()
     opposite_points = other.points(facet, t)
@@ -171,7 +156,7 @@ def opposite_parameters(
     for _ in range(_MAX_ITERATIONS):
         now = slice(None) if len(moving) == len(points) else moving
         line = _line(points[now], outward[now], softness[now], other, facet[now], t[now])
-        facet[now], t[now] = locate(points[now] + line.offset, moving)
+        facet[now], t[now] = locate(points[now] + line[1])
         before, opposite_points[now] = opposite_points[now].copy(), other.points(facet[now], t[now])
         change = np.linalg.norm(opposite_points[now] - before, axis=1)
         moving = moving[change > _TOLERANCE * other.extent]
@@ -191,24 +176,21 @@ def stretch(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other, pairs
         side.smooth_normals(*at)
         for side, at in ((face, (facet, t)), (other, (pairs.facet, pairs.t)))
     )
-    count, dim = len(facet), n_1.shape[1]
-    x_1 = face.tangents(facet, t).reshape(count, -1, dim)
-    x_2 = other.tangents(pairs.facet, pairs.t).reshape(count, -1, dim)
+    x_1, x_2 = face.tangents(facet, t), other.tangents(pairs.facet, pairs.t)
     a_1, a_2 = _parts(pairs.share, other)
     m, length = _direction(a_1 * n_1 - a_2 * n_2, n_1)
     turned = (np.einsum("ni,ni->n", pairs.offset, m) / length)[:, None, None]
-    here = _across(x_1 + turned * a_1[..., None] * turn_1, m)
-    there = _across(x_2 + turned * a_2[..., None] * turn_2, m)
+    here = _without(x_1 + turned * a_1[..., None] * turn_1, m)
+    there = _without(x_2 + turned * a_2[..., None] * turn_2, m)
     square = np.einsum("nki,nli->nkl", there, there)
     along = np.linalg.solve(square, np.einsum("nki,nji->nkj", there, here))
     s = pairs.share[:, None, None]
     tangents = (1 - s) * x_1 + s * np.einsum("nkj,nki->nji", along, x_2)
-    if tangents.shape[1] == 1:
-        return np.linalg.norm(tangents[:, 0], axis=1)
-    return np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
+    return np.linalg.norm(across(tangents), axis=1)
 
 
-def _line(points, outward, softness, other, facet, t) -> NormalLines:
+def _line(points, outward, softness, other, facet, t) -> Line:
+    """Normals, offset to the tangent plane of the other face, share and cosine of points."""
     against, other_softness = other.smooth_normals(facet, t)[0], other.softness_at(facet)
     share = softness / (softness + other_softness)
     normals, _ = _direction((1 - share)[:, None] * outward - share[:, None] * against, outward)
@@ -217,7 +199,7 @@ def _line(points, outward, softness, other, facet, t) -> NormalLines:
     steep = np.minimum(np.einsum("ni,ni->n", along, against), -_MIN_COSINE)
     to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
     cosine = np.einsum("ni,ni->n", outward, against)
-    return NormalLines(normals, to_plane[:, None] * along, share, cosine)
+    return normals, to_plane[:, None] * along, share, cosine
 
 
 def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndarray]:
@@ -228,14 +210,12 @@ def _parts(share: np.ndarray, face: Face | Surface) -> tuple[np.ndarray, np.ndar
 
 def _direction(vectors: np.ndarray, otherwise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Unit vectors (n, gdim), substitutes for near-zero vectors, and lengths (n,)."""
-    length = np.linalg.norm(vectors, axis=1)
-    unit = vectors / np.maximum(length, _MIN_SUM_LENGTH)[:, None]
-    return np.where(length[:, None] > _MIN_SUM_LENGTH, unit, otherwise), np.maximum(
-        length, _MIN_SUM_LENGTH
-    )
+    length = np.maximum(np.linalg.norm(vectors, axis=1), _MIN_SUM_LENGTH)
+    unit = vectors / length[:, None]
+    return np.where(length[:, None] > _MIN_SUM_LENGTH, unit, otherwise), length
 
 
-def _across(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:
+def _without(vectors: np.ndarray, directions: np.ndarray) -> np.ndarray:
     """Vectors (n, k, gdim) without their component along unit vectors (n, gdim)."""
     along = np.einsum("nki,ni->nk", vectors, directions)
     return vectors - along[:, :, None] * directions[:, None]

@@ -7,16 +7,15 @@ The chain is replicated on all ranks, so that pairing needs no communication. Fa
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from dolfinx import fem
 
 from ...bulk.bodies import Bodies
-from ...compat import entities_to_geometry_layout, geometry_dofmap
+from ...compat import entities_to_geometry_layout
 from ...errors import CaseError
-from ...lagrange import lobatto, on_lattice
-from .facets import FacetSet, cell_softness, gathered, owned_facets
+from ...lagrange import lobatto
+from .facets import FacetSet, FacetTable, gather_facets
 from .surface import Surface, gather_surface
 
 ONWARD = (1.0, 0.3)
@@ -35,25 +34,16 @@ class Face(FacetSet):
 
     reversed: np.ndarray
 
-    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Derivatives of the coordinates along t, shape (n, 2) [m]."""
-        slopes = on_lattice(self._order, t, 1)[1]
-        return np.einsum("nk,nki->ni", slopes, self.nodes[facet])
-
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Arc length along the face from its first end, shape (n,) [m]."""
         start = np.concatenate([[0.0], np.cumsum(self.sizes)])
-        return start[facet] + self._length_within(facet, t)
+        x, w = lobatto(self.order + 5)
+        within = self.stretch(np.repeat(facet, len(x)), (t[:, None] * x).ravel())
+        return start[facet] + t * (within.reshape(-1, len(x)) @ w)
 
     def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Parameters in the direction of the facet in its cell, shape (n, 1)."""
         return np.where(self.reversed[facet], 1 - t, t)[:, None]
-
-    @cached_property
-    def sizes(self) -> np.ndarray:
-        """Lengths of the facets, shape (n_facets,) [m]."""
-        every = np.arange(len(self.nodes))
-        return self._length_within(every, np.ones(len(every)))
 
     @property
     def closed(self) -> bool:
@@ -69,15 +59,9 @@ class Face(FacetSet):
         corners = np.arange(len(self.nodes))[:, None] + np.arange(2)
         return corners % len(self.nodes) if self.closed else corners
 
-    def _area_vectors(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        tangent = self.tangents(facet, t)
-        return np.column_stack([tangent[:, 1], -tangent[:, 0]])
-
-    def _length_within(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Arc length of each facet from its start to t [m]."""
-        x, w = lobatto(self._order + 5)
-        at = (t[:, None] * x).ravel()
-        return t * (self.stretch(np.repeat(facet, len(x)), at).reshape(-1, len(x)) @ w)
+    def nearby(self, distance: np.ndarray) -> np.ndarray:
+        # the nearest chord may belong to a neighbour of the nearest curved facet
+        return np.clip(distance.argmin(axis=1)[:, None] + (0, -1, 1), 0, len(self.nodes) - 1)
 
 
 def gather_face(
@@ -97,36 +81,17 @@ def gather_face(
 
 
 def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -> Face:
-    mesh = bodies.mesh
-    local = _local_facets(bodies, surface)
-    nodes, ends, inside, rank, cell, local_facet, facet_softness = gathered(
-        mesh.comm, surface, *local, cell_softness(local[4], softness)
-    )
-    order, flip = _chain(ends, nodes, surface)
-    nodes, flip = nodes[order], flip[order]
-    nodes[flip] = nodes[flip, ::-1]
-    tangent = nodes[:, -1] - nodes[:, 0]
-    inward = inside[order] - nodes.mean(axis=1)
-    turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
-    owner = rank[order], cell[order], local_facet[order]
-    return Face(nodes, -np.sign(turned), *owner, flip, softness=facet_softness[order], name=surface)
-
-
-def _local_facets(bodies: Bodies, surface: str):
-    """Facets of the surface whose cell this rank owns."""
-    mesh = bodies.mesh
-    fdim = mesh.topology.dim - 1
-    cells, local = owned_facets(bodies, surface)
-    layout = np.array(entities_to_geometry_layout(mesh, fdim))
-    of_cells = geometry_dofmap(mesh)[cells]
-    x = mesh.geometry.x[:, :2]
+    layout = np.array(entities_to_geometry_layout(bodies.mesh, 1))
     # closure dofs list both ends first, then the interior nodes
     along = np.concatenate([layout[:, :1], layout[:, 2:], layout[:, 1:2]], axis=1)
-    of_facets = np.take_along_axis(of_cells, along[local], axis=1)
-    to_global = mesh.geometry.index_map().local_to_global
-    ends = to_global(of_facets[:, [0, -1]].ravel().astype(np.int32)).reshape(-1, 2)
-    rank = np.full(len(cells), mesh.comm.rank)
-    return x[of_facets], ends, x[of_cells].mean(axis=1), rank, cells, local
+    table = gather_facets(bodies, surface, along, softness)
+    order, flip = _chain(table.numbers[:, [0, -1]], table.nodes, surface)
+    table, flip = FacetTable(*(column[order] for column in table)), flip[order]
+    nodes = np.where(flip[:, None, None], table.nodes[:, ::-1], table.nodes)
+    tangent, inward = nodes[:, -1] - nodes[:, 0], table.inside - nodes.mean(axis=1)
+    turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
+    owner = table.rank, table.cell, table.local_facet
+    return Face(nodes, -np.sign(turned), *owner, flip, softness=table.softness, name=surface)
 
 
 def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:

@@ -9,10 +9,6 @@ from .surface import Surface
 
 _MAX_NEWTON_STEPS = 30
 _TOLERANCE = 1e-13
-_ROUNDING = 1e-15
-"""Convergence tolerance of a parameter."""
-_CANDIDATES = 4
-"""Number of candidate facets per point in space: the nearest ones in flat approximation."""
 _BLOCK_SIZE = 1_000_000
 """Number of point-facet pairs processed at once."""
 _MAX_ITERATIONS = 10
@@ -35,7 +31,10 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
     offset : ndarray, shape (n, gdim)
         Vector from each point to its projection [m].
     """
-    facet, t = _on_surface(face, points) if isinstance(face, Surface) else _on_chain(face, points)
+    chunk = max(1, _BLOCK_SIZE // len(face.nodes))
+    parts = [_closest(face, points[i : i + chunk]) for i in range(0, max(len(points), 1), chunk)]
+    facet, t = (np.concatenate(column) for column in zip(*parts, strict=True))
+    t = t[:, 0] if face.dim == 1 else t
     return facet, t, face.points(facet, t) - points
 
 
@@ -74,75 +73,33 @@ def ray_intersections(
 
 def overhang(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
     """Tangential distance of points from their projections, positive beyond the edge [m]."""
-    tangents = face.tangents(facet, t).reshape(len(facet), -1, offset.shape[1])
-    across = np.linalg.qr(np.moveaxis(tangents, 1, 2))[0]
+    across = np.linalg.qr(face.tangents(facet, t).mT)[0]
     result = np.linalg.norm(np.einsum("nik,ni->nk", across, offset), axis=1)
     if isinstance(face, Face):  # at a corner between two facets offsets have tangential parts
         result[(facet + t > 0.0) & (facet + t < len(face.nodes))] = 0.0
     return result
 
 
-def _on_chain(face: Face, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Facet and parameter of the closest points on a chain."""
-    a, b = face.nodes[:, 0], face.nodes[:, -1]
-    chord = b - a
-    along = np.einsum("nfi,fi->nf", points[:, None] - a, chord) / (chord**2).sum(axis=1)
-    along = np.clip(along, 0.0, 1.0)
-    distance = np.linalg.norm(a + along[..., None] * chord - points[:, None], axis=2)
-    nearest = distance.argmin(axis=1)
-    # the nearest chord may belong to a neighbour of the nearest curved facet
-    facets = [np.clip(nearest + k, 0, len(a) - 1) for k in (0, -1, 1)]
-    trials = [(facet, _along(face, points, facet)) for facet in facets]
-    return _best(face, points, trials)
-
-
-def _best(face, points: np.ndarray, trials: list[tuple[np.ndarray, np.ndarray]]):
-    """Candidate with the smallest distance, point by point."""
-    distances = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
-    best, every = np.argmin(distances, axis=0), np.arange(len(points))
-    facet, t = (np.array([trial[k] for trial in trials])[best, every] for k in (0, 1))
-    return facet, t
-
-
-def _along(face: Face, points: np.ndarray, facet: np.ndarray) -> np.ndarray:
-    """Closest points of given facets by the Gauss-Newton method, starting from the chord."""
-    start, end = face.nodes[facet, 0], face.nodes[facet, -1]
-    chord = end - start
-    t = ((points - start) * chord).sum(axis=1) / (chord**2).sum(axis=1)
-    t = np.clip(t, 0.0, 1.0)
-    for _ in range(0 if face.nodes.shape[1] == 2 else 20):
-        offset, tangent = face.points(facet, t) - points, face.tangents(facet, t)
-        step = (offset * tangent).sum(axis=1) / (tangent**2).sum(axis=1)
-        last, t = t, np.clip(t - step, 0.0, 1.0)
-        if np.abs(t - last).max(initial=0.0) <= _ROUNDING:
-            break
-    return t
-
-
-def _on_surface(face: Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    chunk = max(1, _BLOCK_SIZE // len(face.nodes))
-    parts = [_in_chunk(face, points[i : i + chunk]) for i in range(0, len(points), chunk)]
-    facet, t = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
-    return facet, t
-
-
-def _in_chunk(face: Surface, points: np.ndarray):
+def _closest(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Facets and parameters (n, dim) of the closest points, the best of some candidates."""
     flat = face.flattened
     t = np.clip(flat.parameters(points), 0.0, 1.0)
-    distance = np.linalg.norm(flat.points(t) - points[:, None], axis=2)
-    count = min(_CANDIDATES, distance.shape[1])
-    facets = np.argpartition(distance, count - 1, axis=1)[:, :count]
-    facets = np.sort(facets, axis=1)
+    facets = face.nearby(np.linalg.norm(flat.points(t) - points[:, None], axis=2))
     starts = np.take_along_axis(t, facets[:, :, None], axis=1)
-    trials = [
-        (facets[:, k], within(face, points, facets[:, k], starts[:, k], bounds=(0.0, 1.0)))
-        for k in range(count)
-    ]
-    return _best(face, points, trials)
+    places = np.stack(
+        [
+            within(face, points, facet, start, bounds=(0.0, 1.0))
+            for facet, start in zip(facets.T, starts.swapaxes(0, 1), strict=True)
+        ]
+    )
+    trials = zip(facets.T, places, strict=True)
+    distances = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
+    best, every = np.argmin(distances, axis=0), np.arange(len(points))
+    return facets[every, best], places[best, every]
 
 
 def within(
-    face: Surface,
+    face: Face | Surface,
     points: np.ndarray,
     facet: np.ndarray,
     start: np.ndarray,
@@ -152,13 +109,13 @@ def within(
 
     Parameters
     ----------
-    face : Surface
-    points : ndarray, shape (n, 3) [m]
+    face : Face or Surface
+    points : ndarray, shape (n, gdim) [m]
     facet : ndarray of int, shape (n,)
-    start : ndarray, shape (n, 2)
+    start : ndarray, shape (n, dim)
         Initial parameters.
     bounds : tuple of float
-        Bounds of both parameters; a parameter is fixed at a bound that a step would cross.
+        Bounds of the parameters; a parameter is fixed at a bound that a step would cross.
     """
     t, moving = start.copy(), np.arange(len(start))
     for _ in range(_MAX_NEWTON_STEPS):
@@ -167,7 +124,7 @@ def within(
         slope = np.einsum("nki,ni->nk", tangents, offset)
         held = ((now <= bounds[0]) & (slope > 0)) | ((now >= bounds[1]) & (slope < 0))
         tangents = np.where(held[:, :, None], 0.0, tangents)
-        matrix = np.einsum("nki,nli->nkl", tangents, tangents) + held[:, :, None] * np.eye(2)
+        matrix = np.einsum("nki,nli->nkl", tangents, tangents) + held[:, :, None] * np.eye(face.dim)
         step = np.linalg.solve(matrix, np.where(held, 0.0, slope)[:, :, None])[:, :, 0]
         t[moving] = np.clip(now - step, *bounds)
         moving = moving[np.abs(t[moving] - now).max(axis=1) > _TOLERANCE]

@@ -89,11 +89,9 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
     facet, t = pairs.facet[meeting], pairs.t[meeting]
     cuts = []
     for f in range(len(face_1.nodes)):
-        inner = np.sort(t[facet == f])
-        inner = inner[(inner > sliver) & (inner < 1 - sliver)]
-        if len(inner):
-            inner = inner[np.concatenate([[True], np.diff(inner) > 1e-9])]
-        cuts.append(np.concatenate([[0.0], inner, [1.0]]))
+        inner = np.sort(t[(facet == f) & (t > sliver) & (t < 1 - sliver)])
+        separate = np.diff(inner, prepend=-1.0) > 1e-9
+        cuts.append(np.concatenate([[0.0], inner[separate], [1.0]]))
     return cuts
 
 
@@ -120,9 +118,7 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
 def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
     """Gauss-Lobatto rule on each whole facet."""
     places, weights = lobatto(order, dim=2)
-    count = len(face_1.nodes)
-    facet = np.repeat(np.arange(count), len(weights))
-    whole = Rule(facet, np.tile(places, (count, 1)), np.tile(weights, count))
+    whole = Rule(*face_1.on_each(places), np.tile(weights, len(face_1.nodes)))
     within = np.flatnonzero(np.all((places > 0) & (places < 1), axis=1))
     inner = within if len(within) else np.arange(len(weights))
     return _facing(face_1, face_2, whole, len(weights), inner, OVERHANG_TOLERANCE)

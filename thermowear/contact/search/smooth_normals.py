@@ -51,8 +51,8 @@ def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarr
     own, _ = _raw(nodes, outward, facet, np.tile(ends, (len(nodes), 1)))
     _, number = np.unique(corners.reshape(-1), return_inverse=True)
     # on an arc the error at facet ends scales as the facet size to the power of its order
-    across = nodes.reshape(len(nodes), -1, nodes.shape[-1])[:, [0, -1]]
-    size = np.linalg.norm(across[:, 1] - across[:, 0], axis=1)
+    first, last = nodes.reshape(len(nodes), -1, nodes.shape[-1])[:, [0, -1]].swapaxes(0, 1)
+    size = np.linalg.norm(last - first, axis=1)
     weight = np.repeat((size.min() / size) ** (nodes.shape[1] - 1), len(ends))
     summed = np.column_stack([np.bincount(number, weight * component) for component in own.T])
     mean = summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300)
@@ -101,20 +101,19 @@ def _raw(nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
     tangents = np.einsum("kna,nai->nki", table[1 : 1 + dim], on)
     bent = np.einsum("klna,nai->nkli", table[_SECOND_DERIVATIVES[dim]], on)
     if dim == 1:
-        across = _turned(tangents[:, 0])
-        changing = _turned(bent[:, 0, 0])[:, None]
+        changing = across(bent[:, 0])[:, None]
     else:
-        first, second = tangents[:, 0], tangents[:, 1]
-        across = np.cross(first, second)
-        changing = np.cross(bent[:, :, 0], second[:, None])
-        changing += np.cross(first[:, None], bent[:, :, 1])
+        first, second = tangents[:, :1], tangents[:, 1:]
+        changing = np.cross(bent[:, :, 0], second) + np.cross(first, bent[:, :, 1])
     sign = outward[facet]
-    return _unit(sign[:, None] * across, sign[:, None, None] * changing)
+    return _unit(sign[:, None] * across(tangents), sign[:, None, None] * changing)
 
 
-def _turned(vectors: np.ndarray) -> np.ndarray:
-    """Vectors in the plane turned clockwise by 90 degrees."""
-    return np.stack([vectors[..., 1], -vectors[..., 0]], axis=-1)
+def across(tangents: np.ndarray) -> np.ndarray:
+    """Vectors across tangents (n, dim, gdim): one turned clockwise, or the product of two."""
+    if tangents.shape[1] == 1:
+        return tangents[:, 0, ::-1] * (1.0, -1.0)
+    return np.cross(tangents[:, 0], tangents[:, 1])
 
 
 def _unit(vectors: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -135,16 +134,11 @@ def _blending(order: int, t: np.ndarray):
     degree = order + 1 - order % 2
     right = Legendre([0.0] * (degree - 1) + [0.5, 0.5], domain=[0.0, 1.0])
     slope = right.deriv()
-    one = [
-        (
-            np.column_stack([right(1.0 - along), right(along)]),
-            np.column_stack([-slope(1.0 - along), slope(along)]),
-        )
-        for along in t.T
-    ]
-    if len(one) == 1:
-        return one[0][0], one[0][1][:, None]
-    (u, du), (v, dv) = one
+    values = [np.column_stack([right(1.0 - along), right(along)]) for along in t.T]
+    slopes = [np.column_stack([-slope(1.0 - along), slope(along)]) for along in t.T]
+    if len(values) == 1:
+        return values[0], slopes[0][:, None]
+    (u, v), (du, dv) = values, slopes
     return _times(u, v), np.stack([_times(du, v), _times(u, dv)], axis=1)
 
 

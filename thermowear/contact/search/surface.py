@@ -14,43 +14,14 @@ from dolfinx import fem
 
 from ...bulk.bodies import Bodies
 from ...bulk.field import reference_element
-from ...compat import coordinate_element, geometry_dofmap
-from ...lagrange import equispaced, gauss, lattice, matching, on_lattice
-from .facets import FacetSet, cell_softness, gathered, owned_facets
+from ...compat import coordinate_element
+from ...lagrange import equispaced, lattice, matching
+from .facets import FacetSet, FacetTable, gather_facets
 
 _FLATNESS_TOLERANCE = 1e-9
 """Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
-
-
-@dataclass(frozen=True)
-class Parallelograms:
-    """Parallelograms that approximate the facets.
-
-    Attributes
-    ----------
-    middle : ndarray, shape (n_facets, 3) [m]
-    sides : ndarray, shape (n_facets, 2, 3)
-        Tangents along both parameters [m].
-    inverse : ndarray, shape (n_facets, 2, 3)
-        Parameters per coordinate [1/m].
-    """
-
-    middle: np.ndarray
-    sides: np.ndarray
-    inverse: np.ndarray
-
-    def only(self, facet: int) -> Parallelograms:
-        """Parallelogram of one facet."""
-        chosen = slice(facet, facet + 1)
-        return Parallelograms(self.middle[chosen], self.sides[chosen], self.inverse[chosen])
-
-    def points(self, t: np.ndarray) -> np.ndarray:
-        """Coordinates at parameters of every facet, of shape (..., n_facets, 2) [m]."""
-        return self.middle + np.einsum("...fk,fki->...fi", t - 0.5, self.sides)
-
-    def parameters(self, points: np.ndarray) -> np.ndarray:
-        """Parameters of points (n, 3) projected on every facet, shape (n, n_facets, 2)."""
-        return 0.5 + np.einsum("fki,nfi->nfk", self.inverse, points[:, None] - self.middle)
+_CANDIDATES = 4
+"""Number of candidates for the closest facet to a point: the nearest in flat approximation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +36,13 @@ class Surface(FacetSet):
 
     corners: np.ndarray
 
-    def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """Derivatives of the coordinates along both parameters, shape (n, 2, 3) [m]."""
-        slopes = on_lattice(self._order, t, 1)[1:]
-        return np.einsum("dnk,nki->ndi", slopes, self._listed[facet])
+    @property
+    def corner_numbers(self) -> np.ndarray:
+        return self.corners
+
+    def nearby(self, distance: np.ndarray) -> np.ndarray:
+        count = min(_CANDIDATES, distance.shape[1])
+        return np.sort(np.argpartition(distance, count - 1, axis=1)[:, :count], axis=1)
 
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """NaN: points of a surface have no order."""
@@ -79,33 +53,16 @@ class Surface(FacetSet):
         return t
 
     @cached_property
-    def sizes(self) -> np.ndarray:
-        """Areas of the facets, shape (n_facets,) [m²]."""
-        t, w = gauss(self._order + 4, dim=2)
-        facet = np.repeat(np.arange(len(self.nodes)), len(w))
-        return self.stretch(facet, np.tile(t, (len(self.nodes), 1))).reshape(-1, len(w)) @ w
-
-    @cached_property
-    def flattened(self) -> Parallelograms:
-        """Best-fit parallelograms to the corners of the facets."""
-        corners = self.nodes[:, :: self._order, :: self._order]
-        along = (corners[:, 1] - corners[:, 0]).mean(axis=1)
-        across = (corners[:, :, 1] - corners[:, :, 0]).mean(axis=1)
-        sides = np.stack([along, across], axis=1)
-        return Parallelograms(corners.mean(axis=(1, 2)), sides, np.linalg.pinv(sides).mT)
-
-    @cached_property
     def flat(self) -> np.ndarray:
         """True for facets that are parallelograms, shape (n_facets,)."""
-        as_flat = self.flattened.points(lattice(self._order, dim=2)[:, None])
+        as_flat = self.flattened.points(lattice(self.order, dim=2)[:, None])
         off = np.abs(as_flat.swapaxes(0, 1) - self._listed).max(axis=(1, 2))
         return off < _FLATNESS_TOLERANCE * np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
 
     @cached_property
     def middle_normals(self) -> np.ndarray:
         """Outward unit normals in the middle of the facets, shape (n_facets, 3)."""
-        every = np.arange(len(self.nodes))
-        return self.normals(every, np.full((len(every), 2), 0.5))
+        return self.normals(*self.on_each(np.full((1, 2), 0.5)))
 
     def numbers(self, degree: int) -> np.ndarray:
         """Coefficient numbers of continuous polynomials.
@@ -131,42 +88,20 @@ class Surface(FacetSet):
         result[:, 1:-1, 1:-1] = within.reshape(count, inner, inner)
         return result
 
-    @property
-    def corner_numbers(self) -> np.ndarray:
-        return self.corners
-
-    def _area_vectors(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
-        return np.cross(*np.moveaxis(self.tangents(facet, t), 1, 0))
-
 
 def gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None = None) -> Surface:
     """Gather the facets of a surface from all ranks, in the order of cells in the mesh file."""
-    mesh = bodies.mesh
-    cells, local = owned_facets(bodies, surface)
-    of_cells = geometry_dofmap(mesh)[cells]
-    of_facets = np.take_along_axis(of_cells, _grids(mesh)[local], axis=1)
-    numbers = np.asarray(mesh.geometry.input_global_indices)
-    original, nodes, numbers, inside, rank, cells, local, facet_softness = gathered(
-        mesh.comm,
-        surface,
-        mesh.topology.original_cell_index[cells],
-        mesh.geometry.x[of_facets],
-        numbers[of_facets],
-        mesh.geometry.x[of_cells].mean(axis=1),
-        np.full(len(cells), mesh.comm.rank),
-        cells,
-        local,
-        cell_softness(cells, softness),
-    )
-    order = np.lexsort((local, original))
-    n = int(np.sqrt(nodes.shape[1]))
-    nodes = nodes[order].reshape(-1, n, n, 3)
-    corners = numbers[order].reshape(-1, n, n)[:, :: n - 1, :: n - 1]
+    table = gather_facets(bodies, surface, _grids(bodies.mesh), softness)
+    order = np.lexsort((table.local_facet, table.original_cell))
+    table = FacetTable(*(column[order] for column in table))
+    n = int(np.sqrt(table.nodes.shape[1]))
+    nodes = table.nodes.reshape(-1, n, n, 3)
+    corners = table.numbers.reshape(-1, n, n)[:, :: n - 1, :: n - 1]
     first, second = nodes[:, -1, 0] - nodes[:, 0, 0], nodes[:, 0, -1] - nodes[:, 0, 0]
-    from_inside = nodes.mean(axis=(1, 2)) - inside[order]
+    from_inside = nodes.mean(axis=(1, 2)) - table.inside
     outward = np.sign(np.einsum("fi,fi->f", np.cross(first, second), from_inside))
-    owner = rank[order], cells[order], local[order]
-    return Surface(nodes, outward, *owner, corners, softness=facet_softness[order], name=surface)
+    owner = table.rank, table.cell, table.local_facet
+    return Surface(nodes, outward, *owner, corners, softness=table.softness, name=surface)
 
 
 def _grids(mesh) -> np.ndarray:

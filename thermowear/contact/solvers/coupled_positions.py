@@ -18,7 +18,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ...serialise import serialisable
-from .signorini import solve_contact
+from .signorini import saddle_point, solve_contact
 
 _TOLERANCE = 1e-9
 
@@ -128,7 +128,10 @@ def _with_active(
     """Solution with closed contact at the active coefficients; None if underconstrained."""
     if np.any(active.sum(axis=1) < len(contacts.load)):
         return None
-    at_zero_depth, per_depth = _eliminated(contacts, active)
+    eliminated = _eliminated(contacts, active)
+    if eliminated is None:
+        return None
+    at_zero_depth, per_depth = eliminated
     m = active.shape[1]
     spread = np.eye(len(start)) - np.einsum("jnm,jmk->nk", gains, per_depth[:, :m])
     depths = np.linalg.solve(spread, start + np.einsum("jnm,jm->n", gains, at_zero_depth[:, :m]))
@@ -136,26 +139,22 @@ def _with_active(
     return CoupledSolution(unknowns[:, :m], unknowns[:, m:], active, depths)
 
 
-def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _eliminated(
+    contacts: CoupledContacts, active: np.ndarray
+) -> tuple[np.ndarray, np.ndarray] | None:
     """λ and d at zero depths, shape (J, m + k), and their derivatives, shape (J, m + k, N)."""
     count, m, k = contacts.modes.shape
-    size = np.sqrt(np.abs(np.einsum("jmm->jm", contacts.compliance)))
-    pressed = np.where(active, 1 / size, 0.0)
-    border, rows = (R * pressed[..., None] for R in (contacts.modes, contacts.force_modes))
-    stretch = np.abs(border).max(initial=0.0) or 1.0
-    matrix = np.zeros((count, m + k, m + k))
-    matrix[:, :m, :m] = contacts.compliance * pressed[:, :, None] * pressed[:, None]
-    matrix[:, np.arange(m), np.arange(m)] += ~active
-    matrix[:, :m, m:] = -border / stretch
-    matrix[:, m:, :m] = -rows.mT / stretch
-    right = np.zeros((count, m + k, 1 + contacts.gap_per_depth.shape[2]))
-    right[:, :m, 0] = -contacts.gap * pressed
-    right[:, m:, 0] = -contacts.load / stretch
-    right[:, :m, 1:] = -contacts.gap_per_depth * pressed[..., None]
-    unknowns = np.linalg.solve(matrix, right)
-    unknowns[:, :m] *= pressed[..., None]
-    unknowns[:, m:] /= stretch
-    return unknowns[..., 0], unknowns[..., 1:]
+    pressed = active[..., None]
+    both = pressed & active[:, None] | np.eye(m, dtype=bool)
+    gap = np.concatenate([contacts.gap[..., None], contacts.gap_per_depth], axis=2)
+    load = np.zeros((count, k, gap.shape[2]))
+    load[..., 0] = contacts.load
+    modes, force_modes, gap = (
+        np.where(pressed, part, 0.0) for part in (contacts.modes, contacts.force_modes, gap)
+    )
+    compliance = np.where(both, contacts.compliance, 0.0)
+    unknowns = saddle_point(compliance, modes, force_modes, gap, load)
+    return None if unknowns is None else (unknowns[..., 0], unknowns[..., 1:])
 
 
 def _pressing(contacts: CoupledContacts, solution: CoupledSolution) -> np.ndarray:

@@ -28,7 +28,7 @@ def enriched_pressure(
     pressure: np.ndarray,
     gap: np.ndarray,
     local: np.ndarray,
-    answer: Callable[[np.ndarray], np.ndarray],
+    elastic_opening: Callable[[np.ndarray], np.ndarray],
 ) -> np.ndarray:
     """Solve contact in the pressure space of the next degree, linearised at a known solution.
 
@@ -44,7 +44,7 @@ def enriched_pressure(
         Gap under that pressure, as accurate as available [m].
     local : ndarray, shape (n,)
         Local gap opening per pressure, without the elastic bodies [m/Pa].
-    answer : callable
+    elastic_opening : callable
         Approximate elastic gap opening at the points due to a pressure at them [m].
 
     Returns
@@ -58,7 +58,7 @@ def enriched_pressure(
     """
     basis, weights = pressure_basis(pairing, degree + 1), pairing.weights
     weighted = weights[:, None] * basis
-    compliance = _compliance(pairing, influence, basis, answer)
+    compliance = _compliance(pairing, influence, basis, elastic_opening)
     compliance = compliance + weighted.T @ (local[:, None] * basis)
     start = np.linalg.lstsq(basis, pressure, rcond=None)[0]
     modes, force_modes = weighted.T @ holder.modes, weighted.T @ holder.force_modes
@@ -72,7 +72,9 @@ def enriched_pressure(
     return basis @ solution.coefficients
 
 
-def _compliance(pairing: Pairing, influence: Influence, basis: np.ndarray, answer) -> np.ndarray:
+def _compliance(
+    pairing: Pairing, influence: Influence, basis: np.ndarray, elastic_opening
+) -> np.ndarray:
     """Compliance of the enriched basis: elastic response to Ψ, local for the details."""
     weighted = influence.weighted
     opened = influence.trace[influence.touching].T @ influence.near
@@ -87,17 +89,12 @@ def _compliance(pairing: Pairing, influence: Influence, basis: np.ndarray, answe
     details = detail(basis)
     signs = np.random.default_rng(0).choice([-1.0, 1.0], basis.shape[1])
     probe = details @ signs
-    found = answer(probe)
+    found = elastic_opening(probe)
     found = found - opened @ np.linalg.solve(known, weighted.T @ found)
-    sizes = _sizes(pairing)
+    side = pairing.sides[0]
+    sizes = side.face.lengths[side.facet]  # of the facets of body 1 at the points
     softness = (pairing.weights * probe) @ found / ((pairing.weights * probe**2) @ sizes)
     mixed = (pairing.weights[:, None] * basis).T @ opened
     local = (softness * sizes * pairing.weights)[:, None] * details
     result = mixed @ np.linalg.solve(known, mixed.T) + details.T @ local
     return (result + result.T) / 2
-
-
-def _sizes(pairing: Pairing) -> np.ndarray:
-    """Size of the facet of body 1 at each point, shape (n,) [m]."""
-    face, dim = pairing.sides[0].face, pairing.points.shape[1]
-    return face.sizes[pairing.sides[0].facet] ** (1 / (dim - 1))

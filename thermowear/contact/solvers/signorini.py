@@ -135,25 +135,59 @@ def _active_set(problem: _Problem, active: np.ndarray) -> SignoriniSolution | No
 
 def _with_active(problem: _Problem, active: np.ndarray) -> SignoriniSolution | None:
     """Solution with closed contact at the active coefficients; None if singular."""
-    count, k = int(active.sum()), len(problem.load)
-    if count < k:
+    count = int(active.sum())
+    if count < len(problem.load):
         return None
-    compliance = problem.compliance[np.ix_(active, active)]
-    size = np.sqrt(np.abs(np.diag(compliance)))
-    border, rows = (modes[active] / size[:, None] for modes in (problem.modes, problem.force_modes))
-    stretch = np.abs(border).max(initial=0.0) or 1.0
-    matrix = np.zeros((count + k, count + k))
-    matrix[:count, :count] = compliance / np.outer(size, size)
-    matrix[:count, count:] = -border / stretch
-    matrix[count:, :count] = -rows.T / stretch
-    right = np.concatenate([-problem.gap[active] / size, -problem.load / stretch])
-    try:
-        unknowns = np.linalg.solve(matrix, right)
-    except np.linalg.LinAlgError:
+    found = saddle_point(
+        problem.compliance[np.ix_(active, active)],
+        problem.modes[active],
+        problem.force_modes[active],
+        problem.gap[active, None],
+        problem.load[:, None],
+    )
+    if found is None:
         return None
     coefficients = np.zeros(len(problem.gap))
-    coefficients[active] = unknowns[:count] / size
-    return SignoriniSolution(coefficients, unknowns[count:] / stretch, active)
+    coefficients[active] = found[:count, 0]
+    return SignoriniSolution(coefficients, found[count:, 0], active)
+
+
+def saddle_point(
+    compliance: np.ndarray,
+    modes: np.ndarray,
+    force_modes: np.ndarray,
+    gap: np.ndarray,
+    load: np.ndarray,
+) -> np.ndarray | None:
+    """Solve ``A λ - R d = -g, Tᵀ λ = F``, scaled by the diagonal of A; None if singular.
+
+    Parameters
+    ----------
+    compliance : ndarray, shape (..., m, m)
+    modes, force_modes : ndarray, shape (..., m, k)
+    gap : ndarray, shape (..., m, r)
+        For r right-hand sides.
+    load : ndarray, shape (..., k, r)
+
+    Returns
+    -------
+    ndarray, shape (..., m + k, r)
+        λ, then d.
+    """
+    m, k = modes.shape[-2:]
+    size = np.sqrt(np.abs(np.diagonal(compliance, axis1=-2, axis2=-1)))[..., None]
+    border, rows = modes / size, force_modes / size
+    stretch = np.abs(border).max(axis=-2, keepdims=True, initial=0.0)
+    stretch[stretch == 0.0] = 1.0
+    matrix = np.zeros((*modes.shape[:-2], m + k, m + k))
+    matrix[..., :m, :m] = compliance / size / size.mT
+    matrix[..., :m, m:] = -border / stretch
+    matrix[..., m:, :m] = -(rows / stretch).mT
+    scale = np.concatenate([size, stretch.mT], axis=-2)
+    try:
+        return np.linalg.solve(matrix, -np.concatenate([gap, load], axis=-2) / scale) / scale
+    except np.linalg.LinAlgError:
+        return None
 
 
 def _pressing(problem: _Problem, solution: SignoriniSolution) -> np.ndarray:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import BSpline
 
 from ..search.pairing import Pairing
 
@@ -41,20 +42,17 @@ class StrokeGrid:
         length : float
             Length of the segment, centred at the points, over which means are taken [m].
         """
+        places = on_body_2(pairing)
         if length == 0.0:
-            return self._hats(on_body_2(pairing))
+            return hat_functions(self.position, places)
         steps = length * ((np.arange(_STEPS) + 0.5) / _STEPS - 0.5)
-        return np.mean([self._hats(on_body_2(pairing) + step) for step in steps], axis=0)
+        return np.mean([hat_functions(self.position, places + step) for step in steps], axis=0)
 
-    def _hats(self, s: np.ndarray) -> np.ndarray:
-        cells = len(self.position) - 1
-        cell = np.clip(np.searchsorted(self.position, s, side="right") - 1, 0, cells - 1)
-        start, end = self.position[cell], self.position[cell + 1]
-        part = np.clip((s - start) / (end - start), 0.0, 1.0)
-        values = np.zeros((len(s), cells + 1))
-        rows = np.arange(len(s))
-        values[rows, cell], values[rows, cell + 1] = 1 - part, part
-        return values
+
+def hat_functions(knots: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Hat functions of increasing knots at places, constant beyond the ends, (n, n_knots)."""
+    padded = np.concatenate([knots[:1], knots, knots[-1:]])
+    return BSpline.design_matrix(np.clip(places, knots[0], knots[-1]), padded, 1).toarray()
 
 
 def track(

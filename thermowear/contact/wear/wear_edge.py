@@ -26,19 +26,19 @@ import numpy as np
 from ..operators.condensation import CondensedContact
 from ..operators.holder import RigidHolder
 
-_NONE = 1e-12
+_ZERO = 1e-12
 """Relative area of a basis function that counts as zero."""
 _SMOOTH = 1e-3
 """Largest projection remainder of a smooth pressure, relative to the largest pressure."""
-_AHEAD = 2
+_EDGE_ADVANCE = 2
 """Number of facets that the edge may advance in a step, see `has_passed`."""
 
 
 def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np.ndarray:
     """Contact points of the facets at the edge of the worn zone, or within its reach in a step.
 
-    These facets have unworn points, and are at most `_AHEAD` facets away from facets with worn
-    points; beyond them, contact would be weak at the edge.
+    These facets have unworn points, and are at most `_EDGE_ADVANCE` facets away from facets with
+    worn points; beyond them, contact would be weak at the edge.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np
     near, partly = (np.zeros(facet.max() + 1, dtype=bool) for _ in range(2))
     near[facet[reached]] = True
     partly[facet[~reached]] = True
-    for _ in range(_AHEAD):
+    for _ in range(_EDGE_ADVANCE):
         shared = np.any(basis[near[facet]] > 0.0, axis=0)
         near[facet[np.any(basis[:, shared] > 0.0, axis=1)]] = True
     return (near & partly)[facet]
@@ -152,9 +152,9 @@ class EdgeSpace:
         Basis functions Ψ off these points, then those of single points.
     weighted : ndarray, shape (n, k)
         Basis times areas, ``diag(w)`` basis.
-    seen : ndarray, shape (m, k)
+    projection : ndarray, shape (m, k)
         Coefficients in Ψ of their projections, which load the bodies.
-    own : ndarray, shape (k, k)
+    local_compliance : ndarray, shape (k, k)
         Weak gap per coefficient due to the projection remainder.
     modes, force_modes : ndarray, shape (k, n_modes)
         See `CondensedContact`.
@@ -163,8 +163,8 @@ class EdgeSpace:
     points: np.ndarray
     basis: np.ndarray
     weighted: np.ndarray
-    seen: np.ndarray
-    own: np.ndarray
+    projection: np.ndarray
+    local_compliance: np.ndarray
     modes: np.ndarray
     force_modes: np.ndarray
 
@@ -175,11 +175,11 @@ class EdgeSpace:
 
     def compliance(self, compliance: np.ndarray) -> np.ndarray:
         """Weak gaps per coefficient, shape (k, k), from those of Ψ, shape (m, m)."""
-        return self.seen.T @ compliance @ self.seen + self.own
+        return self.projection.T @ compliance @ self.projection + self.local_compliance
 
     def pressing(self, pressure: np.ndarray) -> np.ndarray:
         """True for active coefficients of a pressure at the points, shape (k,)."""
-        return self.weighted.T @ pressure > _NONE * pressure.max() * self.area
+        return self.weighted.T @ pressure > _ZERO * pressure.max() * self.area
 
     def at_points(self, weak: np.ndarray) -> np.ndarray:
         """Weak values (k,) per area at pointwise points; NaN at others and without area, (n,)."""
@@ -202,12 +202,12 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     """
     weights = contact.weighted.sum(axis=1)
     share = (~points @ contact.weighted) / contact.weighted.sum(axis=0)
-    cut = (share > _NONE) & (share < 1.0 - _NONE)
-    whole = np.flatnonzero(share >= 1.0 - _NONE)
+    cut = (share > _ZERO) & (share < 1.0 - _ZERO)
+    whole = np.flatnonzero(share >= 1.0 - _ZERO)
     single = np.eye(len(points))[:, points]
     split = np.hstack([np.where(points[:, None], 0.0, contact.basis[:, cut]), single])
-    seen = np.linalg.solve(contact.weighted.T @ contact.basis, contact.weighted.T @ split)
-    left = split - contact.basis @ seen
+    projection = np.linalg.solve(contact.weighted.T @ contact.basis, contact.weighted.T @ split)
+    left = split - contact.basis @ projection
     basis = np.hstack([contact.basis[:, whole], split])
     weighted = weights[:, None] * basis
     own = np.zeros((basis.shape[1],) * 2)
@@ -217,8 +217,8 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
         points=points,
         basis=basis,
         weighted=weighted,
-        seen=np.hstack([np.eye(len(share))[:, whole], seen]),
-        own=own,
+        projection=np.hstack([np.eye(len(share))[:, whole], projection]),
+        local_compliance=own,
         modes=weighted.T @ holder.modes,
         force_modes=weighted.T @ holder.force_modes,
     )

@@ -50,13 +50,13 @@ def nodes_of(face: Face | Surface) -> np.ndarray:
 def node_normals(face: Face | Surface) -> np.ndarray:
     """Outward unit normals at the nodes, averaged over facets, shape (n_nodes, gdim)."""
     number = _numbers(face).ravel()
-    normals = _at(face, face.normals, _order(face))
+    normals = _at(face, face.normals, face.order)
     summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
-    return summed / np.linalg.norm(summed, axis=1, keepdims=True)
+    return _unit(summed)
 
 
-def ways_between(
-    sides: tuple[PairedFace, PairedFace], directions: tuple[np.ndarray, ...], gone: np.ndarray
+def directions_between(
+    sides: tuple[PairedFace, PairedFace], directions: tuple[np.ndarray, ...], recession: np.ndarray
 ) -> np.ndarray:
     """Unit vectors from contact points to body 2 along the nodal directions, shape (n, gdim).
 
@@ -67,20 +67,14 @@ def ways_between(
     sides : tuple of PairedFace
     directions : tuple of ndarray, shape (n_nodes, gdim)
         Directions of the nodes of both faces, see `Paths`.
-    gone : ndarray, shape (2,)
+    recession : ndarray, shape (2,)
         Recession of each face; only the ratio matters.
     """
-    pairs = zip(sides, directions, strict=True)
-    out_1, out_2 = (_ways_at(side, along) for side, along in pairs)
-    ways = gone[0] * out_1 - gone[1] * out_2
-    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
-
-
-def _ways_at(side: PairedFace, directions: np.ndarray) -> np.ndarray:
-    """Directions at points of a face, interpolated from its nodes, unit vectors (n, gdim)."""
-    values = on_lattice(_order(side.face), side.t)[0]
-    ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])
-    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    out_1, out_2 = (
+        _unit(np.einsum("nk,nki->ni", _shape_functions(side), along[_nodes_at(side)]))
+        for side, along in zip(sides, directions, strict=True)
+    )
+    return _unit(recession[0] * out_1 - recession[1] * out_2)
 
 
 def curvatures(face: Face | Surface) -> np.ndarray:
@@ -89,11 +83,6 @@ def curvatures(face: Face | Surface) -> np.ndarray:
     pairs = np.array(list(itertools.combinations(range(points.shape[1]), 2))).T
     chord, turn = (np.subtract(*v[:, pairs].swapaxes(0, 1)) for v in (points, normals))
     return (np.linalg.norm(turn, axis=2) / np.linalg.norm(chord, axis=2)).max(axis=1)
-
-
-def lengths(face: Face | Surface) -> np.ndarray:
-    """Facet lengths, on a surface square roots of their areas, shape (n_facets,) [m]."""
-    return face.sizes ** (1 / _dimension(face))
 
 
 class WornFace:
@@ -111,9 +100,8 @@ class WornFace:
         side = pairing.sides[index]
         self._paths = paths
         out = pairing.normals if index == 0 else -pairing.normals
-        node = _numbers(side.face)[side.facet]
-        values = on_lattice(_order(side.face), side.t)[0]
-        values = values * np.einsum("ni,nki->nk", out, paths.directions[node])
+        node = _nodes_at(side)
+        values = _shape_functions(side) * np.einsum("ni,nki->nk", out, paths.directions[node])
         point = np.broadcast_to(np.arange(len(node))[:, None], node.shape)
         shape = len(node), len(paths.directions)
         # depths at the points per displacement of the nodes
@@ -122,7 +110,7 @@ class WornFace:
         share = pairing.weights.sum() / side.face.sizes[np.unique(side.facet)].sum()
         self._smoothing = _ROUGH * share * _roughness(side.face)
 
-    def amounts(self, depth: np.ndarray) -> np.ndarray:
+    def offsets(self, depth: np.ndarray) -> np.ndarray:
         """Nodal displacements for a worn depth (n,), shape (n_nodes,) [m].
 
         Area-weighted least-squares fit with the same volume. Nodes hardly supported by contact
@@ -134,42 +122,34 @@ class WornFace:
         weighted, depths, volume = weighted[:, free], self._depths[:, free], volume[free]
         factor = splu((weighted.T @ depths + self._smoothing[free][:, free]).tocsc())
         nearest, fuller = factor.solve(weighted.T @ depth), factor.solve(volume)
-        lacking = self._weights @ depth - volume @ nearest
+        missing = self._weights @ depth - volume @ nearest
         result = np.zeros(len(free))
-        result[free] = nearest + lacking / (volume @ fuller) * fuller
+        result[free] = nearest + missing / (volume @ fuller) * fuller
         return result
 
-    def depths(self, amounts: np.ndarray) -> np.ndarray:
+    def depths(self, offsets: np.ndarray) -> np.ndarray:
         """Worn depth at the contact points, shape (n,) [m]."""
-        return self._depths @ amounts
+        return self._depths @ offsets
 
-    def displacement(self, amounts: np.ndarray) -> np.ndarray:
+    def displacement(self, offsets: np.ndarray) -> np.ndarray:
         """Displacement vectors of the nodes, into the body, shape (n_nodes, gdim) [m]."""
-        return -amounts[:, None] * self._paths.directions
-
-
-def _dimension(face: Face | Surface) -> int:
-    return face.nodes.ndim - 2
-
-
-def _order(face: Face | Surface) -> int:
-    return face.nodes.shape[1] - 1
+        return -offsets[:, None] * self._paths.directions
 
 
 def _numbers(face: Face | Surface) -> np.ndarray:
     """Node numbers of each facet, shape (n_facets, nodes_per_facet)."""
-    return face.numbers(_order(face)).reshape(len(face.nodes), -1)
+    return face.numbers(face.order).reshape(len(face.nodes), -1)
 
 
 def _roughness(face: Face | Surface) -> sp.csr_matrix:
     """Matrix of squared differences between neighbouring nodes, weighted by facet sizes."""
-    numbers = face.numbers(_order(face))
+    numbers = face.numbers(face.order)
     a, b = (
         np.concatenate([np.delete(numbers, k, axis).ravel() for axis in range(1, numbers.ndim)])
         for k in (0, -1)
     )
-    size = np.repeat(face.sizes, numbers[0].size - numbers[0].shape[0] ** (numbers.ndim - 2))
-    size = np.tile(size, numbers.ndim - 1)
+    size = np.repeat(face.sizes, numbers[0].size - numbers[0].shape[0] ** (face.dim - 1))
+    size = np.tile(size, face.dim)
     values = np.concatenate([size, size, -size, -size])
     where = np.concatenate([a, b, a, b]), np.concatenate([a, b, b, a])
     return sp.csr_matrix((values, where), shape=(numbers.max() + 1,) * 2)
@@ -177,6 +157,19 @@ def _roughness(face: Face | Surface) -> sp.csr_matrix:
 
 def _at(face: Face | Surface, values, order: int) -> np.ndarray:
     """Values of a face's method on the lattice of each facet, (n_facets, n_places, …)."""
-    count, t = len(face.nodes), lattice(order, _dimension(face))
-    facet = np.repeat(np.arange(count), len(t))
-    return values(facet, np.concatenate([t] * count)).reshape(count, len(t), -1)
+    t = lattice(order, face.dim)
+    return values(*face.on_each(t)).reshape(len(face.nodes), len(t), -1)
+
+
+def _nodes_at(side: PairedFace) -> np.ndarray:
+    """Nodes of the facet at each point, shape (n, nodes_per_facet)."""
+    return _numbers(side.face)[side.facet]
+
+
+def _shape_functions(side: PairedFace) -> np.ndarray:
+    """Values of the shape functions of these nodes at the points."""
+    return on_lattice(side.face.order, side.t)[0]
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)

@@ -87,16 +87,16 @@ def solve(
         local,
         common or Common.none(len(weights)),
     )
-    force = np.linalg.norm(conditions.goal)
+    force = np.linalg.norm(conditions.load)
     if force == 0:
         return None
     found = _solve_from(conditions, np.full(len(weights), force))
     if found is None or not found.regular:
-        bare = replace(conditions, carried=share[:, None] * conditions.approach)
+        bare = replace(conditions, force_modes=share[:, None] * conditions.normal_modes)
         without = _solve_from(bare, np.full(len(weights), force))
         if without is not None:  # near self-locking: convergence from few starts only
             start = np.maximum(without.pressure, FLOOR * without.pressure.max())
-            start *= force / np.linalg.norm(conditions.carried.T @ start)
+            start *= force / np.linalg.norm(conditions.force_modes.T @ start)
             found = _solve_from(conditions, start) or found
     return found and replace(found, velocity=basis @ found.velocity)
 
@@ -107,33 +107,33 @@ class _Conditions:
 
     Attributes
     ----------
-    approach, carried : ndarray, shape (n, k)
+    normal_modes, force_modes : ndarray, shape (n, k)
         R, and T with the weights.
-    goal : ndarray, shape (k,)
+    load : ndarray, shape (k,)
     local : RateSum
     common : Common
     """
 
-    approach: np.ndarray
-    carried: np.ndarray
-    goal: np.ndarray
+    normal_modes: np.ndarray
+    force_modes: np.ndarray
+    load: np.ndarray
     local: RateSum
     common: Common
 
     def scaled(self, pressure: np.ndarray, rate: float) -> _Conditions:
         """Problem scaled by a pressure at each point and by a rate."""
         return _Conditions(
-            self.approach,
-            pressure[:, None] * self.carried / np.linalg.norm(self.goal),
-            self.goal / np.linalg.norm(self.goal),
+            self.normal_modes,
+            pressure[:, None] * self.force_modes / np.linalg.norm(self.load),
+            self.load / np.linalg.norm(self.load),
             self.local.scaled(pressure, rate),
             self.common.scaled(pressure, rate),
         )
 
     def rate(self, multipliers: np.ndarray) -> np.ndarray:
         """Rate ``R V - N S`` at the points, from the multipliers ``(V, S)``."""
-        k = len(self.goal)
-        return self.approach @ multipliers[:k] - self.common.reach @ multipliers[k:]
+        k = len(self.load)
+        return self.normal_modes @ multipliers[:k] - self.common.reach @ multipliers[k:]
 
 
 class _Linearised:
@@ -143,17 +143,17 @@ class _Linearised:
         worn, slope = conditions.local.at(pressure)
         passed, passed_slope = conditions.common.at(pressure)
         rate = conditions.rate(multipliers)
-        self.loads = k = len(conditions.goal)
+        self.loads = k = len(conditions.load)
         self.pressure, self.separation = pressure, separation
         self.worn = worn
         self.residual = worn - rate - separation
         self.balance = np.append(
-            conditions.carried.T @ pressure - conditions.goal, multipliers[k:] - passed
+            conditions.force_modes.T @ pressure - conditions.load, multipliers[k:] - passed
         )
-        self.modes = np.column_stack([conditions.approach, -conditions.common.reach])
-        self.borne = np.column_stack([conditions.carried, -passed_slope.T])
+        self.modes = np.column_stack([conditions.normal_modes, -conditions.common.reach])
+        self.rows = np.column_stack([conditions.force_modes, -passed_slope.T])
         self.compliance = 1 / (slope + separation / pressure)
-        self.tangent = self.borne.T @ (self.compliance[:, None] * self.modes)
+        self.tangent = self.rows.T @ (self.compliance[:, None] * self.modes)
         self.tangent[k:, k:] += np.eye(len(passed))
         self.rate_scale = np.abs(rate).max()
 
@@ -167,7 +167,7 @@ class _Linearised:
     def step(self, product: np.ndarray):
         """Newton step of (V, S), p and s for a change of the products p s by `product`."""
         drive = product / self.pressure - self.residual
-        right = -self.balance - self.borne.T @ (self.compliance * drive)
+        right = -self.balance - self.rows.T @ (self.compliance * drive)
         multipliers = np.linalg.lstsq(self.tangent, right, rcond=None)[0]
         pressure = self.compliance * (self.modes @ multipliers + drive)
         separation = (product - self.separation * pressure) / self.pressure
@@ -188,15 +188,15 @@ def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
     if found is None:
         return None
     pressure, multipliers, regular = found
-    k = len(conditions.goal)
+    k = len(conditions.load)
     return Solution(start * pressure, unit * multipliers[:k], unit * multipliers[k:], regular)
 
 
 @np.errstate(all="ignore")  # without a solution the numbers overflow
 def _iterate(conditions: _Conditions) -> tuple[np.ndarray, np.ndarray, bool] | None:
     """Iterate from pressure 1; pressure, multipliers ``(V, S)`` and regularity."""
-    pressure = np.ones(len(conditions.approach))
-    multipliers = np.append(conditions.goal, np.zeros(conditions.common.reach.shape[1]))
+    pressure = np.ones(len(conditions.normal_modes))
+    multipliers = np.append(conditions.load, np.zeros(conditions.common.reach.shape[1]))
     separation = conditions.local.at(pressure)[0] - conditions.rate(multipliers)
     separation = np.maximum(separation, 1.0)
     for _ in range(STEPS):

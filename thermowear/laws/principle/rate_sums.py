@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+from ...errors import ComputationError
+from ..interfaces import Law, LocalState
+
+_MULTIPLES = np.array([0.03, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0, 10.0])
+"""Multiples of the steady pressure between which a rate must not decrease."""
+_ROUNDING = 1e-9
 
 
 class RateSum(ABC):
@@ -49,6 +57,77 @@ class PowerSum(RateSum):
 
     def scaled(self, pressure: np.ndarray, value: float) -> PowerSum:
         return PowerSum(self.terms(pressure) / value, self.exponents)
+
+
+@dataclass(frozen=True)
+class BoundLaw:
+    """Wear law at the contact points, as a function of the pressure only.
+
+    Attributes
+    ----------
+    law : Law
+    state : LocalState
+        State of the points; its pressure is not used.
+    """
+
+    law: Law
+    state: LocalState
+
+    def rate(self, pressure: np.ndarray) -> np.ndarray:
+        """Local wear rate (n,) [m/s]."""
+        return self.law.value(self.state._replace(p=pressure))
+
+    def slope(self, pressure: np.ndarray) -> np.ndarray:
+        """Derivative with respect to the pressure (n,) [m/(s Pa)]."""
+        return self.law.slope(self.state._replace(p=pressure))
+
+    def require_growth(self, pressure: np.ndarray) -> None:
+        """Reject a law whose rate decreases with pressure, around given pressures.
+
+        Raises
+        ------
+        ComputationError
+            If the rate decreases with pressure.
+        """
+        rates = np.array([self.rate(factor * pressure) for factor in _MULTIPLES])
+        if np.any(np.diff(rates, axis=0) < -_ROUNDING * rates[:-1]):
+            raise ComputationError(
+                "no steady state: a wear rate decreases with increasing pressure; the steady "
+                "principle requires wear rates that increase with it"
+            )
+
+
+@dataclass(frozen=True)
+class LawSum(RateSum):
+    """Weighted rates of several laws, in units of a pressure at each point and of a value.
+
+    Attributes
+    ----------
+    laws : sequence of BoundLaw
+        Law of each summand.
+    weights : ndarray, shape (m, n)
+    pressure : ndarray, shape (n,)
+        Unit of the pressures [Pa].
+    value : float
+        Unit of the rates.
+    """
+
+    laws: Sequence[BoundLaw]
+    weights: np.ndarray
+    pressure: np.ndarray
+    value: float = 1.0
+
+    def terms(self, pressure: np.ndarray) -> np.ndarray:
+        rates = [law.rate(self.pressure * pressure) for law in self.laws]
+        return self.weights * np.reshape(rates, self.weights.shape) / self.value
+
+    def slopes(self, pressure: np.ndarray) -> np.ndarray:
+        slopes = [law.slope(self.pressure * pressure) for law in self.laws]
+        scale = self.pressure / self.value
+        return self.weights * np.reshape(slopes, self.weights.shape) * scale
+
+    def scaled(self, pressure: np.ndarray, value: float) -> LawSum:
+        return LawSum(self.laws, self.weights, self.pressure * pressure, self.value * value)
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,7 @@ from ..distribution import Distribution, InPlace
 from ..interfaces import Law, LocalState, Values
 from ..power_wear import PowerWear
 from .interior_point import solve
-from .law_sum import BoundLaw, LawSum
-from .rate_sums import Common, PowerSum, RateSum
+from .rate_sums import BoundLaw, Common, LawSum, PowerSum, RateSum
 from .solvability import why_no_steady_state
 
 _DEPENDENT = 1e-10  # relative singular value below which motions are linearly dependent

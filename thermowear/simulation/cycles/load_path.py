@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ...laws.load_history import LoadHistory
+from ...laws.time_course import LoadHistory
 from ...model.analyses import FrettingAnalysis
 from ...serialise import serialisable
 

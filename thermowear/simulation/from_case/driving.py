@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...case.tables.schema import Case
-from ...model.holder import Holder
-from ...model.motion import Motion
+from ...model.holder import Holder, Motion
 
 
 def holder(case: Case) -> Holder:

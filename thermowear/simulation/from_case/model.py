@@ -5,9 +5,8 @@ from __future__ import annotations
 from ...case.tables.schema import Case
 from ...case.tables.tabulated import TemperatureHistory
 from ...errors import CaseError
-from ...model.body import Body
+from ...model.body import Body, Material
 from ...model.heat import Heat
-from ...model.material import Material
 from ...model.model import Discretisation, Model
 from .driving import holder, motion
 from .interface import interface

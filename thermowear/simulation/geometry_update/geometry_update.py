@@ -146,7 +146,7 @@ def _moved(
 ) -> tuple[WornGeometry, bool]:
     """Geometry with the meshes moved by depths (2, n), and True if a body has been remeshed."""
     before, faces = moving.geometry, moving.faces
-    amounts = {index: face.amounts(depth[index]) for index, face in faces.items()}
+    amounts = {index: face.offsets(depth[index]) for index, face in faces.items()}
     mesh, lost = _followed(system, before, faces, amounts, depth @ system.weights)
     mesh, quality, renewed = on_root(
         system.comm, lambda: _remeshed(system, before, mesh, list(faces))

@@ -15,9 +15,9 @@ from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,
+    directions_between,
     node_normals,
     nodes_of,
-    ways_between,
 )
 from ...geometry.mesh.tagged import TaggedMesh, quality, scaled_jacobians
 from ...geometry.moving.moved import MovableBody
@@ -63,7 +63,7 @@ class MovingFaces:
         """Part of a depth (2, n) that nodal displacements of the faces represent [m]."""
         result, due = np.zeros_like(depth), self.due(depth)
         for index, face in self.faces.items():
-            result[index] = face.depths(face.amounts(due[index]))
+            result[index] = face.depths(face.offsets(due[index]))
         return result
 
     def due(self, depth: np.ndarray) -> np.ndarray:
@@ -133,7 +133,7 @@ def _along_ways(
     """
     first, second = pairing.sides
     gone = np.isin([0, 1], bodies or [0, 1]).astype(float)
-    ways = ways_between(pairing.sides, directions, gone)
+    ways = directions_between(pairing.sides, directions, gone)
     facet, t, way = ray_intersections(second.face, first.face.points(first.facet, first.t), ways)
     gap = way * np.einsum("ni,ni->n", pairing.normals, ways)
     return replace(pairing, sides=(first, replace(second, facet=facet, t=t))), gap

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...compat import geometry_dofmap
-from ...contact.wear.worn_face import curvatures, lengths
+from ...contact.wear.worn_face import curvatures
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
 from ..interface.factory import interface_problem
@@ -64,7 +64,7 @@ class GapWear:
     def __init__(self, system: System):
         self._system, side = system, system.pairing.sides[0]
         facets, self._first = np.unique(side.facet, return_index=True)
-        self._lengths = lengths(side.face)[facets]
+        self._lengths = side.face.lengths[facets]
         self._curvature = max(float(curvatures(s.face).max()) for s in system.pairing.sides)
         self.faces = MovingFaces(system)
         self._thickness = {index: _thickness(system, index) for index in self.faces.bodies}

@@ -161,7 +161,7 @@ class CondensedMethod:
         space = bodies if edge is None else edge
         start = None if guess is None else guess.warm_start.active
         if edge is not None:
-            compliance, resting = edge.compliance(compliance), edge.seen.T @ resting
+            compliance, resting = edge.compliance(compliance), edge.projection.T @ resting
             start = None if guess is None else edge.pressing(guess.pressure)
         if slope.point.any():
             compliance = compliance + self._opening_at_points(space, slope.point)
@@ -175,7 +175,7 @@ class CondensedMethod:
         if edge is not None:
             left = weak + compliance @ solution.coefficients - space.modes @ solution.motion
             apart = (pressure == 0.0) * edge.at_points(left)
-            seen, active = edge.seen @ solution.coefficients, bodies.weak(pressure) > 0.0
+            seen, active = edge.projection @ solution.coefficients, bodies.weak(pressure) > 0.0
             solution = replace(solution, coefficients=seen, active=active)
         motion = self._given.copy()
         motion[self._free] = solution.motion

@@ -13,7 +13,7 @@ from ...contact.operators.sliding import Sliding, sliding
 from ...contact.search.closed_face import gather_faces
 from ...contact.search.pairing import Pairing
 from ...geometry.mesh.tagged import TaggedMesh
-from ...model.facing import Facing
+from ...model.body import Facing
 from ...model.meshes import Zone
 from ...model.model import Model
 from ...parallel import on_root

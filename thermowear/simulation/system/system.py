@@ -18,7 +18,7 @@ from ...contact.search.pairing import Pairing
 from ...laws.distribution import Distribution
 from ...laws.interfaces import Law
 from ...laws.motions import RigidMotion
-from ...model.facing import Facing
+from ...model.body import Facing
 from ...model.meshes import Zone
 from ...model.model import Model
 from ...parallel import sum_over_ranks

@@ -25,7 +25,7 @@ from ...contact.operators.heat import InterfaceHeat
 from ...contact.operators.heat_condensation import bath_matrix, condense_heat
 from ...contact.operators.traces import value_trace
 from ...contact.search.pairing import Pairing
-from ...model.facing import Facing
+from ...model.body import Facing
 from ...model.heat import Heat
 from ...model.model import Model
 from ...timer import Phases

@@ -15,12 +15,12 @@ import numpy as np
 from ...laws.power_wear import PowerWear
 from ...laws.principle.functionals import (
     PowerFunctional,
+    admissible_changes,
     friction_dissipation,
     wear_dissipation,
     wear_volume_rate,
 )
 from ...laws.principle.minimum import Minimum, least_wear_dissipation, minimise
-from ...laws.principle.perturbation import admissible_changes
 from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
 from ..check import Check, compare
 from ..closed_forms import patches

@@ -19,7 +19,6 @@ from ...contact.operators.heat import InterfaceHeat, baseline_response
 from ...contact.operators.heat_condensation import condense_heat
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
-from ..heat.distortion import CondensedDistortion
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 
@@ -57,7 +56,6 @@ class GrowthModel:
     ----------
     system : System
         System with a thermal model and known heat capacity.
-    distortion : CondensedDistortion
     conditions : InterfaceConditions
         Conditions of the perturbed state.
     elastic : ndarray, shape (m, m)
@@ -69,15 +67,13 @@ class GrowthModel:
     def __init__(
         self,
         system: System,
-        distortion: CondensedDistortion,
         conditions: InterfaceConditions,
         elastic: np.ndarray,
         space: LoadFree,
     ):
         assert system.thermal is not None
         self._system, self._thermal = system, system.thermal
-        self._distortion, self._conditions = distortion, conditions
-        self._elastic, self._space = elastic, space
+        self._conditions, self._elastic, self._space = conditions, elastic, space
         self._friction = conditions.heating[:, None] * (system.basis @ space.pressures)
         self._fields: np.ndarray | None = None
         self._crossing: np.ndarray | None = None
@@ -142,7 +138,7 @@ class GrowthModel:
         conduction, X = thermal.conduction, self._fields
         assert X is not None
         assert conduction.capacity is not None
-        at = baseline_response(X, thermal.face.traces, system.comm, self._distortion.per_rise)
+        at = baseline_response(X, thermal.face.traces, system.comm, system.influence.per_rise[0])
         T1, T2 = at.rise
         weights = system.weights[:, None]
         f = np.reshape(thermal.face.partition, (-1, 1))

@@ -19,7 +19,7 @@ from ...laws.stability import (
     load_free,
     static_modes,
 )
-from ..heat.distortion import CondensedDistortion
+from ..heat.heat_steps import HeatOperators
 from ..system.building import build
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
@@ -74,7 +74,6 @@ class DisturbedContact:
             raise CaseError("heat: missing; required in a stability analysis")
         self._system, self._pressure, self._conditions = system, pressure, conditions
         self._bodies = system.thermal
-        self._distortion = CondensedDistortion(system, system.thermal)
 
     @property
     def stores(self) -> bool:
@@ -140,8 +139,7 @@ class DisturbedContact:
 
     @cached_property
     def _model(self) -> GrowthModel:
-        heat, elastic, kinds = self._distortion, self._elastic, self._kinds
-        model = GrowthModel(self._system, heat, self._conditions, elastic, kinds)
+        model = GrowthModel(self._system, self._conditions, self._elastic, self._kinds)
         model.begin()
         return model
 
@@ -154,10 +152,9 @@ class DisturbedContact:
     @cached_property
     def _thermal(self) -> np.ndarray:
         """Weak thermal opening per pressure coefficient, H, at the given speed."""
-        conduction, face = self._bodies.conduction, self._bodies.face
-        per_heat = self._distortion(conduction, face).per_friction_heat(
-            face.exchange(self._conditions.conductance)
-        )
+        face, conductance = self._bodies.face, self._conditions.conductance
+        bodies = HeatOperators(self._system, self._bodies.conduction, face)
+        per_heat = bodies.distortion.per_friction_heat(face.exchange(conductance))
         return per_heat @ (self._conditions.heating[:, None] * self._system.basis)
 
     @cached_property

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...serialise import serialisable
@@ -51,6 +53,7 @@ class Increment:
     ends_segment: bool
     state: StickSlipState
     jump: Jump | None = None
+    distance: ClassVar[float] = math.nan  # from a steady state
 
     @property
     def is_output(self) -> bool:

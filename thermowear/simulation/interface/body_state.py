@@ -31,7 +31,7 @@ class ContactState:
     ----------
     pressure : ndarray, shape (n,) [Pa]
     conditions : InterfaceConditions
-    warmth : TemperatureField or None
+    temperatures : TemperatureField or None
         Temperatures; None without heat.
     shear : ndarray or None, shape (n,)
         Stick-slip traction on body 1, see `contact.operators.tangential` [Pa].
@@ -39,7 +39,7 @@ class ContactState:
 
     pressure: np.ndarray
     conditions: InterfaceConditions
-    warmth: TemperatureField | None
+    temperatures: TemperatureField | None
     shear: np.ndarray | None = None
 
 
@@ -49,8 +49,8 @@ def contact_state(
     """State of a contact whose conditions depend on the contact set alone. Every rank calls."""
     conditions = ConditionModel(system).at(0.0, pressure, None, pressure > 0)
     heat = friction_heat(system)
-    warmth = None if heat is None else heat.lasting(conditions, pressure)
-    return ContactState(pressure, conditions, warmth, shear)
+    temperatures = None if heat is None else heat.steady(conditions, pressure)
+    return ContactState(pressure, conditions, temperatures, shear)
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class BodyState:
 def body_state(system: System, contact: ContactState) -> BodyState:
     """Solve the bodies for given contact loads. Every rank calls."""
     system = system.rubbing(contact.conditions.friction)
-    pressure, shear, warmth = contact.pressure, contact.shear, contact.warmth
+    pressure, shear, temperatures = contact.pressure, contact.shear, contact.temperatures
     thermal, rise, hottest, heat_error = None, None, float("nan"), float("nan")
     loads = traction = system.traction @ (system.weights * pressure)
     if shear is not None:
@@ -100,8 +100,8 @@ def body_state(system: System, contact: ContactState) -> BodyState:
         loads = traction = traction + along @ (system.weights * shear)
     if system.dead_load is not None:
         loads = traction = traction + system.dead_load
-    if warmth is not None and system.thermal is not None:
-        thermal, rise, heat_error = warmth.faces, warmth.rise, warmth.error
+    if temperatures is not None and system.thermal is not None:
+        thermal, rise, heat_error = temperatures.faces, temperatures.rise, temperatures.error
         loads = traction + system.thermal.forces(rise)
         highest = max(system.comm.allgather(float(rise.max(initial=-np.inf))))
         hottest = max(highest, float(np.max(thermal.rise))) + system.thermal.ambient

@@ -75,7 +75,7 @@ class CondensedMethod:
             thermal, opening = heat.coupling(conditions, bodies.basis)
             both = compliance + thermal
             guess = self._solved(bodies, edge, both, opening, gap, slope, guess, load)
-            if heat.holds(conditions, guess.pressure):
+            if heat.converged(conditions, guess.pressure):
                 return guess
         raise ComputationError(
             "contact: the iteration for pressure and temperatures with temperature-dependent "

@@ -56,8 +56,8 @@ def steady_state(system: System) -> SteadyState:
         return _Worn(wear, faces, nothing)
 
     conditions, found = self_consistent(ConditionModel(system), 0.0, start, respond, _NONE)
-    warmth = None if heat is None else heat.lasting(conditions, found.pressure)
-    return SteadyState(found.wear, ContactState(found.pressure, conditions, warmth))
+    temperatures = None if heat is None else heat.steady(conditions, found.pressure)
+    return SteadyState(found.wear, ContactState(found.pressure, conditions, temperatures))
 
 
 @dataclass(frozen=True)

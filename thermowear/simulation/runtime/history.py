@@ -26,16 +26,17 @@ from ..results.recording import Snapshot
 from ..results.summary import conclude
 from ..system.system import System
 from .checkpoint_data import Progress, Saved
-from .frames import spacing
-from .observer import Observer
+from .observer import AnyRow, Observer
 from .stop_signal import StopRequest, interrupted
 
-AnyRow = HistoryRow | HeatRow | LoadRow | CycleRow
 Row = TypeVar("Row", bound=AnyRow)
 
 
 State = TypeVar("State", bound=Any)
-"""Accepted state of an analysis, with a `time` [s], and `is_output` true at an output time."""
+"""Accepted state of an analysis.
+
+It has a `time` [s], `is_output` (true at an output time), and a `distance` from the steady state.
+"""
 
 
 class AnalysisHistory(ABC, Generic[State]):
@@ -167,7 +168,7 @@ class AnalysisHistory(ABC, Generic[State]):
         self._last = state
         for row in rows:
             self.table(type(row)).append(row)
-            self._tell(row, state)
+            self._observer.row(row, state.distance)
         if shown is not None:
             with self._system.phases("output"):
                 self._outputs[state.time] = shown.interface, shown.friction, shown.track
@@ -230,16 +231,6 @@ class AnalysisHistory(ABC, Generic[State]):
         counts = {kind: len(rows) for kind, rows in self._tables.items()}
         self._restart = state, counts, self.restart_data()
 
-    def _tell(self, row: AnyRow, state: Any) -> None:
-        if isinstance(row, HistoryRow):
-            self._observer.step(row, state.distance)
-        elif isinstance(row, HeatRow):
-            self._observer.heat(row)
-        elif isinstance(row, LoadRow):
-            self._observer.load_step(row)
-        else:
-            self._observer.cycle(row)
-
     def _keep_frame(self, state: State) -> None:
         """Record an animation frame if the number of the state is selected."""
         number, most = self.frame_number(state), self._settings.frames
@@ -252,3 +243,16 @@ class AnalysisHistory(ABC, Generic[State]):
             now = self.snapshot(state)
             frame = Frame(number, every, state.time, now.interface, sample(now), now.track)
             self._observer.frame(frame)
+
+
+def spacing(number: int, most: int) -> int:
+    """Smallest power of two with at most `most` multiples from 0 to a number.
+
+    Frames are selected by step numbers: an error-controlled loop takes short steps where the state
+    changes fast. Their total is not known in advance, so that all steps are kept until there are
+    too many, then every second, then every fourth. The computation does not depend on frames.
+    """
+    every = 1
+    while number // every >= most:
+        every *= 2
+    return every

@@ -11,8 +11,7 @@ from thermowear.contact.friction.gross_slip import FullSliding
 from thermowear.contact.friction.stick_slip_state import StickSlipState
 from thermowear.errors import ComputationError
 from thermowear.simulation.cycles.cycle_jump import adaptive_jumps, fixed_jumps
-from thermowear.simulation.cycles.increments import Increment, RestartPoint
-from thermowear.simulation.cycles.load_path import LoadSegment
+from thermowear.simulation.cycles.load_path import Increment, LoadSegment, RestartPoint
 
 RATES = np.array([[1.0, 3.0, 0.0]])
 AREAS = np.array([1.0, 2.0, 1.0])

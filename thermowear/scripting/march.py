@@ -8,8 +8,7 @@ from functools import cached_property
 
 from ..model.analyses import TransientAnalysis
 from ..results import HistoryRow
-from ..simulation.analyses.transient import transient_history
-from ..simulation.analyses.transient_history import snapshot_at
+from ..simulation.analyses.transient import snapshot_at, transient_history
 from ..simulation.interface.interface_problem import InterfaceProblem
 from ..simulation.results.recording import Snapshot
 from ..simulation.runtime.checkpoint_data import Progress

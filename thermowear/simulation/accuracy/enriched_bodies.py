@@ -46,12 +46,7 @@ class WarmerFaces:
 
 
 class EnrichedBodies:
-    """Elastic bodies of a system with the surplus space of the next degree. Every rank calls.
-
-    Parameters
-    ----------
-    system : System
-    """
+    """Elastic bodies of a system with the surplus space of the next degree. Every rank calls."""
 
     def __init__(self, system: System):
         elastic, degree = system.elastic, system.model.discretisation.degree

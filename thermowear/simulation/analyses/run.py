@@ -22,7 +22,7 @@ from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import fretting
 from ..cycles.reciprocating import reciprocating
-from ..geometry_update.face_limits import outgrown
+from ..geometry_update.wider_zone import reaches_open_end
 from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
 from ..results.fields import sample
@@ -30,13 +30,11 @@ from ..results.recording import Snapshot
 from ..runtime.checkpoint_data import Saved, mesh_checksum
 from ..runtime.observer import Observer
 from ..system.system import System
-from .plausible import too_steep, went_back
+from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare
-from .small_wear_check import not_small
 from .stability import stability
 from .static import initial, steady, unworn
 from .transient import running_in
-from .untouched_contact import untouched
 
 _UNPAIRED = 1e-6
 
@@ -63,10 +61,6 @@ def run(
     saved : Saved, optional
         Checkpoint from `Observer.checkpoint` of an earlier run on this rank, to restart from; the
         result has the whole history, and the outputs from there on.
-
-    Returns
-    -------
-    Result
 
     Raises
     ------
@@ -121,17 +115,21 @@ def analyse(
     else:
         before = None if saved is None else saved.of(system)
         end, result = _STEPPED[type(analysis)](system, analysis, observer, before)
-    if outgrown(end.system, end.contact.pressure):
+    if reaches_open_end(end.system, end.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
     found: list[ComputationError | str | None] = [
-        too_steep(end.system, end.contact.pressure),
-        not_small(system, analysis, end.interface),
+        inclined_faces(end.system, end.contact.pressure),
+        deep_wear(system, analysis, end.interface),
     ]
     if result.stopped is None:
-        found = [untouched(system, end.interface), went_back(system, analysis, end), *found]
+        found = [
+            open_contact(system, end.interface),
+            moved_against_load(system, analysis, end),
+            *found,
+        ]
     for note in (one for one in found if isinstance(one, str)):
         observer.note(note)
     errors = (one for one in found if isinstance(one, ComputationError))

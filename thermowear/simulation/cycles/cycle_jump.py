@@ -24,7 +24,7 @@ import numpy as np
 from ...contact.friction.gross_slip import FullSliding
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...errors import ComputationError
-from .increments import Increment, Jump, RestartPoint
+from .load_path import Increment, Jump, RestartPoint
 
 _SAFETY, _SHORTER, _LONGER = 0.9, 0.2, 5.0
 

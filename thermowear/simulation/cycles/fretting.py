@@ -24,8 +24,15 @@ from ..runtime.observer import Observer
 from ..system.system import System
 from .cycle_jump import adaptive_jumps, fixed_jumps
 from .fretting_history import FrettingHistory
-from .increments import Increment, RestartPoint
-from .load_path import LoadSegment, by_fixed_jumps, cycle_segments, first_pass, to_stop_at
+from .load_path import (
+    Increment,
+    LoadSegment,
+    RestartPoint,
+    cycle_segments,
+    cycles_to_stop_at,
+    first_pass,
+    jumped_cycles,
+)
 
 _ACROSS = (1.0, 0.0)
 
@@ -105,9 +112,9 @@ class _Path:
         history, settings = self._history, self._settings
         count = settings.cycles
         if settings.jump == "auto":
-            stops = to_stop_at(history, settings, count)
+            stops = cycles_to_stop_at(history, settings, count)
             return adaptive_jumps(self, stops, restart, settings.tolerance, settings.max_jump)
-        numbers = by_fixed_jumps(history, settings, count, settings.jump)
+        numbers = jumped_cycles(history, settings, count, settings.jump)
         return fixed_jumps(self, numbers, restart)
 
     def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Increment]:

@@ -16,7 +16,7 @@ from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.system import System
-from .increments import Increment, Jump
+from .load_path import Increment, Jump
 
 _SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips
 

@@ -40,15 +40,7 @@ def reciprocating(
 
 
 class ReciprocatingHistory(AnalysisHistory[Moment]):
-    """History of reciprocating wear.
-
-    Parameters
-    ----------
-    system : System
-    settings : ReciprocatingAnalysis
-    observer : Observer
-    problem : ReciprocatingProblem
-    """
+    """History of reciprocating wear."""
 
     def __init__(
         self,

@@ -45,11 +45,6 @@ class ReciprocatingProblem(WearProblem):
     Depths form one row of N values: coefficients of body 1, then nodal values of body 2.
     Pressures have one row per position, shape (J, m).
 
-    Parameters
-    ----------
-    system : System
-    stroke : list of Position
-
     Attributes
     ----------
     track : StrokeGrid

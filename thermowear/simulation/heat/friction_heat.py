@@ -87,11 +87,6 @@ def friction_heat(system: System) -> FrictionHeat | None:
 class FrictionHeat:
     """Coupling of pressure, temperature and distortion at the contact points.
 
-    Parameters
-    ----------
-    system : System
-    thermal : ThermalSystem
-
     Attributes
     ----------
     ambient : float

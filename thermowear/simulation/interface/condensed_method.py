@@ -33,10 +33,6 @@ class CondensedMethod:
     """Weak contact conditions in the pressure space.
 
     At the edge of the wear they hold pointwise, see `contact.wear.wear_edge`.
-
-    Parameters
-    ----------
-    system : System
     """
 
     def __init__(self, system: System):

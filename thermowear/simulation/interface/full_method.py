@@ -20,11 +20,11 @@ from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from .anderson import Mixing
 from .contact_solver import ContactSolution
+from .fixed_point import AndersonMixing
 
-_PASSES = 60
-_SETTLED = 1e-9  # of the largest pressure
+_ITERATIONS = 60
+_TOLERANCE = 1e-9  # of the largest pressure
 
 
 class FullMethod:
@@ -36,10 +36,6 @@ class FullMethod:
     Heat and contact are solved in a staggered iteration: friction heat distorts the bodies, and the
     distortion changes the pressure. It uses Anderson acceleration, as its plain convergence rate is
     the ratio of the speed to the critical one.
-
-    Parameters
-    ----------
-    system : System
     """
 
     def __init__(self, system: System):
@@ -60,15 +56,15 @@ class FullMethod:
         if heat is None:
             return self._result(self._solved(gap, slope, start, load, self._dead, None, edge))
         pressure = np.zeros(len(gap)) if guess is None else guess.pressure
-        mixing = Mixing()
-        for _ in range(_PASSES):
+        mixing = AndersonMixing()
+        for _ in range(_ITERATIONS):
             start = self._warm(gap, slope, start, conditions, heat, pressure, edge)
-            missed = start.pressure - pressure
-            if np.abs(missed).max() <= _SETTLED * np.abs(start.pressure).max():
+            residual = start.pressure - pressure
+            if np.abs(residual).max() <= _TOLERANCE * np.abs(start.pressure).max():
                 return self._result(start)
-            pressure = mixing.next(pressure, missed)
+            pressure = mixing.next(pressure, residual)
         raise ComputationError(
-            f"contact: heat and pressure did not converge in {_PASSES} iterations; reduce the "
+            f"contact: heat and pressure did not converge in {_ITERATIONS} iterations; reduce the "
             'speed, or use contact.method = "condensed", which solves both at once'
         )
 

@@ -31,13 +31,7 @@ _SETTLING = 0.4
 
 
 class GrowingEdge:
-    """Edge of the wear in a contact that may grow by wear.
-
-    Parameters
-    ----------
-    system : System
-    method : ContactSolver
-    """
+    """Edge of the wear in a contact that may grow by wear."""
 
     def __init__(self, system: System, method: ContactSolver):
         self._facet, self._basis = system.pairing.sides[0].facet, system.basis

@@ -28,12 +28,6 @@ _STEP = "contact: the iteration for the state-dependent properties of a step did
 class InterfaceProblem(WearProblem):
     """Contact with heat and wear for given loads.
 
-    Parameters
-    ----------
-    system : System
-    method : ContactSolver
-    heat : FrictionHeat or None
-
     Attributes
     ----------
     stores_heat : bool

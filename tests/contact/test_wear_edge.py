@@ -43,7 +43,7 @@ def test_forces_stay_and_a_smooth_pressure_is_weak_contact(face):
     amounts = np.random.default_rng(1).random(space.basis.shape[1])
     pressure = space.basis @ amounts
     assert space.force_modes.T @ amounts == pytest.approx(contact.weak(pressure).sum(), rel=1e-13)
-    assert contact.weighted.sum(axis=0) @ (space.seen @ amounts) == pytest.approx(
+    assert contact.weighted.sum(axis=0) @ (space.projection @ amounts) == pytest.approx(
         contact.weak(pressure).sum(), rel=1e-12
     )
     smooth = 2.0 + 3.0 * x

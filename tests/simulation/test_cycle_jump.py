@@ -48,7 +48,7 @@ class Growing:
             )
             yield Increment(segment.end, segment, True, state)
 
-    def settled(self, end, worn):
+    def equilibrium(self, end, worn):
         self.settled_at.append(end.segment.cycle)
         return replace(end.state, worn=worn, dissipated=np.full(3, np.nan))
 

@@ -8,9 +8,9 @@ from functools import cached_property
 
 from ..model.analyses import TransientAnalysis
 from ..results import HistoryRow
-from ..simulation.analyses.transient import snapshot_at, transient_history
+from ..simulation.analyses.transient import transient_history
 from ..simulation.interface.interface_problem import InterfaceProblem
-from ..simulation.results.recording import Snapshot
+from ..simulation.results.recording import Snapshot, snapshot_at
 from ..simulation.runtime.checkpoint_data import Progress
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.system import System
@@ -45,7 +45,8 @@ class MarchState(ContactResults):
 
     @cached_property
     def snapshot(self) -> Snapshot:
-        return snapshot_at(self.system, self.problem, self.progress.state)
+        moment = self.progress.state
+        return snapshot_at(self.problem, moment.state, moment.time)
 
 
 def march(
@@ -69,5 +70,5 @@ def march(
     for moment in passing:
         history.keep(moment)
         row = history.table(HistoryRow)[-1]
-        loop = history.loop
-        yield MarchState(bodies, meshes, row, history.progress(), loop.problem, loop.system)
+        now = history.loop.now
+        yield MarchState(bodies, meshes, row, history.progress(), now.problem, now.system)

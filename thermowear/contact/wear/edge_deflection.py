@@ -61,10 +61,10 @@ def edge_deflection(
     """
     moving = points & (weights > 0.0)  # without points on an axis, which have no area
     root = np.sqrt(weights[moving])
-    unseen = null_space((root[:, None] * basis[moving]).T)
-    modes = np.zeros((len(points), unseen.shape[1]))
-    modes[moving] = unseen / root[:, None]
-    return EdgeDeflection(modes, unseen.T @ (unseen / compliance[moving, None]))
+    orthogonal = null_space((root[:, None] * basis[moving]).T)
+    modes = np.zeros((len(points), orthogonal.shape[1]))
+    modes[moving] = orthogonal / root[:, None]
+    return EdgeDeflection(modes, orthogonal.T @ (orthogonal / compliance[moving, None]))
 
 
 def wave_compliance(elastic: Elasticity, pairing: Pairing, degree: int) -> np.ndarray:

@@ -152,7 +152,7 @@ class EdgeSpace:
         Basis functions Ψ off these points, then those of single points.
     weighted : ndarray, shape (n, k)
         Basis times areas, ``diag(w)`` basis.
-    seen : ndarray, shape (m, k)
+    projection : ndarray, shape (m, k)
         Coefficients in Ψ of their projections, which load the bodies.
     own : ndarray, shape (k, k)
         Weak gap per coefficient due to the projection remainder.
@@ -163,7 +163,7 @@ class EdgeSpace:
     points: np.ndarray
     basis: np.ndarray
     weighted: np.ndarray
-    seen: np.ndarray
+    projection: np.ndarray
     own: np.ndarray
     modes: np.ndarray
     force_modes: np.ndarray
@@ -175,7 +175,7 @@ class EdgeSpace:
 
     def compliance(self, compliance: np.ndarray) -> np.ndarray:
         """Weak gaps per coefficient, shape (k, k), from those of Ψ, shape (m, m)."""
-        return self.seen.T @ compliance @ self.seen + self.own
+        return self.projection.T @ compliance @ self.projection + self.own
 
     def pressing(self, pressure: np.ndarray) -> np.ndarray:
         """True for active coefficients of a pressure at the points, shape (k,)."""
@@ -206,8 +206,8 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     whole = np.flatnonzero(share >= 1.0 - _NONE)
     single = np.eye(len(points))[:, points]
     split = np.hstack([np.where(points[:, None], 0.0, contact.basis[:, cut]), single])
-    seen = np.linalg.solve(contact.weighted.T @ contact.basis, contact.weighted.T @ split)
-    left = split - contact.basis @ seen
+    projection = np.linalg.solve(contact.weighted.T @ contact.basis, contact.weighted.T @ split)
+    left = split - contact.basis @ projection
     basis = np.hstack([contact.basis[:, whole], split])
     weighted = weights[:, None] * basis
     own = np.zeros((basis.shape[1],) * 2)
@@ -217,7 +217,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
         points=points,
         basis=basis,
         weighted=weighted,
-        seen=np.hstack([np.eye(len(share))[:, whole], seen]),
+        projection=np.hstack([np.eye(len(share))[:, whole], projection]),
         own=own,
         modes=weighted.T @ holder.modes,
         force_modes=weighted.T @ holder.force_modes,

@@ -1,6 +1,6 @@
 """Nodal displacements of a worn face from the worn depth, along its unworn normals.
 
-Each node moves along the normal of the unworn face, by the amount that displaces the face by the
+Each node moves along the normal of the unworn face, by the offset that displaces the face by the
 worn depth along its present normal. Nodes of initially matching faces stay opposite each other, and
 end nodes of a face move along the sides of its body.
 """
@@ -55,8 +55,8 @@ def node_normals(face: Face | Surface) -> np.ndarray:
     return summed / np.linalg.norm(summed, axis=1, keepdims=True)
 
 
-def ways_between(
-    sides: tuple[PairedFace, PairedFace], directions: tuple[np.ndarray, ...], gone: np.ndarray
+def directions_between(
+    sides: tuple[PairedFace, PairedFace], directions: tuple[np.ndarray, ...], recession: np.ndarray
 ) -> np.ndarray:
     """Unit vectors from contact points to body 2 along the nodal directions, shape (n, gdim).
 
@@ -67,20 +67,20 @@ def ways_between(
     sides : tuple of PairedFace
     directions : tuple of ndarray, shape (n_nodes, gdim)
         Directions of the nodes of both faces, see `Paths`.
-    gone : ndarray, shape (2,)
+    recession : ndarray, shape (2,)
         Recession of each face; only the ratio matters.
     """
     pairs = zip(sides, directions, strict=True)
-    out_1, out_2 = (_ways_at(side, along) for side, along in pairs)
-    ways = gone[0] * out_1 - gone[1] * out_2
-    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    out_1, out_2 = (_directions_at(side, along) for side, along in pairs)
+    result = recession[0] * out_1 - recession[1] * out_2
+    return result / np.linalg.norm(result, axis=1, keepdims=True)
 
 
-def _ways_at(side: PairedFace, directions: np.ndarray) -> np.ndarray:
+def _directions_at(side: PairedFace, directions: np.ndarray) -> np.ndarray:
     """Directions at points of a face, interpolated from its nodes, unit vectors (n, gdim)."""
     values = on_lattice(_order(side.face), side.t)[0]
-    ways = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])
-    return ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    result = np.einsum("nk,nki->ni", values, directions[_numbers(side.face)[side.facet]])
+    return result / np.linalg.norm(result, axis=1, keepdims=True)
 
 
 def curvatures(face: Face | Surface) -> np.ndarray:
@@ -122,7 +122,7 @@ class WornFace:
         share = pairing.weights.sum() / side.face.sizes[np.unique(side.facet)].sum()
         self._smoothing = _ROUGH * share * _roughness(side.face)
 
-    def amounts(self, depth: np.ndarray) -> np.ndarray:
+    def offsets(self, depth: np.ndarray) -> np.ndarray:
         """Nodal displacements for a worn depth (n,), shape (n_nodes,) [m].
 
         Area-weighted least-squares fit with the same volume. Nodes hardly supported by contact
@@ -134,18 +134,18 @@ class WornFace:
         weighted, depths, volume = weighted[:, free], self._depths[:, free], volume[free]
         factor = splu((weighted.T @ depths + self._smoothing[free][:, free]).tocsc())
         nearest, fuller = factor.solve(weighted.T @ depth), factor.solve(volume)
-        lacking = self._weights @ depth - volume @ nearest
+        missing = self._weights @ depth - volume @ nearest
         result = np.zeros(len(free))
-        result[free] = nearest + lacking / (volume @ fuller) * fuller
+        result[free] = nearest + missing / (volume @ fuller) * fuller
         return result
 
-    def depths(self, amounts: np.ndarray) -> np.ndarray:
+    def depths(self, offsets: np.ndarray) -> np.ndarray:
         """Worn depth at the contact points, shape (n,) [m]."""
-        return self._depths @ amounts
+        return self._depths @ offsets
 
-    def displacement(self, amounts: np.ndarray) -> np.ndarray:
+    def displacement(self, offsets: np.ndarray) -> np.ndarray:
         """Displacement vectors of the nodes, into the body, shape (n_nodes, gdim) [m]."""
-        return -amounts[:, None] * self._paths.directions
+        return -offsets[:, None] * self._paths.directions
 
 
 def _dimension(face: Face | Surface) -> int:

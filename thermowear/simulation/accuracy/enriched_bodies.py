@@ -28,7 +28,7 @@ from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 
 
 @dataclass(frozen=True)
-class WarmerFaces:
+class TemperatureChange:
     """Change of the temperatures by the next degree.
 
     Attributes
@@ -66,15 +66,15 @@ class EnrichedBodies:
         )
         self._trace = gap_trace(surplus, system.pairing)
 
-    def opening(self, contact: ContactState, state: BodyState, warmer: WarmerFaces | None):
+    def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
         system, problem = self._system, self._problem
         loads = self._loads(contact)
-        if warmer is not None:
+        if heated is not None:
             assert system.thermal is not None
             space = system.thermal.conduction.space
-            before = warmer.problem.field(np.asarray(state.rise))
-            rise = warmer.problem.function(before + warmer.field)
+            before = heated.problem.field(np.asarray(state.rise))
+            rise = heated.problem.function(before + heated.field)
             loads = loads + problem.loads(
                 lambda δu: system.elastic.thermal_work(rise, δu, space.ufl_element().degree + 1)
             )
@@ -113,7 +113,7 @@ class EnrichedBodies:
         return loads
 
 
-def warmer_faces(
+def temperature_change(
     system: System, heat: Heat, thermal: ThermalSystem, contact: ContactState, state: BodyState
 ):
     """Change of the steady temperatures by the next degree for a given friction heat.
@@ -131,7 +131,7 @@ def warmer_faces(
     )
     loads = np.concatenate([face.nodal_heat(state.thermal, bath=False), given])
     change = problem.correction(problem.residual(problem.field(np.asarray(state.rise)), loads))
-    alone = np.array(
+    uncoupled = np.array(
         [
             sum_over_ranks(system.comm, trace.T @ change[:count] + more.T @ change[count:])
             for trace, more in zip(face.traces, surplus, strict=True)
@@ -139,15 +139,16 @@ def warmer_faces(
     )
     # the nodal space cannot represent the response to a flux that levels finer details
     weighted = face.weights[:, None] * face.basis
-    seen = (
-        face.basis @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ alone.T, rcond=None)[0]
+    resolved = (
+        face.basis
+        @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ uncoupled.T, rcond=None)[0]
     )
     exchange = face.exchange(contact.conditions.conductance)
     none = np.zeros(len(face.weights))
-    coupled = exchange.state(none, BaselineResponse((seen[:, 0], seen[:, 1])))
+    coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
     change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
-    details = _levelled(alone - seen.T, face, contact.conditions.conductance)
-    return WarmerFaces(np.array(coupled.rise) + details, problem, change)
+    details = _levelled(uncoupled - resolved.T, face, contact.conditions.conductance)
+    return TemperatureChange(np.array(coupled.rise) + details, problem, change)
 
 
 def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:

@@ -35,7 +35,7 @@ from ..results.recording import Snapshot
 from ..system.building import sliding_of
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
+from .enriched_bodies import EnrichedBodies, TemperatureChange, temperature_change
 
 _FOLLOWING = 1.5
 """Ratio of the change by all higher degrees to that by the next one: 1 + 1/3 + 1/9 …"""
@@ -92,14 +92,14 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     """Estimate the errors at the end of an analysis. Every rank calls."""
     system, steady = end.system, analysis.type == "steady"
     missing: dict[str, str] = {}
-    warmer, why = _warmer(end)
-    temperature = None if warmer is None else _of_temperature(end, warmer)
+    heated, why = _temperature_change(end)
+    temperature = None if heated is None else _of_temperature(end, heated)
     if temperature is None:
         missing["temperature"] = why or "no temperature differs from the ambient one"
     bodies = EnrichedBodies(system)
-    opened = bodies.opening(end.contact, end.bodies, warmer)
+    opened = bodies.opening(end.contact, end.bodies, heated)
     shape = None
-    if system.thermal is not None and warmer is None:
+    if system.thermal is not None and heated is None:
         missing["shape"] = f"temperature: {why}"
     else:
         shape = _of_shape(end, opened, steady)
@@ -111,17 +111,17 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     else:
         try:
             if steady:
-                richer = _finer_principle(system, end.contact)
+                enriched = _finer_principle(system, end.contact)
             else:
-                richer = _richer_pressure(end, bodies, opened)
-            pressure, largest = _of_pressure(system, end.contact.pressure, richer)
+                enriched = _enriched_pressure(end, bodies, opened)
+            pressure, largest = _of_pressure(system, end.contact.pressure, enriched)
             pressure = max(pressure, _of_edges(system, end.interface))
         except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
             missing["pressure"] = str(error)
     return ErrorEstimates(pressure, largest, shape, temperature, missing)
 
 
-def _warmer(end: Snapshot) -> tuple[WarmerFaces | None, str | None]:
+def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
     thermal, heat = end.system.thermal, end.system.model.heat
     if thermal is None or heat is None or end.bodies.thermal is None:
@@ -134,13 +134,13 @@ def _warmer(end: Snapshot) -> tuple[WarmerFaces | None, str | None]:
         return None, "not estimated where conductivity or expansion change with temperature"
     if heat.advection != "none":
         return None, "not estimated where a body carries heat along"
-    return warmer_faces(end.system, heat, thermal, end.contact, end.bodies), None
+    return temperature_change(end.system, heat, thermal, end.contact, end.bodies), None
 
 
-def _of_temperature(end: Snapshot, warmer: WarmerFaces) -> float | None:
+def _of_temperature(end: Snapshot, heated: TemperatureChange) -> float | None:
     assert end.bodies.thermal is not None
     largest = float(np.abs(end.bodies.thermal.rise).max())
-    return _FOLLOWING * float(np.abs(warmer.faces).max()) / largest if largest > 0 else None
+    return _FOLLOWING * float(np.abs(heated.faces).max()) / largest if largest > 0 else None
 
 
 def _of_shape(end: Snapshot, opened: np.ndarray, steady: bool) -> float | None:
@@ -152,8 +152,8 @@ def _of_shape(end: Snapshot, opened: np.ndarray, steady: bool) -> float | None:
         return None
     modes, change = system.holder.modes[pressing], opened[pressing]
     roots = np.sqrt(system.weights[pressing])
-    amounts = np.linalg.lstsq(modes * roots[:, None], change * roots, rcond=None)[0]
-    return _FOLLOWING * float(np.abs(change - modes @ amounts).max()) / scale
+    motion = np.linalg.lstsq(modes * roots[:, None], change * roots, rcond=None)[0]
+    return _FOLLOWING * float(np.abs(change - modes @ motion).max()) / scale
 
 
 def _of_edges(system: System, interface: InterfaceFields) -> float:
@@ -172,14 +172,14 @@ def _of_edges(system: System, interface: InterfaceFields) -> float:
     return float(pressure[last] @ largest[side.facet[last]] / 2 / (weights @ pressure))
 
 
-def _of_pressure(system: System, pressure: np.ndarray, richer: np.ndarray) -> tuple[float, float]:
+def _of_pressure(system: System, pressure: np.ndarray, enriched: np.ndarray) -> tuple[float, float]:
     total, largest = float(system.weights @ pressure), float(pressure.max())
-    change = float(system.weights @ np.abs(richer - pressure))
-    peak = abs(float(richer.max()) - largest)
+    change = float(system.weights @ np.abs(enriched - pressure))
+    peak = abs(float(enriched.max()) - largest)
     return _FOLLOWING * change / total, _FOLLOWING * peak / largest
 
 
-def _richer_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray) -> np.ndarray:
+def _enriched_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray) -> np.ndarray:
     """Pressure of an enriched discretisation at the contact points, shape (n,) [Pa]."""
     system, interface = end.system, end.interface
     if system.model.interface.pressure_degree == "lobatto":

@@ -26,11 +26,11 @@ _NEW = 1e-12
 """Smallest squared norm of the new part of a unit field that extends the space."""
 _SPREAD = (1.0, 30.0, 1e3, 3e4)
 """Initial rates of a model, relative to that of diffusion across the contact."""
-_SAME, _SETTLED, _TURNS = 1e-3, 1e-6, 6
+_SAME, _TOLERANCE, _ITERATIONS = 1e-3, 1e-6, 6
 
 
 @dataclass(frozen=True)
-class Growing:
+class GrowthMode:
     """Growth rate of a perturbation, and its speed.
 
     Attributes
@@ -43,10 +43,10 @@ class Growing:
     factor: float
     rate: Rate
 
-    def near(self, other: Growing) -> bool:
+    def near(self, other: GrowthMode) -> bool:
         """True if both agree within the accuracy of the reduced model."""
-        change = abs(self.rate.value - other.rate.value) <= _SETTLED * abs(other.rate.value)
-        return change and abs(self.factor - other.factor) <= _SETTLED * other.factor
+        change = abs(self.rate.value - other.rate.value) <= _TOLERANCE * abs(other.rate.value)
+        return change and abs(self.factor - other.factor) <= _TOLERANCE * other.factor
 
 
 class GrowthModel:
@@ -85,22 +85,22 @@ class GrowthModel:
         for rate in (0.0, *(part * slowest for part in _SPREAD)):
             self.add(rate)
 
-    def settled(self, find: Callable[[Disturbances], Growing | None]) -> Growing | None:
+    def refined(self, find: Callable[[Disturbances], GrowthMode | None]) -> GrowthMode | None:
         """Result of a search in the model, refined at the rate found; every rank calls.
 
         The response at the rate found is added until the result no longer changes.
         """
-        found = find(self.disturbances())
-        for _ in range(_TURNS):
-            if found is None or self._knows(abs(found.rate.value)):
+        found = find(self.matrices())
+        for _ in range(_ITERATIONS):
+            if found is None or self._has_response(abs(found.rate.value)):
                 break
             self.add(abs(found.rate.value))
-            before, found = found, find(self.disturbances())
+            before, found = found, find(self.matrices())
             if found is not None and found.near(before):
                 break
         return found
 
-    def _knows(self, rate: float) -> bool:
+    def _has_response(self, rate: float) -> bool:
         return any(abs(rate - known) <= _SAME * rate for known in self._rates)
 
     def add(self, rate: float) -> None:
@@ -132,7 +132,7 @@ class GrowthModel:
             alike = condense_heat(growing, face.weights, basis, traces, face.shift, face.partition)
         return growing, alike
 
-    def disturbances(self) -> Disturbances:
+    def matrices(self) -> Disturbances:
         """Matrices of the present model; every rank calls."""
         system, space, thermal = self._system, self._space, self._thermal
         conduction, X = thermal.conduction, self._fields

@@ -166,7 +166,7 @@ def _stability(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     if system.laws and len(free) and free.all():
         return stability(system, steady(system, observer), observer)
     cold = InterfaceProblem(system, CondensedMethod(system), None)
-    return stability(system, unworn(system, cold), observer)
+    return stability(system, unworn(cold), observer)
 
 
 _STATIC: dict[str, Callable[[System, Observer], tuple[Snapshot, Result]]] = {

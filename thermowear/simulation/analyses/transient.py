@@ -9,17 +9,15 @@ import numpy as np
 
 from ...balances import ALLOWED, require
 from ...errors import ComputationError
-from ...laws.motions import combined
 from ...model.analyses import TransientAnalysis
 from ...results import HeatRow, HistoryRow, Result
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
 from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
-from ..results.recording import Snapshot, snapshot
+from ..results.recording import Snapshot, snapshot_at
 from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
@@ -60,7 +58,7 @@ def transient_history(
     """Empty history of a transient analysis, and the moments to keep in it, made one by one."""
     problem = interface_problem(system, observer.note)
     sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
-    loop = OuterLoop(system, settings, problem, partial(_principle, settings), sizes, observer)
+    loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
     history = TransientHistory(loop, settings, observer)
     return history, history.watched(loop.moments(history.resume(before)))
 
@@ -98,25 +96,25 @@ class TransientHistory(AnalysisHistory[Moment]):
     """
 
     def __init__(self, loop: OuterLoop, settings: TransientAnalysis, observer: Observer):
-        super().__init__(loop.system, settings, observer)
+        super().__init__(loop.now.system, settings, observer)
         self.loop = loop
         self._speed = 0.0
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
 
     def restart_data(self) -> tuple:
         """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
-        heat = self.loop.problem.heat
+        heat = self.loop.now.problem.heat
         own = None if heat is None else heat.steps.restart_data()
         return self._speed, self.loop.restart_data(), own
 
     def restore(self, data: tuple) -> None:
         self._speed, loop, own = data
         self.loop.restore(loop)
-        if self.loop.problem.heat is not None and own is not None:
-            self.loop.problem.heat.steps.restore(own)
+        if self.loop.now.problem.heat is not None and own is not None:
+            self.loop.now.problem.heat.steps.restore(own)
 
     def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
-        problem = self.loop.problem
+        problem = self.loop.now.problem
         conditions = problem.conditions(state.state, state.time)
         speed = self._mean(conditions.speed)
         slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
@@ -141,7 +139,7 @@ class TransientHistory(AnalysisHistory[Moment]):
             for moment in passing:
                 yield moment
                 hottest = self._hottest(moment.state)
-                if self.loop.problem.stores_heat and hottest > _MELTED:
+                if self.loop.now.problem.stores_heat and hottest > _MELTED:
                     raise ComputationError(
                         f"transient: {hottest:.3g} K at {moment.time:g} s, above the melting point "
                         "of any solid"
@@ -152,17 +150,17 @@ class TransientHistory(AnalysisHistory[Moment]):
             raise
 
     def snapshot(self, state: Moment) -> Snapshot:
-        return snapshot_at(self.loop.system, self.loop.problem, state)
+        return snapshot_at(self.loop.now.problem, state.state, state.time)
 
     def summary(self) -> dict:
         loop, rows, heat = self.loop, self.table(HistoryRow), self.table(HeatRow)
-        steady = loop.steady
+        steady = loop.now.steady
         result = {
             "steps": len(rows) - 1,
             "time_s": rows[-1].time,
             "distance_from_steady": None if steady is None else self.last.distance,
             **loop.summary(),
-            **wear_velocity(loop.system, None if steady is None else steady.wear.velocity),
+            **wear_velocity(loop.now.system, None if steady is None else steady.wear.velocity),
         }
         if not heat:
             return result
@@ -186,8 +184,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         return now > _STEEPER * so_far > 0.0
 
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
-        system, pressure, rows = self.loop.system, moment.state.pressure, self.table(HistoryRow)
-        kept = _by_body(system, moment.state.worn) - system.moved
+        system, pressure, rows = self.loop.now.system, moment.state.pressure, self.table(HistoryRow)
+        kept = moment.state.by_body(system.laws) - system.moved
         volumes = (kept @ system.weights + system.lost) / system.coverage
         return HistoryRow(
             time=moment.time,
@@ -204,7 +202,7 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def _hottest(self, state: InterfaceState) -> float:
         """Highest temperature of both faces [K]; NaN without heat."""
-        heat = self.loop.problem.heat
+        heat = self.loop.now.problem.heat
         if heat is None or state.faces is None:
             return float("nan")
         return float(np.max(state.faces.rise)) + heat.ambient
@@ -212,7 +210,7 @@ class TransientHistory(AnalysisHistory[Moment]):
     def _heat_row(
         self, moment: Moment, conditions: InterfaceConditions, heat: FrictionHeat
     ) -> HeatRow:
-        system, state = self.loop.system, moment.state
+        system, state = self.loop.now.system, moment.state
         assert state.stored is not None
         assert state.faces is not None
         balance, pressure = state.stored.balance(heat.initial.stored, system.comm), state.pressure
@@ -235,7 +233,7 @@ class TransientHistory(AnalysisHistory[Moment]):
     def _force_per_pressure(self, conditions: InterfaceConditions) -> np.ndarray:
         """Normal force per pressure at the points (n,) [m²]; those of the last conditions kept."""
         if self._pressing is None or self._pressing[0] is not conditions:
-            system = self.loop.system
+            system = self.loop.now.system
             directions = system.rubbing(conditions.friction).traction_direction
             along = directions @ system.load_direction
             self._pressing = conditions, system.weights * along
@@ -243,19 +241,4 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def _mean(self, values: np.ndarray) -> float:
         """Area mean over the face."""
-        return float(np.average(values, weights=self.loop.system.weights))
-
-
-def snapshot_at(system: System, problem: InterfaceProblem, moment: Moment) -> Snapshot:
-    """Contact and bodies at a moment of a running-in; every rank calls."""
-    contact = problem.contact_state(moment.state, moment.time)
-    motion = combined(system.holder.motions, moment.state.contact.motion)
-    worn = _by_body(system, moment.state.worn)
-    return snapshot(system, contact, motion, worn)
-
-
-def _by_body(system: System, worn: np.ndarray) -> np.ndarray:
-    """Expand rows of the wearing bodies to both bodies, shape (2, n)."""
-    both = np.zeros((2, worn.shape[1]))
-    both[list(system.laws)] = worn
-    return both
+        return float(np.average(values, weights=self.loop.now.system.weights))

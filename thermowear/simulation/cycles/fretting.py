@@ -105,9 +105,9 @@ class _Path:
                 restart = RestartPoint(0, increment.state)
                 yield increment
         if history.cycle is not None:
-            yield from self.going_on(restart)
+            yield from self._cycles_after(restart)
 
-    def going_on(self, restart: RestartPoint) -> Iterator[Increment]:
+    def _cycles_after(self, restart: RestartPoint) -> Iterator[Increment]:
         """Increments of the cycles after a restart point."""
         history, settings = self._history, self._settings
         count = settings.cycles
@@ -122,11 +122,11 @@ class _Path:
         times = self._settings.output_times
         return self._along(cycle_segments(self._history, times, number, repeats), state)
 
-    def settled(self, end: Increment, worn: np.ndarray) -> StickSlipState:
+    def equilibrium(self, end: Increment, worn: np.ndarray) -> StickSlipState:
         """See `cycle_jump.Cycles`."""
         state, loads = replace(end.state, worn=worn), self._loads(end.segment.instant)
-        settled = advance(self._contact, self._friction, state, loads, self._wear(0.0))
-        return replace(settled, dissipated=state.dissipated)
+        found = advance(self._contact, self._friction, state, loads, self._wear(0.0))
+        return replace(found, dissipated=state.dissipated)
 
     def _along(self, segments: Iterator[LoadSegment], state: StickSlipState) -> Iterator[Increment]:
         count = self._settings.increments

@@ -75,7 +75,9 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
     def snapshot(self, moment: Moment) -> Snapshot:
         """Contact and bodies at mid-stroke of body 1, and the worn track; every rank calls."""
         system, state = self._system, moment.state
-        worn, rates = (self._seen(v) for v in (state.worn, self._problem.rates(state.pressure)))
+        worn, rates = (
+            self._at_points(v) for v in (state.worn, self._problem.rates(state.pressure))
+        )
         solution = interface_problem(system).worn(worn.sum(axis=0))
         motion = combined(system.holder.motions, solution.motion)
         contact = contact_state(system, solution.pressure)
@@ -113,7 +115,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
             "mean_wear_rate_2_m_per_s": means[1],
         }
 
-    def _seen(self, depths: np.ndarray) -> np.ndarray:
+    def _at_points(self, depths: np.ndarray) -> np.ndarray:
         """Depths (or rates) of both bodies at the mid-stroke points, shape (2, n)."""
         system, (on_1, on_2) = self._system, self._problem.split(depths)
         hats = self._problem.track.hats(system.pairing)

@@ -15,9 +15,9 @@ from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,
+    directions_between,
     node_normals,
     nodes_of,
-    ways_between,
 )
 from ...geometry.mesh.shapes import quality, scaled_jacobians
 from ...geometry.mesh.tagged import TaggedMesh
@@ -53,21 +53,21 @@ class MovingFaces:
     @cached_property
     def faces(self) -> dict[int, WornFace]:
         """Moving faces by index of the body."""
-        ways = zip(self.geometry.directions, self.geometry.held, strict=True)
-        paths = [Paths(directions, held) for directions, held in ways]
+        pairs = zip(self.geometry.directions, self.geometry.held, strict=True)
+        paths = [Paths(directions, held) for directions, held in pairs]
         pairing = self._system.pairing
         if self._system.worn is None:
-            pairing = _along_ways(pairing, self.geometry.directions, self.bodies)[0]
+            pairing = _along_directions(pairing, self.geometry.directions, self.bodies)[0]
         return {index: WornFace(pairing, index, paths[index]) for index in self.bodies}
 
     def movable(self, depth: np.ndarray) -> np.ndarray:
         """Part of a depth (2, n) that nodal displacements of the faces represent [m]."""
-        result, due = np.zeros_like(depth), self.due(depth)
+        result, followed = np.zeros_like(depth), self.followed(depth)
         for index, face in self.faces.items():
-            result[index] = face.depths(face.amounts(due[index]))
+            result[index] = face.depths(face.offsets(followed[index]))
         return result
 
-    def due(self, depth: np.ndarray) -> np.ndarray:
+    def followed(self, depth: np.ndarray) -> np.ndarray:
         """Part of a depth (2, n) that the faces should follow [m].
 
         All of it except at the walls of a groove: where a face continues beside the contact its end
@@ -86,15 +86,15 @@ class MovingFaces:
             stays = cKDTree(nodes_of(side.face)[held])  # infinite distance if no node is held
             return stays.query(side.face.points(side.facet, side.t))[0]
         before = side.face.position(side.facet, side.t)
-        ways = before, side.face.sizes.sum() - before
-        far = [np.where(stays, way, np.inf) for stays, way in zip(held[[0, -1]], ways, strict=True)]
-        return np.minimum(*far)
+        distances = before, side.face.sizes.sum() - before
+        ends = zip(held[[0, -1]], distances, strict=True)
+        return np.minimum(*(np.where(stays, distance, np.inf) for stays, distance in ends))
 
 
 def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     """Geometry before its first update."""
     pairing, comm = system.pairing, system.comm
-    mesh, paths = on_root(comm, lambda: _ways(system))
+    mesh, paths = on_root(comm, lambda: _node_paths(system))
     directions = tuple(path.directions for path in paths)
     nothing = np.zeros(3)
     return WornGeometry(
@@ -105,7 +105,7 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
         best=np.array([quality(mesh, body.parts) for body in system.model.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
-        lacking=pairing.gap - _along_ways(pairing, directions, bodies)[1],
+        lacking=pairing.gap - _along_directions(pairing, directions, bodies)[1],
         holder=(nothing, nothing),
         lost=np.zeros(2),
         updates=0,
@@ -115,13 +115,13 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     )
 
 
-def lacking_in_shape(pairing: Pairing) -> np.ndarray:
+def gap_of_initial_shape(pairing: Pairing) -> np.ndarray:
     """Gap of the initial shape minus that of the meshed faces, shape (n,) [m]."""
     first, second = pairing.sides
     return pairing.gap - np.einsum("ni,ni->n", pairing.normals, second.points - first.points)
 
 
-def _along_ways(
+def _along_directions(
     pairing: Pairing, directions: tuple[np.ndarray, ...], bodies: list[int]
 ) -> tuple[Pairing, np.ndarray]:
     """Pairing with points on body 2 projected along the node directions of the wearing bodies.
@@ -133,14 +133,16 @@ def _along_ways(
         Gap between the paired points along the normals [m].
     """
     first, second = pairing.sides
-    gone = np.isin([0, 1], bodies or [0, 1]).astype(float)
-    ways = ways_between(pairing.sides, directions, gone)
-    facet, t, way = ray_intersections(second.face, first.face.points(first.facet, first.t), ways)
-    gap = way * np.einsum("ni,ni->n", pairing.normals, ways)
+    recession = np.isin([0, 1], bodies or [0, 1]).astype(float)
+    toward = directions_between(pairing.sides, directions, recession)
+    facet, t, distance = ray_intersections(
+        second.face, first.face.points(first.facet, first.t), toward
+    )
+    gap = distance * np.einsum("ni,ni->n", pairing.normals, toward)
     return replace(pairing, sides=(first, replace(second, facet=facet, t=t))), gap
 
 
-def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
+def _node_paths(system: System) -> tuple[TaggedMesh, list[Paths]]:
     """Unworn mesh, and the paths of the nodes of its faces."""
     mesh = system.model.meshes.mesh(system.zone)
     paths = []

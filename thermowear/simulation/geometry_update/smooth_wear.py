@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...contact.wear.unresolved_gap import unseen
+from ...contact.wear.unresolved_gap import unresolved_gap
 from ...laws.distribution import InPlace
-from ...laws.motions import combined
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
-from ..results.recording import snapshot
-from ..system.system import System
+from ..results.recording import snapshot_at
 
 
-def worn_in(
-    system: System, problem: InterfaceProblem, state: InterfaceState, time: float
-) -> np.ndarray:
+def smoothed_wear(problem: InterfaceProblem, state: InterfaceState, time: float) -> np.ndarray:
     """Worn depths with pointwise conforming faces where they press. Every rank calls.
 
     The gap is changed only orthogonally to the pressure space: pressure, forces and volumes stay.
@@ -26,15 +22,11 @@ def worn_in(
     ndarray, shape (n_wearing, n)
         [m]; those of the state if any of them became negative otherwise.
     """
-    both = np.zeros((2, state.worn.shape[1]))
-    both[list(system.laws)] = state.worn
-    contact = problem.contact_state(state, time)
-    motion = combined(system.holder.motions, state.contact.motion)
-    gap = snapshot(system, contact, motion, both).interface.gap
+    system, gap = problem.system, snapshot_at(problem, state, time).interface.gap
     weak = state.pressure > 0
     if state.pointwise is not None:
         weak &= ~state.pointwise  # there faces conform already, and the gap is resolved
-    excess = unseen(gap, weak, system.pairing, system.basis)
+    excess = unresolved_gap(gap, weak, system.pairing, system.basis)
     in_place = np.array([isinstance(s, InPlace) for s in system.spreads.values()])
     ours = np.where(in_place[:, None], state.worn, 0.0)
     whole = ours.sum(axis=0)

@@ -60,17 +60,18 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
 
 
 def meshed_wider(
-    system: System, problem: InterfaceProblem, state: InterfaceState, time: float, zone: Zone
-) -> tuple[System, InterfaceProblem, InterfaceState] | str:
+    problem: InterfaceProblem, state: InterfaceState, time: float, zone: Zone
+) -> tuple[InterfaceProblem, InterfaceState] | str:
     """Continue on an unworn mesh for a wider zone, all wear in the gap. Every rank calls.
 
     Returns
     -------
-    system, problem, state
+    problem, state
         Or the reason (str) for which there are none.
     """
     if state.stored is not None:
         return "temperatures that are followed in time are not carried over to a wider zone"
+    system = problem.system
     try:
         following = build(system.model, system.comm, system.phases, zone)
     except CaseError as reason:
@@ -78,7 +79,7 @@ def meshed_wider(
     after = interface_problem(following)
     rows = _carried(system, following, state.worn)
     with system.phases("contact"):
-        return following, after, after.take_over(problem, state, rows, None, time)
+        return after, after.take_over(problem, state, rows, None, time)
 
 
 def _carried(before: System, after: System, worn: np.ndarray) -> np.ndarray:

@@ -126,13 +126,13 @@ def _force_error(system: System, contact: ContactState, displacement, loads, str
     nodes = system.elastic.nodes()
     reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
     upper = system.elastic.owned_by(*system.model.bodies[0].parts)
-    carried, borne_by_2 = (
+    carried, carried_by_2 = (
         _work(system, contact, rigid_modes, side) for side in system.pairing.sides
     )
     errors, scales = np.zeros(len(rigid_modes)), np.zeros(len(rigid_modes))
     strained = system.elastic.compressibility() * strained.reshape(nodes.shape)
     pressed = _part(contact.conditions.load - system.holder.dead, system.holder.load)
-    for k, (mode, share, other) in enumerate(zip(rigid_modes, carried, borne_by_2, strict=True)):
+    for k, (mode, share, other) in enumerate(zip(rigid_modes, carried, carried_by_2, strict=True)):
         moved = mode.motion.at(nodes)
         work = (reactions * moved).sum(axis=1)
         magnitudes = np.abs(work).sum(), np.abs(strained * moved).sum()
@@ -141,12 +141,12 @@ def _force_error(system: System, contact: ContactState, displacement, loads, str
         given = system.dead_resultant(mode.motion)
         found = share.sum()
         # the load may be below the maximum of its history
-        due = (
+        expected = (
             found - given[0]
             if mode.load is None or contact.shear is not None
             else pressed * mode.load
         )
-        errors[k] = np.maximum(abs(held - due), abs(supported + given[1] + other.sum()))
+        errors[k] = np.maximum(abs(held - expected), abs(supported + given[1] + other.sum()))
         loaded = np.abs(share).sum() + np.abs(given).sum()
         scales[k] = max(loaded, borne, _ROUNDING / ALLOWED * thermal)
     shifts = np.array([not mode.motion.rotation.any() for mode in rigid_modes])

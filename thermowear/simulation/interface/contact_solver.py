@@ -75,7 +75,7 @@ class ContactSolver(Protocol):
         ComputationError
         """
 
-    def yielding(self, points: np.ndarray) -> np.ndarray:
+    def point_compliance(self, points: np.ndarray) -> np.ndarray:
         """Deflection per pressure of a single point, NaN at other points, shape (n,) [m/Pa].
 
         Parameters
@@ -97,8 +97,8 @@ class ContactSolver(Protocol):
             Conditions in the steady state.
         """
 
-    def opening(self, contact: ContactSolution) -> float:
+    def largest_deflection(self, contact: ContactSolution) -> float:
         """Largest change of the gap by elastic deflection [m]."""
 
-    def bending(self, contact: ContactSolution) -> float:
+    def deflection_range(self, contact: ContactSolution) -> float:
         """Range of the elastic deflection over the contact area [m]."""

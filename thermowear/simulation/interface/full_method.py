@@ -68,17 +68,17 @@ class FullMethod:
             'speed, or use contact.method = "condensed", which solves both at once'
         )
 
-    def yielding(self, points) -> np.ndarray:
+    def point_compliance(self, points) -> np.ndarray:
         return np.where(points, self._edge_compliance, np.nan)
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """Pressure of the principle unchanged: the full system has no pressure space."""
         return pressure
 
-    def opening(self, contact: ContactSolution) -> float:
+    def largest_deflection(self, contact: ContactSolution) -> float:
         return float(np.abs(self._opened(contact)).max())
 
-    def bending(self, contact: ContactSolution) -> float:
+    def deflection_range(self, contact: ContactSolution) -> float:
         opened = self._opened(contact)[contact.pressure > 0.0]
         return float(np.ptp(opened)) if opened.size else 0.0
 

@@ -118,5 +118,5 @@ class GrowingEdge:
     def _settling(self, state: InterfaceState, points: np.ndarray, slope: np.ndarray) -> float:
         """Shortest time in which wear takes up the elastic deflection under single points [s]."""
         assert state.pointwise is not None
-        yielding = self._method.yielding(state.pointwise)[points]
-        return float((yielding[slope > 0.0] / slope[slope > 0.0]).min(initial=np.inf))
+        point_compliance = self._method.point_compliance(state.pointwise)[points]
+        return float((point_compliance[slope > 0.0] / slope[slope > 0.0]).min(initial=np.inf))

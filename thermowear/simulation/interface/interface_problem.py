@@ -35,9 +35,9 @@ class InterfaceProblem(WearProblem):
     """
 
     def __init__(self, system: System, method: ContactSolver, heat: FrictionHeat | None):
-        self._system, self._method, self.heat = system, method, heat
+        self.system, self._method, self.heat = system, method, heat
         self._condition_model = ConditionModel(system)
-        self._lasting_conditions: tuple[bytes, InterfaceConditions] | None = None
+        self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._edge = GrowingEdge(system, method)
         self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
         self._gap = system.pairing.gap - system.holder.imposed
@@ -51,9 +51,9 @@ class InterfaceProblem(WearProblem):
 
     def unworn(self) -> InterfaceState:
         """Contact of the unworn faces with the steady temperatures of its own friction heat."""
-        return self._lasting(self._unworn, 0.0)
+        return self._in_steady_heat(self._unworn, 0.0)
 
-    def _lasting(
+    def _in_steady_heat(
         self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
     ) -> InterfaceState:
         """Contact of faces with given wear and the steady temperatures of its friction heat.
@@ -81,7 +81,7 @@ class InterfaceProblem(WearProblem):
         if not self.stores_heat:
             return self.unworn()
         assert self.heat is not None
-        return self._frozen(self._unworn, self.heat.initial, 0.0)
+        return self._at_temperatures(self._unworn, self.heat.initial, 0.0)
 
     def take_over(
         self,
@@ -106,20 +106,20 @@ class InterfaceProblem(WearProblem):
         time : float
             [s]
         """
-        edge, geometry = state.pointwise, self._system.worn
+        edge, geometry = state.pointwise, self.system.worn
         if edge is not None and (geometry is None or geometry.pieces is None):
             edge = self._edge.points(worn)  # the contact points have changed
         if state.stored is None:
-            found = self._lasting(worn, time, edge)
+            found = self._in_steady_heat(worn, time, edge)
         else:
             assert self.heat is not None
             assert former.heat is not None
             assert rise is not None
             stored = self.heat.take_over(former.heat, state.stored, rise)
-            found = self._frozen(worn, self.heat.given(stored), time, edge)
+            found = self._at_temperatures(worn, self.heat.given(stored), time, edge)
         return replace(found, peak=state.largest, pointwise=edge)
 
-    def _frozen(
+    def _at_temperatures(
         self,
         worn: np.ndarray,
         heat: InitialHeat,
@@ -141,7 +141,7 @@ class InterfaceProblem(WearProblem):
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
             even = reached.all() or not depth.size
-            if even or np.ptp(depth) <= self._method.bending(state.contact):
+            if even or np.ptp(depth) <= self._method.deflection_range(state.contact):
                 return state
         edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)
@@ -179,11 +179,11 @@ class InterfaceProblem(WearProblem):
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
         """Interface conditions in a state at a time [s]; lasting ones are kept."""
         model, closed = self._condition_model, state.pressure > 0
-        kept, key = self._lasting_conditions, closed.tobytes()
+        kept, key = self._last_conditions, closed.tobytes()
         if kept is not None and kept[0] == key and model.lasting:
             return kept[1]
         found = model.at(time, state.pressure, state.faces, closed, state.worn)
-        self._lasting_conditions = key, found
+        self._last_conditions = key, found
         return found
 
     def _rates(self, conditions: InterfaceConditions, step: float = 1.0) -> WearRates:
@@ -206,7 +206,7 @@ class InterfaceProblem(WearProblem):
         """
         gap = self._gap + worn.sum(axis=0)
         if conditions.released:  # the holder stays where it is
-            rigid_modes = self._system.holder.rigid_modes
+            rigid_modes = self.system.holder.rigid_modes
             motion = np.zeros(len(rigid_modes)) if guess is None else guess.motion
             return ContactSolution(np.zeros(len(gap)), motion, None)
 
@@ -268,7 +268,7 @@ class InterfaceProblem(WearProblem):
         fastest = float(self._rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0))
         step = np.inf
         if fastest > 0.0:
-            step = 1e-3 * self._method.opening(state.contact) / fastest
+            step = 1e-3 * self._method.largest_deflection(state.contact) / fastest
         if self.heat is not None and self.stores_heat:
             made = conditions.heating * state.pressure
             step = min(step, self.heat.first_step(float(made.max())))

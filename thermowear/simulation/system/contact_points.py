@@ -14,7 +14,7 @@ from ...contact.search.pairing import Pairing, pair, paired
 from ...contact.search.projection import ray_intersections
 from ...contact.search.refinement import OVERHANG_TOLERANCE, SLIVER
 from ...contact.search.surface import Surface
-from ...contact.wear.worn_face import ways_between
+from ...contact.wear.worn_face import directions_between
 from ...laws.motions import RigidMotion
 from ...model.facing import Facing
 from ...model.model import Model
@@ -66,7 +66,7 @@ def worn_contact_points(
     first, second = pairing.sides
     on_face = face_1.points(first.facet, first.t)
     to = motion.at(on_face)
-    ways = ways_between(pairing.sides, worn.directions, np.abs(worn.depth).max(axis=1))
+    ways = directions_between(pairing.sides, worn.directions, np.abs(worn.depth).max(axis=1))
     facet, t, way = ray_intersections(face_2, on_face + to, ways)
     between, apart = (np.einsum("ni,ni->n", pairing.normals, v) for v in (way[:, None] * ways, to))
     points = on_face + (pairing.share * between)[:, None] * pairing.normals

@@ -111,13 +111,13 @@ def test_hot_bodies_that_nothing_presses_are_in_equilibrium():
 def test_steps_are_efficient(monkeypatch):
     """requirement: no tiny steps to begin with, few sizes, few steps."""
     sizes = []
-    make = HeatSteps._new
+    make = HeatSteps.operators_within
 
     def counted(steps, step):
         sizes.append(step)
         return make(steps, step)
 
-    monkeypatch.setattr(HeatSteps, "_new", counted)
+    monkeypatch.setattr(HeatSteps, "operators_within", counted)
     result = solved(STOP, None, *COARSE)
     assert len(result.history) < 80
     assert result.history[1].step > 1e-4

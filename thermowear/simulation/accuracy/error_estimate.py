@@ -44,46 +44,37 @@ _FLAT = 1e-9
 """Range of a shape at rounding level, relative to the elastic deflection."""
 
 
+_NAMES = {"max_pressure": "largest pressure"}
+
+
 @dataclass(frozen=True)
 class ErrorEstimates:
     """Estimates of the relative errors, see the module; None where there is no estimate.
 
     Attributes
     ----------
-    pressure, max_pressure, shape, temperature : float or None
+    errors : dict of str to (float or None)
+        Errors of pressure, max_pressure, shape and temperature.
     missing : dict of str to str
         Reason for a missing estimate, by quantity.
     """
 
-    pressure: float | None
-    max_pressure: float | None
-    shape: float | None
-    temperature: float | None
+    errors: dict[str, float | None]
     missing: dict[str, str]
 
     def summary(self) -> dict:
         """Keys of ``summary.json``."""
-        return {
-            "pressure_error_estimate_relative": self.pressure,
-            "max_pressure_error_estimate_relative": self.max_pressure,
-            "shape_error_estimate_relative": self.shape,
-            "temperature_error_estimate_relative": self.temperature,
-            "error_estimate_missing": self.missing,
-        }
+        found = {f"{q}_error_estimate_relative": error for q, error in self.errors.items()}
+        return found | {"error_estimate_missing": self.missing}
 
     def warning(self) -> str | None:
         """Warning that lists the errors above `WORTH_A_WARNING`; None without any."""
-        named = {
-            "pressure": self.pressure,
-            "largest pressure": self.max_pressure,
-            "shape": self.shape,
-            "temperature": self.temperature,
-        }
-        large = [f"{q} {100 * e:.2g} %" for q, e in named.items() if e and e > WORTH_A_WARNING]
-        if not large:
+        above = {q: e for q, e in self.errors.items() if e and e > WORTH_A_WARNING}
+        if not above:
             return None
+        large = ", ".join(f"{_NAMES.get(q, q)} {100 * e:.2g} %" for q, e in above.items())
         return (
-            f"estimated discretisation error above 5 %: {', '.join(large)}; use more mesh.elements "
+            f"estimated discretisation error above 5 %: {large}; use more mesh.elements "
             "or a higher mesh.degree, and compare by `run --accuracy`"
         )
 
@@ -118,7 +109,13 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
             pressure = max(pressure, _of_edges(system, end.interface))
         except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
             missing["pressure"] = str(error)
-    return ErrorEstimates(pressure, largest, shape, temperature, missing)
+    errors = {
+        "pressure": pressure,
+        "max_pressure": largest,
+        "shape": shape,
+        "temperature": temperature,
+    }
+    return ErrorEstimates(errors, missing)
 
 
 def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | None]:

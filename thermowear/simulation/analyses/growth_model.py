@@ -14,11 +14,10 @@ from petsc4py import PETSc
 
 import numpy as np
 
-from ...bulk.heat.conduction import Conduction
-from ...contact.operators.heat import InterfaceHeat, baseline_response
-from ...contact.operators.heat_condensation import condense_heat
+from ...contact.operators.heat import baseline_response
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
+from ..heat.heat_steps import HeatSteps
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 
@@ -75,6 +74,7 @@ class GrowthModel:
         self._system, self._thermal = system, system.thermal
         self._conditions, self._elastic, self._space = conditions, elastic, space
         self._friction = conditions.heating[:, None] * (system.basis @ space.pressures)
+        self._steps = HeatSteps(system, system.thermal, 0)
         self._fields: np.ndarray | None = None
         self._crossing: np.ndarray | None = None
         self._rates: list[float] = []
@@ -111,26 +111,17 @@ class GrowthModel:
         rate : float
             Growth rate, zero for steady state [1/s].
         """
-        conduction, face = self._conducting(rate)
+        steps = self._steps
+        bodies = steps.operators if rate == 0.0 else steps.operators_within(1 / rate)
+        face = bodies.face
         exchange = face.exchange(self._conditions.conductance)
         nodal = sum(
             trace @ (face.weights[:, None] * (share @ self._friction))
             for trace, share in zip(face.traces, exchange.per_friction_heat, strict=True)
         )
         crossing = exchange.crossing_per_friction_heat @ self._friction
-        self._extend(conduction.respond(np.asarray(nodal)), crossing)
+        self._extend(bodies.conduction.respond(np.asarray(nodal)), crossing)
         self._rates.append(rate)
-
-    def _conducting(self, rate: float) -> tuple[Conduction, InterfaceHeat]:
-        """Conduction and condensed interface heat for temperatures that grow at a rate."""
-        steady, face = self._thermal.conduction, self._thermal.face
-        if rate == 0.0:
-            return steady, face
-        with self._system.phases("condense conduction"):
-            growing = steady.implicit_euler(1 / rate)
-            basis, traces = face.basis, face.traces
-            alike = condense_heat(growing, face.weights, basis, traces, face.shift, face.partition)
-        return growing, alike
 
     def matrices(self) -> Disturbances:
         """Matrices of the present model; every rank calls."""

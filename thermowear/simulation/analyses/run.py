@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from numpy.linalg import LinAlgError
@@ -20,21 +20,22 @@ from ...model.model import Model
 from ...results import Result
 from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
-from ..cycles.fretting import fretting
-from ..cycles.reciprocating import reciprocating
+from ..cycles.fretting import fretting_history
+from ..cycles.reciprocating import reciprocating_history
 from ..geometry_update.wider_zone import reaches_open_end
 from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
 from ..results.fields import sample
 from ..results.recording import Snapshot
 from ..runtime.checkpoint_data import Saved, mesh_checksum
+from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.system import System
 from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare
 from .stability import stability
 from .static import initial, steady, unworn
-from .transient import running_in
+from .transient import transient_history
 
 _UNPAIRED = 1e-6
 
@@ -114,7 +115,8 @@ def analyse(
         end, result = _STATIC[analysis.type](system, observer)
     else:
         before = None if saved is None else saved.of(system)
-        end, result = _STEPPED[type(analysis)](system, analysis, observer, before)
+        history, states = _STEPPED[type(analysis)](system, analysis, observer, before)
+        end, result = history.conclude(history.follow(states))
     if reaches_open_end(end.system, end.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
@@ -174,8 +176,8 @@ _STATIC: dict[str, Callable[[System, Observer], tuple[Snapshot, Result]]] = {
     "steady": steady,
     "stability": _stability,
 }
-_STEPPED: dict[type, Callable[..., tuple[Snapshot, Result]]] = {
-    TransientAnalysis: running_in,
-    FrettingAnalysis: fretting,
-    ReciprocatingAnalysis: reciprocating,
+_STEPPED: dict[type, Callable[..., tuple[AnalysisHistory, Iterator]]] = {
+    TransientAnalysis: transient_history,
+    FrettingAnalysis: fretting_history,
+    ReciprocatingAnalysis: reciprocating_history,
 }

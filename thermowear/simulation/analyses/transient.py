@@ -10,7 +10,7 @@ import numpy as np
 from ...balances import ALLOWED, require
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
-from ...results import HeatRow, HistoryRow, Result
+from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
@@ -34,28 +34,17 @@ _UNSTABLE = (
 )
 
 
-def running_in(
-    system: System,
-    settings: TransientAnalysis,
-    observer: Observer,
-    before: Progress | None = None,
-) -> tuple[Snapshot, Result]:
-    """Follow contact in time, from the start or from a checkpoint.
-
-    Results computed before an error or Ctrl-C are kept. The summary includes the wear velocities of
-    the steady state that is approached.
-    """
-    history, passing = transient_history(system, settings, observer, before)
-    return history.conclude(history.follow("time stepping", passing))
-
-
 def transient_history(
     system: System,
     settings: TransientAnalysis,
     observer: Observer,
     before: Progress | None = None,
 ) -> tuple[TransientHistory, Iterator[Moment]]:
-    """Empty history of a transient analysis, and the moments to keep in it, made one by one."""
+    """History of a transient analysis, and the moments to keep in it, made one by one.
+
+    From the start or from a checkpoint. The summary includes the wear velocities of the steady
+    state that is approached.
+    """
     problem = interface_problem(system, observer.note)
     sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
     loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)

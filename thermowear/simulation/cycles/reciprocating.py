@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from ...laws.motions import combined
 from ...model.analyses import ReciprocatingAnalysis
-from ...results import HistoryRow, Result, WornTrack
+from ...results import HistoryRow, WornTrack
 from ..interface.body_state import contact_state
 from ..interface.factory import interface_problem
 from ..interface.sdirk import InterfaceState
@@ -22,21 +23,20 @@ from .reciprocating_problem import ReciprocatingProblem
 from .stroke import positions
 
 
-def reciprocating(
+def reciprocating_history(
     system: System,
     settings: ReciprocatingAnalysis,
     observer: Observer,
     before: Progress | None = None,
-) -> tuple[Snapshot, Result]:
-    """Follow the cycle-averaged wear in time, from the start or from a checkpoint.
+) -> tuple[ReciprocatingHistory, Iterator[Moment]]:
+    """History of cycle-averaged wear, and the moments to keep in it, made one by one.
 
-    Results computed before an error or Ctrl-C are kept.
+    From the start or from a checkpoint.
     """
     problem = ReciprocatingProblem(system, positions(system, settings))
     history = ReciprocatingHistory(system, settings, observer, problem)
     sizes = AnySize(settings.max_jump / settings.frequency)
-    run = moments(problem, settings, None, sizes, history.resume(before))
-    return history.conclude(history.follow("time stepping", run))
+    return history, moments(problem, settings, None, sizes, history.resume(before))
 
 
 class ReciprocatingHistory(AnalysisHistory[Moment]):

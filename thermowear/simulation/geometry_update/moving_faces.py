@@ -1,4 +1,4 @@
-"""Motion of the faces worn in place: the wear that nodes can follow, along which paths."""
+"""Motion of the faces worn in place: smoothed wear, the part that nodes can follow, their paths."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from ...bulk.mesh_motion import serial_extension
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ray_intersections
 from ...contact.search.surface import Surface
+from ...contact.wear.unresolved_gap import unresolved_gap
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,
@@ -25,6 +26,9 @@ from ...geometry.moving.moved import MovableBody
 from ...geometry.moving.moved_solid import MovableSolid
 from ...laws.distribution import InPlace
 from ...parallel import on_root
+from ..interface.interface_problem import InterfaceProblem
+from ..interface.sdirk import InterfaceState
+from ..results.recording import snapshot_at
 from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
 
@@ -158,3 +162,27 @@ def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody | 
     if isinstance(face, Surface):
         return MovableSolid(mesh, parts, nodes_of(face), serial_extension)
     return MovableBody(mesh, parts, nodes_of(face))
+
+
+def smoothed_wear(problem: InterfaceProblem, state: InterfaceState, time: float) -> np.ndarray:
+    """Worn depths with pointwise conforming faces where they press. Every rank calls.
+
+    The gap is changed only orthogonally to the pressure space: pressure, forces and volumes stay.
+    The change is shared by the bodies worn in place, in proportion to their depths.
+
+    Returns
+    -------
+    ndarray, shape (n_wearing, n)
+        [m]; those of the state if any of them became negative otherwise.
+    """
+    system, gap = problem.system, snapshot_at(problem, state, time).interface.gap
+    weak = state.pressure > 0
+    if state.pointwise is not None:
+        weak &= ~state.pointwise  # there faces conform already, and the gap is resolved
+    excess = unresolved_gap(gap, weak, system.pairing, system.basis)
+    in_place = np.array([isinstance(s, InPlace) for s in system.spreads.values()])
+    ours = np.where(in_place[:, None], state.worn, 0.0)
+    whole = ours.sum(axis=0)
+    shares = np.divide(ours, whole, out=np.zeros_like(ours), where=whole > 0.0)
+    found = state.worn - shares * excess
+    return found if np.all(found >= 0.0) else state.worn

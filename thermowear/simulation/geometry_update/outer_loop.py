@@ -26,8 +26,7 @@ from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
-from .moving_faces import MovingFaces
-from .smooth_wear import smoothed_wear
+from .moving_faces import MovingFaces, smoothed_wear
 from .update_counts import UpdateCounts
 from .wider_zone import meshed_wider, wider_zone
 

@@ -207,10 +207,7 @@ class HeatStep:
 
 
 class HeatSteps:
-    """Conduction at the times of an analysis, with constant properties of the bodies.
-
-    Operators are kept for the last `kept` step sizes.
-    """
+    """Conduction in time with constant properties; operators are kept for `kept` step sizes."""
 
     def __init__(self, system: System, thermal: ThermalSystem, kept: int):
         self._system, self._thermal, self._kept = system, thermal, kept
@@ -234,12 +231,17 @@ class HeatSteps:
 
         return HeatStep(operators, load, load.heat, system.parts.get("at rest", key, baseline))
 
+    def operators_within(self, step: float) -> Any:
+        """Operators for an implicit Euler step of a size [s]; every rank calls."""
+        conduction = self._thermal.conduction.implicit_euler(step)
+        return HeatOperators(self._system, conduction, self._condense(conduction))
+
     def after(self, before: StoredHeat, step: float, time: float) -> HeatStep:
         """Conduction in an implicit Euler step that ends at a time [s]; every rank calls."""
         if step not in self._of_size:
             if len(self._of_size) >= self._kept:
                 self._of_size.popitem(last=False)
-            self._of_size[step] = self._new(step)
+            self._of_size[step] = self.operators_within(step)
         self._of_size.move_to_end(step)
         load = self._thermal.loads.constant or self._thermal.loads.at(time)
         supplied = load.heat + before.content / step
@@ -280,11 +282,6 @@ class HeatSteps:
 
     def restore(self, data: Any) -> None:
         """Restore the state from `restart_data`."""
-
-    def _new(self, step: float) -> Any:
-        """Operators for a step size."""
-        conduction = self._thermal.conduction.implicit_euler(step)
-        return HeatOperators(self._system, conduction, self._condense(conduction))
 
     def _conducting(
         self, operators: Any, load: ThermalLoad, supplied: np.ndarray, rise: np.ndarray

@@ -206,7 +206,7 @@ class VaryingHeatSteps(HeatSteps):
             self._steady_tangents = Tangents(None, reference)
             self.steady = self._steady_about(rise, change)
 
-    def _new(self, step: float) -> Tangents:
+    def operators_within(self, step: float) -> Tangents:
         return Tangents(step)
 
     def _steady_about(self, rise: np.ndarray, change: float = np.inf) -> HeatStep:

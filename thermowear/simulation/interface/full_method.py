@@ -54,7 +54,8 @@ class FullMethod:
         slope = slope.point  # means occur for rotating disks in 3D, with condensed contact only
         edge = self._deflection(pointwise)
         if heat is None:
-            return self._result(self._solved(gap, slope, start, load, self._dead, None, edge))
+            found = self._contact.solve(gap, load, slope, self._dead, None, start, edge)
+            return self._result(found)
         pressure = np.zeros(len(gap)) if guess is None else guess.pressure
         mixing = AndersonMixing()
         for _ in range(_ITERATIONS):
@@ -109,13 +110,9 @@ class FullMethod:
         """Solve contact of bodies distorted by the friction heat of a pressure."""
         assert self._system.thermal is not None
         faces = heat.faces(conditions, pressure)
-        forces = self._system.thermal.forces(heat.rise(faces))
         traction = -np.asarray(self._softening) * faces.rise[0]
-        nodal_loads = self._dead + forces
-        return self._solved(gap, slope, start, conditions.load, nodal_loads, traction, edge)
-
-    def _solved(self, gap, slope, start, load, nodal_loads, traction, edge) -> FullSolution:
-        return self._contact.solve(gap, load, slope, nodal_loads, traction, start, edge)
+        loads = self._dead + self._system.thermal.forces(heat.rise(faces))
+        return self._contact.solve(gap, conditions.load, slope, loads, traction, start, edge)
 
     def _result(self, solution: FullSolution) -> ContactSolution:
         motion = self._system.holder.amplitudes(solution.motion)

@@ -10,6 +10,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from ...errors import ComputationError, UnwritableError
+from ...interrupts import RecordedSignals
 from ...model.analyses import SteppedAnalysis
 from ...results import (
     CycleRow,
@@ -27,7 +28,6 @@ from ..results.summary import conclude
 from ..system.system import System
 from .checkpoint_data import Progress, Saved
 from .observer import AnyRow, Observer
-from .stop_signal import StopRequest, interrupted
 
 Row = TypeVar("Row", bound=AnyRow)
 
@@ -52,6 +52,9 @@ class AnalysisHistory(ABC, Generic[State]):
     observer : Observer
         Observer notified of each record.
     """
+
+    phase = "time stepping"
+    """Name of the phase for timing."""
 
     def __init__(self, system: System, settings: SteppedAnalysis, observer: Observer):
         self._system = system
@@ -116,7 +119,7 @@ class AnalysisHistory(ABC, Generic[State]):
             self._observer.resumed(rows)
         return before.state
 
-    def follow(self, phase: str, states: Iterable[State]) -> BaseException | None:
+    def follow(self, states: Iterable[State]) -> BaseException | None:
         """Record and save successive states; the ones before an error or Ctrl-C are kept.
 
         A stop request ends the loop after the present state. It also counts after the last one: the
@@ -124,8 +127,6 @@ class AnalysisHistory(ABC, Generic[State]):
 
         Parameters
         ----------
-        phase : str
-            Name of the phase for timing.
         states : iterable
             At least one state, unless the run was resumed.
 
@@ -142,7 +143,7 @@ class AnalysisHistory(ABC, Generic[State]):
             If results cannot be written.
         """
         comm, stopped = self._system.comm, None
-        with self._system.phases(phase), StopRequest() as stop:
+        with self._system.phases(self.phase), StopRequest() as stop:
             try:
                 for state in states:
                     self.keep(state)
@@ -256,3 +257,26 @@ def spacing(number: int, most: int) -> int:
     while number // every >= most:
         every *= 2
     return every
+
+
+class StopRequest(RecordedSignals):
+    """Context manager that records Ctrl-C or SIGTERM; a second one interrupts at once.
+
+    A recorded request outlives the block: the caller checks `recorded` once more after it, when
+    signals interrupt at once again, so that none is lost in between. If an error leaves the
+    block, a recorded request turns it into an interrupt that reports the error.
+    """
+
+    def __exit__(self, kind, error, traceback) -> None:
+        super().__exit__(kind, error, traceback)
+        if self.recorded is not None and isinstance(error, Exception):
+            raise interrupted(error)
+
+
+def interrupted(reason: BaseException | None = None) -> KeyboardInterrupt:
+    """KeyboardInterrupt that reports the error that had ended the computation, if any."""
+    if reason is None:
+        return KeyboardInterrupt()
+    interrupt = KeyboardInterrupt(f"interrupted; the computation had failed: {reason}")
+    interrupt.__cause__ = reason
+    return interrupt

@@ -9,7 +9,7 @@ from ...geometry.cad.design import Design
 from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state
 from ..interface.steady import steady_state
-from ..results.recording import along_press
+from ..results.recording import along_load
 from ..system.system import System
 
 _SAME = 1e-9  # relative to the size of the face: closer points coincide
@@ -48,7 +48,7 @@ def steady_design(system: System, body: int) -> Design:
         normals = side.face.normals(side.facet, side.t)
         s = side.face.position(side.facet, side.t)
     height = pairing.gap + depth
-    height_along = height / along_press(system)
+    height_along = height / along_load(system)
     design = Design(
         body=body,
         points=points,

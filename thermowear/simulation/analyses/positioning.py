@@ -14,7 +14,7 @@ from ..system.system import System
 
 _ITERATIONS = 12
 _TOLERANCE = 0.1  # relative to the element at the edge
-_STEEPEST = 4.0
+_LARGEST_SLOPE = 4.0
 _LONGEST = 0.4  # relative to the zone, so that its edges cannot swap
 
 
@@ -75,7 +75,9 @@ def _step(zone: np.ndarray, residual: np.ndarray, before) -> np.ndarray:
     moved, changed = zone - before[0], residual - before[1]
     slope = np.divide(changed, moved, out=np.full(2, -1.0), where=moved != 0.0)
     longest = _LONGEST * (zone[1] - zone[0])
-    return np.clip(residual / -np.clip(slope, -_STEEPEST, -1 / _STEEPEST), -longest, longest)
+    return np.clip(
+        residual / -np.clip(slope, -_LARGEST_SLOPE, -1 / _LARGEST_SLOPE), -longest, longest
+    )
 
 
 def _smallest(system: System) -> float:

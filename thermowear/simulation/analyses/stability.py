@@ -114,7 +114,7 @@ def _table(system: System, modes: list[PerturbationMode]) -> Modes:
     for number, mode in enumerate(modes, 1):
         p = system.basis @ mode.shape
         p = p / p[np.argmax(np.abs(p))] + 0j
-        told = (number, mode.factor, mode.rate.real, mode.rate.imag)
-        constants = [np.full(len(p), value) for value in told]
+        values = (number, mode.factor, mode.rate.real, mode.rate.imag)
+        constants = [np.full(len(p), value) for value in values]
         tables.append(np.array([*constants, *places, p.real, p.imag]))
     return Modes(*np.hstack(tables))

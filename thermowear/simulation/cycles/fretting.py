@@ -130,11 +130,11 @@ class FrettingHistory(AnalysisHistory[Increment]):
 
     def _slid_along(self, state: StickSlipState) -> np.ndarray:
         """Gap change of the worn profiles by the slip of body 1, coefficients [m]."""
-        nothing = np.zeros(self._system.basis.shape[1])
+        zeros = np.zeros(self._system.basis.shape[1])
         if len(state.motion) < 2:
-            return nothing
+            return zeros
         pairs = zip(self._path.profiles, state.worn, strict=True)
-        return sum((own.interpolation(state.motion[1]) @ ω - ω for own, ω in pairs), start=nothing)
+        return sum((own.interpolation(state.motion[1]) @ ω - ω for own, ω in pairs), start=zeros)
 
     def _load_row(self, increment: Increment) -> LoadRow:
         """Load row at the end of an increment."""

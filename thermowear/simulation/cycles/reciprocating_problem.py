@@ -91,8 +91,8 @@ class ReciprocatingProblem(WearProblem):
             np.array([getattr(solution, name) for solution in found])
             for name in ("coefficients", "motion", "active")
         )
-        nothing = np.zeros(all_of.gap_per_depth.shape[2])
-        contact = self._contact(CoupledSolution(λ, motion, active, nothing))
+        zeros = np.zeros(all_of.gap_per_depth.shape[2])
+        contact = self._contact(CoupledSolution(λ, motion, active, zeros))
         return InterfaceState(np.zeros_like(self.rates(contact.pressure)), contact)
 
     def rates(self, pressure: np.ndarray) -> np.ndarray:

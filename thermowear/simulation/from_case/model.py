@@ -162,18 +162,18 @@ def _holder(case: Case) -> Holder:
 def _motion(case: Case) -> Motion:
     """Sliding motion; the mean speed along +x where it reciprocates."""
     geometry, given = case.geometry, case.motion
-    still = Motion(
+    at_rest = Motion(
         center=geometry.rotation_center,
         across=geometry.slides_across,
         passes=geometry.passes,
     )
     if given is None:
-        return still
+        return at_rest
     velocity, history = given.velocity, given.history
     if given.amplitude is not None and given.frequency is not None:
         velocity = 4 * given.amplitude * given.frequency
     return replace(
-        still,
+        at_rest,
         velocity=velocity,
         angular_velocity=given.angular_velocity,
         history=None if history is None else history.function,

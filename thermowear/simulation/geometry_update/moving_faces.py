@@ -32,7 +32,7 @@ from ..results.recording import snapshot_at
 from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
 
-_STEEPEST = 0.2
+_WALL_SLOPE = 0.2
 """Largest slope of groove walls in a mesh."""
 
 
@@ -75,11 +75,11 @@ class MovingFaces:
         """Part of a depth (2, n) that the faces should follow [m].
 
         All of it except at the walls of a groove: where a face continues beside the contact its end
-        is held, and the slope from there is limited to `_STEEPEST` for the cells to follow.
+        is held, and the slope from there is limited to `_WALL_SLOPE` for the cells to follow.
         """
         result = np.zeros_like(depth)
         for index in self.bodies:
-            room = _STEEPEST * self._from_held_end(index) - self._system.moved[index]
+            room = _WALL_SLOPE * self._from_held_end(index) - self._system.moved[index]
             result[index] = np.minimum(depth[index], room)
         return result
 
@@ -100,7 +100,7 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     pairing, comm = system.pairing, system.comm
     mesh, paths = on_root(comm, lambda: _node_paths(system))
     directions = tuple(path.directions for path in paths)
-    nothing = np.zeros(3)
+    zeros = np.zeros(3)
     return WornGeometry(
         mesh=mesh,
         directions=directions,
@@ -110,7 +110,7 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
         lacking=pairing.gap - _along_directions(pairing, directions, bodies)[1],
-        holder=(nothing, nothing),
+        holder=(zeros, zeros),
         lost=np.zeros(2),
         updates=0,
         quality=float(scaled_jacobians(mesh).min()),

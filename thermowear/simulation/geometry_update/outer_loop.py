@@ -276,11 +276,11 @@ class OuterLoop:
 
     def _update(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:
         """Period and moment after moving the meshes; adapts the allowed fraction."""
-        problem, kept = now.problem, now.gap_wear
-        assert kept is not None
+        problem, gap_wear = now.problem, now.gap_wear
+        assert gap_wear is not None
         worn = smoothed_wear(problem, last.state, last.time)
         state = replace(last.state, worn=worn)
-        new = updated(problem, kept.faces, kept.depth(state), state, last.time)
+        new = updated(problem, gap_wear.faces, gap_wear.depth(state), state, last.time)
         automatic = self._settings.largest_kept
         if self._settings.adapts and new.change > 0.0:
             wished = self.allowed * float(np.clip(_CHANGE / new.change, 0.2, 2.0))

@@ -15,9 +15,9 @@ from ..system.thermal_system import ThermalSystem
 from .heat_steps import HeatBalance, HeatStep, HeatSteps, StoredHeat
 from .varying_heat import VaryingHeatSteps
 
-_SHALLOW = 1e-3
+_FIRST_DEPTH = 1e-3
 """Penetration depth of heat in the first step, relative to the length of the contact."""
-_HARDLY = 0.1
+_FIRST_RISE = 0.1
 """Surface temperature rise allowed in the first step [K]."""
 _MEMORY = 1e9
 """Memory limit for the operators of all step sizes on a rank [bytes]."""
@@ -56,9 +56,9 @@ class InitialHeat:
     """
 
     def __init__(self, stored: StoredHeat, baseline: BaselineResponse):
-        nothing = np.zeros(len(baseline.rise[0]))
+        zeros = np.zeros(len(baseline.rise[0]))
         self.stored = stored
-        self.state = ThermalState(baseline.rise, (nothing, nothing))
+        self.state = ThermalState(baseline.rise, (zeros, zeros))
         self._baseline = baseline
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
@@ -163,14 +163,14 @@ class FrictionHeat:
         """
         system, thermal = self._system, self._thermal
         if self.steps.driven:
-            return (_SHALLOW * system.pairing.extent) ** 2 / thermal.diffusivity
+            return (_FIRST_DEPTH * system.pairing.extent) ** 2 / thermal.diffusivity
         if friction_heat == 0.0:
             return np.inf
         share = thermal.face.partition
         first, second = system.facing.effusivities(system.model.materials)
         steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
-        through = (_SHALLOW * system.pairing.extent) ** 2 / thermal.diffusivity
-        return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
+        through = (_FIRST_DEPTH * system.pairing.extent) ** 2 / thermal.diffusivity
+        return float(max(through, np.pi * (_FIRST_RISE / (2 * steepest)) ** 2))
 
 
 def _kept_sizes(system: System, thermal: ThermalSystem) -> int:

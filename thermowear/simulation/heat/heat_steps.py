@@ -174,8 +174,8 @@ class HeatStep:
     @property
     def unheated(self) -> ThermalState:
         """State of the faces without any heat at the contact."""
-        nothing = np.zeros(len(self.baseline.rise[0]))
-        return ThermalState(self.baseline.rise, (nothing, nothing))
+        zeros = np.zeros(len(self.baseline.rise[0]))
+        return ThermalState(self.baseline.rise, (zeros, zeros))
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""

@@ -92,8 +92,10 @@ class CondensedMethod:
         contact, load = self._with_friction(conditions.friction), conditions.load
         coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
         active = np.ones(len(coefficients), dtype=bool)
-        still = np.zeros(contact.modes.shape[1])
-        start = ContactSolution(pressure, still, SignoriniSolution(coefficients, still, active))
+        no_motion = np.zeros(contact.modes.shape[1])
+        start = ContactSolution(
+            pressure, no_motion, SignoriniSolution(coefficients, no_motion, active)
+        )
         rigid, thermal_gap = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
         return newton_with_wear(
             lambda worn, slope, last: self._solved(

@@ -41,8 +41,8 @@ class FullMethod:
     def __init__(self, system: System):
         self._system = system
         self._contact, self.note = _full_contact(system)
-        still = np.zeros(len(system.elastic.fixed))
-        self._dead = still if system.dead_load is None else system.dead_load
+        unloaded = np.zeros(len(system.elastic.fixed))
+        self._dead = unloaded if system.dead_load is None else system.dead_load
         heated = system.thermal is not None
         self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
         self._last = SetupCache()

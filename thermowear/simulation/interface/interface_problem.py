@@ -140,8 +140,8 @@ class InterfaceProblem(WearProblem):
             depth = state.worn.sum(axis=0)[state.pressure > 0.0]
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
-            even = reached.all() or not depth.size
-            if even or np.ptp(depth) <= self._method.deflection_range(state.contact):
+            uniform = reached.all() or not depth.size
+            if uniform or np.ptp(depth) <= self._method.deflection_range(state.contact):
                 return state
         edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)

@@ -46,14 +46,14 @@ def steady_state(system: System) -> SteadyState:
     """
     heat = friction_heat(system)
     area = float(system.weights.sum())
-    even = np.full(len(system.weights), (system.model.holder.force or area) / area)
-    nothing = np.zeros((len(system.laws), len(even)))
-    start = Trial(even, None if heat is None else heat.steps.steady.unheated, nothing)
+    uniform = np.full(len(system.weights), (system.model.holder.force or area) / area)
+    zeros = np.zeros((len(system.laws), len(uniform)))
+    start = Trial(uniform, None if heat is None else heat.steps.steady.unheated, zeros)
 
     def respond(conditions: InterfaceConditions) -> _Worn:
         wear = _principle(system, conditions)
         faces = None if heat is None else heat.steps.steady.faces(conditions, wear.pressure)
-        return _Worn(wear, faces, nothing)
+        return _Worn(wear, faces, zeros)
 
     conditions, found = self_consistent(ConditionModel(system), 0.0, start, respond, _NONE)
     temperatures = None if heat is None else heat.steady(conditions, found.pressure)

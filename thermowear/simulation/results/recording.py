@@ -14,7 +14,7 @@ from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
 from ..system.system import System
 
-_STEEPEST = 0.05
+_LEAST_COSINE = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
 
 
@@ -143,7 +143,7 @@ def profile(end: Snapshot) -> Profile:
     system, interface = end.system, end.interface
     normals = np.zeros((len(interface.s), 3))
     normals[:, : len(system.load_direction)] = system.pairing.normals
-    along = along_press(system)
+    along = along_load(system)
     open_by = system.pairing.gap + interface.wear_1 + interface.wear_2
     open_by = (interface.shape.max() - interface.shape + open_by.min()) / along
     rate = interface.wear_rate_1 + interface.wear_rate_2
@@ -162,7 +162,7 @@ def profile(end: Snapshot) -> Profile:
     )
 
 
-def along_press(system: System) -> np.ndarray:
+def along_load(system: System) -> np.ndarray:
     """Cosines between normals and load direction, shape (n,); NaN where the face is too steep."""
     along = system.pairing.normals @ system.load_direction
-    return np.where(along > _STEEPEST, along, np.nan)
+    return np.where(along > _LEAST_COSINE, along, np.nan)

@@ -9,10 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from dolfinx import fem
 
 from ...bulk.field import owned
-from ...bulk.heat.heat_equation import conducting, transferring
+from ...bulk.heat.heat_equation import conducting, given_rises, transferring
 from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
 from ...bulk.mechanics.surplus import surplus_space
@@ -172,17 +171,7 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
     terms += transferring(bodies, kinematics, cooling(model, heat))
     shifts = dict.fromkeys(model.interface.faces, thermal.face.shift)
     bath = transferring(bodies, kinematics, shifts)
-    given = _on(bodies, surplus, list(heat.temperature))
+    given, _ = given_rises(bodies, surplus, dict.fromkeys(heat.temperature, 0.0), None)
     return EnrichedProblem(
         conduction.space, surplus, terms, conduction.respond, (conduction.fixed, given), bath
     )
-
-
-def _on(bodies, space: fem.FunctionSpace, surfaces: list[str]) -> np.ndarray:
-    """Mask of the owned degrees of freedom of a scalar space on surfaces."""
-    chosen = np.zeros(owned(space), dtype=bool)
-    for surface in surfaces:
-        facets = bodies.facets(surface)
-        dofs = fem.locate_dofs_topological(space, bodies.mesh.topology.dim - 1, facets)
-        chosen[dofs[dofs < len(chosen)]] = True
-    return chosen

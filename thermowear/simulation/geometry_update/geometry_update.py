@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -42,31 +42,21 @@ _FADED = 0.1
 """Smallest reference pressure of a change, as a fraction of the largest so far."""
 
 
-@dataclass(frozen=True)
-class Updated:
-    """Problem and state after a geometry update.
-
-    Attributes
-    ----------
-    problem : InterfaceProblem
-    state : InterfaceState
-    change : float
-        Change of pressure and temperatures by the update, relative to their means.
-    """
-
-    problem: InterfaceProblem
-    state: InterfaceState
-    change: float
-
-
 def updated(
     problem: InterfaceProblem,
     faces: MovingFaces,
     depth: np.ndarray,
     state: InterfaceState,
     time: float,
-) -> Updated:
-    """Move the meshes of a system by depths (2, n) kept in the gap [m]. Every rank calls.
+) -> tuple[InterfaceProblem, InterfaceState, float]:
+    """Move the meshes of a problem by depths (2, n) kept in the gap [m]. Every rank calls.
+
+    Returns
+    -------
+    problem : InterfaceProblem
+    state : InterfaceState
+    change : float
+        Change of pressure and temperatures by the update, relative to their means.
 
     Raises
     ------
@@ -96,7 +86,7 @@ def updated(
     change = _change(following, state, found)
     worn = replace(worn, change=max(worn.change, change))
     after.system = replace(following, worn=worn)  # with the errors of this update
-    return Updated(after, found, change)
+    return after, found, change
 
 
 def _change(after: System, state: InterfaceState, found: InterfaceState) -> float:
@@ -162,7 +152,8 @@ def _moved(
     motion = combined(system.holder.motions, state.contact.motion)
     expected = np.array([taken[index] @ system.weights for index in faces])
     total = before.lost + lost
-    error = max(before.volume_error, _volume_error(lost[list(faces)] - expected, total))
+    missing = float(np.abs(lost[list(faces)] - expected).max())
+    error = max(before.volume_error, relative(missing, float(np.abs(total).max())))
     require(geometry_volume_error=error)
     worn = replace(
         before,
@@ -206,11 +197,6 @@ def _kept_points(system: System, state: InterfaceState, renewed: dict[int, NewFa
     on_surface = isinstance(system.pairing.sides[0].face, Surface)
     pointwise = state.pointwise is not None and not renewed
     return system.pairing.pieces if on_surface or pointwise else None
-
-
-def _volume_error(missing: np.ndarray, lost: np.ndarray) -> float:
-    """Error of the volumes removed by an update, relative to the volume lost so far."""
-    return relative(float(np.abs(missing).max()), float(np.abs(lost).max()))
 
 
 def _followed(

@@ -276,16 +276,16 @@ class OuterLoop:
 
     def _update(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:
         """Period and moment after moving the meshes; adapts the allowed fraction."""
-        problem, gap_wear = now.problem, now.gap_wear
-        assert gap_wear is not None
-        worn = smoothed_wear(problem, last.state, last.time)
-        state = replace(last.state, worn=worn)
-        new = updated(problem, gap_wear.faces, gap_wear.depth(state), state, last.time)
+        worn = smoothed_wear(now.problem, last.state, last.time)
+        state, kept = replace(last.state, worn=worn), now.gap_wear
+        assert kept is not None
+        depth = kept.depth(state)
+        problem, state, change = updated(now.problem, kept.faces, depth, state, last.time)
         automatic = self._settings.largest_kept
-        if self._settings.adapts and new.change > 0.0:
-            wished = self.allowed * float(np.clip(_CHANGE / new.change, 0.2, 2.0))
+        if self._settings.adapts and change > 0.0:
+            wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
             self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
-        return self._period(new.problem), replace(last, state=new.state)
+        return self._period(problem), replace(last, state=state)
 
 
 def _thickness(system: System, index: int) -> float:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...contact.operators.heat import ThermalState
 from ...laws.principle.steady import SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
@@ -50,27 +49,18 @@ def steady_state(system: System) -> SteadyState:
     zeros = np.zeros((len(system.laws), len(uniform)))
     start = Trial(uniform, None if heat is None else heat.steps.steady.unheated, zeros)
 
-    def respond(conditions: InterfaceConditions) -> _Worn:
+    wear: SteadyWear | None = None
+
+    def respond(conditions: InterfaceConditions) -> Trial:
+        nonlocal wear
         wear = _principle(system, conditions)
         faces = None if heat is None else heat.steps.steady.faces(conditions, wear.pressure)
-        return _Worn(wear, faces, zeros)
+        return Trial(wear.pressure, faces, zeros)
 
     conditions, found = self_consistent(ConditionModel(system), 0.0, start, respond, _NONE)
     temperatures = None if heat is None else heat.steady(conditions, found.pressure)
-    return SteadyState(found.wear, ContactState(found.pressure, conditions, temperatures))
-
-
-@dataclass(frozen=True)
-class _Worn:
-    """Solution of the principle under given conditions, with temperatures of the faces."""
-
-    wear: SteadyWear
-    faces: ThermalState | None
-    worn: np.ndarray
-
-    @property
-    def pressure(self) -> np.ndarray:
-        return self.wear.pressure
+    assert wear is not None
+    return SteadyState(wear, ContactState(found.pressure, conditions, temperatures))
 
 
 def _principle(system: System, conditions: InterfaceConditions) -> SteadyWear:

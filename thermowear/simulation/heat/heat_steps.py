@@ -190,11 +190,7 @@ class HeatStep:
     def coupling(
         self, conditions: InterfaceConditions, basis: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Thermal contribution to the condensed interface.
-
-        The compliance by friction heat, weak gap per pressure coefficient (m, m), and the weak gap
-        by other heat, shape (m,) [m³].
-        """
+        """Weak gap per pressure coefficient by friction heat (m, m), and by other heat (m,) [m³]."""
         operators = self.operators
         exchange = operators.exchange(conditions.conductance)
         if self._gap is None or self._gap[0] is not exchange:
@@ -236,8 +232,10 @@ class HeatSteps:
         conduction = self._thermal.conduction.implicit_euler(step)
         return HeatOperators(self._system, conduction, self._condense(conduction))
 
-    def after(self, before: StoredHeat, step: float, time: float) -> HeatStep:
-        """Conduction in an implicit Euler step that ends at a time [s]; every rank calls."""
+    def after(self, before: StoredHeat | None, step: float, time: float) -> HeatStep:
+        """Conduction after an Euler step [s], steady without stored heat; every rank calls."""
+        if before is None:
+            return self.steady
         if step not in self._of_size:
             if len(self._of_size) >= self._kept:
                 self._of_size.popitem(last=False)

@@ -8,7 +8,6 @@ import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat
-from ..heat.heat_steps import HeatStep
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
@@ -154,7 +153,8 @@ class InterfaceProblem(WearProblem):
         State-dependent conditions are those at the end of the step, except for the points that
         exchange heat: the contact set of the guess.
         """
-        heat, last, edge = self._heat_at_end(before, step, time), guess.contact, before.pointwise
+        heat = None if self.heat is None else self.heat.steps.after(before.stored, step, time)
+        last, edge = guess.contact, before.pointwise
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
             nonlocal last
@@ -251,8 +251,6 @@ class InterfaceProblem(WearProblem):
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""
         if self.heat is None or one.stored is None or other.stored is None:
             return 0.0
-        if not self.heat.steps.driven:  # the faces then show the errors of a step
-            return 0.0
         return self.heat.steps.largest(one.stored.rise - other.stored.rise)
 
     def corners(self, end: float) -> tuple[float, ...]:
@@ -284,10 +282,3 @@ class InterfaceProblem(WearProblem):
         if steady is None:
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
-
-    def _heat_at_end(self, before: InterfaceState, step: float, time: float) -> HeatStep | None:
-        if self.heat is None:
-            return None
-        if before.stored is None:
-            return self.heat.steps.steady
-        return self.heat.steps.after(before.stored, step, time)

@@ -48,7 +48,7 @@ def test_nodes_of_a_surface_take_up_what_they_can(order):
             else 1e-5 * np.ones(len(p))
         )
 
-    amounts = face.amounts(depth(pairing.points))
+    amounts = face.offsets(depth(pairing.points))
     near = 1e-3 if order == 3 else 1e-7
     assert amounts == pytest.approx(depth(nodes), rel=near)
     assert face.depths(amounts) == pytest.approx(depth(pairing.points), rel=near)
@@ -59,7 +59,7 @@ def test_a_surface_loses_the_volume_even_where_its_nodes_cannot_follow():
     nodes = nodes_of(pairing.sides[0].face)
     face, _ = of_body_1(pairing, held=nodes[:, 0] < 1e-9)
     depth = 1e-5 * (1 + np.sin(300 * pairing.points[:, 0]))
-    amounts = face.amounts(depth)
+    amounts = face.offsets(depth)
     assert np.all(amounts[nodes[:, 0] < 1e-9] == 0.0)
     volume = pairing.weights @ depth
     assert pairing.weights @ face.depths(amounts) == pytest.approx(volume, rel=1e-12)
@@ -77,12 +77,12 @@ def test_a_curved_surface_goes_along_its_normals():
     assert radius == pytest.approx(RADIUS, rel=1e-12)
     assert normals == pytest.approx(out / RADIUS, abs=1e-3)
     assert normals[:, 2].max() < 0.0
-    to = nodes_of(surface) + face.displacement(face.amounts(np.full(len(pairing.weights), depth)))
+    to = nodes_of(surface) + face.displacement(face.offsets(np.full(len(pairing.weights), depth)))
     assert np.linalg.norm(to - MIDDLE, axis=1) == pytest.approx(RADIUS - depth, abs=1e-3 * depth)
     below = pairing.sides[1].face
     paths = Paths(node_normals(below), np.zeros(len(nodes_of(below)), dtype=bool))
     socket = WornFace(pairing, 1, paths)
-    to = nodes_of(below) + socket.displacement(socket.amounts(np.full(len(pairing.weights), depth)))
+    to = nodes_of(below) + socket.displacement(socket.offsets(np.full(len(pairing.weights), depth)))
     assert np.linalg.norm(to - MIDDLE, axis=1) == pytest.approx(RADIUS + depth, abs=1e-3 * depth)
 
 
@@ -93,7 +93,7 @@ def test_nodes_that_are_hardly_seen_go_with_their_neighbours():
     pairing = pair(upper, replace(lower, nodes=short), Spatial(), 4)
     face, _ = of_body_1(pairing)
     rough = np.random.default_rng(1).normal(size=len(pairing.weights))
-    amounts = face.amounts(1e-5 * (1 + 1e-3 * rough))
+    amounts = face.offsets(1e-5 * (1 + 1e-3 * rough))
     assert amounts == pytest.approx(1e-5, rel=0.02)
 
 
@@ -114,7 +114,7 @@ def test_a_node_at_an_axis_is_one_of_them(at_an_axis):
     """Though no area belongs to it."""
     face, _ = of_body_1(at_an_axis)
     depth = 1e-5 * (1 - (at_an_axis.points[:, 0] / 0.01) ** 2)
-    assert face.depths(face.amounts(depth)) == pytest.approx(depth, abs=1e-9)
+    assert face.depths(face.offsets(depth)) == pytest.approx(depth, abs=1e-9)
 
 
 def test_worn_faces_are_paired_at_the_same_points():

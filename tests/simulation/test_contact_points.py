@@ -36,7 +36,7 @@ def grooved(depth):
     system = built(starter(*CYLINDER), MPI.COMM_SELF)
     kept = MovingFaces(system)
     face, body = kept.faces[1], movable_body(system, kept.geometry.mesh, 1)
-    amounts = face.amounts(depth(system.pairing.points[:, 0]))
+    amounts = face.offsets(depth(system.pairing.points[:, 0]))
     outlined = body.outlined(face.displacement(amounts))
     points = kept.geometry.mesh.points + HarmonicExtension(system.bodies.mesh)(outlined)
     worn = replace(

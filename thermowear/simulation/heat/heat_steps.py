@@ -190,7 +190,7 @@ class HeatStep:
     def coupling(
         self, conditions: InterfaceConditions, basis: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Weak gap per pressure coefficient by friction heat (m, m), and by other heat (m,) [m³]."""
+        """Weak gap per pressure coefficient by friction heat (m, m), by other heat (m,) [m³]."""
         operators = self.operators
         exchange = operators.exchange(conditions.conductance)
         if self._gap is None or self._gap[0] is not exchange:

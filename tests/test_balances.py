@@ -66,15 +66,15 @@ def test_a_sweep_marks_the_variant_and_goes_on(tmp_path, capsys):
 
 def test_a_step_that_is_not_balanced_is_not_taken(monkeypatch):
     """requirement: a running-in ends at the last step whose heat balances."""
-    from thermowear.simulation.heat.friction_heat import FrictionHeat
+    from thermowear.simulation.heat.heat_steps import StoredHeat
 
-    balance = FrictionHeat.balance
+    balance = StoredHeat.balance
 
-    def lossy(self, stored):
-        found = balance(self, stored)
+    def lossy(self, initial, comm):
+        found = balance(self, initial, comm)
         return replace(found, lost=found.lost + 1e-3 * found.made) if found.made > 50.0 else found
 
-    monkeypatch.setattr(FrictionHeat, "balance", lossy)
+    monkeypatch.setattr(StoredHeat, "balance", lossy)
     sets = (
         "mesh.degree=3",
         "mesh.elements=4",

@@ -16,6 +16,7 @@ from pathlib import Path
 from statistics import median_low
 
 import thermowear as tw
+from thermowear.results import HistoryRow
 from thermowear.simulation import Observer
 
 ROOT = Path(tw.__file__).parent
@@ -63,9 +64,10 @@ class Steps(Observer):
     def __init__(self, walk):
         self.walk, self.found = walk, []
 
-    def step(self, row, distance):
-        self.found.append(set(self.walk.visited))
-        self.walk.visited.clear()
+    def row(self, row, distance):
+        if isinstance(row, HistoryRow):
+            self.found.append(set(self.walk.visited))
+            self.walk.visited.clear()
 
 
 def profiled(action):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
-from thermowear.simulation.runtime.stop_signal import StopRequest
+from thermowear.simulation.runtime.history import StopRequest
 
 VIEW = type(np.zeros(1).ctypes)
 """numpy's view of an array as an argument of a C function."""

@@ -11,8 +11,7 @@ from thermowear.contact.friction.coulomb_solver import FullSliding
 from thermowear.contact.friction.stick_slip_state import StickSlipState
 from thermowear.errors import ComputationError
 from thermowear.simulation.cycles.cycle_jump import adaptive_jumps, fixed_jumps
-from thermowear.simulation.cycles.increments import Increment, RestartPoint
-from thermowear.simulation.cycles.load_path import LoadSegment
+from thermowear.simulation.cycles.load_path import Increment, LoadSegment, RestartPoint
 
 RATES = np.array([[1.0, 3.0, 0.0]])
 AREAS = np.array([1.0, 2.0, 1.0])
@@ -49,7 +48,7 @@ class Growing:
             )
             yield Increment(segment.end, segment, True, state)
 
-    def settled(self, end, worn):
+    def equilibrium(self, end, worn):
         self.settled_at.append(end.segment.cycle)
         return replace(end.state, worn=worn, dissipated=np.full(3, np.nan))
 

@@ -7,7 +7,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.simulation import Observer
-from thermowear.simulation.runtime.frames import spacing
+from thermowear.simulation.runtime.history import spacing
 
 from ..conftest import COLD_RUNNING_IN
 
@@ -21,7 +21,7 @@ class Watcher(Observer):
     def frame(self, frame):
         self.frames.append(frame)
 
-    def step(self, row, distance):
+    def row(self, row, distance):
         self.times.append(row.time)
 
 

@@ -9,6 +9,7 @@ import tomli_w
 
 import thermowear as tw
 from thermowear.app.cli import main
+from thermowear.results import CycleRow
 from thermowear.simulation import Observer
 
 from ..case.starter import FRETTING, TUBE, solved, tables
@@ -260,8 +261,8 @@ def test_output_times_in_later_cycles():
 class Stopping(Observer):
     """Presses Ctrl-C after some cycles."""
 
-    def cycle(self, row):
-        if row.cycle == 40:
+    def row(self, row, distance):
+        if isinstance(row, CycleRow) and row.cycle == 40:
             import signal
 
             signal.raise_signal(signal.SIGINT)

@@ -83,7 +83,7 @@ def test_restart_points_are_saved(system):
     """requirement: rows and data up to the last state to restart from, not the ones after it."""
     observer = Saving()
     history = Counting(system, observer)
-    assert history.follow("ticks", map(Tick, (0.0, 1.0, 2.0, 3.0))) is None
+    assert history.follow(map(Tick, (0.0, 1.0, 2.0, 3.0))) is None
     assert times(history.table(HistoryRow)) == [0.0, 1.0, 2.0, 3.0]
     last = observer.saved[-1]
     assert (last.time, times(last.tables["HistoryRow"]), last.own) == (2.0, [0.0, 1.0, 2.0], 3)
@@ -91,7 +91,7 @@ def test_restart_points_are_saved(system):
     resumed = Counting(system, again)
     assert resumed.resume(last) == Tick(2.0)
     assert times(again.again) == [0.0, 1.0, 2.0]
-    resumed.follow("ticks", [Tick(3.0)])
+    resumed.follow([Tick(3.0)])
     assert times(resumed.table(HistoryRow)) == [0.0, 1.0, 2.0, 3.0]
     assert resumed.passed == 4
 
@@ -99,12 +99,12 @@ def test_restart_points_are_saved(system):
 def test_states_before_an_error_are_kept(system):
     """requirement: the last state is the one before; a first state that fails leaves nothing."""
     history = Counting(system, Saving(), wrong=(2.0,))
-    stopped = history.follow("ticks", map(Tick, (0.0, 1.0, 2.0, 3.0)))
+    stopped = history.follow(map(Tick, (0.0, 1.0, 2.0, 3.0)))
     assert str(stopped) == "not balanced"
     assert history.last == Tick(1.0)
     assert times(history.table(HistoryRow)) == [0.0, 1.0]
     with pytest.raises(ComputationError, match="not balanced"):
-        Counting(system, Saving(), wrong=(0.0,)).follow("ticks", [Tick(0.0)])
+        Counting(system, Saving(), wrong=(0.0,)).follow([Tick(0.0)])
 
 
 def test_nothing_to_resume(system):

@@ -5,10 +5,10 @@ from dataclasses import replace
 from thermowear.case.tables.tabulated import History
 from thermowear.model import FrettingAnalysis
 from thermowear.simulation.cycles.load_path import (
-    by_fixed_jumps,
     cycle_segments,
+    cycles_to_stop_at,
     first_pass,
-    to_stop_at,
+    jumped_cycles,
 )
 
 
@@ -22,7 +22,7 @@ def way(loads, cycles=1, jump=1, output_times=()):
     legs, before = list(first_pass(loads, settings.output_times)), 0
     if loads.cycle is None:
         return legs
-    for number in by_fixed_jumps(loads, settings, cycles, jump):
+    for number in jumped_cycles(loads, settings, cycles, jump):
         legs += cycle_segments(loads, settings.output_times, number, number - before)
         before = number
     return legs
@@ -33,7 +33,7 @@ def ends(loads, **settings):
 
 
 def stops(loads, cycles, *output_times):
-    return to_stop_at(loads, FrettingAnalysis(output_times=output_times), cycles)
+    return cycles_to_stop_at(loads, FrettingAnalysis(output_times=output_times), cycles)
 
 
 LOOP = history(0, 36, -36, 36)

@@ -276,7 +276,7 @@ def test_positions_converge():
 class Stopping(Observer):
     steps = 0
 
-    def step(self, row, distance):
+    def row(self, row, distance):
         self.steps += 1
         if self.steps == 6:
             signal.raise_signal(signal.SIGINT)

@@ -5,8 +5,13 @@ import pytest
 from ..benchmarks.step_walk import CASES, of_a_step
 
 
-@pytest.mark.parametrize(("name", "most"), [("cold", 10), ("hot", 12)])
+@pytest.mark.parametrize(
+    ("name", "most"), [("cold", 10), ("hot", 12), ("temperatures in time", 15)]
+)
 def test_a_step_of_wear_visits_few_files(name, most):
-    """requirement: a reader follows one accepted step through at most 10 (12 with heat) files."""
+    """requirement: a reader follows one accepted step through at most 10, 12, and 15 files.
+
+    Without heat, with friction heat, and with temperatures in time.
+    """
     visited = of_a_step(*CASES[name])
     assert len({file for file, _ in visited}) <= most

@@ -11,7 +11,7 @@ import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.output import tables as csv_tables
 from thermowear.reference.instability import SlidingRod
-from thermowear.simulation.heat.linearisation import HeatSteps
+from thermowear.simulation.heat.heat_steps import HeatSteps
 from thermowear.simulation.interface.factory import interface_problem
 from thermowear.simulation.interface.sdirk import advance
 
@@ -111,13 +111,13 @@ def test_hot_bodies_that_nothing_presses_are_in_equilibrium():
 def test_steps_are_efficient(monkeypatch):
     """requirement: no tiny steps to begin with, few sizes, few steps."""
     sizes = []
-    make = HeatSteps._operators
+    make = HeatSteps.operators_within
 
-    def counted(steps, rise, step):
+    def counted(steps, step):
         sizes.append(step)
-        return make(steps, rise, step)
+        return make(steps, step)
 
-    monkeypatch.setattr(HeatSteps, "_operators", counted)
+    monkeypatch.setattr(HeatSteps, "operators_within", counted)
     result = solved(STOP, None, *COARSE)
     assert len(result.history) < 80
     assert result.history[1].step > 1e-4

@@ -7,7 +7,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import ComputationError
-from thermowear.simulation.analyses.untouched_contact import untouched
+from thermowear.simulation.analyses.checks import open_contact
 from thermowear.simulation.runtime.observer import Observer
 
 from ..case.starter import HERTZ, tables
@@ -58,7 +58,7 @@ def test_a_given_approach_may_leave_the_faces_apart(apart):
     """
     requirement: said, with how far they are apart.
     """
-    note = untouched(*apart(punch(approach="0.05 mm")))
+    note = open_contact(*apart(punch(approach="0.05 mm")))
     assert note == "nothing touches at the end; the faces are 2 µm apart at least"
 
 
@@ -66,6 +66,6 @@ def test_a_pressing_force_has_to_be_carried(apart):
     """
     requirement: a force that nothing carries is a failed computation, results kept.
     """
-    error = untouched(*apart(punch(force="1 kN")))
+    error = open_contact(*apart(punch(force="1 kN")))
     assert isinstance(error, ComputationError)
     assert str(error).startswith("nothing carries the pressing force of 1000 N")

@@ -14,10 +14,11 @@ from ..output.console import ConsoleProgress, Terminal, print_discretisations, p
 from ..output.folder import ResultsFolder
 from ..output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
 from ..parallel import on_root
-from ..results import CycleRow, Frame, HeatRow, HistoryRow, InterfaceFields, LoadRow
+from ..results import Frame, HistoryRow, InterfaceFields, LoadRow
 from ..serialise import Checkpoint, pack
 from ..simulation import Observer, run
 from ..simulation.runtime.checkpoint_data import Saved
+from ..simulation.runtime.observer import AnyRow
 from ..timer import Phases
 from .discretisations import COMPARED, side_by_side
 
@@ -35,23 +36,14 @@ class Recorder(Observer):
         if self._progress is not None:
             self._progress.phase(name)
 
-    def step(self, row: HistoryRow, distance: float) -> None:
-        self._steps += 1
+    def row(self, row: AnyRow, distance: float) -> None:
+        self._steps += isinstance(row, HistoryRow | LoadRow)
         self._save(lambda: self._folder.add(row))
         if self._progress is not None:
-            self._progress.step(self._steps, row, distance)
-
-    def heat(self, row: HeatRow) -> None:
-        self._save(lambda: self._folder.add(row))
-
-    def load_step(self, row: LoadRow) -> None:
-        self._steps += 1
-        self._save(lambda: self._folder.add(row))
-        if self._progress is not None:
-            self._progress.load_step(self._steps, row)
-
-    def cycle(self, row: CycleRow) -> None:
-        self._save(lambda: self._folder.add(row))
+            if isinstance(row, HistoryRow):
+                self._progress.step(self._steps, row, distance)
+            elif isinstance(row, LoadRow):
+                self._progress.load_step(self._steps, row)
 
     def note(self, text: str) -> None:
         if self._progress is not None:

@@ -59,11 +59,3 @@ def assembled_matrix(*forms, pattern: PETSc.Mat | None = None) -> PETSc.Mat:
         assemble_matrix(matrix, term, [])  # type: ignore[arg-type]  # dispatches on it
     matrix.assemble()
     return matrix
-
-
-def multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:
-    """Product of a matrix and a vector of owned values. Every rank calls."""
-    x, y = matrix.createVecs()
-    x.setArray(values)
-    matrix.mult(x, y)
-    return y.getArray().copy()

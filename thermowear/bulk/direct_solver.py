@@ -1,4 +1,4 @@
-"""Sparse direct solver (MUMPS) for many right-hand sides."""
+"""Distributed sparse matrices: direct solver (MUMPS) for many right-hand sides, and products."""
 
 from __future__ import annotations
 
@@ -125,3 +125,11 @@ class DirectSolver:
             columns.shape[::-1], csr=(*indices, columns.data), comm=self._comm
         )
         return PETSc.Mat().createTranspose(transposed)
+
+
+def multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:
+    """Product of a matrix and a vector of owned values. Every rank calls."""
+    x, y = matrix.createVecs()
+    x.setArray(values)
+    matrix.mult(x, y)
+    return y.getArray().copy()

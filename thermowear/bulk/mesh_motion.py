@@ -12,8 +12,8 @@ from dolfinx import fem
 
 from ..compat import geometry_dofmap
 from .bodies import created_mesh, in_dolfinx_order
-from .compiled import assembled_matrix, multiply
-from .direct_solver import DirectSolver
+from .compiled import assembled_matrix
+from .direct_solver import DirectSolver, multiply
 from .field import geometry_space, owned
 
 

@@ -15,9 +15,8 @@ from ..parallel import on_root
 from ..results import HistoryRow
 from ..serialise import Checkpoint, pack
 from ..simulation.analyses.transient import transient_history
-from ..simulation.analyses.transient_history import snapshot_at
 from ..simulation.interface.interface_problem import InterfaceProblem
-from ..simulation.results.recording import Snapshot
+from ..simulation.results.recording import Snapshot, snapshot_at
 from ..simulation.runtime.checkpoint_data import Progress, Saved
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.system import System
@@ -56,7 +55,8 @@ class MarchState(ContactResults):
 
     @cached_property
     def snapshot(self) -> Snapshot:
-        return snapshot_at(self.system, self.problem, self.progress.state)
+        moment = self.progress.state
+        return snapshot_at(self.problem, moment.state, moment.time)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the state to a file from which `ScriptedModel.march` continues. Every rank calls.
@@ -103,9 +103,8 @@ def march(
     for moment in passing:
         history.keep(moment)
         row = history.table(HistoryRow)[-1]
-        loop = history.loop
-        state = history.progress(), loop.problem, loop.system, system
-        yield MarchState(meshes, row, *state)
+        now = history.loop.now
+        yield MarchState(meshes, row, history.progress(), now.problem, now.system, system)
 
 
 def _saved(path: Path, system: System) -> Progress:

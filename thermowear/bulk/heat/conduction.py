@@ -16,8 +16,7 @@ from dolfinx import fem
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..compiled import multiply
-from ..direct_solver import DirectSolver
+from ..direct_solver import DirectSolver, multiply
 from ..field import without_fixed
 from .advection import Advection
 from .even_paths import EvenFactor, EvenPaths
@@ -205,7 +204,7 @@ class Conduction:
 
     def _free(self, heat):
         """Nodal heat with zeros in the values with a prescribed temperature."""
-        return without_fixed(heat, self.fixed)
+        return without_fixed(heat, self.fixed) if self._has_prescribed else heat
 
 
 def factorised(

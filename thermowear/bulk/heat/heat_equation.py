@@ -12,7 +12,8 @@ import ufl
 from dolfinx import default_scalar_type, fem
 
 from ..bodies import Bodies
-from ..compiled import assembled_matrix, multiply
+from ..compiled import assembled_matrix
+from ..direct_solver import multiply
 from ..field import owned
 from ..kinematics import Kinematics, section_measure
 from .advection import Passage, advection

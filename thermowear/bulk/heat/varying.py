@@ -20,7 +20,8 @@ import ufl
 from dolfinx import fem
 
 from ..bodies import Bodies
-from ..compiled import assembled_matrix, multiply
+from ..compiled import assembled_matrix
+from ..direct_solver import multiply
 from ..field import as_function
 from ..kinematics import Kinematics, section_measure
 from ..mechanics.elasticity import Elasticity

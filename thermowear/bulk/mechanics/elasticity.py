@@ -13,8 +13,8 @@ from dolfinx import fem
 from dolfinx import mesh as dmesh
 
 from ..bodies import Bodies
-from ..compiled import assembled_matrix, multiply
-from ..direct_solver import DirectSolver
+from ..compiled import assembled_matrix
+from ..direct_solver import DirectSolver, multiply
 from ..field import lagrange_space, owned, without_fixed
 from ..kinematics import Kinematics, section_measure
 

@@ -18,8 +18,8 @@ import ufl
 from dolfinx import fem
 
 from ...parallel import sum_over_ranks
-from ..compiled import assembled, assembled_matrix, compiled, multiply, nodal_loads
-from ..direct_solver import DirectSolver
+from ..compiled import assembled, assembled_matrix, compiled, nodal_loads
+from ..direct_solver import DirectSolver, multiply
 from ..field import owned
 from .elasticity import supported
 

@@ -23,7 +23,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import block_diag
 
-from ...bulk.compiled import multiply
+from ...bulk.direct_solver import multiply
 from ...bulk.field import without_fixed
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks

@@ -12,7 +12,7 @@ from scipy.linalg import cho_factor, cho_solve
 from ..search.pairing import Pairing
 
 
-def unseen(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: np.ndarray):
+def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: np.ndarray):
     """Gap component orthogonal to the pressure space, on fully closed facets.
 
     The gap less its L² projection on the pressure space of the fully closed facets; zero on all
@@ -44,6 +44,6 @@ def unseen(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: np.nd
     weighted = pairing.weights[closed, None] * on_closed
     means = np.linalg.norm(on_closed, axis=0)  # some have little support there
     factor = cho_factor((weighted / means).T @ (on_closed / means))
-    amounts = cho_solve(factor, (weighted / means).T @ gap[closed]) / means
-    result[closed] = gap[closed] - on_closed @ amounts
+    coefficients = cho_solve(factor, (weighted / means).T @ gap[closed]) / means
+    result[closed] = gap[closed] - on_closed @ coefficients
     return result

@@ -1,6 +1,6 @@
 """Nodal displacements of a worn face from the worn depth, along its unworn normals.
 
-Each node moves along the normal of the unworn face, by the amount that displaces the face by the
+Each node moves along the normal of the unworn face, by the offset that displaces the face by the
 worn depth along its present normal. Nodes of initially matching faces stay opposite each other, and
 end nodes of a face move along the sides of its body.
 """

@@ -9,10 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from dolfinx import fem
 
 from ...bulk.field import owned
-from ...bulk.heat.heat_equation import conducting, transferring
+from ...bulk.heat.heat_equation import conducting, given_rises, transferring
 from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
 from ...bulk.mechanics.surplus import surplus_space
@@ -28,7 +27,7 @@ from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 
 
 @dataclass(frozen=True)
-class WarmerFaces:
+class TemperatureChange:
     """Change of the temperatures by the next degree.
 
     Attributes
@@ -46,12 +45,7 @@ class WarmerFaces:
 
 
 class EnrichedBodies:
-    """Elastic bodies of a system with the surplus space of the next degree. Every rank calls.
-
-    Parameters
-    ----------
-    system : System
-    """
+    """Elastic bodies of a system with the surplus space of the next degree. Every rank calls."""
 
     def __init__(self, system: System):
         elastic, degree = system.elastic, system.model.discretisation.degree
@@ -71,15 +65,15 @@ class EnrichedBodies:
         )
         self._trace = gap_trace(surplus, system.pairing)
 
-    def opening(self, contact: ContactState, state: BodyState, warmer: WarmerFaces | None):
+    def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
         system, problem = self._system, self._problem
         loads = self._loads(contact)
-        if warmer is not None:
+        if heated is not None:
             assert system.thermal is not None
             space = system.thermal.conduction.space
-            before = warmer.problem.field(np.asarray(state.rise))
-            rise = warmer.problem.function(before + warmer.field)
+            before = heated.problem.field(np.asarray(state.rise))
+            rise = heated.problem.function(before + heated.field)
             loads = loads + problem.loads(
                 lambda δu: system.elastic.thermal_work(rise, δu, space.ufl_element().degree + 1)
             )
@@ -118,7 +112,7 @@ class EnrichedBodies:
         return loads
 
 
-def warmer_faces(
+def temperature_change(
     system: System, heat: Heat, thermal: ThermalSystem, contact: ContactState, state: BodyState
 ):
     """Change of the steady temperatures by the next degree for a given friction heat.
@@ -136,7 +130,7 @@ def warmer_faces(
     )
     loads = np.concatenate([face.nodal_heat(state.thermal, bath=False), given])
     change = problem.correction(problem.residual(problem.field(np.asarray(state.rise)), loads))
-    alone = np.array(
+    uncoupled = np.array(
         [
             sum_over_ranks(system.comm, trace.T @ change[:count] + more.T @ change[count:])
             for trace, more in zip(face.traces, surplus, strict=True)
@@ -144,15 +138,16 @@ def warmer_faces(
     )
     # the nodal space cannot represent the response to a flux that levels finer details
     weighted = face.weights[:, None] * face.basis
-    seen = (
-        face.basis @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ alone.T, rcond=None)[0]
+    resolved = (
+        face.basis
+        @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ uncoupled.T, rcond=None)[0]
     )
     exchange = face.exchange(contact.conditions.conductance)
     none = np.zeros(len(face.weights))
-    coupled = exchange.state(none, BaselineResponse((seen[:, 0], seen[:, 1])))
+    coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
     change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
-    details = _levelled(alone - seen.T, face, contact.conditions.conductance)
-    return WarmerFaces(np.array(coupled.rise) + details, problem, change)
+    details = _levelled(uncoupled - resolved.T, face, contact.conditions.conductance)
+    return TemperatureChange(np.array(coupled.rise) + details, problem, change)
 
 
 def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:
@@ -176,17 +171,7 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
     terms += transferring(bodies, kinematics, cooling(model, heat))
     shifts = dict.fromkeys(model.interface.faces, thermal.face.shift)
     bath = transferring(bodies, kinematics, shifts)
-    given = _on(bodies, surplus, list(heat.temperature))
+    given, _ = given_rises(bodies, surplus, dict.fromkeys(heat.temperature, 0.0), None)
     return EnrichedProblem(
         conduction.space, surplus, terms, conduction.respond, (conduction.fixed, given), bath
     )
-
-
-def _on(bodies, space: fem.FunctionSpace, surfaces: list[str]) -> np.ndarray:
-    """Mask of the owned degrees of freedom of a scalar space on surfaces."""
-    chosen = np.zeros(owned(space), dtype=bool)
-    for surface in surfaces:
-        facets = bodies.facets(surface)
-        dofs = fem.locate_dofs_topological(space, bodies.mesh.topology.dim - 1, facets)
-        chosen[dofs[dofs < len(chosen)]] = True
-    return chosen

@@ -35,7 +35,7 @@ from ..results.recording import Snapshot
 from ..system.building import sliding_of
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from .enriched_bodies import EnrichedBodies, WarmerFaces, warmer_faces
+from .enriched_bodies import EnrichedBodies, TemperatureChange, temperature_change
 
 _FOLLOWING = 1.5
 """Ratio of the change by all higher degrees to that by the next one: 1 + 1/3 + 1/9 …"""
@@ -44,46 +44,37 @@ _FLAT = 1e-9
 """Range of a shape at rounding level, relative to the elastic deflection."""
 
 
+_NAMES = {"max_pressure": "largest pressure"}
+
+
 @dataclass(frozen=True)
 class ErrorEstimates:
     """Estimates of the relative errors, see the module; None where there is no estimate.
 
     Attributes
     ----------
-    pressure, max_pressure, shape, temperature : float or None
+    errors : dict of str to (float or None)
+        Errors of pressure, max_pressure, shape and temperature.
     missing : dict of str to str
         Reason for a missing estimate, by quantity.
     """
 
-    pressure: float | None
-    max_pressure: float | None
-    shape: float | None
-    temperature: float | None
+    errors: dict[str, float | None]
     missing: dict[str, str]
 
     def summary(self) -> dict:
         """Keys of ``summary.json``."""
-        return {
-            "pressure_error_estimate_relative": self.pressure,
-            "max_pressure_error_estimate_relative": self.max_pressure,
-            "shape_error_estimate_relative": self.shape,
-            "temperature_error_estimate_relative": self.temperature,
-            "error_estimate_missing": self.missing,
-        }
+        found = {f"{q}_error_estimate_relative": error for q, error in self.errors.items()}
+        return found | {"error_estimate_missing": self.missing}
 
     def warning(self) -> str | None:
         """Warning that lists the errors above `WORTH_A_WARNING`; None without any."""
-        named = {
-            "pressure": self.pressure,
-            "largest pressure": self.max_pressure,
-            "shape": self.shape,
-            "temperature": self.temperature,
-        }
-        large = [f"{q} {100 * e:.2g} %" for q, e in named.items() if e and e > WORTH_A_WARNING]
-        if not large:
+        above = {q: e for q, e in self.errors.items() if e and e > WORTH_A_WARNING}
+        if not above:
             return None
+        large = ", ".join(f"{_NAMES.get(q, q)} {100 * e:.2g} %" for q, e in above.items())
         return (
-            f"estimated discretisation error above 5 %: {', '.join(large)}; use more mesh.elements "
+            f"estimated discretisation error above 5 %: {large}; use more mesh.elements "
             "or a higher mesh.degree, and compare by `run --accuracy`"
         )
 
@@ -92,14 +83,14 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     """Estimate the errors at the end of an analysis. Every rank calls."""
     system, steady = end.system, analysis.type == "steady"
     missing: dict[str, str] = {}
-    warmer, why = _warmer(end)
-    temperature = None if warmer is None else _of_temperature(end, warmer)
+    heated, why = _temperature_change(end)
+    temperature = None if heated is None else _of_temperature(end, heated)
     if temperature is None:
         missing["temperature"] = why or "no temperature differs from the ambient one"
     bodies = EnrichedBodies(system)
-    opened = bodies.opening(end.contact, end.bodies, warmer)
+    opened = bodies.opening(end.contact, end.bodies, heated)
     shape = None
-    if system.thermal is not None and warmer is None:
+    if system.thermal is not None and heated is None:
         missing["shape"] = f"temperature: {why}"
     else:
         shape = _of_shape(end, opened, steady)
@@ -111,17 +102,23 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     else:
         try:
             if steady:
-                richer = _finer_principle(system, end.contact)
+                enriched = _finer_principle(system, end.contact)
             else:
-                richer = _richer_pressure(end, bodies, opened)
-            pressure, largest = _of_pressure(system, end.contact.pressure, richer)
+                enriched = _enriched_pressure(end, bodies, opened)
+            pressure, largest = _of_pressure(system, end.contact.pressure, enriched)
             pressure = max(pressure, _of_edges(system, end.interface))
         except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
             missing["pressure"] = str(error)
-    return ErrorEstimates(pressure, largest, shape, temperature, missing)
+    errors = {
+        "pressure": pressure,
+        "max_pressure": largest,
+        "shape": shape,
+        "temperature": temperature,
+    }
+    return ErrorEstimates(errors, missing)
 
 
-def _warmer(end: Snapshot) -> tuple[WarmerFaces | None, str | None]:
+def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
     thermal, heat = end.system.thermal, end.system.model.heat
     if thermal is None or heat is None or end.bodies.thermal is None:
@@ -134,13 +131,13 @@ def _warmer(end: Snapshot) -> tuple[WarmerFaces | None, str | None]:
         return None, "not estimated where conductivity or expansion change with temperature"
     if heat.advection != "none":
         return None, "not estimated where a body carries heat along"
-    return warmer_faces(end.system, heat, thermal, end.contact, end.bodies), None
+    return temperature_change(end.system, heat, thermal, end.contact, end.bodies), None
 
 
-def _of_temperature(end: Snapshot, warmer: WarmerFaces) -> float | None:
+def _of_temperature(end: Snapshot, heated: TemperatureChange) -> float | None:
     assert end.bodies.thermal is not None
     largest = float(np.abs(end.bodies.thermal.rise).max())
-    return _FOLLOWING * float(np.abs(warmer.faces).max()) / largest if largest > 0 else None
+    return _FOLLOWING * float(np.abs(heated.faces).max()) / largest if largest > 0 else None
 
 
 def _of_shape(end: Snapshot, opened: np.ndarray, steady: bool) -> float | None:
@@ -152,8 +149,8 @@ def _of_shape(end: Snapshot, opened: np.ndarray, steady: bool) -> float | None:
         return None
     modes, change = system.holder.modes[pressing], opened[pressing]
     roots = np.sqrt(system.weights[pressing])
-    amounts = np.linalg.lstsq(modes * roots[:, None], change * roots, rcond=None)[0]
-    return _FOLLOWING * float(np.abs(change - modes @ amounts).max()) / scale
+    motion = np.linalg.lstsq(modes * roots[:, None], change * roots, rcond=None)[0]
+    return _FOLLOWING * float(np.abs(change - modes @ motion).max()) / scale
 
 
 def _of_edges(system: System, interface: InterfaceFields) -> float:
@@ -172,14 +169,14 @@ def _of_edges(system: System, interface: InterfaceFields) -> float:
     return float(pressure[last] @ largest[side.facet[last]] / 2 / (weights @ pressure))
 
 
-def _of_pressure(system: System, pressure: np.ndarray, richer: np.ndarray) -> tuple[float, float]:
+def _of_pressure(system: System, pressure: np.ndarray, enriched: np.ndarray) -> tuple[float, float]:
     total, largest = float(system.weights @ pressure), float(pressure.max())
-    change = float(system.weights @ np.abs(richer - pressure))
-    peak = abs(float(richer.max()) - largest)
+    change = float(system.weights @ np.abs(enriched - pressure))
+    peak = abs(float(enriched.max()) - largest)
     return _FOLLOWING * change / total, _FOLLOWING * peak / largest
 
 
-def _richer_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray) -> np.ndarray:
+def _enriched_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray) -> np.ndarray:
     """Pressure of an enriched discretisation at the contact points, shape (n,) [Pa]."""
     system, interface = end.system, end.interface
     if system.model.interface.pressure_degree == "lobatto":

@@ -9,7 +9,7 @@ from ...geometry.cad.design import Design
 from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state
 from ..interface.steady import steady_state
-from ..results.recording import along_press
+from ..results.recording import along_load
 from ..system.system import System
 
 _SAME = 1e-9  # relative to the size of the face: closer points coincide
@@ -39,23 +39,23 @@ def steady_design(system: System, body: int) -> Design:
     pressure = found.wear.pressure
     open_by = state.opening + system.softness * pressure + pairing.gap
     modes = system.holder.modes
-    amounts = least_worn(modes, open_by, system.weights, pressure > 0)
-    depth = np.maximum(modes @ amounts - open_by, 0.0)
+    position = least_worn(modes, open_by, system.weights, pressure > 0)
+    depth = np.maximum(modes @ position - open_by, 0.0)
     side = pairing.sides[body - 1]
     points, normals = side.face.points(side.facet, side.t), pairing.normals
     s = pairing.position
     if body == 2:
         normals = side.face.normals(side.facet, side.t)
         s = side.face.position(side.facet, side.t)
-    lost = pairing.gap + depth
-    lost_along = lost / along_press(system)
+    height = pairing.gap + depth
+    height_along = height / along_load(system)
     design = Design(
         body=body,
         points=points,
         s=s,
         normals=normals,
-        shape=lost.max() - lost,
-        shape_along_press=np.nanmax(lost_along) - lost_along,
+        shape=height.max() - height,
+        shape_along_press=np.nanmax(height_along) - height_along,
         depth=depth,
     )
     return _from_end_to_end(design, side.face) if isinstance(side.face, Face) else design

@@ -14,12 +14,10 @@ from petsc4py import PETSc
 
 import numpy as np
 
-from ...bulk.heat.conduction import Conduction
-from ...contact.operators.heat import InterfaceHeat, baseline_response
-from ...contact.operators.heat_condensation import condense_heat
+from ...contact.operators.heat import baseline_response
 from ...laws.stability import Disturbances, LoadFree, Rate
 from ...parallel import sum_over_ranks
-from ..heat.distortion import CondensedDistortion
+from ..heat.heat_steps import HeatSteps
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 
@@ -27,11 +25,11 @@ _NEW = 1e-12
 """Smallest squared norm of the new part of a unit field that extends the space."""
 _SPREAD = (1.0, 30.0, 1e3, 3e4)
 """Initial rates of a model, relative to that of diffusion across the contact."""
-_SAME, _SETTLED, _TURNS = 1e-3, 1e-6, 6
+_SAME, _TOLERANCE, _ITERATIONS = 1e-3, 1e-6, 6
 
 
 @dataclass(frozen=True)
-class Growing:
+class GrowthMode:
     """Growth rate of a perturbation, and its speed.
 
     Attributes
@@ -44,10 +42,10 @@ class Growing:
     factor: float
     rate: Rate
 
-    def near(self, other: Growing) -> bool:
+    def near(self, other: GrowthMode) -> bool:
         """True if both agree within the accuracy of the reduced model."""
-        change = abs(self.rate.value - other.rate.value) <= _SETTLED * abs(other.rate.value)
-        return change and abs(self.factor - other.factor) <= _SETTLED * other.factor
+        change = abs(self.rate.value - other.rate.value) <= _TOLERANCE * abs(other.rate.value)
+        return change and abs(self.factor - other.factor) <= _TOLERANCE * other.factor
 
 
 class GrowthModel:
@@ -57,7 +55,6 @@ class GrowthModel:
     ----------
     system : System
         System with a thermal model and known heat capacity.
-    distortion : CondensedDistortion
     conditions : InterfaceConditions
         Conditions of the perturbed state.
     elastic : ndarray, shape (m, m)
@@ -69,16 +66,15 @@ class GrowthModel:
     def __init__(
         self,
         system: System,
-        distortion: CondensedDistortion,
         conditions: InterfaceConditions,
         elastic: np.ndarray,
         space: LoadFree,
     ):
         assert system.thermal is not None
         self._system, self._thermal = system, system.thermal
-        self._distortion, self._conditions = distortion, conditions
-        self._elastic, self._space = elastic, space
+        self._conditions, self._elastic, self._space = conditions, elastic, space
         self._friction = conditions.heating[:, None] * (system.basis @ space.pressures)
+        self._steps = HeatSteps(system, system.thermal, 0)
         self._fields: np.ndarray | None = None
         self._crossing: np.ndarray | None = None
         self._rates: list[float] = []
@@ -89,22 +85,22 @@ class GrowthModel:
         for rate in (0.0, *(part * slowest for part in _SPREAD)):
             self.add(rate)
 
-    def settled(self, find: Callable[[Disturbances], Growing | None]) -> Growing | None:
+    def refined(self, find: Callable[[Disturbances], GrowthMode | None]) -> GrowthMode | None:
         """Result of a search in the model, refined at the rate found; every rank calls.
 
         The response at the rate found is added until the result no longer changes.
         """
-        found = find(self.disturbances())
-        for _ in range(_TURNS):
-            if found is None or self._knows(abs(found.rate.value)):
+        found = find(self.matrices())
+        for _ in range(_ITERATIONS):
+            if found is None or self._has_response(abs(found.rate.value)):
                 break
             self.add(abs(found.rate.value))
-            before, found = found, find(self.disturbances())
+            before, found = found, find(self.matrices())
             if found is not None and found.near(before):
                 break
         return found
 
-    def _knows(self, rate: float) -> bool:
+    def _has_response(self, rate: float) -> bool:
         return any(abs(rate - known) <= _SAME * rate for known in self._rates)
 
     def add(self, rate: float) -> None:
@@ -115,34 +111,25 @@ class GrowthModel:
         rate : float
             Growth rate, zero for steady state [1/s].
         """
-        conduction, face = self._conducting(rate)
+        steps = self._steps
+        bodies = steps.operators if rate == 0.0 else steps.operators_within(1 / rate)
+        face = bodies.face
         exchange = face.exchange(self._conditions.conductance)
         nodal = sum(
             trace @ (face.weights[:, None] * (share @ self._friction))
             for trace, share in zip(face.traces, exchange.per_friction_heat, strict=True)
         )
         crossing = exchange.crossing_per_friction_heat @ self._friction
-        self._extend(conduction.respond(np.asarray(nodal)), crossing)
+        self._extend(bodies.conduction.respond(np.asarray(nodal)), crossing)
         self._rates.append(rate)
 
-    def _conducting(self, rate: float) -> tuple[Conduction, InterfaceHeat]:
-        """Conduction and condensed interface heat for temperatures that grow at a rate."""
-        steady, face = self._thermal.conduction, self._thermal.face
-        if rate == 0.0:
-            return steady, face
-        with self._system.phases("condense conduction"):
-            growing = steady.implicit_euler(1 / rate)
-            basis, traces = face.basis, face.traces
-            alike = condense_heat(growing, face.weights, basis, traces, face.shift, face.partition)
-        return growing, alike
-
-    def disturbances(self) -> Disturbances:
+    def matrices(self) -> Disturbances:
         """Matrices of the present model; every rank calls."""
         system, space, thermal = self._system, self._space, self._thermal
         conduction, X = thermal.conduction, self._fields
         assert X is not None
         assert conduction.capacity is not None
-        at = baseline_response(X, thermal.face.traces, system.comm, self._distortion.per_rise)
+        at = baseline_response(X, thermal.face.traces, system.comm, system.influence.per_rise[0])
         T1, T2 = at.rise
         weights = system.weights[:, None]
         f = np.reshape(thermal.face.partition, (-1, 1))

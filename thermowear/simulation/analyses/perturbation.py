@@ -19,22 +19,22 @@ from ...laws.stability import (
     load_free,
     static_modes,
 )
-from ..heat.distortion import CondensedDistortion
+from ..heat.heat_steps import HeatOperators
 from ..system.building import build
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from .growth_model import Growing, GrowthModel
+from .growth_model import GrowthMode, GrowthModel
 
-_KINDS = 24
+_REDUCED = 24
 """Number of perturbations most coupled to heat, the basis of growing ones; see `leading`."""
 _PRESSING = 1e-9
 _SLOW, _NEAR = 0.02, 0.3
 """Start of the onset search as part of a speed that is known roughly, or well."""
-_SAME, _TURNS = 1e-4, 10
+_SAME, _ITERATIONS = 1e-4, 10
 
 
 @dataclass(frozen=True)
-class Disturbance:
+class PerturbationMode:
     """Perturbation mode of the pressure.
 
     Attributes
@@ -52,7 +52,7 @@ class Disturbance:
     shape: np.ndarray
 
 
-class DisturbedContact:
+class PerturbedContact:
     """Perturbations of a contact with a given contact set. Every rank calls.
 
     Parameters
@@ -73,38 +73,37 @@ class DisturbedContact:
         if system.thermal is None:
             raise CaseError("heat: missing; required in a stability analysis")
         self._system, self._pressure, self._conditions = system, pressure, conditions
-        self._bodies = system.thermal
-        self._distortion = CondensedDistortion(system, system.thermal)
+        self._thermal_bodies = system.thermal
 
     @property
-    def stores(self) -> bool:
+    def has_capacity(self) -> bool:
         """True if the heat capacity of the bodies is known, and thus growth rates."""
-        return self._bodies.conduction.capacity is not None
+        return self._thermal_bodies.conduction.capacity is not None
 
     @property
-    def carries(self) -> bool:
+    def has_advection(self) -> bool:
         """True if a body convects heat: perturbations then move, and no static modes exist."""
-        return self._bodies.conduction.advective is not None
+        return self._thermal_bodies.conduction.advective is not None
 
     @cached_property
     def static(self) -> StaticModes:
         """Static modes, each at its own critical speed."""
         return static_modes(self._elastic, self._thermal, self._space)
 
-    def fastest(self, wears: bool) -> Disturbance:
+    def fastest(self, wears: bool) -> PerturbationMode:
         """Perturbation with the largest growth rate (real part) at the given speed."""
         wear = self._wear(1.0) if wears else None
-        found = self._model.settled(lambda small: Growing(1.0, small.fastest(1.0, wear)))
+        found = self._model.refined(lambda small: GrowthMode(1.0, small.fastest(1.0, wear)))
         assert found is not None
-        return self._whole(found)
+        return self._full_mode(found)
 
-    def onset(self, wears: bool) -> Disturbance | None:
+    def onset(self, wears: bool) -> PerturbationMode | None:
         """First perturbation to grow with increasing speed; None if none does."""
-        if not self.carries:
+        if not self.has_advection:
             return self._onset(wears, _SLOW * float(np.append(self.static.factors, 1.0)[0]))
         # upwind test functions, and the responses in the model, depend on the speed
         found, factor, tried = self._onset(wears, _SLOW), 1.0, []
-        for _ in range(_TURNS):
+        for _ in range(_ITERATIONS):
             if found is None or abs(found.factor - 1.0) <= _SAME:
                 break
             tried.append((np.log(factor), np.log(found.factor)))
@@ -112,36 +111,35 @@ class DisturbedContact:
             found = self._at(factor)._onset(wears, _NEAR)
         return None if found is None else replace(found, factor=factor * found.factor)
 
-    def _onset(self, wears: bool, start: float) -> Disturbance | None:
+    def _onset(self, wears: bool, start: float) -> PerturbationMode | None:
         wear = self._wear if wears else None
 
-        def find(small: Disturbances) -> Growing | None:
+        def find(small: Disturbances) -> GrowthMode | None:
             nonlocal start
             factor = small.onset(start, wear)
             if factor is None:
                 return None
             start = 0.95 * factor
-            return Growing(factor, small.fastest(factor, wear and wear(factor)))
+            return GrowthMode(factor, small.fastest(factor, wear and wear(factor)))
 
-        found = self._model.settled(find)
-        return None if found is None else self._whole(found)
+        found = self._model.refined(find)
+        return None if found is None else self._full_mode(found)
 
-    def _at(self, factor: float) -> DisturbedContact:
+    def _at(self, factor: float) -> PerturbedContact:
         """Perturbed contact at another speed."""
         model = self._system.model
         model = replace(model, motion=model.motion.faster(factor))
         system = build(model, self._system.comm, self._system.phases, parts=self._system.parts)
         conditions = replace(self._conditions, speed=factor * self._conditions.speed)
-        return DisturbedContact(system, self._pressure, conditions)
+        return PerturbedContact(system, self._pressure, conditions)
 
-    def _whole(self, found: Growing) -> Disturbance:
-        shape = self._kinds.pressures @ found.rate.shape
-        return Disturbance(found.factor, found.rate.value, shape)
+    def _full_mode(self, found: GrowthMode) -> PerturbationMode:
+        shape = self._reduced.pressures @ found.rate.shape
+        return PerturbationMode(found.factor, found.rate.value, shape)
 
     @cached_property
     def _model(self) -> GrowthModel:
-        heat, elastic, kinds = self._distortion, self._elastic, self._kinds
-        model = GrowthModel(self._system, heat, self._conditions, elastic, kinds)
+        model = GrowthModel(self._system, self._conditions, self._elastic, self._reduced)
         model.begin()
         return model
 
@@ -154,10 +152,9 @@ class DisturbedContact:
     @cached_property
     def _thermal(self) -> np.ndarray:
         """Weak thermal opening per pressure coefficient, H, at the given speed."""
-        conduction, face = self._bodies.conduction, self._bodies.face
-        per_heat = self._distortion(conduction, face).per_friction_heat(
-            face.exchange(self._conditions.conductance)
-        )
+        face, conductance = self._thermal_bodies.face, self._conditions.conductance
+        bodies = HeatOperators(self._system, self._thermal_bodies.conduction, face)
+        per_heat = bodies.distortion.per_friction_heat(face.exchange(conductance))
         return per_heat @ (self._conditions.heating[:, None] * self._system.basis)
 
     @cached_property
@@ -173,15 +170,15 @@ class DisturbedContact:
         return LoadFree(identity @ space.pressures, identity @ space.gaps)
 
     @cached_property
-    def _kinds(self) -> LoadFree:
+    def _reduced(self) -> LoadFree:
         """Basis of the growing perturbations."""
         contact = self._system.contact
         depths = contact.weighted.T @ contact.basis
-        return leading(self._elastic, self._thermal, depths, self._space, _KINDS)
+        return leading(self._elastic, self._thermal, depths, self._space, _REDUCED)
 
     def _wear(self, factor: float) -> np.ndarray:
         """Wear rate per perturbation at a factor of the speed, in the reduced basis."""
-        system, conditions, space = self._system, self._conditions, self._kinds
+        system, conditions, space = self._system, self._conditions, self._reduced
         pressed = system.basis @ space.pressures
         worn = np.zeros_like(pressed)
         conditions = replace(conditions, speed=factor * conditions.speed)

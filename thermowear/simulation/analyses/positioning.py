@@ -12,9 +12,9 @@ from ..interface.factory import interface_problem
 from ..system.building import build
 from ..system.system import System
 
-_PASSES = 12
-_SETTLED = 0.1  # relative to the element at the edge
-_STEEPEST = 4.0
+_ITERATIONS = 12
+_TOLERANCE = 0.1  # relative to the element at the edge
+_LARGEST_SLOPE = 4.0
 _LONGEST = 0.4  # relative to the zone, so that its edges cannot swap
 
 
@@ -31,17 +31,17 @@ def prepare(model: Model, comm, phases: Phases) -> System:
     expected = model.expected_zone
     zone = np.array(touching(build(model, comm, phases)) if expected is None else expected)
     before: tuple[np.ndarray, np.ndarray] | None = None
-    for _ in range(_PASSES):
+    for _ in range(_ITERATIONS):
         system = build(model, comm, phases, (float(zone[0]), float(zone[1])))
         with phases("contact"):
-            missed = np.array(touching(system)) - zone
+            residual = np.array(touching(system)) - zone
         # half models have no left edge
-        off = np.abs(missed[1:] if model.symmetry else missed).max()
-        if off < _SETTLED * _smallest(system):
+        off = np.abs(residual[1:] if model.symmetry else residual).max()
+        if off < _TOLERANCE * _smallest(system):
             return system
-        zone, before = zone + _step(zone, missed, before), (zone, missed)
+        zone, before = zone + _step(zone, residual, before), (zone, residual)
     raise ComputationError(
-        f"contact.positioning: the edges of the contact did not settle in {_PASSES} meshes; "
+        f"contact.positioning: the edges of the contact did not settle in {_ITERATIONS} meshes; "
         "use more elements (mesh.elements), or contact.positioning = false"
     )
 
@@ -65,17 +65,19 @@ def touching(system: System) -> tuple[float, float]:
     return float(first), float(last)
 
 
-def _step(zone: np.ndarray, missed: np.ndarray, before) -> np.ndarray:
+def _step(zone: np.ndarray, residual: np.ndarray, before) -> np.ndarray:
     """Displacement of each zone edge, by a secant step after the first one.
 
     The position of a contact edge depends slightly on the mesh.
     """
     if before is None:
-        return missed
-    moved, changed = zone - before[0], missed - before[1]
+        return residual
+    moved, changed = zone - before[0], residual - before[1]
     slope = np.divide(changed, moved, out=np.full(2, -1.0), where=moved != 0.0)
     longest = _LONGEST * (zone[1] - zone[0])
-    return np.clip(missed / -np.clip(slope, -_STEEPEST, -1 / _STEEPEST), -longest, longest)
+    return np.clip(
+        residual / -np.clip(slope, -_LARGEST_SLOPE, -1 / _LARGEST_SLOPE), -longest, longest
+    )
 
 
 def _smallest(system: System) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from numpy.linalg import LinAlgError
@@ -20,23 +20,22 @@ from ...model.model import Model
 from ...results import Result
 from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
-from ..cycles.fretting import fretting
-from ..cycles.reciprocating import reciprocating
-from ..geometry_update.face_limits import outgrown
+from ..cycles.fretting import fretting_history
+from ..cycles.reciprocating import reciprocating_history
+from ..geometry_update.wider_zone import reaches_open_end
 from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
 from ..results.fields import sample
 from ..results.recording import Snapshot
 from ..runtime.checkpoint_data import Saved, mesh_checksum
+from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.system import System
-from .plausible import too_steep, went_back
+from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare
-from .small_wear_check import not_small
 from .stability import stability
 from .static import initial, steady, unworn
-from .transient import running_in
-from .untouched_contact import untouched
+from .transient import transient_history
 
 _UNPAIRED = 1e-6
 
@@ -63,10 +62,6 @@ def run(
     saved : Saved, optional
         Checkpoint from `Observer.checkpoint` of an earlier run on this rank, to restart from; the
         result has the whole history, and the outputs from there on.
-
-    Returns
-    -------
-    Result
 
     Raises
     ------
@@ -120,18 +115,23 @@ def analyse(
         end, result = _STATIC[analysis.type](system, observer)
     else:
         before = None if saved is None else saved.of(system)
-        end, result = _STEPPED[type(analysis)](system, analysis, observer, before)
-    if outgrown(end.system, end.contact.pressure):
+        history, states = _STEPPED[type(analysis)](system, analysis, observer, before)
+        end, result = history.conclude(history.follow(states))
+    if reaches_open_end(end.system, end.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
             "use contact.positioning = true, or a wider geometry.zone"
         )
     found: list[ComputationError | str | None] = [
-        too_steep(end.system, end.contact.pressure),
-        not_small(system, analysis, end.interface),
+        inclined_faces(end.system, end.contact.pressure),
+        deep_wear(system, analysis, end.interface),
     ]
     if result.stopped is None:
-        found = [untouched(system, end.interface), went_back(system, analysis, end), *found]
+        found = [
+            open_contact(system, end.interface),
+            moved_against_load(system, analysis, end),
+            *found,
+        ]
     for note in (one for one in found if isinstance(one, str)):
         observer.note(note)
     errors = (one for one in found if isinstance(one, ComputationError))
@@ -168,7 +168,7 @@ def _stability(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     if system.laws and len(free) and free.all():
         return stability(system, steady(system, observer), observer)
     cold = InterfaceProblem(system, CondensedMethod(system), None)
-    return stability(system, unworn(system, cold), observer)
+    return stability(system, unworn(cold), observer)
 
 
 _STATIC: dict[str, Callable[[System, Observer], tuple[Snapshot, Result]]] = {
@@ -176,8 +176,8 @@ _STATIC: dict[str, Callable[[System, Observer], tuple[Snapshot, Result]]] = {
     "steady": steady,
     "stability": _stability,
 }
-_STEPPED: dict[type, Callable[..., tuple[Snapshot, Result]]] = {
-    TransientAnalysis: running_in,
-    FrettingAnalysis: fretting,
-    ReciprocatingAnalysis: reciprocating,
+_STEPPED: dict[type, Callable[..., tuple[AnalysisHistory, Iterator]]] = {
+    TransientAnalysis: transient_history,
+    FrettingAnalysis: fretting_history,
+    ReciprocatingAnalysis: reciprocating_history,
 }

@@ -11,7 +11,7 @@ from ...results import Modes, Result
 from ..results.recording import Snapshot
 from ..runtime.observer import Observer
 from ..system.system import System
-from .perturbation import Disturbance, DisturbedContact
+from .perturbation import PerturbationMode, PerturbedContact
 
 _SHOWN = 4
 """Number of static modes in the results."""
@@ -36,9 +36,9 @@ def stability(
         If a body convects heat and the heat capacity of a body is not known.
     """
     end, unperturbed = base
-    contact = DisturbedContact(system, end.contact.pressure, end.contact.conditions)
-    if not contact.stores:
-        if contact.carries:
+    contact = PerturbedContact(system, end.contact.pressure, end.contact.conditions)
+    if not contact.has_capacity:
+        if contact.has_advection:
             raise ComputationError(
                 "stability: a body carries heat along, so disturbances move; that needs density "
                 "and specific_heat of all bodies"
@@ -48,8 +48,8 @@ def stability(
             "their critical speed are found, and no rates; others may swing, and grow before"
         )
     with system.phases("stability"):
-        static = [] if contact.carries else _static(contact)
-        if contact.stores:
+        static = [] if contact.has_advection else _static(contact)
+        if contact.has_capacity:
             extra, modes = _in_time(system, contact)
         else:
             extra, modes = _keys(system, static[0] if static else None, None, None, None), []
@@ -58,14 +58,14 @@ def stability(
     return end, replace(unperturbed, summary=summary, modes=_table(system, modes + static))
 
 
-def _static(contact: DisturbedContact) -> list[Disturbance]:
+def _static(contact: PerturbedContact) -> list[PerturbationMode]:
     """First static modes."""
     found = contact.static
     pairs = zip(found.factors[:_SHOWN], found.shapes.T, strict=False)
-    return [Disturbance(float(factor), 0j, shape) for factor, shape in pairs]
+    return [PerturbationMode(float(factor), 0j, shape) for factor, shape in pairs]
 
 
-def _in_time(system: System, contact: DisturbedContact) -> tuple[dict, list[Disturbance]]:
+def _in_time(system: System, contact: PerturbedContact) -> tuple[dict, list[PerturbationMode]]:
     """Summary entries of growth rates and critical speeds, and the modes to tabulate."""
     critical, unworn = contact.onset(False), contact.fastest(False)
     onset, fastest, worn = critical, unworn, None
@@ -80,10 +80,10 @@ def _in_time(system: System, contact: DisturbedContact) -> tuple[dict, list[Dist
 
 def _keys(
     system: System,
-    critical: Disturbance | None,
-    with_wear: Disturbance | None,
-    fastest: Disturbance | None,
-    unworn: Disturbance | None,
+    critical: PerturbationMode | None,
+    with_wear: PerturbationMode | None,
+    fastest: PerturbationMode | None,
+    unworn: PerturbationMode | None,
 ) -> dict:
     """Summary entries of a stability analysis."""
     motion = system.model.motion
@@ -106,7 +106,7 @@ def _keys(
     return found
 
 
-def _table(system: System, modes: list[Disturbance]) -> Modes:
+def _table(system: System, modes: list[PerturbationMode]) -> Modes:
     """Table of mode pressures at the contact points, each normalised to a largest value of 1."""
     points, s = system.pairing.points, system.pairing.position
     places = [*np.pad(points, ((0, 0), (0, 3 - points.shape[1]))).T, s]
@@ -114,7 +114,7 @@ def _table(system: System, modes: list[Disturbance]) -> Modes:
     for number, mode in enumerate(modes, 1):
         p = system.basis @ mode.shape
         p = p / p[np.argmax(np.abs(p))] + 0j
-        told = (number, mode.factor, mode.rate.real, mode.rate.imag)
-        constants = [np.full(len(p), value) for value in told]
+        values = (number, mode.factor, mode.rate.real, mode.rate.imag)
+        constants = [np.full(len(p), value) for value in values]
         tables.append(np.array([*constants, *places, p.real, p.imag]))
     return Modes(*np.hstack(tables))

@@ -11,7 +11,7 @@ from ..interface.body_state import body_state
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.steady import steady_state
-from ..results.recording import Snapshot, record, snapshot
+from ..results.recording import Snapshot, record, snapshot_at
 from ..results.summary import conclude
 from ..runtime.observer import Observer
 from ..system.system import System
@@ -28,19 +28,16 @@ _VELOCITIES = {
 
 def initial(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     """Contact of the unworn faces."""
-    return unworn(system, interface_problem(system, observer.note))
+    return unworn(interface_problem(system, observer.note))
 
 
-def unworn(system: System, problem: InterfaceProblem) -> tuple[Snapshot, Result]:
+def unworn(problem: InterfaceProblem) -> tuple[Snapshot, Result]:
     """Contact of the unworn faces, from a given interface problem."""
-    with system.phases("contact"):
+    phases = problem.system.phases
+    with phases("contact"):
         found = problem.unworn()
-    with system.phases("bodies"):
-        contact = problem.contact_state(found, 0.0)
-        motion = combined(system.holder.motions, found.contact.motion)
-        still = np.zeros((2, len(contact.pressure)))
-        end = snapshot(system, contact, motion, still)
-    return conclude(end, {"steps": 0})
+    with phases("bodies"):
+        return conclude(snapshot_at(problem, found, 0.0), {"steps": 0})
 
 
 def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
@@ -54,13 +51,13 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     pressing = wear.pressure > 0
     # holder position of least material removal for conforming faces
     opening = state.opening + system.softness * wear.pressure
-    amounts = least_worn(system.holder.modes, opening, system.weights, pressing)
-    lost = system.holder.modes @ amounts - opening
-    shape = lost[pressing].max() - lost
+    position = least_worn(system.holder.modes, opening, system.weights, pressing)
+    height = system.holder.modes @ position - opening
+    shape = height[pressing].max() - height
     end = record(
         system,
         contact,
-        combined(system.holder.motions, amounts),
+        combined(system.holder.motions, position),
         state,
         gap=np.where(pressing, 0.0, np.nan),
         shape=shape,

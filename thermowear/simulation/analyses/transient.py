@@ -5,34 +5,33 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
+import numpy as np
+
+from ...balances import ALLOWED, require
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
-from ...results import Result
-from ..geometry_update.face_limits import beyond
+from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
+from ..geometry_update.wider_zone import ends_outside_zone
+from ..heat.friction_heat import FrictionHeat
 from ..interface.factory import interface_problem
+from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
-from ..results.recording import Snapshot
+from ..results.recording import Snapshot, snapshot_at
 from ..runtime.checkpoint_data import Progress
+from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
+from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit
-from .transient_history import TransientHistory
+from .static import wear_velocity
 
-
-def running_in(
-    system: System,
-    settings: TransientAnalysis,
-    observer: Observer,
-    before: Progress | None = None,
-) -> tuple[Snapshot, Result]:
-    """Follow contact in time, from the start or from a checkpoint.
-
-    Results computed before an error or Ctrl-C are kept. The summary includes the wear velocities of
-    the steady state that is approached.
-    """
-    history, passing = transient_history(system, settings, observer, before)
-    return history.conclude(history.follow("time stepping", passing))
+_MELTED = 5000.0  # K, above the melting point of any solid
+_STEEPER = 3.0  # heating rate over mean rate so far; linear rise of load and speed gives 2.5
+_UNSTABLE = (
+    "thermal runaway: friction heat distorts the bodies, which concentrates pressure and heat "
+    "(thermoelastic instability); reduce the speed or the friction"
+)
 
 
 def transient_history(
@@ -41,10 +40,14 @@ def transient_history(
     observer: Observer,
     before: Progress | None = None,
 ) -> tuple[TransientHistory, Iterator[Moment]]:
-    """Empty history of a transient analysis, and the moments to keep in it, made one by one."""
+    """History of a transient analysis, and the moments to keep in it, made one by one.
+
+    From the start or from a checkpoint. The summary includes the wear velocities of the steady
+    state that is approached.
+    """
     problem = interface_problem(system, observer.note)
     sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
-    loop = OuterLoop(system, settings, problem, partial(_principle, settings), sizes, observer)
+    loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
     history = TransientHistory(loop, settings, observer)
     return history, history.watched(loop.moments(history.resume(before)))
 
@@ -55,7 +58,7 @@ def _principle(settings: TransientAnalysis, system: System) -> SteadyState | Non
     There is none unless all holder modes are free, for a growing contact, for inputs given over
     time, for wear laws that depend on the depth, or if the principle has no solution.
     """
-    free, grows = system.holder.free, any(beyond(system))
+    free, grows = system.holder.free, any(ends_outside_zone(system))
     if not (len(free) and free.all()) or (grows and settings.until is None):
         return None
     if system.model.histories or not system.laws:
@@ -68,3 +71,163 @@ def _principle(settings: TransientAnalysis, system: System) -> SteadyState | Non
         if settings.until == "steady":
             raise
         return None
+
+
+class TransientHistory(AnalysisHistory[Moment]):
+    """History of the accepted moments of a running-in.
+
+    Parameters
+    ----------
+    loop : OuterLoop
+        Loop that provides the system and the problem at the last moment.
+    settings : TransientAnalysis
+    observer : Observer
+    """
+
+    def __init__(self, loop: OuterLoop, settings: TransientAnalysis, observer: Observer):
+        super().__init__(loop.now.system, settings, observer)
+        self.loop = loop
+        self._speed = 0.0
+        self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
+
+    def restart_data(self) -> tuple:
+        """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
+        heat = self.loop.now.problem.heat
+        own = None if heat is None else heat.steps.restart_data()
+        return self._speed, self.loop.restart_data(), own
+
+    def restore(self, data: tuple) -> None:
+        self._speed, loop, own = data
+        self.loop.restore(loop)
+        if self.loop.now.problem.heat is not None and own is not None:
+            self.loop.now.problem.heat.steps.restore(own)
+
+    def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
+        problem = self.loop.now.problem
+        conditions = problem.conditions(state.state, state.time)
+        speed = self._mean(conditions.speed)
+        slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
+        self._speed = speed
+        row = self._row(state, slid)
+        if problem.heat is None or not problem.stores_heat:
+            return [row]
+        heat = self._heat_row(state, conditions, problem.heat)
+        if not heat.balance_error <= ALLOWED:
+            require(heat_balance_relative_error=heat.balance_error)
+        return [row, heat]
+
+    def watched(self, passing: Iterator[Moment]) -> Iterator[Moment]:
+        """Pass the moments on while the faces are below any melting point.
+
+        Raises
+        ------
+        ComputationError
+            If they are hotter; that of a step failing in thermal runaway is extended by the cause.
+        """
+        try:
+            for moment in passing:
+                yield moment
+                hottest = self._hottest(moment.state)
+                if self.loop.now.problem.stores_heat and hottest > _MELTED:
+                    raise ComputationError(
+                        f"transient: {hottest:.3g} K at {moment.time:g} s, above the melting point "
+                        "of any solid"
+                    )
+        except ComputationError as reason:
+            if self._runs_away():
+                raise ComputationError(f"{reason}; {_UNSTABLE}") from None
+            raise
+
+    def snapshot(self, state: Moment) -> Snapshot:
+        return snapshot_at(self.loop.now.problem, state.state, state.time)
+
+    def summary(self) -> dict:
+        loop, rows, heat = self.loop, self.table(HistoryRow), self.table(HeatRow)
+        steady = loop.now.steady
+        result = {
+            "steps": len(rows) - 1,
+            "time_s": rows[-1].time,
+            "distance_from_steady": None if steady is None else self.last.distance,
+            **loop.summary(),
+            **wear_velocity(loop.now.system, None if steady is None else steady.wear.velocity),
+        }
+        if not heat:
+            return result
+        last, peak = heat[-1], max(rows, key=lambda row: row.max_temperature)
+        return result | {
+            "heat_in_J": last.heat_in,
+            "heat_stored_J": last.heat_stored,
+            "heat_lost_J": last.heat_lost,
+            "peak_temperature_K": peak.max_temperature,
+            "peak_temperature_time_s": peak.time,
+        }
+
+    def _runs_away(self) -> bool:
+        """True if the faces heat up much faster than before (thermal runaway)."""
+        rows = self.table(HistoryRow)
+        if not self.table(HeatRow) or len(rows) < 3:
+            return False
+        first, before, last = rows[0], rows[-2], rows[-1]
+        so_far = (before.max_temperature - first.max_temperature) / before.time
+        now = (last.max_temperature - before.max_temperature) / last.step
+        return now > _STEEPER * so_far > 0.0
+
+    def _row(self, moment: Moment, slid: float) -> HistoryRow:
+        system, pressure, rows = self.loop.now.system, moment.state.pressure, self.table(HistoryRow)
+        kept = moment.state.by_body(system.laws) - system.moved
+        volumes = (kept @ system.weights + system.lost) / system.coverage
+        return HistoryRow(
+            time=moment.time,
+            sliding_distance=slid + (rows[-1].sliding_distance if rows else 0.0),
+            max_pressure=float(pressure.max()),
+            contact_area=float(system.weights[pressure > 0].sum()),
+            wear_volume_1=float(volumes[0]),
+            wear_volume_2=float(volumes[1]),
+            max_temperature=self._hottest(moment.state),
+            approach=float(system.approaches @ moment.state.contact.motion),
+            step=moment.step,
+            error=moment.error,
+        )
+
+    def _hottest(self, state: InterfaceState) -> float:
+        """Highest temperature of both faces [K]; NaN without heat."""
+        heat = self.loop.now.problem.heat
+        if heat is None or state.faces is None:
+            return float("nan")
+        return float(np.max(state.faces.rise)) + heat.ambient
+
+    def _heat_row(
+        self, moment: Moment, conditions: InterfaceConditions, heat: FrictionHeat
+    ) -> HeatRow:
+        system, state = self.loop.now.system, moment.state
+        assert state.stored is not None
+        assert state.faces is not None
+        balance, pressure = state.stored.balance(heat.initial.stored, system.comm), state.pressure
+        T1, T2 = (rise + heat.ambient for rise in state.faces.rise)
+        return HeatRow(
+            time=moment.time,
+            speed=self._speed,
+            normal_force=float(self._force_per_pressure(conditions) @ pressure),
+            friction_power=float(system.weights @ (conditions.heating * pressure)),
+            heat_in=balance.made,
+            heat_stored=balance.stored,
+            heat_lost=balance.lost,
+            balance_error=balance.error,
+            max_temperature_1=float(T1.max()),
+            max_temperature_2=float(T2.max()),
+            mean_temperature_1=self._mean(T1),
+            mean_temperature_2=self._mean(T2),
+        )
+
+    def _force_per_pressure(self, conditions: InterfaceConditions) -> np.ndarray:
+        """Normal force per pressure at the points (n,) [m²]; those of the last conditions kept."""
+        if self._pressing is None or self._pressing[0] is not conditions:
+            system = self.loop.now.system
+            directions = system.rubbing(conditions.friction).traction_direction
+            along = directions @ system.load_direction
+            self._pressing = conditions, system.weights * along
+        return self._pressing[1]
+
+    def _mean(self, values: np.ndarray) -> float:
+        """Area mean over the face."""
+        return float(np.average(values, weights=self.loop.now.system.weights))

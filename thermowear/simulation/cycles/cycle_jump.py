@@ -24,7 +24,7 @@ import numpy as np
 from ...contact.friction.coulomb_solver import FullSliding
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...errors import ComputationError
-from .increments import Increment, Jump, RestartPoint
+from .load_path import Increment, Jump, RestartPoint
 
 _SAFETY, _SHORTER, _LONGER = 0.9, 0.2, 5.0
 
@@ -43,7 +43,7 @@ class Cycles(Protocol):
         ComputationError
         """
 
-    def settled(self, end: Increment, worn: np.ndarray) -> StickSlipState:
+    def equilibrium(self, end: Increment, worn: np.ndarray) -> StickSlipState:
         """State at equal loads and energy, for other worn depths, shape (n_wearing, m) [m]."""
 
 
@@ -121,18 +121,18 @@ def _jumped(
         except ComputationError:
             span, whole = n1, None
             continue
-        done_twice = _DoneTwice(n1, n2, state, whole[-1].state, second[-1])
-        error = done_twice.error
+        two_parts = _TwoPartJump(n1, n2, state, whole[-1].state, second[-1])
+        error = two_parts.error
         if error <= tolerance:
             jump = Jump(span, error, span * _growth(error, tolerance))
-            return [*first, *second[:-1], replace(done_twice.corrected(cycles), jump=jump)]
+            return [*first, *second[:-1], replace(two_parts.corrected(cycles), jump=jump)]
         span, whole = n1, first  # the whole of the next attempt
     jump = Jump(1, 0.0, restart.following if wanted == 1 else 2.0)
     return (_marked(increment, jump) for increment in cycles.cycle(state, start + 1, 1))
 
 
 @dataclass(frozen=True)
-class _DoneTwice:
+class _TwoPartJump:
     """Jump computed in two parts and as a whole, with the symbols of the module's docstring.
 
     Attributes
@@ -157,7 +157,7 @@ class _DoneTwice:
         return single / (2 * self.n1 * self.n2)
 
     @property
-    def wrong(self) -> np.ndarray:
+    def excess(self) -> np.ndarray:
         """Excess depth after the two parts, shape (n_wearing, m) [m]."""
         return self.part * (self.whole.worn - self.end.state.worn)
 
@@ -165,17 +165,17 @@ class _DoneTwice:
     def error(self) -> float:
         """Largest excess depth relative to the largest depth; 0 without wear."""
         largest = float(self.end.state.worn.max(initial=0.0))
-        return float(np.abs(self.wrong).max(initial=0.0)) / largest if largest > 0.0 else 0.0
+        return float(np.abs(self.excess).max(initial=0.0)) / largest if largest > 0.0 else 0.0
 
     def corrected(self, cycles: Cycles) -> Increment:
         """End of the second part with the estimated error subtracted."""
         if self.part == 0.0:
             return self.end
         state, before = self.end.state, self.start.worn
-        worn = before + _forward(state.worn - self.wrong - before, cycles.areas)
-        lost = state.dissipated - self.part * (self.whole.dissipated - state.dissipated)
-        settled = cycles.settled(self.end, worn)
-        return replace(self.end, state=replace(settled, dissipated=lost))
+        worn = before + _nonnegative(state.worn - self.excess - before, cycles.areas)
+        dissipated = state.dissipated - self.part * (self.whole.dissipated - state.dissipated)
+        balanced = cycles.equilibrium(self.end, worn)
+        return replace(self.end, state=replace(balanced, dissipated=dissipated))
 
 
 def _growth(error: float, tolerance: float) -> float:
@@ -185,7 +185,7 @@ def _growth(error: float, tolerance: float) -> float:
     return float(np.clip(_SAFETY * math.sqrt(tolerance / error), _SHORTER, _LONGER))
 
 
-def _forward(gains: np.ndarray, areas: np.ndarray) -> np.ndarray:
+def _nonnegative(gains: np.ndarray, areas: np.ndarray) -> np.ndarray:
     """Depth gains (n_wearing, m) with negative values clipped and the others scaled down.
 
     Volumes are preserved, so that they remain consistent with the dissipated energy.

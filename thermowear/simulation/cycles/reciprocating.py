@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from ...laws.motions import combined
 from ...model.analyses import ReciprocatingAnalysis
-from ...results import HistoryRow, Result, WornTrack
+from ...results import HistoryRow, WornTrack
 from ..interface.body_state import contact_state
 from ..interface.factory import interface_problem
 from ..interface.sdirk import InterfaceState
@@ -22,33 +23,24 @@ from .reciprocating_problem import ReciprocatingProblem
 from .stroke import positions
 
 
-def reciprocating(
+def reciprocating_history(
     system: System,
     settings: ReciprocatingAnalysis,
     observer: Observer,
     before: Progress | None = None,
-) -> tuple[Snapshot, Result]:
-    """Follow the cycle-averaged wear in time, from the start or from a checkpoint.
+) -> tuple[ReciprocatingHistory, Iterator[Moment]]:
+    """History of cycle-averaged wear, and the moments to keep in it, made one by one.
 
-    Results computed before an error or Ctrl-C are kept.
+    From the start or from a checkpoint.
     """
     problem = ReciprocatingProblem(system, positions(system, settings))
     history = ReciprocatingHistory(system, settings, observer, problem)
     sizes = AnySize(settings.max_jump / settings.frequency)
-    run = moments(problem, settings, None, sizes, history.resume(before))
-    return history.conclude(history.follow("time stepping", run))
+    return history, moments(problem, settings, None, sizes, history.resume(before))
 
 
 class ReciprocatingHistory(AnalysisHistory[Moment]):
-    """History of reciprocating wear.
-
-    Parameters
-    ----------
-    system : System
-    settings : ReciprocatingAnalysis
-    observer : Observer
-    problem : ReciprocatingProblem
-    """
+    """History of reciprocating wear."""
 
     def __init__(
         self,
@@ -83,7 +75,9 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
     def snapshot(self, moment: Moment) -> Snapshot:
         """Contact and bodies at mid-stroke of body 1, and the worn track; every rank calls."""
         system, state = self._system, moment.state
-        worn, rates = (self._seen(v) for v in (state.worn, self._problem.rates(state.pressure)))
+        worn, rates = (
+            self._at_points(v) for v in (state.worn, self._problem.rates(state.pressure))
+        )
         solution = interface_problem(system).worn(worn.sum(axis=0))
         motion = combined(system.holder.motions, solution.motion)
         contact = contact_state(system, solution.pressure)
@@ -121,7 +115,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
             "mean_wear_rate_2_m_per_s": means[1],
         }
 
-    def _seen(self, depths: np.ndarray) -> np.ndarray:
+    def _at_points(self, depths: np.ndarray) -> np.ndarray:
         """Depths (or rates) of both bodies at the mid-stroke points, shape (2, n)."""
         system, (on_1, on_2) = self._system, self._problem.split(depths)
         hats = self._problem.track.hats(system.pairing)

@@ -45,11 +45,6 @@ class ReciprocatingProblem(WearProblem):
     Depths form one row of N values: coefficients of body 1, then nodal values of body 2.
     Pressures have one row per position, shape (J, m).
 
-    Parameters
-    ----------
-    system : System
-    stroke : list of Position
-
     Attributes
     ----------
     track : StrokeGrid
@@ -96,8 +91,8 @@ class ReciprocatingProblem(WearProblem):
             np.array([getattr(solution, name) for solution in found])
             for name in ("coefficients", "motion", "active")
         )
-        nothing = np.zeros(all_of.gap_per_depth.shape[2])
-        contact = self._contact(CoupledSolution(λ, motion, active, nothing))
+        zeros = np.zeros(all_of.gap_per_depth.shape[2])
+        contact = self._contact(CoupledSolution(λ, motion, active, zeros))
         return InterfaceState(np.zeros_like(self.rates(contact.pressure)), contact)
 
     def rates(self, pressure: np.ndarray) -> np.ndarray:

@@ -115,17 +115,17 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
     """Condensed contacts in all positions. Every rank calls."""
     systems = [position.system for position in stroke]
     contacts = [system.contact for system in systems]
-    compliances, gaps, seen = [], [], []
+    compliances, gaps, gaps_per_depth = [], [], []
     for position, system, contact in zip(stroke, systems, contacts, strict=True):
         mean = contact.weighted.T @ contact.basis
         passed = contact.weighted.T @ grid.hats(system.pairing, position.length)
         compliances.append(contact.compliance + system.softness * mean)
         gaps.append(contact.weak(system.gap - system.holder.imposed))
-        seen.append(np.hstack([mean, passed]))
+        gaps_per_depth.append(np.hstack([mean, passed]))
     return CoupledContacts(
         compliance=np.array(compliances),
         gap=np.array(gaps),
-        gap_per_depth=np.array(seen),
+        gap_per_depth=np.array(gaps_per_depth),
         modes=np.array([contact.modes for contact in contacts]),
         force_modes=np.array([contact.force_modes for contact in contacts]),
         load=systems[0].holder.load + systems[0].holder.dead,

@@ -1,7 +1,6 @@
 """Translation of a case file into a model and the settings of its analysis."""
 
-from .analysis import analysis_of
+from .analysis import analysis_of, run
 from .model import model_of
-from .run import run
 
 __all__ = ["analysis_of", "model_of", "run"]

@@ -1,4 +1,4 @@
-"""Settings of the analysis of a case."""
+"""Analysis of a case: its settings, and its run."""
 
 from __future__ import annotations
 
@@ -15,6 +15,23 @@ from ...model.analyses import (
     StaticAnalysis,
     TransientAnalysis,
 )
+from ...results import Result
+from ...timer import Phases
+from ..analyses import run as analyses
+from ..runtime.checkpoint_data import Saved
+from ..runtime.observer import Observer
+from .model import model_of
+
+
+def run(
+    case: Case,
+    comm=None,
+    observer: Observer | None = None,
+    phases: Phases | None = None,
+    saved: Saved | None = None,
+) -> Result:
+    """Compute a case; see `simulation.analyses.run`. Every rank calls."""
+    return analyses.run(model_of(case), analysis_of(case), comm, observer, phases, saved)
 
 
 def analysis_of(case: Case) -> Analysis:

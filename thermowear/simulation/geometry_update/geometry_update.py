@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
-from .moving_faces import MovingFaces, lacking_in_shape, movable_body
+from .moving_faces import MovingFaces, gap_of_initial_shape, movable_body
 from .remesh import FLOOR, carrying_error, improved, on_new_faces
 
 serialisable(WornGeometry)
@@ -34,60 +34,47 @@ serialisable(TaggedMesh)
 serialisable(NewFace)
 serialisable(Rule)
 
-_SETTLED = 1e-10
+_TOLERANCE = 1e-10
 """Relative tolerance of the volume removed by the mesh motion."""
-_PASSES = 20
+_ITERATIONS = 20
 _FADED = 0.1
 """Smallest reference pressure of a change, as a fraction of the largest so far."""
 
 
-@dataclass(frozen=True)
-class Updated:
-    """System, problem and state after a geometry update.
-
-    Attributes
-    ----------
-    system : System
-    problem : InterfaceProblem
-    state : InterfaceState
-    change : float
-        Change of pressure and temperatures by the update, relative to their means.
-    """
-
-    system: System
-    problem: InterfaceProblem
-    state: InterfaceState
-    change: float
-
-
 def updated(
-    system: System,
     problem: InterfaceProblem,
     faces: MovingFaces,
     depth: np.ndarray,
     state: InterfaceState,
     time: float,
-) -> Updated:
-    """Move the meshes of a system by depths (2, n) kept in the gap [m]. Every rank calls.
+) -> tuple[InterfaceProblem, InterfaceState, float]:
+    """Move the meshes of a problem by depths (2, n) kept in the gap [m]. Every rank calls.
+
+    Returns
+    -------
+    problem : InterfaceProblem
+    state : InterfaceState
+    change : float
+        Change of pressure and temperatures by the update, relative to their means.
 
     Raises
     ------
     ComputationError
         If cells would become too thin or too distorted, or the faces cannot be paired.
     """
+    system = problem.system
     with system.phases("move meshes"):
-        worn, renewed = _moved(system, faces, faces.due(depth), state)
+        worn, renewed = _moved(system, faces, faces.followed(depth), state)
     try:
         following = build(system.model, system.comm, system.phases, system.zone, SetupCache(), worn)
     except CaseError as fault:  # blames the input; here the bodies are computed
         raise ComputationError(
             f"wear: at {time:.6g} s the worn faces do not fit each other any more ({fault})"
         ) from None
-    rows, missed = _carried_wear(system, following, state.worn)
-    error = max(missed, carrying_error(worn, following.pairing)) if renewed else 0.0
+    rows, corrected = _carried_wear(system, following, state.worn)
+    error = max(corrected, carrying_error(worn, following.pairing)) if renewed else 0.0
     worn = replace(worn, carrying_error=max(worn.carrying_error, error))
-    after = interface_problem(following)
-    rise = None
+    after, rise = interface_problem(following), None
     if state.stored is not None:
         with system.phases("carry temperatures over"):
             rise, error = _carried_rise(system, following, state.stored.rise)
@@ -97,7 +84,8 @@ def updated(
         found = after.take_over(problem, state, rows, rise, time)
     change = _change(following, state, found)
     worn = replace(worn, change=max(worn.change, change))
-    return Updated(replace(following, worn=worn), after, found, change)
+    after.system = replace(following, worn=worn)  # with the errors of this update
+    return after, found, change
 
 
 def _change(after: System, state: InterfaceState, found: InterfaceState) -> float:
@@ -126,10 +114,10 @@ def _carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.n
     """
     assert after.worn is not None
     bodies = list(after.laws)
-    gone = after.worn.depth[bodies]
+    in_mesh = after.worn.depth[bodies]
     # the small rest in the gap matters most: carry it separately from the part in the mesh
-    left = after.worn.carried(worn - gone, after.pairing)
-    rows = after.worn.carried(gone, after.pairing) + left
+    left = after.worn.carried(worn - in_mesh, after.pairing)
+    rows = after.worn.carried(in_mesh, after.pairing) + left
     lost = np.zeros(2) if before.worn is None else before.worn.lost
     error = 0.0
     for row, body, depth in zip(rows, bodies, worn, strict=True):
@@ -146,8 +134,8 @@ def _moved(
 ) -> tuple[WornGeometry, bool]:
     """Geometry with the meshes moved by depths (2, n), and True if a body has been remeshed."""
     before, faces = moving.geometry, moving.faces
-    amounts = {index: face.offsets(depth[index]) for index, face in faces.items()}
-    mesh, lost = _followed(system, before, faces, amounts, depth @ system.weights)
+    offsets = {index: face.offsets(depth[index]) for index, face in faces.items()}
+    mesh, lost = _followed(system, before, faces, offsets, depth @ system.weights)
     mesh, quality, renewed = on_root(
         system.comm, lambda: _remeshed(system, before, mesh, list(faces))
     )
@@ -159,11 +147,12 @@ def _moved(
         )
     taken = np.zeros_like(depth)
     for index, face in faces.items():
-        taken[index] = face.depths(amounts[index])
+        taken[index] = face.depths(offsets[index])
     motion = combined(system.holder.motions, state.contact.motion)
-    due = np.array([taken[index] @ system.weights for index in faces])
+    expected = np.array([taken[index] @ system.weights for index in faces])
     total = before.lost + lost
-    error = max(before.volume_error, _volume_error(lost[list(faces)] - due, total))
+    missing = float(np.abs(lost[list(faces)] - expected).max())
+    error = max(before.volume_error, relative(missing, float(np.abs(total).max())))
     require(geometry_volume_error=error)
     worn = replace(
         before,
@@ -194,7 +183,7 @@ def _lacking(system: System, before: WornGeometry, state: InterfaceState) -> np.
     reached = np.any(state.worn > 0.0, axis=0)
     if before.updates > 0 or isinstance(pairing.sides[0].face, Surface) or not reached.any():
         return lacking
-    in_shape, x = lacking_in_shape(pairing), pairing.position
+    in_shape, x = gap_of_initial_shape(pairing), pairing.position
     return in_shape + np.interp(x, x[reached], (lacking - in_shape)[reached])
 
 
@@ -209,16 +198,11 @@ def _kept_points(system: System, state: InterfaceState, renewed: dict[int, NewFa
     return system.pairing.pieces if on_surface or pointwise else None
 
 
-def _volume_error(missing: np.ndarray, lost: np.ndarray) -> float:
-    """Error of the volumes removed by an update, relative to the volume lost so far."""
-    return relative(float(np.abs(missing).max()), float(np.abs(lost).max()))
-
-
 def _followed(
     system: System,
     worn: WornGeometry,
     faces: dict[int, WornFace],
-    amounts: dict[int, np.ndarray],
+    offsets: dict[int, np.ndarray],
     volumes: np.ndarray,
 ) -> tuple[TaggedMesh, np.ndarray]:
     """Moved mesh, and volumes lost (2,). Every rank calls.
@@ -231,10 +215,10 @@ def _followed(
         lost, moved = np.zeros(2), np.zeros_like(worn.mesh.points)
         for index, face in faces.items():
             body, part = movable_body(system, worn.mesh, index), 1.0
-            for _ in range(_PASSES):
-                outline = body.outlined(part * face.displacement(amounts[index]))
+            for _ in range(_ITERATIONS):
+                outline = body.outlined(part * face.displacement(offsets[index]))
                 lost[index] = body.lost(outline, system.elastic.kinematics.area_factor)
-                if abs(lost[index] - volumes[index]) <= _SETTLED * abs(volumes[index]):
+                if abs(lost[index] - volumes[index]) <= _TOLERANCE * abs(volumes[index]):
                     break
                 part *= volumes[index] / lost[index]
             moved += outline

@@ -1,4 +1,4 @@
-"""Motion of the faces worn in place: the wear that nodes can follow, along which paths."""
+"""Motion of the faces worn in place: smoothed wear, the part that nodes can follow, their paths."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from ...bulk.mesh_motion import serial_extension
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ray_intersections
 from ...contact.search.surface import Surface
+from ...contact.wear.unresolved_gap import unresolved_gap
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,
@@ -24,10 +25,13 @@ from ...geometry.moving.moved import MovableBody
 from ...geometry.moving.moved_solid import MovableSolid
 from ...laws.distribution import InPlace
 from ...parallel import on_root
+from ..interface.interface_problem import InterfaceProblem
+from ..interface.sdirk import InterfaceState
+from ..results.recording import snapshot_at
 from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
 
-_STEEPEST = 0.2
+_WALL_SLOPE = 0.2
 """Largest slope of groove walls in a mesh."""
 
 
@@ -52,29 +56,29 @@ class MovingFaces:
     @cached_property
     def faces(self) -> dict[int, WornFace]:
         """Moving faces by index of the body."""
-        ways = zip(self.geometry.directions, self.geometry.held, strict=True)
-        paths = [Paths(directions, held) for directions, held in ways]
+        pairs = zip(self.geometry.directions, self.geometry.held, strict=True)
+        paths = [Paths(directions, held) for directions, held in pairs]
         pairing = self._system.pairing
         if self._system.worn is None:
-            pairing = _along_ways(pairing, self.geometry.directions, self.bodies)[0]
+            pairing = _along_directions(pairing, self.geometry.directions, self.bodies)[0]
         return {index: WornFace(pairing, index, paths[index]) for index in self.bodies}
 
     def movable(self, depth: np.ndarray) -> np.ndarray:
         """Part of a depth (2, n) that nodal displacements of the faces represent [m]."""
-        result, due = np.zeros_like(depth), self.due(depth)
+        result, followed = np.zeros_like(depth), self.followed(depth)
         for index, face in self.faces.items():
-            result[index] = face.depths(face.offsets(due[index]))
+            result[index] = face.depths(face.offsets(followed[index]))
         return result
 
-    def due(self, depth: np.ndarray) -> np.ndarray:
+    def followed(self, depth: np.ndarray) -> np.ndarray:
         """Part of a depth (2, n) that the faces should follow [m].
 
         All of it except at the walls of a groove: where a face continues beside the contact its end
-        is held, and the slope from there is limited to `_STEEPEST` for the cells to follow.
+        is held, and the slope from there is limited to `_WALL_SLOPE` for the cells to follow.
         """
         result = np.zeros_like(depth)
         for index in self.bodies:
-            room = _STEEPEST * self._from_held_end(index) - self._system.moved[index]
+            room = _WALL_SLOPE * self._from_held_end(index) - self._system.moved[index]
             result[index] = np.minimum(depth[index], room)
         return result
 
@@ -85,17 +89,17 @@ class MovingFaces:
             stays = cKDTree(nodes_of(side.face)[held])  # infinite distance if no node is held
             return stays.query(side.face.points(side.facet, side.t))[0]
         before = side.face.position(side.facet, side.t)
-        ways = before, side.face.sizes.sum() - before
-        far = [np.where(stays, way, np.inf) for stays, way in zip(held[[0, -1]], ways, strict=True)]
-        return np.minimum(*far)
+        distances = before, side.face.sizes.sum() - before
+        ends = zip(held[[0, -1]], distances, strict=True)
+        return np.minimum(*(np.where(stays, distance, np.inf) for stays, distance in ends))
 
 
 def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     """Geometry before its first update."""
     pairing, comm = system.pairing, system.comm
-    mesh, paths = on_root(comm, lambda: _ways(system))
+    mesh, paths = on_root(comm, lambda: _node_paths(system))
     directions = tuple(path.directions for path in paths)
-    nothing = np.zeros(3)
+    zeros = np.zeros(3)
     return WornGeometry(
         mesh=mesh,
         directions=directions,
@@ -104,8 +108,8 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
         best=np.array([quality(mesh, body.parts) for body in system.model.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
-        lacking=pairing.gap - _along_ways(pairing, directions, bodies)[1],
-        holder=(nothing, nothing),
+        lacking=pairing.gap - _along_directions(pairing, directions, bodies)[1],
+        holder=(zeros, zeros),
         lost=np.zeros(2),
         updates=0,
         quality=float(scaled_jacobians(mesh).min()),
@@ -114,13 +118,13 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     )
 
 
-def lacking_in_shape(pairing: Pairing) -> np.ndarray:
+def gap_of_initial_shape(pairing: Pairing) -> np.ndarray:
     """Gap of the initial shape minus that of the meshed faces, shape (n,) [m]."""
     first, second = pairing.sides
     return pairing.gap - np.einsum("ni,ni->n", pairing.normals, second.points - first.points)
 
 
-def _along_ways(
+def _along_directions(
     pairing: Pairing, directions: tuple[np.ndarray, ...], bodies: list[int]
 ) -> tuple[Pairing, np.ndarray]:
     """Pairing with points on body 2 projected along the node directions of the wearing bodies.
@@ -132,14 +136,16 @@ def _along_ways(
         Gap between the paired points along the normals [m].
     """
     first, second = pairing.sides
-    gone = np.isin([0, 1], bodies or [0, 1]).astype(float)
-    ways = directions_between(pairing.sides, directions, gone)
-    facet, t, way = ray_intersections(second.face, first.face.points(first.facet, first.t), ways)
-    gap = way * np.einsum("ni,ni->n", pairing.normals, ways)
+    recession = np.isin([0, 1], bodies or [0, 1]).astype(float)
+    toward = directions_between(pairing.sides, directions, recession)
+    facet, t, distance = ray_intersections(
+        second.face, first.face.points(first.facet, first.t), toward
+    )
+    gap = distance * np.einsum("ni,ni->n", pairing.normals, toward)
     return replace(pairing, sides=(first, replace(second, facet=facet, t=t))), gap
 
 
-def _ways(system: System) -> tuple[TaggedMesh, list[Paths]]:
+def _node_paths(system: System) -> tuple[TaggedMesh, list[Paths]]:
     """Unworn mesh, and the paths of the nodes of its faces."""
     mesh = system.model.meshes.mesh(system.zone)
     paths = []
@@ -155,3 +161,27 @@ def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody | 
     if isinstance(face, Surface):
         return MovableSolid(mesh, parts, nodes_of(face), serial_extension)
     return MovableBody(mesh, parts, nodes_of(face))
+
+
+def smoothed_wear(problem: InterfaceProblem, state: InterfaceState, time: float) -> np.ndarray:
+    """Worn depths with pointwise conforming faces where they press. Every rank calls.
+
+    The gap is changed only orthogonally to the pressure space: pressure, forces and volumes stay.
+    The change is shared by the bodies worn in place, in proportion to their depths.
+
+    Returns
+    -------
+    ndarray, shape (n_wearing, n)
+        [m]; those of the state if any of them became negative otherwise.
+    """
+    system, gap = problem.system, snapshot_at(problem, state, time).interface.gap
+    weak = state.pressure > 0
+    if state.pointwise is not None:
+        weak &= ~state.pointwise  # there faces conform already, and the gap is resolved
+    excess = unresolved_gap(gap, weak, system.pairing, system.basis)
+    in_place = np.array([isinstance(s, InPlace) for s in system.spreads.values()])
+    ours = np.where(in_place[:, None], state.worn, 0.0)
+    whole = ours.sum(axis=0)
+    shares = np.divide(ours, whole, out=np.zeros_like(ours), where=whole > 0.0)
+    found = state.worn - shares * excess
+    return found if np.all(found >= 0.0) else state.worn

@@ -8,7 +8,7 @@ and time integration continues. The fraction follows from the change by the last
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
-from ..interface.sdirk import advance_with_error
+from ..interface.sdirk import InterfaceState, advance_with_error
 from ..interface.steady import SteadyState
 from ..runtime.observer import Observer
 from ..system.building import build
@@ -26,8 +26,7 @@ from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
-from .moving_faces import MovingFaces
-from .smooth_wear import worn_in
+from .moving_faces import MovingFaces, smoothed_wear
 from .update_counts import UpdateCounts
 from .wider_zone import meshed_wider, wider_zone
 
@@ -50,11 +49,6 @@ class GapWear:
     Dimensions are the thickness behind the face and the radius of curvature of either face; a tenth
     of the element tilt (depth difference of its ends over its size) counts, too.
 
-    Parameters
-    ----------
-    system : System
-        System with contact faces of a section or of a solid.
-
     Attributes
     ----------
     faces : MovingFaces
@@ -69,11 +63,9 @@ class GapWear:
         self.faces = MovingFaces(system)
         self._thickness = {index: _thickness(system, index) for index in self.faces.bodies}
 
-    def depth(self, worn: np.ndarray) -> np.ndarray:
-        """Depths kept in the gap (2, n) from the total depths of the wearing bodies [m]."""
-        both = np.zeros((2, worn.shape[1]))
-        both[list(self._system.laws)] = worn
-        return both - self._system.moved
+    def depth(self, state: InterfaceState) -> np.ndarray:
+        """Depths kept in the gap in a state, shape (2, n) [m]."""
+        return state.by_body(self._system.laws) - self._system.moved
 
     def fraction(self, depth: np.ndarray) -> float:
         """Largest ratio of a depth (2, n) of both bodies to their dimensions."""
@@ -86,15 +78,40 @@ class GapWear:
         return max(ratios)
 
 
+@dataclass(frozen=True)
+class MeshPeriod:
+    """Part of a transient analysis on the same meshes.
+
+    Attributes
+    ----------
+    problem : InterfaceProblem
+    steady : SteadyState or None
+    gap_wear : GapWear or None
+        Wear kept in the gap; None if meshes must not be moved.
+    """
+
+    problem: InterfaceProblem
+    steady: SteadyState | None
+    gap_wear: GapWear | None
+
+    @property
+    def system(self) -> System:
+        return self.problem.system
+
+    def fraction(self, moment: Moment | None) -> float:
+        """Wear kept in the gap at a moment, relative to the dimensions of the bodies."""
+        kept = self.gap_wear
+        return 0.0 if kept is None or moment is None else kept.fraction(kept.depth(moment.state))
+
+
 class OuterLoop:
     """Time loop of a transient analysis with geometry updates between its moments.
 
     Parameters
     ----------
-    system : System
-        System of the unworn bodies.
-    settings : TransientAnalysis
     problem : InterfaceProblem
+        Problem of the unworn bodies.
+    settings : TransientAnalysis
     principle : callable
         Function of a system for its steady state; None if there is none.
     sizes : StepSizes
@@ -102,12 +119,8 @@ class OuterLoop:
 
     Attributes
     ----------
-    system : System
-        System at the last moment.
-    problem : InterfaceProblem
-        Interface problem at the last moment.
-    steady : SteadyState or None
-        Steady state at the last moment.
+    now : MeshPeriod
+        Problem, system and steady state at the last moment.
     largest_kept : float
         Largest wear kept in the gap so far, relative to the dimensions of the bodies.
     allowed : float
@@ -118,78 +131,76 @@ class OuterLoop:
 
     def __init__(
         self,
-        system: System,
-        settings: TransientAnalysis,
         problem: InterfaceProblem,
+        settings: TransientAnalysis,
         principle: Principle,
         sizes: StepSizes,
         observer: Observer,
     ):
-        self.system, self.problem, self.steady = system, problem, principle(system)
         self.largest_kept = 0.0
         self.allowed = settings.largest_kept
-        self._settings = settings
+        self.earlier = UpdateCounts()
+        self._settings, self._sizes = settings, sizes
         self._principle = principle
-        self._sizes = sizes
         self._observer = observer
         self._narrow = ""
-        self.earlier = UpdateCounts()
+        self.now = self._period(problem)
+
+    def _period(self, problem: InterfaceProblem) -> MeshPeriod:
+        kept = GapWear(problem.system) if np.isfinite(self.allowed) else None
+        return MeshPeriod(problem, self._principle(problem.system), kept)
 
     def restart_data(self) -> tuple:
         """Worn geometry, zone of the mesh [m], counts for earlier zones, limits of kept wear."""
         limits = self.largest_kept, self.allowed, self._sizes.largest
-        return self.system.worn, self.system.zone, self.earlier, limits
+        system = self.now.system
+        return system.worn, system.zone, self.earlier, limits
 
     def restore(self, data: tuple) -> None:
         """Restore an earlier loop after its last update or wider zone, if any."""
         worn, zone, self.earlier, limits = data
         self.largest_kept, self.allowed, self._sizes.largest = limits
-        unworn = self.system
+        unworn = self.now.system
         zone = unworn.zone if zone is None else zone
         if worn is None and zone == unworn.zone:
             return
-        self.system = build(unworn.model, unworn.comm, unworn.phases, zone, SetupCache(), worn)
-        self.problem, self.steady = interface_problem(self.system), self._principle(self.system)
+        system = build(unworn.model, unworn.comm, unworn.phases, zone, SetupCache(), worn)
+        self.now = self._period(interface_problem(system))
 
     def moments(self, last: Moment | None = None) -> Iterator[Moment]:
         """Accepted moments, see `time_loop.moments`."""
-        system, problem, steady = self.system, self.problem, self.steady
-        settings = self._settings
-        kept, fraction = self._kept_wear(system, last)
+        now, settings, fraction = self.now, self._settings, self.now.fraction(last)
         while True:
-            if last is not None and self._widens(system, last):
-                system, problem, last = self._widen(system, problem, last)
-                steady = self._principle(system)
-                kept, fraction = self._kept_wear(system, last)
-            if kept is not None and last is not None and self._is_due(kept, fraction, last):
-                system, problem, last = self._update(system, problem, kept, last)
-                steady = self._principle(system)
-                kept, fraction = GapWear(system), 0.0
-            for moment in self._told(moments(problem, settings, steady, self._sizes, last)):
-                if kept is not None:
-                    before, fraction = fraction, kept.fraction(kept.depth(moment.state.worn))
+            if last is not None and self._widens(now, last):
+                now, last = self._widen(now, last)
+                fraction = now.fraction(last)
+            if last is not None and self._is_due(now, fraction, last):
+                now, last = self._update(now, last)
+                fraction = 0.0
+            for moment in self._naming_zone_limit(
+                moments(now.problem, settings, now.steady, self._sizes, last)
+            ):
+                if now.gap_wear is not None:
+                    before, fraction = fraction, now.fraction(moment)
                     self._look_ahead(fraction, fraction - before, moment.step)
-                    if system.worn is not None and is_over(settings, moment):
+                    if now.system.worn is not None and is_over(settings, moment):
                         assert last is not None
-                        system, problem, moment = self._end(system, problem, kept, last, moment)
-                        steady = self._principle(system)
-                self.system, self.problem, self.steady = system, problem, steady
+                        now, moment = self._end(now, last, moment)
+                self.now = now
                 yield moment
                 last = moment
-                if self._widens(system, last):
-                    break
-                if kept is not None and self._is_due(kept, fraction, last):
+                if self._widens(now, last) or self._is_due(now, fraction, last):
                     break
             else:
                 return
 
     def summary(self) -> dict[str, float | int]:
         """Summary entries of the geometry updates; empty without updates."""
-        worn = self.system.worn
+        worn = self.now.system.worn
         lost = np.zeros(2) if worn is None else worn.lost
         return self.earlier.counting(worn).summary(self.largest_kept, lost)
 
-    def _told(self, passing: Iterator[Moment]) -> Iterator[Moment]:
+    def _naming_zone_limit(self, passing: Iterator[Moment]) -> Iterator[Moment]:
         """Pass the moments on; add to an error that the contact has outgrown the meshed zone."""
         try:
             yield from passing
@@ -201,50 +212,39 @@ class OuterLoop:
                 f"cannot be wider: {self._narrow}"
             ) from None
 
-    def _kept_wear(self, system: System, last: Moment | None) -> tuple[GapWear | None, float]:
-        """Wear kept in the gap (None if meshes cannot be moved), and its fraction."""
-        kept = GapWear(system) if self._moves else None
-        if kept is None or last is None:
-            return kept, 0.0
-        return kept, kept.fraction(kept.depth(last.state.worn))
-
-    def _widens(self, system: System, moment: Moment) -> bool:
+    def _widens(self, now: MeshPeriod, moment: Moment) -> bool:
         """True if a wearing contact has outgrown its zone before the end of the run."""
-        if self._narrow or system.zone is None or not moment.state.worn.any():
+        worn = moment.state.worn.any()
+        if self._narrow or now.system.zone is None or not worn or is_over(self._settings, moment):
             return False
-        if is_over(self._settings, moment):
-            return False
-        return wider_zone(system, moment.state.pressure) is not None
+        return wider_zone(now.system, moment.state.pressure) is not None
 
-    def _widen(self, system: System, problem: InterfaceProblem, last: Moment):
-        """System, problem and moment on a mesh for a wider zone; unchanged if there is none."""
-        zone = wider_zone(system, last.state.pressure)
+    def _widen(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:
+        """Period and moment on a mesh for a wider zone; unchanged if there is none."""
+        zone = wider_zone(now.system, last.state.pressure)
         assert zone is not None
-        found = meshed_wider(system, problem, last.state, last.time, zone)
+        found = meshed_wider(now.problem, last.state, last.time, zone)
         if isinstance(found, str):
             self._narrow = found
-            return system, problem, last
+            return now, last
         self._observer.note(
             f"at {last.time:.4g} s the contact has grown beyond the zone that was meshed for it; "
             f"from there on the mesh is made for x = {zone[0]:.4g} to {zone[1]:.4g} m "
             "(a larger geometry.zone avoids that)"
         )
-        self.earlier = self.earlier.counting(system.worn)
-        return found[0], found[1], replace(last, state=found[2])
+        self.earlier = self.earlier.counting(now.system.worn)
+        problem, state = found
+        return self._period(problem), replace(last, state=state)
 
-    @property
-    def _moves(self) -> bool:
-        """True if geometry updates are enabled."""
-        return bool(np.isfinite(self.allowed))
-
-    def _is_due(self, kept: GapWear, fraction: float, moment: Moment) -> bool:
+    def _is_due(self, now: MeshPeriod, fraction: float, moment: Moment) -> bool:
         """True if the kept wear that the nodes can follow exceeds the allowed fraction.
 
         Always False at the end of the run.
         """
-        if fraction <= self.allowed or is_over(self._settings, moment):
+        kept = now.gap_wear
+        if kept is None or fraction <= self.allowed or is_over(self._settings, moment):
             return False
-        return kept.fraction(kept.faces.movable(kept.depth(moment.state.worn))) > self.allowed
+        return kept.fraction(kept.faces.movable(kept.depth(moment.state))) > self.allowed
 
     def _look_ahead(self, fraction: float, grown: float, step: float) -> None:
         """Limit the next step so that the kept wear hardly exceeds the allowed fraction."""
@@ -255,33 +255,37 @@ class OuterLoop:
             left = self.allowed if left <= 0.0 else max(left, _OVER * self.allowed)
             self._sizes.largest = step * left / grown
 
-    def _end(self, system, problem, kept, before: Moment, last: Moment):
-        """System, problem and moment after a final update, so that the run ends with worn meshes.
+    def _end(self, now: MeshPeriod, before: Moment, last: Moment) -> tuple[MeshPeriod, Moment]:
+        """Period and moment after a final update, so that the run ends with worn meshes.
 
         If the update disturbs the pressure, the last step is repeated to wear the disturbance off;
         not for transient temperatures, which are known at the end of the step only.
         """
         pressure, grown = last.state.pressure, last.state.worn - before.state.worn
-        system, problem, last = self._update(system, problem, kept, last)
-        grown, expected = (system.worn.carried(v, system.pairing) for v in (grown, pressure))
+        now, last = self._update(now, last)
+        worn, pairing = now.system.worn, now.system.pairing
+        assert worn is not None
+        grown, expected = worn.carried(grown, pairing), worn.carried(pressure, pairing)
         disturbed = float(np.abs(last.state.pressure - expected).max())
         allowed = self._settings.tolerance * float(expected.max())
         if last.state.stored is not None or disturbed <= allowed:
-            return system, problem, last
+            return now, last
         start = replace(last.state, worn=last.state.worn - grown)
-        again = advance_with_error(problem, start, before.time, last.step)
-        return system, problem, replace(last, state=again.state)
+        again = advance_with_error(now.problem, start, before.time, last.step)
+        return now, replace(last, state=again.state)
 
-    def _update(self, system, problem, kept, last: Moment):
-        """System, problem and moment after moving the meshes; adapts the allowed fraction."""
-        state = replace(last.state, worn=worn_in(system, problem, last.state, last.time))
-        new = updated(system, problem, kept.faces, kept.depth(state.worn), state, last.time)
-        change = new.change
+    def _update(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:
+        """Period and moment after moving the meshes; adapts the allowed fraction."""
+        worn = smoothed_wear(now.problem, last.state, last.time)
+        state, kept = replace(last.state, worn=worn), now.gap_wear
+        assert kept is not None
+        depth = kept.depth(state)
+        problem, state, change = updated(now.problem, kept.faces, depth, state, last.time)
         automatic = self._settings.largest_kept
         if self._settings.adapts and change > 0.0:
             wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
             self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
-        return new.system, new.problem, replace(last, state=new.state)
+        return self._period(problem), replace(last, state=state)
 
 
 def _thickness(system: System, index: int) -> float:

@@ -71,9 +71,9 @@ def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) 
         depth[index] += _behind_former(side, new)
         if index == 0:
             at = new.at(along(system.pairing))
-        ways = new.carried(worn.directions[index])
-        directions[index] = ways / np.linalg.norm(ways, axis=1, keepdims=True)
-        held[index] = np.zeros(len(ways), dtype=bool)
+        carried = new.carried(worn.directions[index])
+        directions[index] = carried / np.linalg.norm(carried, axis=1, keepdims=True)
+        held[index] = np.zeros(len(carried), dtype=bool)
         held[index][[0, -1]] = worn.held[index][[0, -1]]
         sizes[index] = new.sizes
         best[index] = quality(worn.mesh, bodies[index].parts)

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from operator import add
+from typing import Any
 
 import numpy as np
 
 from ...serialise import serialisable
 from ..system.worn_geometry import WornGeometry
+
+_COMBINED: dict[str, Callable[[Any, Any], Any]] = {
+    "updates": add,
+    "meshed_anew": add,
+    "quality": min,
+}
+"""Combination of the counters of successive meshes, by default the largest."""
 
 
 @serialisable
@@ -30,15 +40,8 @@ class UpdateCounts:
         """Counters including the updates of a mesh."""
         if worn is None:
             return self
-        return UpdateCounts(
-            updates=self.updates + worn.updates,
-            quality=min(self.quality, worn.quality),
-            volume_error=max(self.volume_error, worn.volume_error),
-            change=max(self.change, worn.change),
-            heat_error=max(self.heat_error, worn.heat_error),
-            meshed_anew=self.meshed_anew + worn.meshed_anew,
-            carrying_error=max(self.carrying_error, worn.carrying_error),
-        )
+        pairs = {name: (value, getattr(worn, name)) for name, value in vars(self).items()}
+        return UpdateCounts(**{name: _COMBINED.get(name, max)(*v) for name, v in pairs.items()})
 
     def summary(self, largest_kept: float, lost: np.ndarray) -> dict[str, float | int]:
         """Summary entries; empty without updates.

@@ -1,4 +1,4 @@
-"""Remeshing for a wider zone when the contact outgrows the meshed one."""
+"""Zone that the faces are meshed for: whether the contact fits, and remeshing for a wider one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
 from ..system.building import build
 from ..system.system import System
-from .face_limits import beyond
 
 Zone = tuple[float, float]
 
@@ -21,6 +20,21 @@ _WIDER = 1.6
 """Width of the next zone relative to the contact, at the same number of elements."""
 _ROUNDING = 1e-9
 """Tolerance of positions, relative to the length of the face."""
+
+
+def ends_outside_zone(system: System) -> tuple[bool, bool]:
+    """Test whether the first and the last end of the face lie outside the expected zone."""
+    zone, x = system.model.expected_zone, system.pairing.points[:, 0]
+    if zone is None:
+        return False, False
+    margin = 1e-6 * (zone[1] - zone[0])
+    return bool(x[0] < zone[0] - margin), bool(x[-1] > zone[1] + margin)
+
+
+def reaches_open_end(system: System, pressure: np.ndarray) -> bool:
+    """True if the contact reaches an end of the face that lies outside the expected zone."""
+    ends = zip(ends_outside_zone(system), (0, -1), strict=True)
+    return any(outside and pressure[end] > 0 for outside, end in ends)
 
 
 def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
@@ -35,7 +49,7 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
     middle = 0.0 if system.model.symmetry else (zone[0] + zone[1]) / 2
     pressing = x[pressure > 0]
     found, wide = list(zone), False
-    each = zip(beyond(system), (pressing.min(), pressing.max()), x[[0, -1]], strict=True)
+    each = zip(ends_outside_zone(system), (pressing.min(), pressing.max()), x[[0, -1]], strict=True)
     for side, (open_ended, edge, end) in enumerate(each):
         if open_ended and abs(edge - zone[side]) >= abs(end - zone[side]) / 2 > 0.0:
             wide |= abs(edge - middle) > abs(zone[side] - middle)
@@ -46,17 +60,18 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
 
 
 def meshed_wider(
-    system: System, problem: InterfaceProblem, state: InterfaceState, time: float, zone: Zone
-) -> tuple[System, InterfaceProblem, InterfaceState] | str:
+    problem: InterfaceProblem, state: InterfaceState, time: float, zone: Zone
+) -> tuple[InterfaceProblem, InterfaceState] | str:
     """Continue on an unworn mesh for a wider zone, all wear in the gap. Every rank calls.
 
     Returns
     -------
-    system, problem, state
+    problem, state
         Or the reason (str) for which there are none.
     """
     if state.stored is not None:
         return "temperatures that are followed in time are not carried over to a wider zone"
+    system = problem.system
     try:
         following = build(system.model, system.comm, system.phases, zone)
     except CaseError as reason:
@@ -64,7 +79,7 @@ def meshed_wider(
     after = interface_problem(following)
     rows = _carried(system, following, state.worn)
     with system.phases("contact"):
-        return following, after, after.take_over(problem, state, rows, None, time)
+        return after, after.take_over(problem, state, rows, None, time)
 
 
 def _carried(before: System, after: System, worn: np.ndarray) -> np.ndarray:

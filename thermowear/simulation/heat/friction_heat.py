@@ -1,4 +1,4 @@
-"""Friction heat of the interface problem: initial and stored heat, temperatures, balances."""
+"""Friction heat of the interface problem: initial temperatures, temperature fields, heat steps."""
 
 from __future__ import annotations
 
@@ -8,20 +8,23 @@ from functools import cached_property
 import numpy as np
 
 from ...balances import relative
-from ...contact.operators.heat import ThermalState
-from ...parallel import sum_over_ranks
+from ...contact.operators.heat import BaselineResponse, ThermalState
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem
-from .heat_steps import InitialHeat, StoredHeat
-from .linearisation import ConductingStep, HeatSteps
+from .heat_steps import HeatBalance, HeatStep, HeatSteps, StoredHeat
+from .varying_heat import VaryingHeatSteps
 
-_ROUNDING = 1e-3
-"""Least scale of the heat balance, relative to the initial heat content (rounding)."""
-_SHALLOW = 1e-3
+_FIRST_DEPTH = 1e-3
 """Penetration depth of heat in the first step, relative to the length of the contact."""
-_HARDLY = 0.1
+_FIRST_RISE = 0.1
 """Surface temperature rise allowed in the first step [K]."""
+_MEMORY = 1e9
+"""Memory limit for the operators of all step sizes on a rank [bytes]."""
+_FEWEST = 3
+"""Least number of step sizes whose operators are kept: a step, its half and its double."""
+_FILL = {2: 100, 3: 1000}
+"""Entries of the triangular factors per unknown, by dimension of the mesh."""
 
 
 @dataclass(frozen=True)
@@ -42,29 +45,38 @@ class TemperatureField:
     error: float
 
 
-@dataclass(frozen=True)
-class HeatBalance:
-    """Heat balance since the start.
+class InitialHeat:
+    """Given temperatures of the bodies, without friction heat.
 
     Attributes
     ----------
-    made, stored, lost : float
-        Heat input by friction and through surfaces with a given flux or power, heat stored in the
-        bodies, and heat lost to the surroundings [J].
-    moved : float
-        Magnitude of all heat put in, lost, or moved inside the bodies [J].
+    stored : StoredHeat
+    state : ThermalState
+        Temperatures of the faces, with zero flux.
     """
 
-    made: float
-    stored: float
-    lost: float
-    moved: float
+    def __init__(self, stored: StoredHeat, baseline: BaselineResponse):
+        zeros = np.zeros(len(baseline.rise[0]))
+        self.stored = stored
+        self.state = ThermalState(baseline.rise, (zeros, zeros))
+        self._baseline = baseline
 
-    @property
-    def error(self) -> float:
-        """Imbalance relative to the largest term."""
-        scale = max(abs(self.made), abs(self.stored), abs(self.lost), self.moved)
-        return relative(self.made - self.stored - self.lost, scale)
+    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
+        return self.state
+
+    def coupling(
+        self, conditions: InterfaceConditions, basis: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        opening, m = self._baseline.opening, basis.shape[1]
+        assert opening is not None
+        return np.zeros((m, m)), opening
+
+    def converged(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
+        return True
+
+
+AnyHeat = HeatStep | InitialHeat
+"""Heat at one time, as contact solvers use it."""
 
 
 def friction_heat(system: System) -> FrictionHeat | None:
@@ -74,11 +86,6 @@ def friction_heat(system: System) -> FrictionHeat | None:
 
 class FrictionHeat:
     """Coupling of pressure, temperature and distortion at the contact points.
-
-    Parameters
-    ----------
-    system : System
-    thermal : ThermalSystem
 
     Attributes
     ----------
@@ -90,26 +97,23 @@ class FrictionHeat:
 
     def __init__(self, system: System, thermal: ThermalSystem):
         self.ambient = thermal.ambient
-        self.steps = HeatSteps(system, thermal)
-        self._system = system
-        self._thermal = thermal
-        heat = system.model.heat
-        self._driven = heat is not None and heat.driven
+        kind = VaryingHeatSteps if thermal.varies else HeatSteps
+        self.steps = kind(system, thermal, _kept_sizes(system, thermal))
+        self._system, self._thermal = system, thermal
 
     @cached_property
-    def frozen(self) -> InitialHeat:
+    def initial(self) -> InitialHeat:
         """Initial temperatures, before any friction heat has flowed; every rank calls."""
         conduction = self._thermal.conduction
         rise = np.where(conduction.fixed, conduction.prescribed, self._thermal.initial)
-        resting = self.steps.at_rest(rise)
-        largest = max(float(np.abs(resting.rise).max()), self._largest(rise))
-        return InitialHeat(
-            StoredHeat(rise, conduction.stored_heat(rise), np.zeros(3), largest), resting
-        )
+        baseline = self.steps.operators.baseline(rise)
+        largest = max(float(np.abs(baseline.rise).max()), self.steps.largest(rise))
+        stored = StoredHeat(rise, conduction.stored_heat(rise), np.zeros(3), largest)
+        return InitialHeat(stored, baseline)
 
-    def at_moment(self, stored: StoredHeat) -> InitialHeat:
+    def given(self, stored: StoredHeat) -> InitialHeat:
         """Known temperatures at a later time; every rank calls."""
-        return InitialHeat(stored, self.steps.at_rest(stored.rise))
+        return InitialHeat(stored, self.steps.operators.baseline(stored.rise))
 
     def take_over(self, former: FrictionHeat, stored: StoredHeat, rise: np.ndarray) -> StoredHeat:
         """Transfer stored heat from a former mesh; every rank calls.
@@ -127,44 +131,10 @@ class FrictionHeat:
         """
         content = self._thermal.conduction.stored_heat(rise)
         same = replace(stored, rise=rise, content=content)
-        taken = former.balance(stored).stored - self.balance(same).stored
+        taken = former._balance(stored).stored - self._balance(same).stored
         return replace(same, turnover=stored.turnover + np.array([0.0, taken, abs(taken)]))
 
-    def stored(
-        self,
-        before: StoredHeat,
-        step: float,
-        heat: ConductingStep,
-        faces: ThermalState,
-        friction_heat: np.ndarray,
-    ) -> StoredHeat:
-        """Heat stored in the bodies at the end of an implicit Euler step.
-
-        Parameters
-        ----------
-        before : StoredHeat
-        step : float
-            [s]
-        heat : ConductingStep
-            From `HeatSteps.after`.
-        faces : ThermalState
-            Temperatures and fluxes of the faces at the end.
-        friction_heat : ndarray, shape (n,)
-            Friction heat at the end [W/m²].
-        """
-        conduction, face, load = self._thermal.conduction, self._thermal.face, heat.load
-        rise = heat.rise(faces)
-        content = conduction.stored_heat(rise)
-        nodal = face.nodal_heat(faces, bath=False) + load.heat - (content - before.content) / step
-        lost = sum(conduction.losses(rise, nodal, load.ambient))
-        made = float(face.weights @ friction_heat)
-        outside = conduction.exchanged_heat(rise, nodal, load.ambient)
-        exchanged = made + load.magnitude + outside
-        largest = max(before.largest, float(np.abs(faces.rise).max()), self._largest(rise))
-        turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])
-        return StoredHeat(rise, content, turnover, largest)
-
-    def lasting(self, conditions: InterfaceConditions, pressure: np.ndarray) -> TemperatureField:
+    def steady(self, conditions: InterfaceConditions, pressure: np.ndarray) -> TemperatureField:
         """Steady temperatures under a pressure (n,) [Pa]."""
         conduction, face = self._thermal.conduction, self._thermal.face
         steady = self.steps.steady
@@ -178,31 +148,12 @@ class FrictionHeat:
             scale = max(scale, conduction.balance_scale(rise))
         return TemperatureField(faces, rise, relative(lost - made - load.prescribed, scale))
 
-    def momentary(self, stored: StoredHeat, faces: ThermalState) -> TemperatureField:
+    def transient(self, stored: StoredHeat, faces: ThermalState) -> TemperatureField:
         """Transient temperatures, with the error of the heat balance since the start."""
-        return TemperatureField(faces, stored.rise, self.balance(stored).error)
+        return TemperatureField(faces, stored.rise, self._balance(stored).error)
 
-    def balance(self, stored: StoredHeat) -> HeatBalance:
-        """Heat balance since the start; every rank calls."""
-        made, lost, exchanged = (float(heat) for heat in stored.turnover)
-        before = self.frozen.stored.content
-        gained = stored.content - before
-        sums = np.array([gained.sum(), np.abs(gained).sum(), np.abs(before).sum()])
-        gain, shifted, had = (float(heat) for heat in sum_over_ranks(self._system.comm, sums))
-        return HeatBalance(made, gain, lost, max(exchanged, shifted, _ROUNDING * had))
-
-    def difference(self, one: StoredHeat, other: StoredHeat) -> float:
-        """Largest difference of the temperatures inside the bodies [K]; every rank calls.
-
-        Zero where friction is the only heat source: the faces then show the errors of a step.
-        """
-        return self._largest(one.rise - other.rise)
-
-    def _largest(self, rise: np.ndarray) -> float:
-        """Largest rise inside the bodies with other heat sources, else 0 [K]; every rank calls."""
-        if not self._driven:
-            return 0.0
-        return max(self._system.comm.allgather(float(np.abs(rise).max(initial=0.0))))
+    def _balance(self, stored: StoredHeat) -> HeatBalance:
+        return stored.balance(self.initial.stored, self._system.comm)
 
     def first_step(self, friction_heat: float) -> float:
         """Initial step size: small penetration depth of heat or small surface temperature rise [s].
@@ -211,12 +162,21 @@ class FrictionHeat:
         Infinite without any heat source at the start, friction [W/m²] or other.
         """
         system, thermal = self._system, self._thermal
-        if self._driven:
-            return (_SHALLOW * system.pairing.extent) ** 2 / thermal.diffusivity
+        if self.steps.driven:
+            return (_FIRST_DEPTH * system.pairing.extent) ** 2 / thermal.diffusivity
         if friction_heat == 0.0:
             return np.inf
         share = thermal.face.partition
         first, second = system.facing.effusivities(system.model.materials)
         steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
-        through = (_SHALLOW * system.pairing.extent) ** 2 / thermal.diffusivity
-        return float(max(through, np.pi * (_HARDLY / (2 * steepest)) ** 2))
+        through = (_FIRST_DEPTH * system.pairing.extent) ** 2 / thermal.diffusivity
+        return float(max(through, np.pi * (_FIRST_RISE / (2 * steepest)) ** 2))
+
+
+def _kept_sizes(system: System, thermal: ThermalSystem) -> int:
+    """Number of step sizes whose operators fit into the memory; every rank calls."""
+    conduction, points = thermal.conduction, len(thermal.face.weights)
+    dense, nodes = 12 * points**2, len(conduction.fixed)
+    numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes
+    least = min(system.comm.allgather(_MEMORY / (8 * numbers)))
+    return max(int(least), _FEWEST)

@@ -1,9 +1,11 @@
-"""Heat at one time, coupled to the contact solver: linear conduction, or given temperatures."""
+"""Heat steps: linear conduction at the times of an analysis, condensed to the interface."""
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -14,11 +16,43 @@ from ...contact.operators.heat import (
     InterfaceHeat,
     ThermalDistortion,
     ThermalState,
+    baseline_response,
 )
+from ...contact.operators.heat_condensation import condense_distortion, condense_heat
+from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 from ..system.thermal_loads import ThermalLoad
-from .distortion import CondensedDistortion
+from ..system.thermal_system import ThermalSystem
+
+_ROUNDING = 1e-3
+"""Least scale of the heat balance, relative to the initial heat content (rounding)."""
+
+
+@dataclass(frozen=True)
+class HeatBalance:
+    """Heat balance since the start.
+
+    Attributes
+    ----------
+    made, stored, lost : float
+        Heat by friction and surfaces with given flux or power, in the bodies, and lost [J].
+    moved : float
+        Magnitude of all heat put in, lost, or moved inside the bodies [J].
+    """
+
+    made: float
+    stored: float
+    lost: float
+    moved: float
+
+    @property
+    def error(self) -> float:
+        """Imbalance relative to the largest term."""
+        scale = max(abs(self.made), abs(self.stored), abs(self.lost), self.moved)
+        return abs(self.made - self.stored - self.lost) / (scale or 1.0)
 
 
 @serialisable
@@ -46,7 +80,7 @@ class StoredHeat:
     largest: float
 
     def towards(self, other: StoredHeat, part: float) -> StoredHeat:
-        """Interpolate linearly (or extrapolate) to another state by a fraction of the way."""
+        """Interpolate linearly (or extrapolate) to another state by a fraction of the distance."""
         return StoredHeat(
             self.rise + part * (other.rise - self.rise),
             self.content + part * (other.content - self.content),
@@ -54,45 +88,51 @@ class StoredHeat:
             other.largest,
         )
 
+    def balance(self, initial: StoredHeat, comm) -> HeatBalance:
+        """Heat balance since an initial state on the same mesh; every rank calls."""
+        gained, before = self.content - initial.content, np.abs(initial.content).sum()
+        sums = np.array([gained.sum(), np.abs(gained).sum(), before])
+        gain, shifted, had = (float(heat) for heat in sum_over_ranks(comm, sums))
+        made, lost, exchanged = (float(heat) for heat in self.turnover)
+        return HeatBalance(made, gain, lost, max(exchanged, shifted, _ROUNDING * had))
+
 
 class HeatOperators:
     """Linear conduction condensed to the interface: steady, or over a time step of one size.
 
-    The last exchange and couplings are kept, as conditions seldom change.
-
-    Parameters
-    ----------
-    conduction : Conduction
-    face : InterfaceHeat
-    condensed : CondensedDistortion
-    reference : ndarray, shape (n_owned,)
-        Rise at which conduction and distortion are linearised [K].
+    The last exchange and compliance are kept, as conditions seldom change. No reference to the heat
+    steps: a cycle of references would keep it in memory after its mesh has been discarded.
     """
 
-    def __init__(
-        self,
-        conduction: Conduction,
-        face: InterfaceHeat,
-        condensed: CondensedDistortion,
-        reference: np.ndarray,
-    ):
-        self.conduction = conduction
-        self.face = face
-        self.reference = reference
-        self._condensed = condensed
+    def __init__(self, system: System, conduction: Conduction, face: InterfaceHeat):
+        self.conduction, self.face, self._system = conduction, face, system
+        self.distorts = system.model.interface.method.name == "condensed"
         self._exchange: tuple[bytes, HeatExchange] | None = None
         self._compliance: tuple[HeatExchange, bytes, np.ndarray] | None = None
-        self._opening: tuple[HeatExchange, BaselineResponse, np.ndarray] | None = None
+
+    @cached_property
+    def per_rise(self) -> np.ndarray:
+        """Weak gap per nodal rise, shape (n_owned, m) [m³/K]."""
+        return self._system.influence.per_rise[0]
 
     @cached_property
     def distortion(self) -> ThermalDistortion:
         """Weak gap per heat at the faces. Every rank calls."""
-        return self._condensed(self.conduction, self.face, lambda: self.per_rise)
+        system, conduction = self._system, self.conduction
+        # those of time steps and tangents are not shared with other systems
+        steady = system.thermal is not None and conduction is system.thermal.conduction
+        parts = system.parts if steady else SetupCache()
+        with system.phases("condense distortion"):
+            return parts.get(
+                "distortion",
+                system.inputs.conduction,
+                lambda: condense_distortion(conduction, self.per_rise, self.face),
+            )
 
-    @cached_property
-    def per_rise(self) -> np.ndarray:
-        """Derivative of the weak gap by the nodal rise, shape (n_owned, m) [m³/K]."""
-        return self._condensed.slope(self.reference)
+    def baseline(self, rise: np.ndarray) -> BaselineResponse:
+        """Interface response to a nodal rise (n_owned,); every rank calls."""
+        per_rise = self.per_rise if self.distorts else None
+        return baseline_response(rise, self.face.traces, self._system.comm, per_rise)
 
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Heat exchange of the faces for conductances at the points, shape (n,)."""
@@ -110,17 +150,9 @@ class HeatOperators:
             last = self._compliance = exchange, key, per_heat @ (heating[:, None] * basis)
         return last[2]
 
-    def opening(self, exchange: HeatExchange, resting: BaselineResponse) -> np.ndarray:
-        """Weak gap by heat other than friction heat, shape (m,) [m³]."""
-        last = self._opening
-        if last is None or last[0] is not exchange or last[1] is not resting:
-            found = self.distortion.baseline_gap(exchange, resting)
-            last = self._opening = exchange, resting, found
-        return last[2]
 
-
-@dataclass(frozen=True)
-class LinearHeatStep:
+@dataclass(eq=False)
+class HeatStep:
     """Linear conduction at one time: operators, loads and stored heat.
 
     Attributes
@@ -128,27 +160,27 @@ class LinearHeatStep:
     operators : HeatOperators
     load : ThermalLoad
     supplied : ndarray, shape (n_owned,)
-        Nodal heat beside that of the contact: loads, and heat stored before the step per step
-        size [W].
-    resting : BaselineResponse
+        Nodal heat without that of the contact, stored heat divided by the step included [W].
+    baseline : BaselineResponse
         Response of the faces without heat at the contact.
     """
 
     operators: HeatOperators
     load: ThermalLoad
     supplied: np.ndarray
-    resting: BaselineResponse
+    baseline: BaselineResponse
+    _gap: tuple[HeatExchange, np.ndarray] | None = None
 
     @property
     def unheated(self) -> ThermalState:
         """State of the faces without any heat at the contact."""
-        nothing = np.zeros(len(self.resting.rise[0]))
-        return ThermalState(self.resting.rise, (nothing, nothing))
+        zeros = np.zeros(len(self.baseline.rise[0]))
+        return ThermalState(self.baseline.rise, (zeros, zeros))
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
         exchange = self.operators.exchange(conditions.conductance)
-        return exchange.state(conditions.heating * pressure, self.resting)
+        return exchange.state(conditions.heating * pressure, self.baseline)
 
     def rise(self, faces: ThermalState) -> np.ndarray:
         """Temperature rise of the bodies, shape (n_owned,) [K]."""
@@ -158,49 +190,108 @@ class LinearHeatStep:
     def coupling(
         self, conditions: InterfaceConditions, basis: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Thermal contribution to the condensed interface.
+        """Weak gap per pressure coefficient by friction heat (m, m), by other heat (m,) [m³]."""
+        operators = self.operators
+        exchange = operators.exchange(conditions.conductance)
+        if self._gap is None or self._gap[0] is not exchange:
+            self._gap = exchange, operators.distortion.baseline_gap(exchange, self.baseline)
+        return operators.compliance(exchange, conditions.heating, basis), self._gap[1]
 
-        Returns
-        -------
-        compliance : ndarray, shape (m, m)
-            Weak gap per pressure coefficient, added to the elastic compliance.
-        opening : ndarray, shape (m,)
-            Weak gap by heat other than friction heat [m³].
-        """
-        exchange = self.operators.exchange(conditions.conductance)
-        compliance = self.operators.compliance(exchange, conditions.heating, basis)
-        return compliance, self.operators.opening(exchange, self.resting)
-
-    def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
+    def converged(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Test whether the last coupling has converged at a pressure: linear heat always has."""
         return True
 
 
-class InitialHeat:
-    """Given temperatures of the bodies, without friction heat.
+class HeatSteps:
+    """Conduction in time with constant properties; operators are kept for `kept` step sizes."""
 
-    Attributes
-    ----------
-    stored : StoredHeat
-    initial : ThermalState
-        Temperatures of the faces, with zero flux.
-    """
+    def __init__(self, system: System, thermal: ThermalSystem, kept: int):
+        self._system, self._thermal, self._kept = system, thermal, kept
+        self.driven = system.model.heat is not None and system.model.heat.driven
+        self._of_size: OrderedDict[float, Any] = OrderedDict()
 
-    def __init__(self, stored: StoredHeat, resting: BaselineResponse):
-        nothing = np.zeros(len(resting.rise[0]))
-        self.stored = stored
-        self.initial = ThermalState(resting.rise, (nothing, nothing))
-        self._resting = resting
+    @cached_property
+    def operators(self) -> HeatOperators:
+        """Operators of steady conduction with the properties at the ambient temperature."""
+        return HeatOperators(self._system, self._thermal.conduction, self._thermal.face)
 
-    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
-        return self.initial
+    @cached_property
+    def steady(self) -> HeatStep:
+        """Steady conduction; every rank calls."""
+        load, operators, system = self._thermal.loads.at(0.0), self.operators, self._system
+        held = operators.conduction.with_prescribed(load.given)
+        key = system.inputs.conduction, operators.distorts
 
-    def coupling(
-        self, conditions: InterfaceConditions, basis: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        opening, m = self._resting.opening, basis.shape[1]
-        assert opening is not None
-        return np.zeros((m, m)), opening
+        def baseline() -> BaselineResponse:
+            return operators.baseline(held.solve(load.heat))
 
-    def holds(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
-        return True
+        return HeatStep(operators, load, load.heat, system.parts.get("at rest", key, baseline))
+
+    def operators_within(self, step: float) -> Any:
+        """Operators for an implicit Euler step of a size [s]; every rank calls."""
+        conduction = self._thermal.conduction.implicit_euler(step)
+        return HeatOperators(self._system, conduction, self._condense(conduction))
+
+    def after(self, before: StoredHeat | None, step: float, time: float) -> HeatStep:
+        """Conduction after an Euler step [s], steady without stored heat; every rank calls."""
+        if before is None:
+            return self.steady
+        if step not in self._of_size:
+            if len(self._of_size) >= self._kept:
+                self._of_size.popitem(last=False)
+            self._of_size[step] = self.operators_within(step)
+        self._of_size.move_to_end(step)
+        load = self._thermal.loads.constant or self._thermal.loads.at(time)
+        supplied = load.heat + before.content / step
+        return self._conducting(self._of_size[step], load, supplied, before.rise)
+
+    def end(
+        self,
+        before: StoredHeat,
+        step: float,
+        heat: HeatStep,
+        faces: ThermalState,
+        friction_heat: np.ndarray,
+    ) -> StoredHeat:
+        """Stored heat after a step [s] by the faces and friction heat (n,) [W/m²] at its end."""
+        conduction, face, load = self._thermal.conduction, self._thermal.face, heat.load
+        rise = heat.rise(faces)
+        content = conduction.stored_heat(rise)
+        nodal = face.nodal_heat(faces, bath=False) + load.heat - (content - before.content) / step
+        lost = sum(conduction.losses(rise, nodal, load.ambient))
+        made = float(face.weights @ friction_heat)
+        outside = conduction.exchanged_heat(rise, nodal, load.ambient)
+        exchanged = made + load.magnitude + outside
+        largest = max(before.largest, float(np.abs(faces.rise).max()), self.largest(rise))
+        turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])
+        return StoredHeat(rise, content, turnover, largest)
+
+    def largest(self, rise: np.ndarray) -> float:
+        """Largest rise inside the bodies with other heat sources, else 0 [K]; every rank calls.
+
+        Where friction is the only heat source the faces show the errors of a step.
+        """
+        if not self.driven:
+            return 0.0
+        return max(self._system.comm.allgather(float(np.abs(rise).max(initial=0.0))))
+
+    def restart_data(self) -> Any:
+        """Data that a continued run needs for the same results; None for linear conduction."""
+
+    def restore(self, data: Any) -> None:
+        """Restore the state from `restart_data`."""
+
+    def _conducting(
+        self, operators: Any, load: ThermalLoad, supplied: np.ndarray, rise: np.ndarray
+    ) -> HeatStep:
+        """Conduction at one time, with nodal heat without the contact and an initial rise."""
+        held = operators.conduction.with_prescribed(load.given)
+        return HeatStep(operators, load, supplied, operators.baseline(held.solve(supplied)))
+
+    def _condense(self, conduction: Conduction) -> InterfaceHeat:
+        """Conduction of a time step or a tangent condensed to the interface; every rank calls."""
+        face = self._thermal.face
+        with self._system.phases("condense conduction"):
+            return condense_heat(
+                conduction, face.weights, face.basis, face.traces, face.shift, face.partition
+            )

@@ -31,7 +31,7 @@ class ContactState:
     ----------
     pressure : ndarray, shape (n,) [Pa]
     conditions : InterfaceConditions
-    warmth : TemperatureField or None
+    temperatures : TemperatureField or None
         Temperatures; None without heat.
     shear : ndarray or None, shape (n,)
         Stick-slip traction on body 1, see `contact.operators.tangential` [Pa].
@@ -39,7 +39,7 @@ class ContactState:
 
     pressure: np.ndarray
     conditions: InterfaceConditions
-    warmth: TemperatureField | None
+    temperatures: TemperatureField | None
     shear: np.ndarray | None = None
 
 
@@ -49,8 +49,8 @@ def contact_state(
     """State of a contact whose conditions depend on the contact set alone. Every rank calls."""
     conditions = ConditionModel(system).at(0.0, pressure, None, pressure > 0)
     heat = friction_heat(system)
-    warmth = None if heat is None else heat.lasting(conditions, pressure)
-    return ContactState(pressure, conditions, warmth, shear)
+    temperatures = None if heat is None else heat.steady(conditions, pressure)
+    return ContactState(pressure, conditions, temperatures, shear)
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class BodyState:
 def body_state(system: System, contact: ContactState) -> BodyState:
     """Solve the bodies for given contact loads. Every rank calls."""
     system = system.rubbing(contact.conditions.friction)
-    pressure, shear, warmth = contact.pressure, contact.shear, contact.warmth
+    pressure, shear, temperatures = contact.pressure, contact.shear, contact.temperatures
     thermal, rise, hottest, heat_error = None, None, float("nan"), float("nan")
     loads = traction = system.traction @ (system.weights * pressure)
     if shear is not None:
@@ -100,8 +100,8 @@ def body_state(system: System, contact: ContactState) -> BodyState:
         loads = traction = traction + along @ (system.weights * shear)
     if system.dead_load is not None:
         loads = traction = traction + system.dead_load
-    if warmth is not None and system.thermal is not None:
-        thermal, rise, heat_error = warmth.faces, warmth.rise, warmth.error
+    if temperatures is not None and system.thermal is not None:
+        thermal, rise, heat_error = temperatures.faces, temperatures.rise, temperatures.error
         loads = traction + system.thermal.forces(rise)
         highest = max(system.comm.allgather(float(rise.max(initial=-np.inf))))
         hottest = max(highest, float(np.max(thermal.rise))) + system.thermal.ambient
@@ -126,13 +126,13 @@ def _force_error(system: System, contact: ContactState, displacement, loads, str
     nodes = system.elastic.nodes()
     reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
     upper = system.elastic.owned_by(*system.model.bodies[0].parts)
-    carried, borne_by_2 = (
+    carried, carried_by_2 = (
         _work(system, contact, rigid_modes, side) for side in system.pairing.sides
     )
     errors, scales = np.zeros(len(rigid_modes)), np.zeros(len(rigid_modes))
     strained = system.elastic.compressibility() * strained.reshape(nodes.shape)
     pressed = _part(contact.conditions.load - system.holder.dead, system.holder.load)
-    for k, (mode, share, other) in enumerate(zip(rigid_modes, carried, borne_by_2, strict=True)):
+    for k, (mode, share, other) in enumerate(zip(rigid_modes, carried, carried_by_2, strict=True)):
         moved = mode.motion.at(nodes)
         work = (reactions * moved).sum(axis=1)
         magnitudes = np.abs(work).sum(), np.abs(strained * moved).sum()
@@ -141,12 +141,12 @@ def _force_error(system: System, contact: ContactState, displacement, loads, str
         given = system.dead_resultant(mode.motion)
         found = share.sum()
         # the load may be below the maximum of its history
-        due = (
+        expected = (
             found - given[0]
             if mode.load is None or contact.shear is not None
             else pressed * mode.load
         )
-        errors[k] = np.maximum(abs(held - due), abs(supported + given[1] + other.sum()))
+        errors[k] = np.maximum(abs(held - expected), abs(supported + given[1] + other.sum()))
         loaded = np.abs(share).sum() + np.abs(given).sum()
         scales[k] = max(loaded, borne, _ROUNDING / ALLOWED * thermal)
     shifts = np.array([not mode.motion.rotation.any() for mode in rigid_modes])

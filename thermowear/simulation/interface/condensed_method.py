@@ -33,17 +33,13 @@ class CondensedMethod:
     """Weak contact conditions in the pressure space.
 
     At the edge of the wear they hold pointwise, see `contact.wear.wear_edge`.
-
-    Parameters
-    ----------
-    system : System
     """
 
     def __init__(self, system: System):
         self._system = system
         self._contact = system.contact
         nominal = np.full(len(system.weights), system.friction)
-        self._rubbing = (nominal.tobytes(), self._contact)
+        self._last_friction = (nominal.tobytes(), self._contact)
         self._dead = system.gap - system.pairing.gap
         self._free = system.holder.free
         self._given = system.holder.amplitudes(np.zeros(int(self._free.sum())))
@@ -65,24 +61,24 @@ class CondensedMethod:
     def _balanced(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise
     ) -> ContactSolution:
-        bodies, load = self._rubbed(conditions.friction), conditions.load
+        bodies, load = self._with_friction(conditions.friction), conditions.load
         edge = self._space(bodies, pointwise)
         gap, compliance = gap + self._dead, bodies.compliance
         if heat is None:
-            resting = np.zeros(len(compliance))
-            return self._solved(bodies, edge, compliance, resting, gap, slope, guess, load)
+            thermal_gap = np.zeros(len(compliance))
+            return self._solved(bodies, edge, compliance, thermal_gap, gap, slope, guess, load)
         for _ in range(_ITERATIONS):
             thermal, opening = heat.coupling(conditions, bodies.basis)
             both = compliance + thermal
             guess = self._solved(bodies, edge, both, opening, gap, slope, guess, load)
-            if heat.holds(conditions, guess.pressure):
+            if heat.converged(conditions, guess.pressure):
                 return guess
         raise ComputationError(
             "contact: the iteration for pressure and temperatures with temperature-dependent "
             "conductivity or expansion did not converge; reduce the speed"
         )
 
-    def yielding(self, points) -> np.ndarray:
+    def point_compliance(self, points) -> np.ndarray:
         space = self._space(self._contact, points)
         assert space is not None
         return space.at_points(np.diag(space.compliance(self._contact.compliance)))
@@ -93,24 +89,26 @@ class CondensedMethod:
         The wear rates, weighted by the basis functions, equal the rigid-body wear velocity. That is
         an implicit step of wear of rigid bodies.
         """
-        contact, load = self._rubbed(conditions.friction), conditions.load
+        contact, load = self._with_friction(conditions.friction), conditions.load
         coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
         active = np.ones(len(coefficients), dtype=bool)
-        still = np.zeros(contact.modes.shape[1])
-        start = ContactSolution(pressure, still, SignoriniSolution(coefficients, still, active))
-        rigid, resting = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
+        no_motion = np.zeros(contact.modes.shape[1])
+        start = ContactSolution(
+            pressure, no_motion, SignoriniSolution(coefficients, no_motion, active)
+        )
+        rigid, thermal_gap = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
         return newton_with_wear(
             lambda worn, slope, last: self._solved(
-                contact, None, rigid, resting, worn, slope, last, load
+                contact, None, rigid, thermal_gap, worn, slope, last, load
             ),
             rates,
             start,
         ).pressure
 
-    def opening(self, contact: ContactSolution) -> float:
+    def largest_deflection(self, contact: ContactSolution) -> float:
         return float(self._opened(contact).max())
 
-    def bending(self, contact: ContactSolution) -> float:
+    def deflection_range(self, contact: ContactSolution) -> float:
         opened = self._opened(contact)[contact.warm_start.active]
         return float(np.ptp(opened)) if opened.size else 0.0
 
@@ -119,12 +117,12 @@ class CondensedMethod:
         opened = self._contact.compliance @ contact.warm_start.coefficients
         return opened / self._contact.weighted.sum(axis=0)
 
-    def _rubbed(self, friction: np.ndarray) -> CondensedContact:
+    def _with_friction(self, friction: np.ndarray) -> CondensedContact:
         """Condensed bodies for coefficients of friction (n,); the last result is cached."""
         key = friction.tobytes()
-        if self._rubbing[0] != key:
-            self._rubbing = (key, self._system.rubbing(friction).contact)
-        return self._rubbing[1]
+        if self._last_friction[0] != key:
+            self._last_friction = (key, self._system.rubbing(friction).contact)
+        return self._last_friction[1]
 
     def _space(self, bodies: CondensedContact, points: np.ndarray | None) -> EdgeSpace | None:
         """Pressure space with pointwise unknowns at given points, None without any; cached."""
@@ -151,7 +149,7 @@ class CondensedMethod:
         bodies: CondensedContact,
         edge: EdgeSpace | None,
         compliance: np.ndarray,
-        resting: np.ndarray,
+        thermal_gap: np.ndarray,
         gap: np.ndarray,
         slope: Slope,
         guess: ContactSolution | None,
@@ -161,22 +159,22 @@ class CondensedMethod:
         space = bodies if edge is None else edge
         start = None if guess is None else guess.warm_start.active
         if edge is not None:
-            compliance, resting = edge.compliance(compliance), edge.projection.T @ resting
+            compliance, thermal_gap = edge.compliance(compliance), edge.projection.T @ thermal_gap
             start = None if guess is None else edge.pressing(guess.pressure)
         if slope.point.any():
             compliance = compliance + self._opening_at_points(space, slope.point)
         if len(slope.rows):
             reach = space.weighted.T @ slope.reach
             compliance = compliance + reach @ (slope.rows @ space.basis)
-        weak = space.weighted.T @ gap + resting
+        weak = space.weighted.T @ gap + thermal_gap
         solution = solve_contact(compliance, weak, space.modes, load, start, space.force_modes)
         pressure = space.basis @ solution.coefficients
         apart = None
         if edge is not None:
             left = weak + compliance @ solution.coefficients - space.modes @ solution.motion
             apart = (pressure == 0.0) * edge.at_points(left)
-            seen, active = edge.projection @ solution.coefficients, bodies.weak(pressure) > 0.0
-            solution = replace(solution, coefficients=seen, active=active)
+            projected, active = edge.projection @ solution.coefficients, bodies.weak(pressure) > 0.0
+            solution = replace(solution, coefficients=projected, active=active)
         motion = self._given.copy()
         motion[self._free] = solution.motion
         return ContactSolution(pressure, motion, solution, apart)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates
 from ...serialise import serialisable
-from ..heat.linearisation import HeatStep
+from ..heat.friction_heat import AnyHeat
 from ..system.conditions import InterfaceConditions
 
 
@@ -53,7 +53,7 @@ class ContactSolver(Protocol):
         slope: Slope,
         guess: ContactSolution | None,
         conditions: InterfaceConditions,
-        heat: HeatStep | None,
+        heat: AnyHeat | None,
         pointwise: np.ndarray | None = None,
     ) -> ContactSolution:
         """Solve contact of bodies with friction heat and a local compliance.
@@ -66,7 +66,7 @@ class ContactSolver(Protocol):
             Gap per pressure in addition to the deflection of the bodies [m/Pa].
         guess : ContactSolution or None
         conditions : InterfaceConditions
-        heat : HeatStep or None
+        heat : AnyHeat or None
         pointwise : ndarray of bool, shape (n,), optional
             Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
 
@@ -75,7 +75,7 @@ class ContactSolver(Protocol):
         ComputationError
         """
 
-    def yielding(self, points: np.ndarray) -> np.ndarray:
+    def point_compliance(self, points: np.ndarray) -> np.ndarray:
         """Deflection per pressure of a single point, NaN at other points, shape (n,) [m/Pa].
 
         Parameters
@@ -97,8 +97,8 @@ class ContactSolver(Protocol):
             Conditions in the steady state.
         """
 
-    def opening(self, contact: ContactSolution) -> float:
+    def largest_deflection(self, contact: ContactSolution) -> float:
         """Largest change of the gap by elastic deflection [m]."""
 
-    def bending(self, contact: ContactSolution) -> float:
+    def deflection_range(self, contact: ContactSolution) -> float:
         """Range of the elastic deflection over the contact area [m]."""

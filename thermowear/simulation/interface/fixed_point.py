@@ -1,4 +1,4 @@
-"""Fixed-point iteration for state-dependent interface conditions."""
+"""Fixed-point iteration for state-dependent interface conditions, with Anderson acceleration."""
 
 from __future__ import annotations
 
@@ -11,17 +11,39 @@ import numpy as np
 from ...contact.operators.heat import ThermalState
 from ...errors import ComputationError
 from ..system.conditions import ConditionModel, InterfaceConditions
-from .anderson import Mixing
 
+_REMEMBERED = 6
+"""Number of iterates of Anderson mixing."""
 _DAMPED = 0.5
 _NEAR = 0.05
 """Relative residual below which iterates are mixed; above it, that may lead to another state."""
-_TURNS = 100
+_ITERATIONS = 100
 _LEAST_RISE = 1.0  # K
 
 
 Found = TypeVar("Found", bound=Any)
 """State with the `pressure`, `faces` and `worn` that interface conditions depend on."""
+
+
+class AndersonMixing:
+    """Anderson mixing of the last iterates, without damping.
+
+    Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715.
+    """
+
+    def __init__(self) -> None:
+        self._iterates: list[np.ndarray] = []
+        self._residuals: list[np.ndarray] = []
+
+    def next(self, iterate: np.ndarray, residual: np.ndarray) -> np.ndarray:
+        """Next iterate from the present one and its residual (image minus iterate), shape (k,)."""
+        self._iterates = [*self._iterates, iterate][-_REMEMBERED:]
+        self._residuals = [*self._residuals, residual][-_REMEMBERED:]
+        if len(self._iterates) == 1:
+            return iterate + residual
+        Δx, Δr = np.diff(self._iterates, axis=0).T, np.diff(self._residuals, axis=0).T
+        weights = np.linalg.lstsq(Δr, residual, rcond=1e-12)[0]
+        return iterate + residual - (Δx + Δr) @ weights
 
 
 @dataclass(frozen=True)
@@ -70,19 +92,19 @@ def self_consistent(
         touching = state.pressure > 0 if closed is None else closed
         return model.at(time, state.pressure, state.faces, touching, state.worn)
 
-    tried, mixing = start, None
-    for _ in range(_TURNS):
-        conditions = conditions_of(tried)
+    iterate, mixing = start, None
+    for _ in range(_ITERATIONS):
+        conditions = conditions_of(iterate)
         found = respond(conditions)
         if conditions_of(found).settled(conditions):
             model.require_friction(time, found.pressure, found.faces)
             return conditions, found
-        before, after = _stacked(tried, found), _stacked(found, found)
-        missed = after - before
-        if mixing is None and np.abs(missed).max() <= _NEAR:
-            mixing = Mixing()
-        following = before + _DAMPED * missed if mixing is None else mixing.next(before, missed)
-        tried = _unstacked(following, found)
+        before, after = _stacked(iterate, found), _stacked(found, found)
+        residual = after - before
+        if mixing is None and np.abs(residual).max() <= _NEAR:
+            mixing = AndersonMixing()
+        following = before + _DAMPED * residual if mixing is None else mixing.next(before, residual)
+        iterate = _unstacked(following, found)
     raise ComputationError(failure)
 
 

@@ -20,11 +20,11 @@ from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from .anderson import Mixing
 from .contact_solver import ContactSolution
+from .fixed_point import AndersonMixing
 
-_PASSES = 60
-_SETTLED = 1e-9  # of the largest pressure
+_ITERATIONS = 60
+_TOLERANCE = 1e-9  # of the largest pressure
 
 
 class FullMethod:
@@ -36,17 +36,13 @@ class FullMethod:
     Heat and contact are solved in a staggered iteration: friction heat distorts the bodies, and the
     distortion changes the pressure. It uses Anderson acceleration, as its plain convergence rate is
     the ratio of the speed to the critical one.
-
-    Parameters
-    ----------
-    system : System
     """
 
     def __init__(self, system: System):
         self._system = system
         self._contact, self.note = _full_contact(system)
-        still = np.zeros(len(system.elastic.fixed))
-        self._dead = still if system.dead_load is None else system.dead_load
+        unloaded = np.zeros(len(system.elastic.fixed))
+        self._dead = unloaded if system.dead_load is None else system.dead_load
         heated = system.thermal is not None
         self._softening = thermal_traction(system.elastic, system.pairing) if heated else None
         self._last = SetupCache()
@@ -58,31 +54,32 @@ class FullMethod:
         slope = slope.point  # means occur for rotating disks in 3D, with condensed contact only
         edge = self._deflection(pointwise)
         if heat is None:
-            return self._result(self._solved(gap, slope, start, load, self._dead, None, edge))
+            found = self._contact.solve(gap, load, slope, self._dead, None, start, edge)
+            return self._result(found)
         pressure = np.zeros(len(gap)) if guess is None else guess.pressure
-        mixing = Mixing()
-        for _ in range(_PASSES):
+        mixing = AndersonMixing()
+        for _ in range(_ITERATIONS):
             start = self._warm(gap, slope, start, conditions, heat, pressure, edge)
-            missed = start.pressure - pressure
-            if np.abs(missed).max() <= _SETTLED * np.abs(start.pressure).max():
+            residual = start.pressure - pressure
+            if np.abs(residual).max() <= _TOLERANCE * np.abs(start.pressure).max():
                 return self._result(start)
-            pressure = mixing.next(pressure, missed)
+            pressure = mixing.next(pressure, residual)
         raise ComputationError(
-            f"contact: heat and pressure did not converge in {_PASSES} iterations; reduce the "
+            f"contact: heat and pressure did not converge in {_ITERATIONS} iterations; reduce the "
             'speed, or use contact.method = "condensed", which solves both at once'
         )
 
-    def yielding(self, points) -> np.ndarray:
+    def point_compliance(self, points) -> np.ndarray:
         return np.where(points, self._edge_compliance, np.nan)
 
     def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
         """Pressure of the principle unchanged: the full system has no pressure space."""
         return pressure
 
-    def opening(self, contact: ContactSolution) -> float:
+    def largest_deflection(self, contact: ContactSolution) -> float:
         return float(np.abs(self._opened(contact)).max())
 
-    def bending(self, contact: ContactSolution) -> float:
+    def deflection_range(self, contact: ContactSolution) -> float:
         opened = self._opened(contact)[contact.pressure > 0.0]
         return float(np.ptp(opened)) if opened.size else 0.0
 
@@ -113,13 +110,9 @@ class FullMethod:
         """Solve contact of bodies distorted by the friction heat of a pressure."""
         assert self._system.thermal is not None
         faces = heat.faces(conditions, pressure)
-        forces = self._system.thermal.forces(heat.rise(faces))
         traction = -np.asarray(self._softening) * faces.rise[0]
-        nodal_loads = self._dead + forces
-        return self._solved(gap, slope, start, conditions.load, nodal_loads, traction, edge)
-
-    def _solved(self, gap, slope, start, load, nodal_loads, traction, edge) -> FullSolution:
-        return self._contact.solve(gap, load, slope, nodal_loads, traction, start, edge)
+        loads = self._dead + self._system.thermal.forces(heat.rise(faces))
+        return self._contact.solve(gap, conditions.load, slope, loads, traction, start, edge)
 
     def _result(self, solution: FullSolution) -> ContactSolution:
         motion = self._system.holder.amplitudes(solution.motion)

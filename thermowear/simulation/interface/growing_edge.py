@@ -24,20 +24,14 @@ from .sdirk import InterfaceState
 
 _RISE = 0.1
 """Fraction of the rise of the largest pressure in a step that counts as its error."""
-_BEHIND = 0.03
+_DELAY = 0.03
 """Delay of the end of a step behind the expected time of reaching a point, relative to the step."""
-_SETTLING = 0.4
+_STEP_AFTER_CONTACT = 0.4
 """Step after reaching a point, relative to the time in which wear takes up its deflection."""
 
 
 class GrowingEdge:
-    """Edge of the wear in a contact that may grow by wear.
-
-    Parameters
-    ----------
-    system : System
-    method : ContactSolver
-    """
+    """Edge of the wear in a contact that may grow by wear."""
 
     def __init__(self, system: System, method: ContactSolver):
         self._facet, self._basis = system.pairing.sides[0].facet, system.basis
@@ -114,15 +108,17 @@ class GrowingEdge:
         times = closing_times(start, middle, end, step)
         reached = float(times[end == 0.0].min(initial=np.inf))
         left = float(times[end > 0.0].min(initial=np.inf)) - step
-        following = left + _BEHIND * max(left, step)
+        following = left + _DELAY * max(left, step)
         begun = (end == 0.0) & (states[0].pressure == 0.0)
         if begun.any():
             slope = rates.slope(states[2].pressure).point[begun]
-            following = min(following, _SETTLING * self._settling(states[2], begun, slope))
-        return (1 + _BEHIND) * reached if np.isfinite(reached) else 0.0, following
+            following = min(
+                following, _STEP_AFTER_CONTACT * self._take_up_time(states[2], begun, slope)
+            )
+        return (1 + _DELAY) * reached if np.isfinite(reached) else 0.0, following
 
-    def _settling(self, state: InterfaceState, points: np.ndarray, slope: np.ndarray) -> float:
+    def _take_up_time(self, state: InterfaceState, points: np.ndarray, slope: np.ndarray) -> float:
         """Shortest time in which wear takes up the elastic deflection under single points [s]."""
         assert state.pointwise is not None
-        yielding = self._method.yielding(state.pointwise)[points]
-        return float((yielding[slope > 0.0] / slope[slope > 0.0]).min(initial=np.inf))
+        point_compliance = self._method.point_compliance(state.pointwise)[points]
+        return float((point_compliance[slope > 0.0] / slope[slope > 0.0]).min(initial=np.inf))

@@ -7,9 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
-from ..heat.friction_heat import FrictionHeat
-from ..heat.heat_steps import InitialHeat
-from ..heat.linearisation import ConductingStep, HeatStep
+from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
@@ -29,12 +27,6 @@ _STEP = "contact: the iteration for the state-dependent properties of a step did
 class InterfaceProblem(WearProblem):
     """Contact with heat and wear for given loads.
 
-    Parameters
-    ----------
-    system : System
-    method : ContactSolver
-    heat : FrictionHeat or None
-
     Attributes
     ----------
     stores_heat : bool
@@ -42,9 +34,9 @@ class InterfaceProblem(WearProblem):
     """
 
     def __init__(self, system: System, method: ContactSolver, heat: FrictionHeat | None):
-        self._system, self._method, self.heat = system, method, heat
+        self.system, self._method, self.heat = system, method, heat
         self._condition_model = ConditionModel(system)
-        self._lasting_conditions: tuple[bytes, InterfaceConditions] | None = None
+        self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._edge = GrowingEdge(system, method)
         self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
         self._gap = system.pairing.gap - system.holder.imposed
@@ -58,9 +50,9 @@ class InterfaceProblem(WearProblem):
 
     def unworn(self) -> InterfaceState:
         """Contact of the unworn faces with the steady temperatures of its own friction heat."""
-        return self._lasting(self._unworn, 0.0)
+        return self._in_steady_heat(self._unworn, 0.0)
 
-    def _lasting(
+    def _in_steady_heat(
         self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
     ) -> InterfaceState:
         """Contact of faces with given wear and the steady temperatures of its friction heat.
@@ -88,7 +80,7 @@ class InterfaceProblem(WearProblem):
         if not self.stores_heat:
             return self.unworn()
         assert self.heat is not None
-        return self._frozen(self._unworn, self.heat.frozen, 0.0)
+        return self._at_temperatures(self._unworn, self.heat.initial, 0.0)
 
     def take_over(
         self,
@@ -113,20 +105,20 @@ class InterfaceProblem(WearProblem):
         time : float
             [s]
         """
-        edge, geometry = state.pointwise, self._system.worn
+        edge, geometry = state.pointwise, self.system.worn
         if edge is not None and (geometry is None or geometry.pieces is None):
             edge = self._edge.points(worn)  # the contact points have changed
         if state.stored is None:
-            found = self._lasting(worn, time, edge)
+            found = self._in_steady_heat(worn, time, edge)
         else:
             assert self.heat is not None
             assert former.heat is not None
             assert rise is not None
             stored = self.heat.take_over(former.heat, state.stored, rise)
-            found = self._frozen(worn, self.heat.at_moment(stored), time, edge)
+            found = self._at_temperatures(worn, self.heat.given(stored), time, edge)
         return replace(found, peak=state.largest, pointwise=edge)
 
-    def _frozen(
+    def _at_temperatures(
         self,
         worn: np.ndarray,
         heat: InitialHeat,
@@ -134,7 +126,7 @@ class InterfaceProblem(WearProblem):
         pointwise: np.ndarray | None = None,
     ) -> InterfaceState:
         """Contact at given temperatures."""
-        guess = InterfaceState(worn, self._guess, faces=heat.initial)
+        guess = InterfaceState(worn, self._guess, faces=heat.state)
         conditions = self.conditions(guess, time)
         contact = self._solve(worn, conditions, heat, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
@@ -147,8 +139,8 @@ class InterfaceProblem(WearProblem):
             depth = state.worn.sum(axis=0)[state.pressure > 0.0]
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
-            even = reached.all() or not depth.size
-            if even or np.ptp(depth) <= self._method.bending(state.contact):
+            uniform = reached.all() or not depth.size
+            if uniform or np.ptp(depth) <= self._method.deflection_range(state.contact):
                 return state
         edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)
@@ -161,7 +153,8 @@ class InterfaceProblem(WearProblem):
         State-dependent conditions are those at the end of the step, except for the points that
         exchange heat: the contact set of the guess.
         """
-        heat, last, edge = self._heat_at_end(before, step, time), guess.contact, before.pointwise
+        heat = None if self.heat is None else self.heat.steps.after(before.stored, step, time)
+        last, edge = guess.contact, before.pointwise
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
             nonlocal last
@@ -180,17 +173,17 @@ class InterfaceProblem(WearProblem):
         if self.heat is None or heat is None or before.stored is None or found.faces is None:
             return found
         made = conditions.heating * found.pressure
-        stored = self.heat.stored(before.stored, step, heat, found.faces, made)
+        stored = self.heat.steps.end(before.stored, step, heat, found.faces, made)
         return replace(found, stored=stored)
 
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
         """Interface conditions in a state at a time [s]; lasting ones are kept."""
         model, closed = self._condition_model, state.pressure > 0
-        kept, key = self._lasting_conditions, closed.tobytes()
+        kept, key = self._last_conditions, closed.tobytes()
         if kept is not None and kept[0] == key and model.lasting:
             return kept[1]
         found = model.at(time, state.pressure, state.faces, closed, state.worn)
-        self._lasting_conditions = key, found
+        self._last_conditions = key, found
         return found
 
     def _rates(self, conditions: InterfaceConditions, step: float = 1.0) -> WearRates:
@@ -201,7 +194,7 @@ class InterfaceProblem(WearProblem):
         self,
         worn: np.ndarray,
         conditions: InterfaceConditions,
-        heat: HeatStep | None,
+        heat: AnyHeat | None,
         pointwise: np.ndarray | None = None,
         guess: ContactSolution | None = None,
         step: float = 0.0,
@@ -213,7 +206,7 @@ class InterfaceProblem(WearProblem):
         """
         gap = self._gap + worn.sum(axis=0)
         if conditions.released:  # the holder stays where it is
-            rigid_modes = self._system.holder.rigid_modes
+            rigid_modes = self.system.holder.rigid_modes
             motion = np.zeros(len(rigid_modes)) if guess is None else guess.motion
             return ContactSolution(np.zeros(len(gap)), motion, None)
 
@@ -229,12 +222,12 @@ class InterfaceProblem(WearProblem):
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
         """Contact loads of a state on the bodies; every rank calls."""
-        conditions, warmth = self.conditions(state, time), None
+        conditions, temperatures = self.conditions(state, time), None
         if self.heat is not None and state.stored is not None and state.faces is not None:
-            warmth = self.heat.momentary(state.stored, state.faces)
+            temperatures = self.heat.transient(state.stored, state.faces)
         elif self.heat is not None:
-            warmth = self.heat.lasting(conditions, state.pressure)
-        return ContactState(state.pressure, conditions, warmth)
+            temperatures = self.heat.steady(conditions, state.pressure)
+        return ContactState(state.pressure, conditions, temperatures)
 
     def difference(
         self, before: InterfaceState, one: InterfaceState, other: InterfaceState
@@ -258,7 +251,7 @@ class InterfaceProblem(WearProblem):
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""
         if self.heat is None or one.stored is None or other.stored is None:
             return 0.0
-        return self.heat.difference(one.stored, other.stored)
+        return self.heat.steps.largest(one.stored.rise - other.stored.rise)
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Times up to an end at which a history has a corner [s]."""
@@ -273,7 +266,7 @@ class InterfaceProblem(WearProblem):
         fastest = float(self._rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0))
         step = np.inf
         if fastest > 0.0:
-            step = 1e-3 * self._method.opening(state.contact) / fastest
+            step = 1e-3 * self._method.largest_deflection(state.contact) / fastest
         if self.heat is not None and self.stores_heat:
             made = conditions.heating * state.pressure
             step = min(step, self.heat.first_step(float(made.max())))
@@ -289,12 +282,3 @@ class InterfaceProblem(WearProblem):
         if steady is None:
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
-
-    def _heat_at_end(
-        self, before: InterfaceState, step: float, time: float
-    ) -> ConductingStep | None:
-        if self.heat is None:
-            return None
-        if before.stored is None:
-            return self.heat.steps.steady
-        return self.heat.steps.after(before.stored, step, time)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,8 +14,6 @@ from ..heat.heat_steps import StoredHeat
 from .contact_solver import ContactSolution
 
 _γ = 1 - 1 / np.sqrt(2)
-
-
 _ROUNDING = 1e-13  # of the largest pressure so far: no step makes smaller errors
 _LEAST_RISE = 10.0  # K; least scale of temperature errors
 
@@ -55,6 +54,12 @@ class InterfaceState:
     def largest(self) -> float:
         """Largest pressure so far [Pa]."""
         return max(self.peak, float(self.pressure.max()))
+
+    def by_body(self, wearing: Iterable[int]) -> np.ndarray:
+        """Wear depths of both bodies, given the indices of the wearing ones, shape (2, n) [m]."""
+        both = np.zeros((2, self.worn.shape[1]))
+        both[list(wearing)] = self.worn
+        return both
 
     def towards(self, other: InterfaceState, part: float) -> InterfaceState:
         """Interpolate wear and stored heat linearly (or extrapolate) to another state."""

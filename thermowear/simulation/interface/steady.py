@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...contact.operators.heat import ThermalState
 from ...laws.principle.steady import SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
@@ -46,31 +45,22 @@ def steady_state(system: System) -> SteadyState:
     """
     heat = friction_heat(system)
     area = float(system.weights.sum())
-    even = np.full(len(system.weights), (system.model.holder.force or area) / area)
-    nothing = np.zeros((len(system.laws), len(even)))
-    start = Trial(even, None if heat is None else heat.steps.steady.unheated, nothing)
+    uniform = np.full(len(system.weights), (system.model.holder.force or area) / area)
+    zeros = np.zeros((len(system.laws), len(uniform)))
+    start = Trial(uniform, None if heat is None else heat.steps.steady.unheated, zeros)
 
-    def respond(conditions: InterfaceConditions) -> _Worn:
+    wear: SteadyWear | None = None
+
+    def respond(conditions: InterfaceConditions) -> Trial:
+        nonlocal wear
         wear = _principle(system, conditions)
         faces = None if heat is None else heat.steps.steady.faces(conditions, wear.pressure)
-        return _Worn(wear, faces, nothing)
+        return Trial(wear.pressure, faces, zeros)
 
     conditions, found = self_consistent(ConditionModel(system), 0.0, start, respond, _NONE)
-    warmth = None if heat is None else heat.lasting(conditions, found.pressure)
-    return SteadyState(found.wear, ContactState(found.pressure, conditions, warmth))
-
-
-@dataclass(frozen=True)
-class _Worn:
-    """Solution of the principle under given conditions, with temperatures of the faces."""
-
-    wear: SteadyWear
-    faces: ThermalState | None
-    worn: np.ndarray
-
-    @property
-    def pressure(self) -> np.ndarray:
-        return self.wear.pressure
+    temperatures = None if heat is None else heat.steady(conditions, found.pressure)
+    assert wear is not None
+    return SteadyState(wear, ContactState(found.pressure, conditions, temperatures))
 
 
 def _principle(system: System, conditions: InterfaceConditions) -> SteadyWear:

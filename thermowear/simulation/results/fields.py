@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import ufl
 from dolfinx import fem
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ...bulk.field import as_function
 from ...bulk.heat.varying import straining_rise
@@ -85,21 +89,13 @@ def _von_mises(σ):
     return ufl.sqrt(1.5 * ufl.inner(s, s))
 
 
-def _square(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points of an (n + 1)² grid on the reference square, and its small quadrilaterals."""
-    x = np.linspace(0.0, 1.0, n + 1)
-    points = np.array([(a, b) for b in x for a in x])
-    corner = np.array([j * (n + 1) + i for j in range(n) for i in range(n)])
-    return points, corner[:, None] + np.array([0, 1, n + 2, n + 1])
-
-
-def _cube(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points of an (n + 1)³ grid on the reference cube, and its small hexahedra."""
-    square, pieces = _square(n)
-    points = np.array([(x, y, z) for z in np.linspace(0.0, 1.0, n + 1) for x, y in square])
-    layer = len(square)
-    layers = [pieces + k * layer for k in range(n)]
-    return points, np.concatenate([np.hstack([low, low + layer]) for low in layers])
+def _box(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of an (n + 1)ᵈ grid on the reference cell, and its small cells in the order of VTK."""
+    axes = np.meshgrid(*[np.linspace(0.0, 1.0, n + 1)] * dim, indexing="ij")
+    points = np.column_stack([axis.ravel() for axis in axes[::-1]])
+    numbers = np.arange(len(points)).reshape(axes[0].shape)
+    corners = sliding_window_view(numbers, (2,) * dim).reshape(-1, 2**dim)
+    return points, corners[:, [0, 1, 3, 2, 4, 5, 7, 6][: 2**dim]]
 
 
 def _triangle(n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -116,4 +112,8 @@ def _below(n: int) -> list[tuple[int, int]]:
     return [(j, i) for j in range(n) for i in range(n - j)]
 
 
-_GRIDS = {"quadrilateral": _square, "triangle": _triangle, "hexahedron": _cube}
+_GRIDS: dict[str, Callable[[int], tuple[np.ndarray, np.ndarray]]] = {
+    "quadrilateral": partial(_box, dim=2),
+    "triangle": _triangle,
+    "hexahedron": partial(_box, dim=3),
+}

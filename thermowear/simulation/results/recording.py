@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...contact.wear.implicit_step import WearRates
-from ...laws.motions import RigidMotion
+from ...laws.motions import RigidMotion, combined
 from ...results import FrictionInterface, InterfaceFields, Profile, WornTrack
 from ..interface.body_state import BodyState, ContactState, body_state
+from ..interface.interface_problem import InterfaceProblem
+from ..interface.sdirk import InterfaceState
 from ..system.system import System
 
-_STEEPEST = 0.05
+_LEAST_COSINE = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
 
 
@@ -65,16 +67,23 @@ def snapshot(
         Wear rates, see `record` [m/s].
     """
     bodies = body_state(system, contact)
-    lost = system.pairing.gap + worn.sum(axis=0)
+    open_by = system.pairing.gap + worn.sum(axis=0)
     moved = motion.at(system.pairing.on_body_1)
     gap = (
-        lost
+        open_by
         + system.softness * contact.pressure
         + bodies.opening
         - np.einsum("ni,ni->n", system.pairing.normals, moved)
     )
-    shape = lost.max() - lost
+    shape = open_by.max() - open_by
     return record(system, contact, motion, bodies, gap, shape, worn, rates)
+
+
+def snapshot_at(problem: InterfaceProblem, state: InterfaceState, time: float) -> Snapshot:
+    """Contact and bodies in a state of an interface problem at a time [s]; every rank calls."""
+    system, contact = problem.system, problem.contact_state(state, time)
+    motion = combined(system.holder.motions, state.contact.motion)
+    return snapshot(system, contact, motion, state.by_body(system.laws))
 
 
 def record(
@@ -134,9 +143,9 @@ def profile(end: Snapshot) -> Profile:
     system, interface = end.system, end.interface
     normals = np.zeros((len(interface.s), 3))
     normals[:, : len(system.load_direction)] = system.pairing.normals
-    along = along_press(system)
-    lost = system.pairing.gap + interface.wear_1 + interface.wear_2
-    lost = (interface.shape.max() - interface.shape + lost.min()) / along
+    along = along_load(system)
+    open_by = system.pairing.gap + interface.wear_1 + interface.wear_2
+    open_by = (interface.shape.max() - interface.shape + open_by.min()) / along
     rate = interface.wear_rate_1 + interface.wear_rate_2
     return Profile(
         x=interface.x,
@@ -147,13 +156,13 @@ def profile(end: Snapshot) -> Profile:
         normal_y=normals[:, 1],
         normal_z=normals[:, 2],
         shape=interface.shape,
-        shape_along_press=np.nanmax(lost) - lost,
+        shape_along_press=np.nanmax(open_by) - open_by,
         wear_rate=rate,
         wear_rate_along_press=rate / along,
     )
 
 
-def along_press(system: System) -> np.ndarray:
+def along_load(system: System) -> np.ndarray:
     """Cosines between normals and load direction, shape (n,); NaN where the face is too steep."""
     along = system.pairing.normals @ system.load_direction
-    return np.where(along > _STEEPEST, along, np.nan)
+    return np.where(along > _LEAST_COSINE, along, np.nan)

@@ -10,6 +10,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from ...errors import ComputationError, UnwritableError
+from ...interrupts import RecordedSignals
 from ...model.analyses import SteppedAnalysis
 from ...results import (
     CycleRow,
@@ -26,16 +27,16 @@ from ..results.recording import Snapshot
 from ..results.summary import conclude
 from ..system.system import System
 from .checkpoint_data import Progress, Saved
-from .frames import spacing
-from .observer import Observer
-from .stop_signal import StopRequest, interrupted
+from .observer import AnyRow, Observer
 
-AnyRow = HistoryRow | HeatRow | LoadRow | CycleRow
 Row = TypeVar("Row", bound=AnyRow)
 
 
 State = TypeVar("State", bound=Any)
-"""Accepted state of an analysis, with a `time` [s], and `is_output` true at an output time."""
+"""Accepted state of an analysis.
+
+It has a `time` [s], `is_output` (true at an output time), and a `distance` from the steady state.
+"""
 
 
 class AnalysisHistory(ABC, Generic[State]):
@@ -51,6 +52,9 @@ class AnalysisHistory(ABC, Generic[State]):
     observer : Observer
         Observer notified of each record.
     """
+
+    phase = "time stepping"
+    """Name of the phase for timing."""
 
     def __init__(self, system: System, settings: SteppedAnalysis, observer: Observer):
         self._system = system
@@ -115,7 +119,7 @@ class AnalysisHistory(ABC, Generic[State]):
             self._observer.resumed(rows)
         return before.state
 
-    def follow(self, phase: str, states: Iterable[State]) -> BaseException | None:
+    def follow(self, states: Iterable[State]) -> BaseException | None:
         """Record and save successive states; the ones before an error or Ctrl-C are kept.
 
         A stop request ends the loop after the present state. It also counts after the last one: the
@@ -123,8 +127,6 @@ class AnalysisHistory(ABC, Generic[State]):
 
         Parameters
         ----------
-        phase : str
-            Name of the phase for timing.
         states : iterable
             At least one state, unless the run was resumed.
 
@@ -141,7 +143,7 @@ class AnalysisHistory(ABC, Generic[State]):
             If results cannot be written.
         """
         comm, stopped = self._system.comm, None
-        with self._system.phases(phase), StopRequest() as stop:
+        with self._system.phases(self.phase), StopRequest() as stop:
             try:
                 for state in states:
                     self.keep(state)
@@ -167,7 +169,7 @@ class AnalysisHistory(ABC, Generic[State]):
         self._last = state
         for row in rows:
             self.table(type(row)).append(row)
-            self._tell(row, state)
+            self._observer.row(row, state.distance)
         if shown is not None:
             with self._system.phases("output"):
                 self._outputs[state.time] = shown.interface, shown.friction, shown.track
@@ -230,16 +232,6 @@ class AnalysisHistory(ABC, Generic[State]):
         counts = {kind: len(rows) for kind, rows in self._tables.items()}
         self._restart = state, counts, self.restart_data()
 
-    def _tell(self, row: AnyRow, state: Any) -> None:
-        if isinstance(row, HistoryRow):
-            self._observer.step(row, state.distance)
-        elif isinstance(row, HeatRow):
-            self._observer.heat(row)
-        elif isinstance(row, LoadRow):
-            self._observer.load_step(row)
-        else:
-            self._observer.cycle(row)
-
     def _keep_frame(self, state: State) -> None:
         """Record an animation frame if the number of the state is selected."""
         number, most = self.frame_number(state), self._settings.frames
@@ -252,3 +244,39 @@ class AnalysisHistory(ABC, Generic[State]):
             now = self.snapshot(state)
             frame = Frame(number, every, state.time, now.interface, sample(now), now.track)
             self._observer.frame(frame)
+
+
+def spacing(number: int, most: int) -> int:
+    """Smallest power of two with at most `most` multiples from 0 to a number.
+
+    Frames are selected by step numbers: an error-controlled loop takes short steps where the state
+    changes fast. Their total is not known in advance, so that all steps are kept until there are
+    too many, then every second, then every fourth. The computation does not depend on frames.
+    """
+    every = 1
+    while number // every >= most:
+        every *= 2
+    return every
+
+
+class StopRequest(RecordedSignals):
+    """Context manager that records Ctrl-C or SIGTERM; a second one interrupts at once.
+
+    A recorded request outlives the block: the caller checks `recorded` once more after it, when
+    signals interrupt at once again, so that none is lost in between. If an error leaves the
+    block, a recorded request turns it into an interrupt that reports the error.
+    """
+
+    def __exit__(self, kind, error, traceback) -> None:
+        super().__exit__(kind, error, traceback)
+        if self.recorded is not None and isinstance(error, Exception):
+            raise interrupted(error)
+
+
+def interrupted(reason: BaseException | None = None) -> KeyboardInterrupt:
+    """KeyboardInterrupt that reports the error that had ended the computation, if any."""
+    if reason is None:
+        return KeyboardInterrupt()
+    interrupt = KeyboardInterrupt(f"interrupted; the computation had failed: {reason}")
+    interrupt.__cause__ = reason
+    return interrupt

@@ -16,6 +16,8 @@ from ...results import (
 )
 from .checkpoint_data import Saved
 
+AnyRow = HistoryRow | HeatRow | LoadRow | CycleRow
+
 
 class Observer:
     """Callbacks for the events of a run, no-ops in the base class. Called on every rank."""
@@ -23,17 +25,12 @@ class Observer:
     def phase(self, name: str) -> None:
         """A phase of the run begins."""
 
-    def step(self, row: HistoryRow, distance: float) -> None:
-        """A step of a transient analysis was accepted, at a distance from the steady pressure."""
+    def row(self, row: AnyRow, distance: float) -> None:
+        """A row of a table, at a distance from the steady pressure (NaN without one).
 
-    def heat(self, row: HeatRow) -> None:
-        """Heat balance of that step, for transient temperatures."""
-
-    def load_step(self, row: LoadRow) -> None:
-        """An increment of a fretting analysis was accepted."""
-
-    def cycle(self, row: CycleRow) -> None:
-        """A cycle of a fretting analysis has ended."""
+        It records an accepted step of a transient analysis, the heat balance of that step, an
+        increment or a cycle of a fretting analysis.
+        """
 
     def note(self, text: str) -> None:
         """A note for the user."""
@@ -50,7 +47,7 @@ class Observer:
     def checkpoint(self, saved: Saved) -> None:
         """A checkpoint to restart from; its data differ from rank to rank."""
 
-    def resumed(self, rows: Sequence[HistoryRow | HeatRow | LoadRow | CycleRow]) -> None:
+    def resumed(self, rows: Sequence[AnyRow]) -> None:
         """Rows of one kind from before the restart."""
 
     def frame(self, frame: Frame) -> None:

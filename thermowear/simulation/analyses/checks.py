@@ -1,0 +1,104 @@
+"""Checks of the end of an analysis: open contact, holder moved back, inclined faces, deep wear."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...errors import ComputationError
+from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
+from ...results import InterfaceFields
+from ..geometry_update.outer_loop import GapWear
+from ..results.recording import Snapshot
+from ..system.rigid_modes import applied
+from ..system.system import System
+
+_ANALYSES = ("initial", "transient", "fretting", "reciprocating")
+"""Analyses with a defined holder position; a steady state has no history leading to one."""
+_BACK = 1e-9
+"""Rounding tolerance of the position, relative to the size of the face."""
+_STEEP = -0.75
+"""Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
+
+
+def moved_against_load(
+    system: System, analysis: Analysis, end: Snapshot
+) -> ComputationError | None:
+    """Error for a holder that has moved against its load; None if it has not.
+
+    Without heat and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do positive work
+    on the holder unless the drawn faces overlap.
+    """
+    holder, pairing = system.model.holder, system.pairing
+    if analysis.type not in _ANALYSES or system.thermal is not None or holder.surface_forces:
+        return None
+    if holder.force is None or system.worn is not None:
+        return None
+    back = -applied(holder, end.motion) / holder.force
+    if back <= _BACK * pairing.extent:
+        return None
+    pressing = end.contact.pressure > 0
+    overlap = -float(pairing.gap[pressing].min(initial=0.0))
+    return ComputationError(
+        f"contact: the holder ends {back:.3g} m behind where it was drawn, though it is pressed "
+        f"on: the contact faces overlap by up to {overlap:.3g} m before any load. Draw the bodies "
+        "apart, so that they just touch; or name only the part of each face that is to touch"
+    )
+
+
+def inclined_faces(system: System, pressure: np.ndarray) -> str | None:
+    """Note on contact of faces far from parallel; None if there is none."""
+    first, second = (side.face.normals(side.facet, side.t) for side in system.pairing.sides)
+    cosine = np.einsum("ni,ni->n", first, second)[pressure > 0].max(initial=-1.0)
+    if cosine <= _STEEP:
+        return None
+    angle = 180 - np.degrees(np.arccos(cosine))
+    return (
+        f"the contact reaches points where the unloaded faces are inclined by {angle:.0f} degrees "
+        "to each other; strains are taken to be small, and from 60 degrees on faces are not paired"
+    )
+
+
+def open_contact(system: System, interface: InterfaceFields) -> ComputationError | str | None:
+    """Error or note for an analysis that ends without contact. Every rank calls.
+
+    A constant pressing force must be carried, or the computation has failed. A given approach, a
+    surface load or a load history may leave the faces apart, and wear may separate them: that is a
+    valid result with a note.
+
+    Returns
+    -------
+    ComputationError, str or None
+        Error, note, or None with contact.
+    """
+    if interface.pressure.max() > 0.0:
+        return None
+    gap = np.nanmin(interface.gap, initial=np.inf)
+    apart = f"; the faces are {1e6 * gap:.4g} µm apart at least" if np.isfinite(gap) else ""
+    holder = system.model.holder
+    force = holder.force if holder.history is None else None
+    if force is None:
+        return f"nothing touches at the end{apart}"
+    return ComputationError(f"nothing carries the pressing force of {force:.4g} N{apart}")
+
+
+def deep_wear(system: System, analysis: Analysis, interface: InterfaceFields) -> str | None:
+    """Note on an analysis without mesh motion that leaves the small-wear regime; every rank calls.
+
+    In reciprocating sliding the depths are those at mid-stroke of body 1.
+
+    Returns
+    -------
+    str or None
+        None if the wear is small, or declared small by ``wear.update = "never"``.
+    """
+    if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis):
+        return None
+    allowed = analysis.largest_kept
+    fraction = GapWear(system).fraction(np.array([interface.wear_1, interface.wear_2]))
+    if fraction <= allowed:
+        return None
+    return (
+        f"the wear, which a {analysis.type} analysis keeps in the gap, comes to {fraction:.2%} of "
+        "the thickness behind the face or of its radius of curvature, or tilts elements by ten "
+        f"times that: pressures and shapes are those of small wear, up to {allowed:.2%}"
+    )

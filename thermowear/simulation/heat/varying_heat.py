@@ -1,0 +1,242 @@
+"""Heat steps with temperature-dependent conductivity or expansion, by Newton's method.
+
+The steps are linearised about the last temperatures. Their operators are kept while the increments
+keep decreasing, as each tangent needs a factorisation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+
+from ...bulk.heat.conduction import Conduction
+from ...contact.operators.heat import (
+    BaselineResponse,
+    InterfaceHeat,
+    ThermalState,
+    baseline_response,
+)
+from ...errors import ComputationError
+from ..system.conditions import InterfaceConditions
+from ..system.system import System
+from ..system.thermal_loads import ThermalLoad
+from ..system.thermal_system import ThermalSystem
+from .heat_steps import HeatOperators, HeatStep, HeatSteps
+
+_ITERATIONS = 60
+_TOLERANCE = 1e-11
+"""Tolerance of the change of the temperatures, relative to the largest rise."""
+_SLOW = 0.3
+"""Convergence rate of Newton's method above which the tangents are renewed."""
+_LEAST_RISE = 1.0  # K
+
+Linearisation = tuple[HeatOperators, np.ndarray, BaselineResponse]
+"""Operators, supplied heat and baseline response of a `HeatStep` linearised about a rise."""
+
+
+class TangentOperators(HeatOperators):
+    """Operators linearised at a rise.
+
+    Parameters
+    ----------
+    system, conduction, face, thermal
+        See `HeatOperators`, and the model with the varying expansions.
+    reference : ndarray or None, shape (n_owned,)
+        Rise at which they are linearised; None: the properties at the ambient temperature [K].
+    """
+
+    def __init__(
+        self,
+        system: System,
+        conduction: Conduction,
+        face: InterfaceHeat,
+        thermal: ThermalSystem,
+        reference: np.ndarray | None,
+    ):
+        super().__init__(system, conduction, face)
+        self.reference, self._expansions = reference, thermal.expansions
+
+    @cached_property
+    def per_rise(self) -> np.ndarray:
+        result, *per_excess = self._system.influence.per_rise
+        if self.reference is None:
+            return result
+        for part, per_rise in zip(self._expansions, per_excess, strict=True):
+            result = result + part.slope(self.reference)[:, None] * per_rise
+        return result
+
+    def baseline(self, rise: np.ndarray, about: np.ndarray | None = None) -> BaselineResponse:
+        """Interface response to a nodal rise, its distortion linearised about another rise."""
+        if not self.distorts:
+            return super().baseline(rise)
+        excess: np.ndarray | float = 0.0
+        about = rise if about is None else about
+        per_excess = self._system.influence.per_rise[1:]
+        for part, per_rise in zip(self._expansions, per_excess, strict=True):
+            linear = 0.0 if self.reference is None else part.slope(self.reference) * about
+            excess = excess + per_rise.T @ (part.excess(about) - linear)
+        comm = self._system.comm
+        return baseline_response(rise, self.face.traces, comm, self.per_rise, excess)
+
+
+class NonlinearHeatStep(HeatStep):
+    """Conduction with temperature-dependent properties at one time, by Newton's method.
+
+    Parameters
+    ----------
+    linearise : callable
+        `Linearisation` about a rise (n_owned,), with new tangents on request. Every rank calls.
+    comm : mpi4py.MPI.Comm
+    load : ThermalLoad
+    rise : ndarray, shape (n_owned,)
+        Initial guess, then the last temperatures [K].
+    change : float, optional
+        Last change of the rise, relative to its largest value.
+    """
+
+    def __init__(
+        self,
+        linearise: Callable[[np.ndarray, bool], Linearisation],
+        comm,
+        load: ThermalLoad,
+        rise: np.ndarray,
+        change: float = np.inf,
+    ):
+        operators, supplied, baseline = linearise(rise, False)
+        super().__init__(operators, load, supplied, baseline)
+        self.last_rise, self.last_change = rise, change
+        self._linearise, self._comm = linearise, comm
+
+    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
+        return self._newton(partial(super().faces, conditions, pressure))
+
+    def rise(self, faces: ThermalState) -> np.ndarray:
+        self._newton(lambda: faces)
+        return self.last_rise
+
+    def converged(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
+        """Test whether the last coupling has converged at a pressure; relinearise if not."""
+        return self._moved(super().faces(conditions, pressure)) <= _TOLERANCE
+
+    def _newton(self, respond: Callable[[], ThermalState]) -> ThermalState:
+        """Iterate the temperatures by Newton's method on the response of the faces."""
+        for _ in range(_ITERATIONS):
+            faces = respond()
+            if self._moved(faces) <= _TOLERANCE:
+                return faces
+        raise ComputationError(
+            "heat: Newton's method for temperature-dependent conductivity or expansion did not "
+            "converge; give smoother tables, or reduce the speed"
+        )
+
+    def _moved(self, faces: ThermalState) -> float:
+        """Relative change of the temperatures for a state of the faces; relinearise there."""
+        rise = super().rise(faces)
+        change = self._change(rise)
+        if change <= _TOLERANCE:
+            self.last_change = np.inf
+            return change
+        slow = change > _SLOW * self.last_change
+        self.operators, self.supplied, self.baseline = self._linearise(rise, slow)
+        self._gap = None
+        self.last_rise, self.last_change = rise, np.inf if slow else change
+        return change
+
+    def _change(self, rise: np.ndarray) -> float:
+        """Difference from the last rise, relative to the largest value; every rank calls."""
+        sizes = [float(np.abs(values).max(initial=0.0)) for values in (rise - self.last_rise, rise)]
+        change, largest = np.max(self._comm.allgather(sizes), axis=0)
+        return change / max(largest, _LEAST_RISE)
+
+
+@dataclass
+class Tangents:
+    """Last operators for one step size [s], or for the steady state (None).
+
+    Attributes
+    ----------
+    step : float or None
+    reference : ndarray or None, shape (n_owned,)
+        Rise at which they were linearised [K].
+    last : TangentOperators or None
+    """
+
+    step: float | None
+    reference: np.ndarray | None = None
+    last: TangentOperators | None = None
+
+
+class VaryingHeatSteps(HeatSteps):
+    """Conduction at the times of an analysis, with temperature-dependent properties."""
+
+    def __init__(self, system: System, thermal: ThermalSystem, kept: int):
+        super().__init__(system, thermal, kept)
+        self._steady_tangents = Tangents(None)
+
+    @cached_property
+    def operators(self) -> HeatOperators:
+        thermal = self._thermal
+        return TangentOperators(self._system, thermal.conduction, thermal.face, thermal, None)
+
+    @cached_property
+    def steady(self) -> HeatStep:
+        return self._steady_about(self._thermal.conduction.prescribed)
+
+    def restart_data(self) -> tuple:
+        """Linearisation points, which the Newton iterates depend on.
+
+        Rise (n_owned,) by step size, the last used at the end; and for the steady state this rise,
+        the last temperatures [K], and their last change.
+        """
+        steps = {step: tangents.reference for step, tangents in self._of_size.items()}
+        if self._steady_tangents.last is None:
+            return steps, None
+        assert isinstance(self.steady, NonlinearHeatStep)
+        last = self.steady.last_rise, self.steady.last_change
+        return steps, (self._steady_tangents.reference, *last)
+
+    def restore(self, data: tuple) -> None:
+        steps, steady = data
+        self._of_size.update({step: Tangents(step, rise) for step, rise in steps.items()})
+        if steady is not None:
+            reference, rise, change = steady
+            self._steady_tangents = Tangents(None, reference)
+            self.steady = self._steady_about(rise, change)
+
+    def operators_within(self, step: float) -> Tangents:
+        return Tangents(step)
+
+    def _steady_about(self, rise: np.ndarray, change: float = np.inf) -> HeatStep:
+        """Steady conduction with an initial rise (n_owned,) and its last change."""
+        load = self._thermal.loads.at(0.0)
+        return self._conducting(self._steady_tangents, load, load.heat, rise, change)
+
+    def _conducting(
+        self,
+        tangents: Tangents,
+        load: ThermalLoad,
+        supplied: np.ndarray,
+        rise: np.ndarray,
+        change: float = np.inf,
+    ) -> HeatStep:
+        def linearise(rise: np.ndarray, renew: bool) -> Linearisation:
+            if renew or tangents.last is None:
+                at = rise if renew or tangents.reference is None else tangents.reference
+                tangents.reference, tangents.last = at, self._tangent(at, tangents.step)
+            operators = tangents.last
+            assert operators.reference is not None
+            conduction = self._thermal.conduction
+            heat = supplied + conduction.linearisation_error(rise, operators.reference)
+            held = operators.conduction.with_prescribed(load.given)
+            return operators, heat, operators.baseline(held.solve(heat), rise)
+
+        return NonlinearHeatStep(linearise, self._system.comm, load, rise, change)
+
+    def _tangent(self, rise: np.ndarray, step: float | None) -> TangentOperators:
+        """Operators linearised at a rise (n_owned,), steady or of a time step; every rank calls."""
+        conduction = self._thermal.conduction.tangent(rise, step)
+        face = self._condense(conduction)
+        return TangentOperators(self._system, conduction, face, self._thermal, rise)

@@ -7,17 +7,4 @@ from .heat.heat_equation import conduction
 from .kinematics import Axisymmetric, PlaneStrain, PlaneStress
 from .mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
 
-__all__ = [
-    "Axisymmetric",
-    "Bodies",
-    "Conduction",
-    "ElasticMaterial",
-    "Elasticity",
-    "PlaneStrain",
-    "PlaneStress",
-    "conduction",
-    "distribute",
-    "elasticity",
-]
-
 fix_compiler_options()  # before any form is compiled

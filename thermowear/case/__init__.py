@@ -3,5 +3,3 @@
 from .loading import load
 from .tables.geometry import Geometry, known_geometries
 from .tables.schema import Case, as_plain
-
-__all__ = ["Case", "Geometry", "as_plain", "known_geometries", "load"]

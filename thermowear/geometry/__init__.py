@@ -1,5 +1,3 @@
 """Built-in geometries, mesh files, meshing, mesh motion, export to CAD."""
 
 from .mesh.tagged import TaggedMesh
-
-__all__ = ["TaggedMesh"]

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..errors import ComputationError
-from .coefficients.constant import Constant
+from .coefficients import Constant
 from .interfaces import INTERFACE_VARIABLES, UNITS, WEAR_VARIABLES, Formula, Law, LocalState
 from .plain_function import PlainFunction
 from .plausible import require_wear_rate

@@ -1,5 +1,3 @@
 """Closed forms and reference solutions for verification, each with its source."""
 
 from . import annular_punch, cylinder, slabs
-
-__all__ = ["annular_punch", "cylinder", "slabs"]

@@ -4,22 +4,3 @@ from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrac
 from .quantity import TABLES
 from .result import FIELDS, BodyFields, Frame, FrictionHistory, Result, TrackHistory
 from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
-
-__all__ = [
-    "FIELDS",
-    "TABLES",
-    "BodyFields",
-    "CycleRow",
-    "Frame",
-    "FrictionHistory",
-    "FrictionInterface",
-    "HeatRow",
-    "HistoryRow",
-    "InterfaceFields",
-    "LoadRow",
-    "Modes",
-    "Profile",
-    "Result",
-    "TrackHistory",
-    "WornTrack",
-]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, get_args
 
-from ..case.tables.driving import FreeMotion
+from ..case.tables.conditions import FreeMotion
 from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError

@@ -3,70 +3,79 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
 from ..laws import power_wear
+from ..laws.coefficients import Table1D
 from ..laws.time_course import TimeFunction
 from ..model import body, heat, interface
 from .body import BodySurface, require_surface
-from .conversion import number, quantities
-
-_OF_MATERIALS = {
-    "young_modulus": units.Pressure,
-    "expansion": units.Expansion,
-    "conductivity": units.Conductivity,
-    "density": units.Density,
-    "specific_heat": units.SpecificHeat,
-    "hardness": units.Pressure,
-}
-_OF_HEAT = {"ambient": units.Temperature, "initial": units.Temperature}
-_OF_SURFACES = {
-    "cooling": units.HeatTransfer,
-    "temperature": units.Temperature,
-    "flux": units.HeatFlux,
-    "power": units.Power,
-}
+from .conversion import number
 
 
 def Material(
-    young_modulus: Any, poisson_ratio: float, *, name: str = "Material", **properties: Any
+    young_modulus: Any,
+    poisson_ratio: float,
+    *,
+    expansion: Any = 0.0,
+    conductivity: Any = None,
+    density: Any = None,
+    specific_heat: Any = None,
+    hardness: Any = None,
+    expansion_factor: Table1D | None = None,
+    conductivity_factor: Table1D | None = None,
+    name: str = "Material",
 ) -> body.Material:
-    """Material of a body.
-
-    Parameters
-    ----------
-    young_modulus : float or quantity
-    poisson_ratio : float
-    name : str
-        Name in messages.
-    **properties : float or quantity
-        ``expansion``, ``conductivity``, ``density``, ``specific_heat``, ``hardness`` and other
-        attributes of `model.body.Material`.
-    """
+    """Material of a body, see `model.body.Material`; `name` is that in messages."""
     poisson = number(poisson_ratio, f"{name}.poisson_ratio", -1.0, 0.5)
     if poisson in (-1.0, 0.5):
         raise CaseError(f"{name}.poisson_ratio: found {poisson}; must be within -1 and 0.5")
-    given = quantities(name, _OF_MATERIALS, {"young_modulus": young_modulus, **properties})
-    return body.Material(poisson_ratio=poisson, label=name, **given)
+    return body.Material(
+        young_modulus=in_python(units.Pressure, young_modulus, f"{name}.young_modulus"),
+        poisson_ratio=poisson,
+        expansion=in_python(units.Expansion, expansion, f"{name}.expansion"),
+        conductivity=optional(units.Conductivity, conductivity, f"{name}.conductivity"),
+        density=optional(units.Density, density, f"{name}.density"),
+        specific_heat=optional(units.SpecificHeat, specific_heat, f"{name}.specific_heat"),
+        hardness=optional(units.Pressure, hardness, f"{name}.hardness"),
+        expansion_factor=expansion_factor,
+        conductivity_factor=conductivity_factor,
+        label=name,
+    )
 
 
-def Heat(**settings: Any) -> heat.Heat:
-    """Heat sources and thermal boundary conditions.
+def Heat(
+    *,
+    ambient: Any = 293.15,
+    ambient_history: TimeFunction | None = None,
+    initial: Any = None,
+    transient: bool = False,
+    advection: Literal["none", "resolved", "spread"] = "none",
+    cooling: Mapping[BodySurface, Any] | None = None,
+    temperature: Mapping[BodySurface, Any] | None = None,
+    flux: Mapping[BodySurface, Any] | None = None,
+    power: Mapping[BodySurface, Any] | None = None,
+) -> heat.Heat:
+    """Heat sources and thermal boundary conditions by surface, see `model.heat.Heat`."""
+    return heat.Heat(
+        ambient=in_python(units.Temperature, ambient, "Heat.ambient"),
+        ambient_history=ambient_history,
+        initial=optional(units.Temperature, initial, "Heat.initial"),
+        transient=transient,
+        advection=advection,
+        cooling=by_surface(units.HeatTransfer, cooling, "Heat.cooling"),
+        temperature=by_surface(units.Temperature, temperature, "Heat.temperature"),
+        flux=by_surface(units.HeatFlux, flux, "Heat.flux"),
+        power=by_surface(units.Power, power, "Heat.power"),
+    )
 
-    Parameters
-    ----------
-    **settings
-        Attributes of `model.heat.Heat`: ``ambient``, ``initial``, ``transient``, ``advection``;
-        ``cooling``, ``temperature``, ``flux`` and ``power`` by `BodySurface`.
-    """
-    of_surfaces = {
-        key: by_surface(kind, settings.get(key), f"Heat.{key}")
-        for key, kind in _OF_SURFACES.items()
-    }
-    return heat.Heat(**quantities("Heat", _OF_HEAT, settings) | of_surfaces)
+
+def optional(kind: Any, value: Any, name: str) -> float | None:
+    """Read an argument that may be None; see `case.values.units.in_python`."""
+    return None if value is None else in_python(kind, value, name)
 
 
 def by_surface(kind: Any, given: Mapping[BodySurface, Any] | None, name: str) -> dict[str, Any]:

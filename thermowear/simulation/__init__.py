@@ -2,5 +2,3 @@
 
 from .from_case import run
 from .runtime.observer import Observer
-
-__all__ = ["Observer", "run"]

@@ -3,5 +3,3 @@
 from .dimensions import Dimension
 from .parser import parse_expression
 from .tree import Expression
-
-__all__ = ["Dimension", "Expression", "parse_expression"]

@@ -1,5 +1,3 @@
 """Pictures of a results folder, drawn from its files."""
 
 from .make import make_animation, make_pictures
-
-__all__ = ["make_animation", "make_pictures"]

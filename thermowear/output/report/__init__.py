@@ -2,5 +2,3 @@
 
 from ..names import is_report
 from .contents import write_report
-
-__all__ = ["is_report", "write_report"]

@@ -3,5 +3,3 @@
 from .folder import SweepFolder, is_sweep
 from .keys import swept
 from .pictures import draw_sweep
-
-__all__ = ["SweepFolder", "draw_sweep", "is_sweep", "swept"]

@@ -8,13 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...contact.friction.loads import Loads
 from ...contact.friction.slip_wear import SlipWear, profile
 from ...contact.friction.stick_slip import advance, follow
-from ...contact.friction.stick_slip_state import StickSlipState, unloaded
+from ...contact.friction.stick_slip_state import Loads, StickSlipState, unloaded
 from ...contact.operators.tangential import condense_tangential
 from ...errors import CaseError
-from ...laws.load_history import LoadHistory
+from ...laws.time_course import LoadHistory
 from ...model.analyses import FrettingAnalysis
 from ...model.holder import Holder
 from ..system.system import System

@@ -2,5 +2,3 @@
 
 from .analysis import analysis_of, run
 from .model import model_of
-
-__all__ = ["analysis_of", "model_of", "run"]

@@ -17,7 +17,7 @@ import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.output import tables
 
-from .conftest import COLD_RUNNING_IN, DEMOS
+from ..conftest import COLD_RUNNING_IN, DEMOS
 
 BLOCK = str(DEMOS / "block_on_disk.toml")
 LEVER = str(DEMOS / "pivoted_block.toml")

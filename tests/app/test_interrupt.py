@@ -18,7 +18,7 @@ from thermowear.output.folder import ResultsFolder
 from thermowear.simulation import Observer
 from thermowear.simulation.runtime.history import AnalysisHistory
 
-from .conftest import COLD_RUNNING_IN
+from ..conftest import COLD_RUNNING_IN
 
 SMALL = ("mesh.degree=2", "mesh.elements=4", "analysis.end_time=20 s", "analysis.output_times=[]")
 SHORT = [f"--set={change}" for change in SMALL]

@@ -20,7 +20,7 @@ import pytest
 from thermowear.app.cli import main
 from thermowear.output.tables import read
 
-from .conftest import COLD_RUNNING_IN, DEMOS, HOT
+from ..conftest import COLD_RUNNING_IN, DEMOS, HOT
 
 EVERY_STEP = "analysis.checkpoint_every=1e-9 s"
 CASES = {

@@ -10,7 +10,7 @@ from thermowear.app.cli import main
 from thermowear.app.discretisations import neighbours
 from thermowear.verification.starter import starter
 
-from .simulation.test_accuracy import LINE
+from ..simulation.test_accuracy import LINE
 
 
 @pytest.mark.parametrize(

@@ -19,8 +19,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from scipy.linalg import null_space, orth, schur
-from scipy.optimize import brentq
 
 _REAL = 1e-7
 """Imaginary part, relative to the largest eigenvalue, of those that count as real."""
@@ -228,7 +228,7 @@ class Disturbances:
             following = factor / _STRIDE if grows else factor * _STRIDE
             if (growth(following) > 0) != grows:
                 ends = sorted((factor, following))
-                return float(brentq(growth, *ends, xtol=1e-11 * ends[1], rtol=1e-11))
+                return float(scipy.optimize.brentq(growth, *ends, xtol=1e-11 * ends[1], rtol=1e-11))
             factor = following
         return None
 

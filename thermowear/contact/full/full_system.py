@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 import scipy.sparse as sp
-from scipy.optimize import nnls
 
 from ...errors import ComputationError
 from ...serialise import serialisable
@@ -116,7 +116,10 @@ class FullContact(ContactEquations):
             # nnls treats small columns as zero: only their directions matter
             size = np.linalg.norm(forces, axis=1, keepdims=True)
             directions = forces[size[:, 0] > 0] / size[size[:, 0] > 0]
-            if nnls(directions.T, target / np.linalg.norm(target))[1] > _STAGNATION_TOLERANCE:
+            if (
+                scipy.optimize.nnls(directions.T, target / np.linalg.norm(target))[1]
+                > _STAGNATION_TOLERANCE
+            ):
                 raise ComputationError("contact: the load cannot be carried by the contact zone")
 
     def _guess(self, loading: Loading) -> FullSolution:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline
+import scipy
 
 from ..search.pairing import Pairing
 
@@ -52,7 +52,9 @@ class StrokeGrid:
 def hat_functions(knots: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Hat functions of increasing knots at places, constant beyond the ends, (n, n_knots)."""
     padded = np.concatenate([knots[:1], knots, knots[-1:]])
-    return BSpline.design_matrix(np.clip(places, knots[0], knots[-1]), padded, 1).toarray()
+    return scipy.interpolate.BSpline.design_matrix(
+        np.clip(places, knots[0], knots[-1]), padded, 1
+    ).toarray()
 
 
 def track(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linprog, nnls
+import scipy
 
 _TOLERANCE = 1e-10
 """Feasibility of linear programs, relative to the largest change of the gap; the least of HiGHS."""
@@ -40,7 +40,7 @@ def least_worn(
     stretch = np.abs(R).max(axis=0)
     R, gap, weights = R / stretch, opening[pressing] / size, weights[pressing] / weights.sum()
     volume = weights @ R
-    found = linprog(
+    found = scipy.optimize.linprog(
         volume / np.abs(volume).max(),
         A_ub=-R,
         b_ub=-gap,
@@ -83,7 +83,7 @@ def _constrained_fit(
     aim = np.zeros(len(R) + 1)
     aim[-1] = 1.0
     dual = np.vstack((reduced, bounds - rows @ middle))
-    residual = dual @ nnls(dual, aim)[0] - aim
+    residual = dual @ scipy.optimize.nnls(dual, aim)[0] - aim
     with np.errstate(
         divide="ignore", invalid="ignore"
     ):  # no x is feasible: the result is not finite

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq, root
+import scipy
 
 from ...errors import ComputationError
 from ..power_wear import PowerWear
@@ -131,7 +131,7 @@ def least_wear_dissipation(
 
     steady = steady_pressure(weights, normal_modes, force_modes, load, laws, speed)
     start = scale * steady.velocity
-    direction = root(
+    direction = scipy.optimize.root(
         residual,
         start / np.linalg.norm(start),
         options={"xtol": _TOLERANCE, "maxfev": _MOST_EVALUATIONS},
@@ -178,7 +178,7 @@ def _stationary_ratios(functional: PowerFunctional, force_modes, load) -> list[f
     places = np.linspace(middle - half, middle + half, 2 if convex else _SEARCH)
     values = [excess(place) for place in places]
     return [
-        brentq(excess, *ends, xtol=_TOLERANCE)
+        scipy.optimize.brentq(excess, *ends, xtol=_TOLERANCE)
         for ends, (low, high) in zip(pairwise(places), pairwise(values), strict=True)
         if low >= 0 >= high or low <= 0 <= high
     ]

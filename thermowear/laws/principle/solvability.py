@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linprog, nnls
+import scipy
 
 from ...errors import ComputationError
 
@@ -21,7 +21,7 @@ class NotCarried(ComputationError):
 def not_carried(weights: np.ndarray, modes: np.ndarray, load: np.ndarray) -> NotCarried | None:
     """Error if no pressure ``p >= 0`` carries the load, ``modesᵀ w p = F``; otherwise None."""
     scale = np.abs(modes).max(axis=0)
-    _, left = nnls((modes[weights > 0] / scale).T, load / scale)
+    _, left = scipy.optimize.nnls((modes[weights > 0] / scale).T, load / scale)
     if left < _NOTHING * np.linalg.norm(load / scale):
         return None
     return NotCarried(
@@ -67,7 +67,7 @@ def _bounded(R: np.ndarray, T: np.ndarray) -> bool:
     """Test whether a motion y exists with ``R y > 0`` and ``T y > 0`` at all points."""
     rows = np.vstack([R, T])
     rows = rows / np.abs(rows).max(axis=0)
-    least = linprog(  # the largest t with rows y >= t
+    least = scipy.optimize.linprog(  # the largest t with rows y >= t
         c=np.append(np.zeros(R.shape[1]), -1.0),
         A_ub=np.column_stack([-rows, np.ones(len(rows))]),
         b_ub=np.zeros(len(rows)),

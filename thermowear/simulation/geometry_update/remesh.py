@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import Akima1DInterpolator
+import scipy
 
 from ...bulk.mesh_motion import serial_extension
 from ...contact.search.face import Face
@@ -93,7 +93,7 @@ def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) 
 def carrying_error(worn: WornGeometry, pairing: Pairing) -> float:
     """Round-trip error of depths carried over to a pairing, relative to the largest."""
     there = worn.carried(worn.depth, pairing)
-    back = Akima1DInterpolator(along(pairing), there, axis=-1, method="makima")
+    back = scipy.interpolate.Akima1DInterpolator(along(pairing), there, axis=-1, method="makima")
     after = np.clip(worn.at, *along(pairing)[[0, -1]])
     return float(np.abs(back(after) - worn.depth).max() / np.abs(worn.depth).max())
 

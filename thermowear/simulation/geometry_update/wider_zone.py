@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import Akima1DInterpolator
+import scipy
 
 from ...contact.search.surface import Surface
 from ...errors import CaseError
@@ -91,7 +91,7 @@ def _carried(before: System, after: System, worn: np.ndarray) -> np.ndarray:
     to = after.pairing.points[:, 0]
     rounding = _ROUNDING * (x[-1] - x[0])  # ends of moved and new meshes differ by rounding
     inside = (to >= x[0] - rounding) & (to <= x[-1] + rounding)
-    curves = Akima1DInterpolator(x, worn[:, first], axis=-1, method="makima")
+    curves = scipy.interpolate.Akima1DInterpolator(x, worn[:, first], axis=-1, method="makima")
     rows = np.maximum(curves(np.clip(to, x[0], x[-1])), 0.0)
     for row, depth, spread in zip(rows, worn, before.spreads.values(), strict=True):
         if isinstance(spread, InPlace):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import Akima1DInterpolator
+import scipy
 
 from ...contact.search.pairing import Pairing
 from ...errors import CaseError
@@ -69,7 +69,9 @@ def _gap_along(path: str, table: np.ndarray, position: np.ndarray) -> np.ndarray
             f"{_KEY}: {path} ranges from s = {s[0]:.6g} to {s[-1]:.6g} m, the contact face from "
             f"{position[0]:.6g} to {position[-1]:.6g} m"
         )
-    height = Akima1DInterpolator(s, shape, method="makima")(np.clip(position, s[0], s[-1]))
+    height = scipy.interpolate.Akima1DInterpolator(s, shape, method="makima")(
+        np.clip(position, s[0], s[-1])
+    )
     if not np.ptp(height) < length:
         raise CaseError(
             f"{_KEY}: {path} has shapes that rise by {np.ptp(height):.3g} m on a contact face of "

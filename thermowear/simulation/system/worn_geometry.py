@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.interpolate import Akima1DInterpolator
+import scipy
 
 from ...contact.search.pairing import PairedFace, Pairing
 from ...contact.search.refinement import Rule
@@ -120,5 +120,5 @@ def carried(values: np.ndarray, before: np.ndarray, pairing: Pairing) -> np.ndar
     after = along(pairing)
     if before.shape == after.shape and np.abs(before - after).max() < _SAME:
         return values
-    curve = Akima1DInterpolator(before, values, axis=-1, method="makima")
+    curve = scipy.interpolate.Akima1DInterpolator(before, values, axis=-1, method="makima")
     return curve(np.clip(after, before[0], before[-1]))

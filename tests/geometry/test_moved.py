@@ -70,7 +70,7 @@ def test_nodes_of_a_face_do_not_cross():
     face = bent[nodes[np.argsort(bent[nodes, 0])]]
     body = MovableBody(mesh, ("upper",), face)
     normals = -np.column_stack([face[:, 0], face[:, 1] + 0.04]) / 0.04  # of the circle
-    directions, held = body.ways(normals)
+    directions, held = body.motion_paths(normals)
     assert not held.any()
     assert directions == pytest.approx(np.tile((0.0, -1.0), (len(face), 1)), abs=1e-3)
     moved = replace(mesh, points=followed(mesh, body.outlined(-3e-3 * directions)))

@@ -61,7 +61,7 @@ def test_the_rim_goes_along_the_sides():
 
     body, face, mesh = upper(2, slanted)
     normals = np.tile((0.0, 0.0, -1.0), (len(face), 1))
-    directions, held = body.ways(normals)
+    directions, held = body.motion_paths(normals)
     assert not held.any()
     x, y, _ = face.T
     rim = (x < 1e-9) | (x > SIZE[0] - 1e-9) | (y < 1e-9) | (y > SIZE[1] - 1e-9)
@@ -79,7 +79,7 @@ def test_a_face_within_a_level_boundary_keeps_its_rim():
     face = np.unique(mesh.facets[mesh.facet_tags == mesh.surfaces.index("lower_face") + 1])
     part = mesh.points[face][mesh.points[face, 0] < 0.7 * SIZE[0]]
     body = MovableSolid(mesh, ("lower",), part, serial_extension)
-    _, held = body.ways(np.tile((0.0, 0.0, 1.0), (len(part), 1)))
+    _, held = body.motion_paths(np.tile((0.0, 0.0, 1.0), (len(part), 1)))
     assert np.array_equal(held, part[:, 0] > 0.6 * SIZE[0])
     points = followed(mesh, body.outlined(np.where(held[:, None], 0.0, (0.0, 0.0, -1e-3))))
     beyond = mesh.points[:, 0] > 0.6 * SIZE[0]

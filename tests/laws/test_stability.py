@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.laws.stability import Disturbances, leading, load_free, static_modes
+from thermowear.laws.stability import PerturbationMatrices, leading, load_free, static_modes
 
 ALL = load_free(np.zeros((2, 0)), np.zeros((2, 0)))
 
@@ -58,7 +58,7 @@ def test_the_leading_space_keeps_its_static_modes():
 
 def one(a=2.0, b=3.0, h=5.0, k=7.0, c=0.0, m=1.0):
     """One temperature and one pressure: ``λ = (b θ - ω)/a``."""
-    return Disturbances(*(np.array([[v]]) for v in (a, -b, h, k, c, m)))
+    return PerturbationMatrices(*(np.array([[v]]) for v in (a, -b, h, k, c, m)))
 
 
 def test_growth_without_wear():

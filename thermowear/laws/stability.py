@@ -155,7 +155,7 @@ class Rate:
 
 
 @dataclass(frozen=True)
-class Disturbances:
+class PerturbationMatrices:
     """Small dense operators of transient perturbations.
 
     Attributes

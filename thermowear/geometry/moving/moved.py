@@ -58,7 +58,7 @@ class MovableFace(ABC):
     face: np.ndarray
 
     @abstractmethod
-    def ways(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def motion_paths(self, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Outward directions of motion of the nodes of the face, and mask of the fixed ones.
 
         Nodes at the ends (or the rim) of the face move along the sides, or are fixed where the
@@ -124,7 +124,7 @@ class MovableBody(MovableFace):
             )
         )
 
-    def ways(self, normals):
+    def motion_paths(self, normals):
         # in between, the inclination to the normal varies linearly, so that paths do not cross
         held, turn = np.zeros(len(normals), dtype=bool), np.zeros(2)
         for k, side in enumerate(self.sides):

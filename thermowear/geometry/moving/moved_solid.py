@@ -135,7 +135,7 @@ class MovableSolid(MovableFace):
         self.face = nodes_at(mesh, parts, face)
         self._patches = Patches(mesh, cells_of(mesh, parts), self.face)
 
-    def ways(self, normals):
+    def motion_paths(self, normals):
         every = np.zeros_like(self._mesh.points)
         every[self.face] = normals
         nodes, inward = self._patches.inward()

@@ -97,7 +97,7 @@ class EnrichedBodies:
         """Nodal loads of the contact and of the surface loads in the enriched space."""
         system, problem = self._system, self._problem
         pairing = system.pairing
-        traction_direction = system.rubbing(contact.conditions.friction).traction_direction
+        traction_direction = system.with_friction(contact.conditions.friction).traction_direction
         traction = contact.pressure[:, None] * traction_direction
         if contact.shear is not None:
             traction = traction - contact.shear[:, None] * tangents(pairing.normals)[0]

@@ -15,7 +15,7 @@ from petsc4py import PETSc
 import numpy as np
 
 from ...contact.operators.heat import baseline_response
-from ...laws.stability import Disturbances, LoadFree, Rate
+from ...laws.stability import LoadFree, PerturbationMatrices, Rate
 from ...parallel import sum_over_ranks
 from ..heat.heat_steps import HeatSteps
 from ..system.conditions import InterfaceConditions
@@ -85,7 +85,9 @@ class GrowthModel:
         for rate in (0.0, *(part * slowest for part in _SPREAD)):
             self.add(rate)
 
-    def refined(self, find: Callable[[Disturbances], GrowthMode | None]) -> GrowthMode | None:
+    def refined(
+        self, find: Callable[[PerturbationMatrices], GrowthMode | None]
+    ) -> GrowthMode | None:
         """Result of a search in the model, refined at the rate found; every rank calls.
 
         The response at the rate found is added until the result no longer changes.
@@ -123,7 +125,7 @@ class GrowthModel:
         self._extend(bodies.conduction.respond(np.asarray(nodal)), crossing)
         self._rates.append(rate)
 
-    def matrices(self) -> Disturbances:
+    def matrices(self) -> PerturbationMatrices:
         """Matrices of the present model; every rank calls."""
         system, space, thermal = self._system, self._space, self._thermal
         conduction, X = thermal.conduction, self._fields
@@ -137,7 +139,7 @@ class GrowthModel:
         carried = np.zeros((X.shape[1],) * 2)
         if conduction.advective is not None:
             carried = self._product(conduction.advective, X)
-        return Disturbances(
+        return PerturbationMatrices(
             elastic=space(self._elastic),
             opening=space.gaps.T @ at.opening,
             heated=(f * T1 + (1 - f) * T2).T @ (weights * self._friction),

@@ -12,8 +12,8 @@ import numpy as np
 
 from ...errors import CaseError
 from ...laws.stability import (
-    Disturbances,
     LoadFree,
+    PerturbationMatrices,
     StaticModes,
     leading,
     load_free,
@@ -114,7 +114,7 @@ class PerturbedContact:
     def _onset(self, wears: bool, start: float) -> PerturbationMode | None:
         wear = self._wear if wears else None
 
-        def find(small: Disturbances) -> GrowthMode | None:
+        def find(small: PerturbationMatrices) -> GrowthMode | None:
             nonlocal start
             factor = small.onset(start, wear)
             if factor is None:

@@ -223,7 +223,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         """Normal force per pressure at the points (n,) [m²]; those of the last conditions kept."""
         if self._pressing is None or self._pressing[0] is not conditions:
             system = self.loop.now.system
-            directions = system.rubbing(conditions.friction).traction_direction
+            directions = system.with_friction(conditions.friction).traction_direction
             along = directions @ system.load_direction
             self._pressing = conditions, system.weights * along
         return self._pressing[1]

@@ -34,7 +34,7 @@ from ...laws.interfaces import Law, LocalState
 from ..interface.contact_solver import ContactSolution
 from ..interface.sdirk import InterfaceState, WearProblem
 from ..system.system import System
-from .stroke import Position, condensed, spreading
+from .stroke import Position, condensed, stroke_distribution
 
 _INNER = 0.9  # part of the faces that the distance from the steady state covers, without their ends
 
@@ -72,7 +72,9 @@ class ReciprocatingProblem(WearProblem):
         weighted = system.contact.weighted
         self.areas = weighted.sum(axis=0), self.track.areas
         self._places = (system.pairing.position @ weighted) / self.areas[0], self.track.position
-        self._spread = spreading(self._contacts, self.track, self._shares)[list(system.laws)]
+        self._spread = stroke_distribution(self._contacts, self.track, self._shares)[
+            list(system.laws)
+        ]
 
     def split(self, depths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coefficients of body 1, shape (m,), and values at the nodes of body 2."""

@@ -132,7 +132,9 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
     )
 
 
-def spreading(contacts: CoupledContacts, grid: StrokeGrid, shares: np.ndarray) -> np.ndarray:
+def stroke_distribution(
+    contacts: CoupledContacts, grid: StrokeGrid, shares: np.ndarray
+) -> np.ndarray:
     """Operators from local wear rates to cycle-averaged rates of depths, shape (2, J, N, m)."""
     count, m, total = contacts.gap_per_depth.shape
     result = np.zeros((2, count, total, m))

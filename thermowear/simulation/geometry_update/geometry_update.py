@@ -161,7 +161,7 @@ def _moved(
         renewed={},
         at=along(system.pairing),
         depth=system.moved + taken,
-        lacking=_lacking(system, before, state),
+        missing_shape=_missing_shape(system, before, state),
         holder=(motion.translation, motion.rotation),
         lost=total,
         updates=before.updates + 1,
@@ -171,7 +171,7 @@ def _moved(
     return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
 
 
-def _lacking(system: System, before: WornGeometry, state: InterfaceState) -> np.ndarray:
+def _missing_shape(system: System, before: WornGeometry, state: InterfaceState) -> np.ndarray:
     """Gap of the initial shape minus that of the unworn faces at the points, shape (n,) [m].
 
     The first update replaces gaps along the normals of the unworn faces, which deviate from the
@@ -179,12 +179,12 @@ def _lacking(system: System, before: WornGeometry, state: InterfaceState) -> np.
     of the gap where wear has closed it; ahead of each edge of the wear only its deviation from the
     value at the edge counts.
     """
-    lacking, pairing = before.carried(before.lacking, system.pairing), system.pairing
+    missing_shape, pairing = before.carried(before.missing_shape, system.pairing), system.pairing
     reached = np.any(state.worn > 0.0, axis=0)
     if before.updates > 0 or isinstance(pairing.sides[0].face, Surface) or not reached.any():
-        return lacking
+        return missing_shape
     in_shape, x = gap_of_initial_shape(pairing), pairing.position
-    return in_shape + np.interp(x, x[reached], (lacking - in_shape)[reached])
+    return in_shape + np.interp(x, x[reached], (missing_shape - in_shape)[reached])
 
 
 def _kept_points(system: System, state: InterfaceState, renewed: dict[int, NewFace]) -> Rule | None:

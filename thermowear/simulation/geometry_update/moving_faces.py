@@ -108,7 +108,7 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
         best=np.array([quality(mesh, body.parts) for body in system.model.bodies]),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
-        lacking=pairing.gap - _along_directions(pairing, directions, bodies)[1],
+        missing_shape=pairing.gap - _along_directions(pairing, directions, bodies)[1],
         holder=(zeros, zeros),
         lost=np.zeros(2),
         updates=0,
@@ -151,7 +151,7 @@ def _node_paths(system: System) -> tuple[TaggedMesh, list[Paths]]:
     paths = []
     for index, side in enumerate(system.pairing.sides):
         body = movable_body(system, mesh, index)
-        paths.append(Paths(*body.ways(node_normals(side.face))))
+        paths.append(Paths(*body.motion_paths(node_normals(side.face))))
     return mesh, paths
 
 

@@ -90,7 +90,7 @@ class BodyState:
 
 def body_state(system: System, contact: ContactState) -> BodyState:
     """Solve the bodies for given contact loads. Every rank calls."""
-    system = system.rubbing(contact.conditions.friction)
+    system = system.with_friction(contact.conditions.friction)
     pressure, shear, temperatures = contact.pressure, contact.shear, contact.temperatures
     thermal, rise, hottest, heat_error = None, None, float("nan"), float("nan")
     loads = traction = system.traction @ (system.weights * pressure)

@@ -121,7 +121,7 @@ class CondensedMethod:
         """Condensed bodies for coefficients of friction (n,); the last result is cached."""
         key = friction.tobytes()
         if self._last_friction[0] != key:
-            self._last_friction = (key, self._system.rubbing(friction).contact)
+            self._last_friction = (key, self._system.with_friction(friction).contact)
         return self._last_friction[1]
 
     def _space(self, bodies: CondensedContact, points: np.ndarray | None) -> EdgeSpace | None:

@@ -96,7 +96,7 @@ def self_consistent(
     for _ in range(_ITERATIONS):
         conditions = conditions_of(iterate)
         found = respond(conditions)
-        if conditions_of(found).settled(conditions):
+        if conditions_of(found).same_as(conditions):
             model.require_friction(time, found.pressure, found.faces)
             return conditions, found
         before, after = _stacked(iterate, found), _stacked(found, found)

@@ -177,10 +177,10 @@ class InterfaceProblem(WearProblem):
         return replace(found, stored=stored)
 
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
-        """Interface conditions in a state at a time [s]; lasting ones are kept."""
+        """Interface conditions in a state at a time [s]; constant ones are kept."""
         model, closed = self._condition_model, state.pressure > 0
         kept, key = self._last_conditions, closed.tobytes()
-        if kept is not None and kept[0] == key and model.lasting:
+        if kept is not None and kept[0] == key and model.constant:
             return kept[1]
         found = model.at(time, state.pressure, state.faces, closed, state.worn)
         self._last_conditions = key, found

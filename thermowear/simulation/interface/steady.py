@@ -65,7 +65,7 @@ def steady_state(system: System) -> SteadyState:
 
 def _principle(system: System, conditions: InterfaceConditions) -> SteadyWear:
     """Solve the principle for given conditions."""
-    holder = system.rubbing(conditions.friction).holder
+    holder = system.with_friction(conditions.friction).holder
     return steady_pressure(
         weights=system.weights,
         normal_modes=holder.modes,

@@ -43,7 +43,7 @@ def summarise(end: Snapshot, time: float) -> dict:
     model, w = system.model, system.weights
     p, sliding = contact.pressure, system.slides is not None
     friction = sliding * contact.conditions.friction * p  # at rest there is none
-    system = system.rubbing(contact.conditions.friction)
+    system = system.with_friction(contact.conditions.friction)
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
     depths = np.array([interface.wear_1, interface.wear_2])

@@ -74,7 +74,7 @@ class InterfaceConditions:
         pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
         return max(_difference(a, b) for a, b in pairs)
 
-    def settled(self, other: InterfaceConditions) -> bool:
+    def same_as(self, other: InterfaceConditions) -> bool:
         """True if the conditions are equal up to rounding."""
         return self is other or self.differ(other) <= _SETTLED
 
@@ -104,7 +104,7 @@ class ConditionModel:
     ----------
     depends_on_state : bool
         True if conditions depend on pressures, temperatures or wear depths.
-    lasting : bool
+    constant : bool
         True if they depend on nothing but the points that exchange heat.
     """
 
@@ -117,7 +117,7 @@ class ConditionModel:
         self.depends_on_state, self._friction_varies = interface.varies, interface.friction_varies
         self._load, self._motion = model.holder.history, model.motion.history
         self._courses = model.histories
-        self.lasting = not self.depends_on_state and not self._courses
+        self.constant = not self.depends_on_state and not self._courses
 
     def at(
         self,

@@ -91,7 +91,7 @@ def worn_contact_points(
     points = on_face + (pairing.share * between)[:, None] * pairing.normals
     sides = replace(first, face=face_1), replace(second, facet=facet, t=t)
     worn_pairing = replace(pairing, points=points, sides=sides)
-    unworn = worn.carried(worn.lacking, pairing) - worn.moved(worn_pairing).sum(axis=0)
+    unworn = worn.carried(worn.missing_shape, pairing) - worn.moved(worn_pairing).sum(axis=0)
     return replace(worn_pairing, gap=between + apart + unworn), basis
 
 

@@ -179,7 +179,7 @@ class System:
         with self.phases("condense elasticity"):
             return self.influence.condensed(self.traction, self.holder)
 
-    def rubbing(self, friction: np.ndarray) -> System:
+    def with_friction(self, friction: np.ndarray) -> System:
         """System with given coefficients of friction (n,) in place of the nominal one."""
         if self.slides is None or np.all(friction == self.friction):
             return self

@@ -36,7 +36,7 @@ class WornGeometry:
         Positions on the face of body 1 of the contact points before the last update, see `along`.
     depth : ndarray, shape (2, n_before)
         Wear depth removed from the mesh of each body at these points [m].
-    lacking : ndarray, shape (n_before,)
+    missing_shape : ndarray, shape (n_before,)
         Depth of the initial shape that the initial mesh does not contain [m].
     holder : tuple of ndarray, shape (3,)
         Translation and rotation of body 1 at the last pairing of the faces [m, rad].
@@ -72,7 +72,7 @@ class WornGeometry:
     best: np.ndarray
     at: np.ndarray
     depth: np.ndarray
-    lacking: np.ndarray
+    missing_shape: np.ndarray
     holder: tuple[np.ndarray, np.ndarray]
     lost: np.ndarray
     updates: int
@@ -93,11 +93,11 @@ class WornGeometry:
         """Wear depths removed from both meshes at the points of a pairing, shape (2, n) [m]."""
         depth = self.carried(self.depth, pairing)
         for index, new in self.renewed.items():
-            depth[index] += behind(pairing.sides[index], new)
+            depth[index] += depth_behind_curve(pairing.sides[index], new)
         return depth
 
 
-def behind(side: PairedFace, new: NewFace) -> np.ndarray:
+def depth_behind_curve(side: PairedFace, new: NewFace) -> np.ndarray:
     """Distance of a redivided face behind its smooth curve at the contact points [m]."""
     on_curve = new.on_curve(side.facet + side.t)
     out = side.face.normals(side.facet, side.t)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import math
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, get_args
@@ -238,6 +239,7 @@ class Geometry(Section):
         CaseError
         """
 
+    @abstractmethod
     def build(self, mesh, zone: tuple[float, float] | None):
         """Mesh both bodies.
 
@@ -252,7 +254,6 @@ class Geometry(Section):
         -------
         thermowear.geometry.mesh.tagged.TaggedMesh
         """
-        raise NotImplementedError
 
     def check(self, mesh, case) -> None:
         """Check a mesh that was read from a file; no-op for generated meshes.

@@ -31,14 +31,14 @@ def test_gauss_rules_are_those_of_numpy(n):
     x, w = (x + 1) / 2, w / 2
     for found, known in zip(gauss(n), (x, w), strict=True):
         assert found == pytest.approx(known, abs=1e-15)
-    t, weights = gauss(n, dim=2)
+    t, weights = gauss(n, kind="quadrilateral")
     assert t == pytest.approx(np.array(list(itertools.product(x, repeat=2))), abs=1e-15)
     assert weights == pytest.approx(np.outer(w, w).ravel(), abs=1e-15)
 
 
 @pytest.mark.parametrize("rule", [gauss, lobatto])
 def test_rules_of_squares_are_products(rule):
-    (x, w), (t, weights) = rule(4), rule(4, dim=2)
+    (x, w), (t, weights) = rule(4), rule(4, kind="quadrilateral")
     assert np.array_equal(t, np.array(list(itertools.product(x, repeat=2))))
     assert weights == pytest.approx(np.outer(w, w).ravel(), rel=1e-14)
 
@@ -58,11 +58,11 @@ def test_facets_of_one_parameter(order):
 def test_facets_of_two_parameters():
     """requirement: order of the nodes and of the derivatives: x, y, xx, xy, yy."""
     s, t = np.random.default_rng(0).uniform(size=(2, 9))
-    a, b = lattice(2, dim=2).T
+    a, b = lattice(2, kind="quadrilateral").T
     assert np.array_equal(
         np.column_stack([a, b]), list(itertools.product((0.0, 0.5, 1.0), (0.0, 0.5, 1.0)))
     )
-    found = on_lattice(2, np.column_stack([s, t]), 2) @ (a**2 * b + 3 * a * b**2)
+    found = on_lattice(2, np.column_stack([s, t]), 2, "quadrilateral") @ (a**2 * b + 3 * a * b**2)
     known = (
         s**2 * t + 3 * s * t**2,
         2 * s * t + 3 * t**2,
@@ -95,4 +95,4 @@ def test_no_points():
         assert tabulated(element, np.empty((0, dim)), 2).shape == (count, 0, element.dim)
         assert tabulated(element, np.full((1, dim), 0.5), 2).shape == (count, 1, element.dim)
     assert on_lattice(2, np.empty(0)).shape == (1, 0, 3)
-    assert on_lattice(2, np.empty((0, 2))).shape == (1, 0, 9)
+    assert on_lattice(2, np.empty((0, 2)), 0, "quadrilateral").shape == (1, 0, 9)

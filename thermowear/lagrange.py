@@ -5,14 +5,12 @@ Cells have unit sides, and kinds by the names of `basix.CellType`.
 
 from __future__ import annotations
 
+import math
 from functools import cache
-from math import comb
 
 import basix
 import numpy as np
 
-_SIDES = {1: "interval", 2: "quadrilateral"}
-"""Kind of a facet by its number of parameters."""
 _ROUNDING = 1e-14
 """Rounding of tabulated shape functions, which are of the size of 1."""
 
@@ -42,7 +40,7 @@ def tabulated(element, points: np.ndarray, derivatives: int = 0) -> np.ndarray:
         Values, first derivatives, then second ones (∂xx, ∂xy, ∂yy in a plane).
     """
     if len(points) == 0:
-        return np.empty((comb(points.shape[1] + derivatives, derivatives), 0, element.dim))
+        return np.empty((math.comb(points.shape[1] + derivatives, derivatives), 0, element.dim))
     result = element.tabulate(derivatives, points)[..., 0]
     result[np.abs(result) < _ROUNDING] = 0.0  # so that points at nodes on an axis are on it
     return result
@@ -53,44 +51,80 @@ def matching(wanted: np.ndarray, listed: np.ndarray) -> np.ndarray:
     return np.abs(wanted[..., None, :] - listed).sum(axis=-1).argmin(axis=-1)
 
 
+def order_of(kind: str, count: int) -> int:
+    """Order of a facet with `count` nodes."""
+    if kind == "quadrilateral":
+        return math.isqrt(count) - 1
+    return (math.isqrt(8 * count + 1) - 3) // 2 if kind == "triangle" else count - 1
+
+
 @cache
-def lattice(order: int, dim: int = 1) -> np.ndarray:
+def lattice(order: int, kind: str = "interval") -> np.ndarray:
     """Equally spaced parameters on a facet, shape (n,) or (n, 2), the last one running fastest."""
-    kind = basix.CellType[_SIDES[dim]]
-    points = basix.create_lattice(kind, order, basix.LatticeType.equispaced, exterior=True)
+    cell = basix.CellType[kind]
+    points = basix.create_lattice(cell, order, basix.LatticeType.equispaced, exterior=True)
     return _parameters(np.asarray(points))[0]
 
 
-def on_lattice(order: int, t: np.ndarray, derivatives: int = 0) -> np.ndarray:
+def on_lattice(
+    order: int, t: np.ndarray, derivatives: int = 0, kind: str = "interval"
+) -> np.ndarray:
     """Lagrange polynomials of facets with nodes on a lattice, and their derivatives.
 
     Parameters
     ----------
     order : int
-    t : ndarray, shape (n,) or (n, 2)
-        Parameters, one on the edge of a section, two on a quadrilateral.
+    t : ndarray, shape (n,) or (n, dim)
+        Parameters.
     derivatives : int
         Highest order of the derivatives.
+    kind : str
+        ``"interval"`` (the edge of a section), ``"quadrilateral"`` or ``"triangle"``.
 
     Returns
     -------
-    ndarray, shape (n_derivatives, n, (order + 1)**dim)
+    ndarray, shape (n_derivatives, n, n_nodes)
         See `tabulated`; nodes numbered as by `lattice`.
     """
     places = t[:, None] if t.ndim == 1 else t
-    element, numbers = _of_facet(order, places.shape[1])
+    element, numbers = _of_facet(order, kind)
     return tabulated(element, places, derivatives)[..., numbers]
 
 
 @cache
-def _of_facet(order: int, dim: int) -> tuple:
+def _of_facet(order: int, kind: str) -> tuple:
     """Element of a facet, and the number of the polynomial of each node of its lattice."""
-    element = equispaced(_SIDES[dim], order)
-    return element, matching(lattice(order, dim).reshape(-1, dim), element.points)
+    element = equispaced(kind, order)
+    nodes = lattice(order, kind)
+    return element, matching(nodes.reshape(len(nodes), -1), element.points)
 
 
 @cache
-def gauss(count: int, dim: int = 1) -> tuple[np.ndarray, np.ndarray]:
+def corner_nodes(order: int, kind: str = "interval") -> np.ndarray:
+    """Numbers of the corners among the nodes of `lattice`, shape (n_corners,)."""
+    corners, nodes = (lattice(n, kind) for n in (1, order))
+    return matching(corners.reshape(len(corners), -1), nodes.reshape(len(nodes), -1))
+
+
+@cache
+def edge_nodes(order: int, kind: str) -> np.ndarray:
+    """Numbers of the nodes of `lattice` along each edge of a plane facet, (n_edges, order + 1)."""
+    corners, edges = basix.geometry(basix.CellType[kind]), basix.topology(basix.CellType[kind])[1]
+    first, last = np.asarray(corners)[np.array(edges)].swapaxes(0, 1)
+    part = np.arange(order + 1)[:, None] / order
+    return matching(first[:, None] + part * (last - first)[:, None], lattice(order, kind))
+
+
+@cache
+def neighbour_nodes(order: int, kind: str) -> np.ndarray:
+    """Pairs of adjacent nodes of `lattice`, shape (n, 2)."""
+    nodes = lattice(order, kind).reshape(len(lattice(order, kind)), -1)
+    step = np.rint((nodes[None] - nodes[:, None]) * order)
+    return np.argwhere((step.sum(axis=2) == 1) & (step.min(axis=2) == 0))
+
+
+@cache
+def gauss(count: int, kind: str = "interval") -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre rule with `count` points along each side, exact to degree ``2 count - 1``.
 
     Returns
@@ -99,24 +133,27 @@ def gauss(count: int, dim: int = 1) -> tuple[np.ndarray, np.ndarray]:
         Parameters of a facet, the last one running fastest.
     weights : ndarray, shape (n,)
     """
-    return _rule(dim, 2 * count - 1, basix.QuadratureType.gauss_jacobi)
+    return _rule(kind, 2 * count - 1, basix.QuadratureType.gauss_jacobi)
 
 
 @cache
-def lobatto(count: int, dim: int = 1) -> tuple[np.ndarray, np.ndarray]:
+def lobatto(count: int, kind: str = "interval") -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Lobatto rule with `count` points along each side, exact to degree ``2 count - 3``.
 
-    Both ends of each side are quadrature points. Shapes as of `gauss`.
+    Both ends of each side are quadrature points; a triangle has a rule of the same degree without
+    them (Xiao and Gimbutas, Comput. Math. Appl. 59 (2010) 663). Shapes as of `gauss`.
     """
     if count < 2:
         raise ValueError("a Gauss-Lobatto rule has at least two points")
-    return _rule(dim, 2 * count - 3, basix.QuadratureType.gll)
+    inside = kind == "triangle"
+    rule = basix.QuadratureType.default if inside else basix.QuadratureType.gll
+    return _rule(kind, 2 * count - 3, rule)
 
 
-def _rule(dim: int, degree: int, kind: basix.QuadratureType) -> tuple[np.ndarray, np.ndarray]:
+def _rule(kind: str, degree: int, rule: basix.QuadratureType) -> tuple[np.ndarray, np.ndarray]:
     """Quadrature rule of a facet, see `gauss`."""
-    cell = basix.CellType[_SIDES[dim]]
-    points, weights = map(np.asarray, basix.make_quadrature(cell, degree, rule=kind))
+    cell = basix.CellType[kind]
+    points, weights = map(np.asarray, basix.make_quadrature(cell, degree, rule=rule))
     ends = np.rint(points)  # which basix places up to rounding
     t, order = _parameters(np.where(np.abs(points - ends) < _ROUNDING, ends, points))
     return t, weights[order]

@@ -17,14 +17,14 @@ def arc(order):
     nodes = np.stack([np.sin(angles), np.cos(angles)], axis=-1)
     corners = np.arange(len(nodes))[:, None] + np.arange(2)
     outward = -np.ones(len(nodes))
-    return nodes, outward, corner_corrections(nodes, outward, corners)
+    return nodes, outward, corner_corrections("interval", nodes, outward, corners)
 
 
 def facet_normals(nodes, outward, corrections, t):
     """Normals and turning at parameters (n,) of all facets, shapes (n_facets, n, 2)."""
     facet = np.repeat(np.arange(len(nodes)), len(t))
     at = np.tile(t, len(nodes))[:, None]
-    normals, turning = smooth_normals(nodes, outward, corrections, facet, at)
+    normals, turning = smooth_normals("interval", nodes, outward, corrections, facet, at)
     return normals.reshape(len(nodes), -1, 2), turning.reshape(len(nodes), -1, 2)
 
 

@@ -49,7 +49,7 @@ def test_facets(place, order):
         t = np.random.default_rng(0).uniform(size=(len(every), 2))
         np.testing.assert_allclose(face.normals(every, t), [[0, 0, normal]] * len(every), atol=1e-9)
         assert face.sizes.sum() == pytest.approx(area, rel=2e-4 if place is turned else 1e-12)
-        places = face.nodes[:, [0, 0, -1, -1], [0, -1, 0, -1]].reshape(-1, 3)
+        places = face.corner_points.reshape(-1, 3)
         numbers = face.corners.reshape(-1)
         assert len(np.unique(numbers)) == (count[0] + 1) * (count[1] + 1)
         for number in numbers:
@@ -111,12 +111,14 @@ def test_parts_are_where_both_facets_are(axes):
     """
     upper, lower = faces(((1, 1, 1), (1, 1, 1)))
     square = np.array([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]], dtype=float)
-    upper = replace(upper, nodes=square[None])
+    upper = replace(upper, nodes=square.reshape(1, 4, 3))
     middle, angle = np.array([0.5, 0.5, 0.0]), np.pi / 4
     turn = np.array(
         [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]]
     )
-    lower = replace(lower, nodes=((square.transpose(axes) - middle) @ turn.T + middle)[None])
+    lower = replace(
+        lower, nodes=((square.transpose(axes) - middle) @ turn.T + middle).reshape(1, 4, 3)
+    )
     if upper.middle_normals[0] @ lower.middle_normals[0] > 0:
         lower = replace(lower, outward=-lower.outward)
     facet, corners = parts_opposite(upper, lower)
@@ -190,7 +192,7 @@ def test_projection_on_a_curved_face():
 def test_the_closest_point_of_a_rim(place, order):
     """requirement: beside the face it lies on the rim, nearer than any other point of it."""
     _, lower = faces(((3, 2, 2), (3, 2, 2)), order, (place, place))
-    middle = lower.nodes.mean(axis=(0, 1, 2))
+    middle = lower.nodes.mean(axis=(0, 1))
     angles = np.linspace(0, 2 * np.pi, 40)
     points = middle + 0.05 * np.column_stack([np.cos(angles), np.sin(angles), 0.1 + 0 * angles])
     _, _, offset = project(lower, points)
@@ -228,8 +230,9 @@ def test_pressure_is_continuous_whichever_way_facets_run():
     upper, lower = faces(((3, 2, 2), (3, 2, 2)))
     flipped = upper.nodes.copy(), upper.corners.copy()
     for facet, turns in ((1, 1), (2, 2), (4, 3)):
-        flipped[0][facet] = np.rot90(upper.nodes[facet], turns)
-        flipped[1][facet] = np.rot90(upper.corners[facet], turns)
+        for values in flipped:
+            grid = values[facet].reshape(2, 2, *values.shape[2:])
+            values[facet] = np.rot90(grid, turns).reshape(values[facet].shape)
     mixed = replace(upper, nodes=flipped[0], corners=flipped[1])
     plain, turned_ = (pair(f, lower, Spatial(), 6) for f in (upper, mixed))
     order = [np.lexsort(np.round(p.points[:, :2], 9).T) for p in (plain, turned_)]

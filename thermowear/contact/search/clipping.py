@@ -1,18 +1,21 @@
 """Polygon clipping of opposite surface facets, for the common refinement of two surfaces.
 
-All operations are done in the parameters of a facet of body 1, a unit square: the outlines of the
-facets of body 2 are mapped to it at the points opposite to them (see `common_face`), and clipped by
-its sides (Sutherland and Hodgman, Commun. ACM 17 (1974) 32). Shared edges of facets of body 2 have
-the same image, so that the parts adjoin without gaps, on curved facets too.
+All operations are done in the parameters of a facet of body 1, a unit square or triangle: the
+outlines of the facets of body 2 are mapped to it at the points opposite to them (see
+`common_face`), and clipped by its sides (Sutherland and Hodgman, Commun. ACM 17 (1974) 32). Shared
+edges of facets of body 2 have the same image, so that the parts adjoin without gaps, on curved
+facets too. All pairs of facets are treated together: the corners of all polygons are one list.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
-from .common_face import MAX_FACING_COSINE, opposite_parameters
+from ...lagrange import lattice
+from .common_face import MAX_FACING_COSINE, opposite, opposite_parameters
 from .projection import within
 from .surface import Surface
 
@@ -22,10 +25,61 @@ _MAX_EDGE_DEVIATION = 3e-3
 """Largest deviation, relative to a facet, of an edge that is treated as straight."""
 _MARGIN = 0.1
 """Margin round a facet, relative to it, in which outlines are resolved as finely as inside."""
+_REACH = 1.25
+"""Radius, relative to that of its image, of the region opposite to a facet that is searched."""
 _EDGE_SEGMENTS = 4
 """Number of segments of a curved edge."""
-_CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
+_CORNERS = {
+    "quadrilateral": np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float),
+    "triangle": np.array([(0, 0), (1, 0), (0, 1)], dtype=float),
+}
 """Corners of a facet in anticlockwise order."""
+_SIDES = {
+    "quadrilateral": ((0, 1, 0), (1, -1, 0), (0, 0, 1), (1, 0, -1)),
+    "triangle": ((0, 1, 0), (0, 0, 1), (1, -1, -1)),
+}
+"""Distances ``a + b t_0 + c t_1`` from the sides of a facet, positive inside."""
+
+
+class _Polygons(NamedTuple):
+    """Corners of polygons in one list, those of each polygon one after the other.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 2)
+    of : ndarray of int, shape (n,)
+        Number of the polygon, ascending.
+    """
+
+    points: np.ndarray
+    of: np.ndarray
+
+    @property
+    def first(self) -> np.ndarray:
+        """Index of the first corner of each polygon."""
+        return np.flatnonzero(np.diff(self.of, prepend=-1))
+
+    @property
+    def before(self) -> np.ndarray:
+        """Index of the corner before each corner."""
+        first, result = self.first, np.arange(len(self.of)) - 1
+        result[first] = np.append(first[1:], len(self.of)) - 1
+        return result
+
+    @property
+    def after(self) -> np.ndarray:
+        """Index of the corner after each corner."""
+        result = np.empty(len(self.of), dtype=np.int64)
+        result[self.before] = np.arange(len(self.of))
+        return result
+
+    def per_corner(self, values: np.ndarray) -> np.ndarray:
+        """Values of the polygons, repeated for each of their corners."""
+        return np.repeat(values, np.diff(np.append(self.first, len(self.of))))
+
+    def only(self, kept: np.ndarray) -> _Polygons:
+        """Polygons of the chosen corners."""
+        return _Polygons(self.points[kept], self.of[kept])
 
 
 @lru_cache(maxsize=1)
@@ -42,67 +96,96 @@ def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.nda
         Corners of each part, in parameters of the facet, anticlockwise; the last two of a triangle
         coincide.
     """
-    facets, parts, outlines = [], [], _outlines(face_2)
-    for facet in range(len(face_1.nodes)):
-        facing = face_2.middle_normals @ face_1.middle_normals[facet] <= MAX_FACING_COSINE
-        for ring in _nearby_outlines(face_1, facet, *(column[facing] for column in outlines)):
-            pieces = _quadrilaterals(_clipped(ring))
-            facets += [facet] * len(pieces)
-            parts += pieces
-    return np.array(facets, dtype=np.int64), np.array(parts).reshape(-1, 4, 2)
+    first, second = _candidates(face_1, face_2)
+    polygons, first = _outlines_in(face_1, face_2, first, second)
+    for a, b, c in _SIDES[face_1.kind]:
+        polygons = _cut(polygons, a + polygons.points @ np.array([b, c], dtype=float))
+    corners, of = _divided(_tidied(polygons), face_1.kind)
+    return first[of], corners
+
+
+def _candidates(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of a facet of body 1 and one of body 2 near the points opposite to it."""
+    places = lattice(2, face_1.kind)
+    pairs = opposite(face_1, *face_1.on_each(places), face_2)
+    points = face_2.points(pairs.facet, pairs.t).reshape(len(face_1.nodes), -1, 3)
+    centres = points.mean(axis=1)
+    radii = np.linalg.norm(points - centres[:, None], axis=2).max(axis=1)
+    first, second = face_2.touching(centres, _REACH * np.maximum(radii, face_1.radii))
+    cosine = np.einsum("ni,ni->n", face_1.middle_normals[first], face_2.middle_normals[second])
+    facing = cosine <= MAX_FACING_COSINE
+    return first[facing], second[facing]
+
+
+def _outlines_in(
+    face_1: Surface, face_2: Surface, first: np.ndarray, second: np.ndarray
+) -> tuple[_Polygons, np.ndarray]:
+    """Outlines of facets of body 2 in the parameters of facets of body 1, without redundant points.
+
+    Returns
+    -------
+    polygons : _Polygons
+        Anticlockwise.
+    first : ndarray of int, shape (n_polygons,)
+        Facet of body 1.
+    """
+    points, normals, softness = (column[second] for column in _outlines(face_2))
+    t = face_1.flattened.parameters(first[:, None, None], points)
+    facing = -face_1.middle_normals[first][:, None, None]
+    opposed = np.abs(normals - facing).max(axis=(1, 2, 3), initial=0.0) < _TOLERANCE
+    parallel = face_1.flat[first] & opposed
+    margin = np.where(parallel, 0.0, 0.5)[:, None]
+    near = np.all((t.min(axis=(1, 2)) < 1 + margin) & (t.max(axis=(1, 2)) > -margin), axis=1)
+    first, t, parallel = first[near], t[near], parallel[near]
+    close = np.all((t > -1) & (t < 2), axis=-1)  # points farther away need no accuracy
+    close[parallel] = False
+    on = np.broadcast_to(first[:, None, None], close.shape)[close]
+    t[close] = _opposite_within(face_1, on, *(v[near][close] for v in (points, normals, softness)))
+    t = _snapped(t, face_1.kind)
+    kept = _necessary_points(t)
+    polygons = _Polygons(t[:, :, :-1][kept], np.nonzero(kept)[0])
+    return _anticlockwise(polygons), first
 
 
 def _outlines(face: Surface) -> tuple[np.ndarray, ...]:
-    """Points along the edges of facets from corner to corner, (n, 4, steps + 1, 3) [m].
+    """Points along the edges of facets from corner to corner, (n, n_edges, steps + 1, 3) [m].
 
-    With the smooth normals there, and the softness of the body, shape (n, 4, steps + 1) [1/Pa].
+    With the smooth normals there, and the softness of the body, (n, n_edges, steps + 1) [1/Pa].
     """
-    ring = np.array(_CORNERS, dtype=float)
+    ring = _CORNERS[face.kind]
     part = np.arange(_EDGE_SEGMENTS + 1)[:, None] / _EDGE_SEGMENTS
     t = ring[:, None] + part * (np.roll(ring, -1, axis=0) - ring)[:, None]
-    shape = (len(face.nodes), 4, _EDGE_SEGMENTS + 1)
+    shape = (len(face.nodes), len(ring), _EDGE_SEGMENTS + 1)
     facet, at = face.on_each(t.reshape(-1, 2))
     points, normals = face.points(facet, at), face.smooth_normals(facet, at)[0]
     softness = face.softness_at(facet).reshape(shape)
     return points.reshape(*shape, 3), normals.reshape(*shape, 3), softness
 
 
-def _nearby_outlines(face_1: Surface, facet: int, *outlines: np.ndarray) -> list[np.ndarray]:
-    """Outlines near a facet of body 1 in its parameters, without redundant points, each (n, 2)."""
-    flat = face_1.flattened.only(facet)
-    points, normals, softness = outlines
-    t = flat.parameters(points.reshape(-1, 3)).reshape(*softness.shape, 2)
-    opposed = np.abs(normals + face_1.middle_normals[facet]).max(initial=0.0) < _TOLERANCE
-    parallel = face_1.flat[facet] and opposed
-    margin = 0.0 if parallel else 0.5
-    near = (t.min(axis=(1, 2)) < 1 + margin) & (t.max(axis=(1, 2)) > -margin)
-    chosen = near.all(axis=1)
-    t = t[chosen]
-    if not parallel and len(t):
-        close = np.all((t > -1) & (t < 2), axis=-1)  # points farther away need no accuracy
-        columns = (column[chosen][close] for column in outlines)
-        t[close] = _opposite_within(face_1, facet, *columns)
-    for side in (0.0, 1.0):
-        t[np.abs(t - side) < _TOLERANCE] = side
-    kept = _necessary_points(t)
-    rings = [edges[:, :-1][chosen] for edges, chosen in zip(t, kept, strict=True)]
-    # seen from body 1 the facets of body 2 have either orientation
-    return [ring if _area(ring) > 0 else ring[::-1] for ring in rings]
+def _opposite_within(face_1: Surface, facet: np.ndarray, points, normals, softness) -> np.ndarray:
+    """Parameters, on facets extended beyond their edges, opposite to points, shape (n, 2)."""
 
-
-def _opposite_within(face_1: Surface, facet: int, points, normals, softness) -> np.ndarray:
-    """Parameters, on a facet extended beyond its edges, opposite to points, shape (n, 2)."""
-
-    def locate(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        start = face_1.flattened.only(facet).parameters(points)[:, 0]
-        on = np.full(len(points), facet)
+    def locate(points: np.ndarray, now: np.ndarray | slice) -> tuple[np.ndarray, np.ndarray]:
+        on = facet[now]
+        start = face_1.flattened.parameters(on, points)
         return on, within(face_1, points, on, start, bounds=(-np.inf, np.inf))
 
-    return opposite_parameters(points, normals, softness, face_1, *locate(points), locate)[1]
+    start = locate(points, slice(None))
+    return opposite_parameters(points, normals, softness, face_1, *start, locate)[1]
+
+
+def _snapped(t: np.ndarray, kind: str) -> np.ndarray:
+    """Parameters (..., 2) moved to sides of the facet that they are on up to rounding."""
+    for side in (0.0, 1.0):
+        t = np.where(np.abs(t - side) < _TOLERANCE, side, t)
+    if kind == "triangle":
+        beyond = t.sum(axis=-1, keepdims=True) - 1.0
+        t = np.where((np.abs(beyond) < _TOLERANCE) & (t > 0.5), t - beyond, t)
+    return t
 
 
 def _necessary_points(edges: np.ndarray) -> np.ndarray:
-    """Mask of the outline points (n, 4, steps + 1, 2) to keep, shape (n, 4, steps).
+    """Mask of the outline points (n, n_edges, steps + 1, 2) to keep, (n, n_edges, steps).
 
     For each edge: its first corner, the points next to its intersections with the unit square, and
     the points inside if it is curved. Two facets with a common edge keep the same points.
@@ -123,53 +206,76 @@ def _necessary_points(edges: np.ndarray) -> np.ndarray:
     return ((k == 0) | ends | (crossed & bent)[..., None] & inside)[..., :-1]
 
 
-def _area(rings: np.ndarray) -> np.ndarray:
-    """Areas of polygons (..., n, 2), positive anticlockwise."""
-    following = np.roll(rings, -1, axis=-2)
-    across = rings[..., 0] * following[..., 1] - rings[..., 1] * following[..., 0]
-    return across.sum(axis=-1) / 2
+def _anticlockwise(polygons: _Polygons) -> _Polygons:
+    """Polygons without orientation reversed where they run clockwise."""
+    p, following = polygons.points, polygons.points[polygons.after]
+    area = np.bincount(polygons.of, p[:, 0] * following[:, 1] - p[:, 1] * following[:, 0])
+    first = polygons.first
+    last = np.append(first[1:], len(p)) - 1
+    every = np.arange(len(p))
+    mirrored = polygons.per_corner(first + last) - every
+    return polygons._replace(points=p[np.where(area[polygons.of] > 0, every, mirrored)])
 
 
-def _clipped(ring: np.ndarray) -> np.ndarray:
-    """Part of a polygon within the unit square, without redundant corners, shape (n, 2)."""
-    for axis in (0, 1):
-        for side, sense in ((0.0, 1.0), (1.0, -1.0)):
-            ring = _cut(ring, sense * (ring[:, axis] - side))
-    while len(ring) > 2:
-        turn = np.abs(_turns(ring))
-        if turn.min() > _TOLERANCE:
-            return ring
-        ring = np.delete(ring, turn.argmin(), axis=0)
-    return ring[:0]
+def _cut(polygons: _Polygons, height: np.ndarray) -> _Polygons:
+    """Parts of polygons where the interpolated height of their corners is nonnegative."""
+    before = polygons.before
+    lower = height[before]
+    crossed = ((height > 0) & (lower < 0)) | ((height < 0) & (lower > 0))
+    part = np.divide(lower, lower - height, out=np.zeros_like(height), where=crossed)[:, None]
+    start = polygons.points[before]
+    points = np.stack([start + part * (polygons.points - start), polygons.points], axis=1)
+    kept = np.column_stack([crossed, height >= 0])
+    return _Polygons(points[kept], np.repeat(polygons.of, 2).reshape(-1, 2)[kept])
 
 
-def _turns(ring: np.ndarray) -> np.ndarray:
+def _tidied(polygons: _Polygons) -> _Polygons:
+    """Polygons without redundant corners; those of less than three corners vanish."""
+    while len(polygons.of):
+        turn, first = np.abs(_turns(polygons)), polygons.first
+        least = np.minimum.reduceat(turn, first)
+        count = np.diff(np.append(first, len(turn)))
+        small = polygons.per_corner(count) < 3
+        flattest = polygons.per_corner(np.where(least > _TOLERANCE, -1.0, least)) == turn
+        candidates = np.flatnonzero(flattest)
+        removed = candidates[np.unique(polygons.of[candidates], return_index=True)[1]]
+        small[removed] = True
+        if not small.any():
+            break
+        polygons = polygons.only(~small)
+    return polygons
+
+
+def _turns(polygons: _Polygons) -> np.ndarray:
     """Distance of each corner from the line of its neighbours, positive for a left turn."""
-    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    p = polygons.points
+    before, after = p - p[polygons.before], p[polygons.after] - p
     across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     longer = np.maximum(np.hypot(*before.T), np.hypot(*after.T))
     return across / np.maximum(longer, _TOLERANCE)
 
 
-def _cut(ring: np.ndarray, height: np.ndarray) -> np.ndarray:
-    """Part of a polygon where the interpolated height of its corners is nonnegative."""
-    kept = []
-    for k, h in enumerate(height):
-        before = height[k - 1]
-        if (h > 0 and before < 0) or (h < 0 and before > 0):
-            part = before / (before - h)
-            kept.append(ring[k - 1] + part * (ring[k] - ring[k - 1]))
-        if h >= 0:
-            kept.append(ring[k])
-    return np.array(kept).reshape(-1, 2)
+def _divided(polygons: _Polygons, kind: str) -> tuple[np.ndarray, np.ndarray]:
+    """Parts (n, 4, 2) of polygons, and the polygon of each.
 
-
-def _quadrilaterals(ring: np.ndarray) -> list[np.ndarray]:
-    """Split a polygon into quadrilaterals, or into triangles about its mean if not convex."""
-    if len(ring) < 3:
-        return []
-    if _turns(ring).min() < 0:
-        middle, following = ring.mean(axis=0), np.roll(ring, -1, axis=0)
-        return [np.array([middle, *side, side[1]]) for side in zip(ring, following, strict=True)]
-    closed = np.vstack([ring, ring[-1:]])
-    return [closed[[0, k, k + 1, k + 2]] for k in range(1, len(ring) - 1, 2)]
+    Convex polygons are divided from their first corner, into quadrilaterals in those, into
+    triangles in triangles; others into triangles about their mean.
+    """
+    p, of, first = polygons.points, polygons.of, polygons.first
+    if not len(of):
+        return np.empty((0, 4, 2)), of
+    count = np.diff(np.append(first, len(of)))
+    convex = np.minimum.reduceat(_turns(polygons), first) >= 0
+    step = 1 if kind == "triangle" else 2
+    parts = np.where(convex, (count - 3) // step + 1, 0)
+    origin, sides = np.repeat(first, parts), np.repeat(count, parts)
+    k = 1 + step * (np.arange(len(origin)) - np.repeat(np.cumsum(parts) - parts, parts))
+    fan = np.stack([0 * k, k, k + 1, (k + step) % sides], axis=1)
+    bent = np.flatnonzero(~polygons.per_corner(convex))
+    mean = [np.bincount(of, column)[of] / np.bincount(of)[of] for column in p.T]
+    following = p[polygons.after]
+    about = np.stack([np.column_stack(mean), p, following, following], axis=1)[bent]
+    corners = np.concatenate([p[origin[:, None] + fan], about])
+    of_part = np.concatenate([of[origin], of[bent]])
+    order = np.argsort(of_part, kind="stable")
+    return corners[order], of_part[order]

@@ -110,7 +110,7 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     Opposite
     """
 
-    def locate(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def locate(points: np.ndarray, _) -> tuple[np.ndarray, np.ndarray]:
         return project(other, points)[:2]
 
     points, outward = face.points(facet, t), face.smooth_normals(facet, t)[0]
@@ -129,7 +129,7 @@ def opposite_parameters(
     other: Face | Surface,
     facet: np.ndarray,
     t: np.ndarray,
-    locate: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+    locate: Callable[[np.ndarray, np.ndarray | slice], tuple[np.ndarray, np.ndarray]],
 ) -> tuple[np.ndarray, np.ndarray, Line]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
 
@@ -148,7 +148,8 @@ def opposite_parameters(
     facet, t : ndarray
         Closest points on it.
     locate : callable
-        Closest facets and parameters on the other face, from positions (m, gdim).
+        Closest facets and parameters on the other face, from positions (m, gdim) and the indices
+        of their points.
     """
     facet, t = facet.copy(), t.copy()
     opposite_points = other.points(facet, t)
@@ -156,7 +157,7 @@ def opposite_parameters(
     for _ in range(_MAX_ITERATIONS):
         now = slice(None) if len(moving) == len(points) else moving
         line = _line(points[now], outward[now], softness[now], other, facet[now], t[now])
-        facet[now], t[now] = locate(points[now] + line[1])
+        facet[now], t[now] = locate(points[now] + line[1], now)
         before, opposite_points[now] = opposite_points[now].copy(), other.points(facet[now], t[now])
         change = np.linalg.norm(opposite_points[now] - before, axis=1)
         moving = moving[change > _TOLERANCE * other.extent]

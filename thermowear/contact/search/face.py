@@ -18,6 +18,8 @@ from ...lagrange import lobatto
 from .facets import FacetSet, FacetTable, gather_facets
 from .surface import Surface, gather_surface
 
+_BLOCK_SIZE = 1_000_000
+"""Number of pairs of a point and a facet processed at once."""
 ONWARD = (1.0, 0.3)
 """Direction of a chain: along x; upright faces begin at the lower end, also if slightly worn."""
 
@@ -59,9 +61,12 @@ class Face(FacetSet):
         corners = np.arange(len(self.nodes))[:, None] + np.arange(2)
         return corners % len(self.nodes) if self.closed else corners
 
-    def nearby(self, distance: np.ndarray) -> np.ndarray:
+    def nearby(self, points: np.ndarray) -> np.ndarray:
+        every, step = np.arange(len(self.nodes))[None], max(1, _BLOCK_SIZE // len(self.nodes))
+        parts = [points[i : i + step] for i in range(0, max(len(points), 1), step)]
+        nearest = np.concatenate([self.flat_distances(every, p).argmin(axis=1) for p in parts])
         # the nearest chord may belong to a neighbour of the nearest curved facet
-        return np.clip(distance.argmin(axis=1)[:, None] + (0, -1, 1), 0, len(self.nodes) - 1)
+        return np.clip(nearest[:, None] + (0, -1, 1), 0, len(self.nodes) - 1)
 
 
 def gather_face(

@@ -14,39 +14,34 @@ from dolfinx import fem
 from ...bulk.bodies import Bodies
 from ...compat import geometry_dofmap
 from ...errors import CaseError
-from ...lagrange import lobatto, on_lattice
+from ...lagrange import corner_nodes, lattice, lobatto, on_lattice, order_of
 from .smooth_normals import across, corner_corrections, smooth_normals
 
 
 @dataclass(frozen=True)
-class Parallelograms:
-    """Parallelograms, or lines in a section, that approximate the facets.
+class FlatFacets:
+    """Affine maps from the parameters that approximate the facets.
 
     Attributes
     ----------
-    middle : ndarray, shape (n_facets, gdim) [m]
+    origin : ndarray, shape (n_facets, gdim) [m]
     sides : ndarray, shape (n_facets, dim, gdim)
         Tangents along the parameters [m].
     inverse : ndarray, shape (n_facets, dim, gdim)
         Parameters per coordinate [1/m].
     """
 
-    middle: np.ndarray
+    origin: np.ndarray
     sides: np.ndarray
     inverse: np.ndarray
 
-    def only(self, facet: int) -> Parallelograms:
-        """Parallelogram of one facet."""
-        chosen = slice(facet, facet + 1)
-        return Parallelograms(self.middle[chosen], self.sides[chosen], self.inverse[chosen])
+    def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Coordinates at parameters (..., dim) of facets (...), shape (..., gdim) [m]."""
+        return self.origin[facet] + np.einsum("...k,...ki->...i", t, self.sides[facet])
 
-    def points(self, t: np.ndarray) -> np.ndarray:
-        """Coordinates at parameters of every facet, of shape (..., n_facets, dim) [m]."""
-        return self.middle + np.einsum("...fk,fki->...fi", t - 0.5, self.sides)
-
-    def parameters(self, points: np.ndarray) -> np.ndarray:
-        """Parameters of points (n, gdim) projected on every facet, shape (n, n_facets, dim)."""
-        return 0.5 + np.einsum("fki,nfi->nfk", self.inverse, points[:, None] - self.middle)
+    def parameters(self, facet: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Parameters of points (..., gdim) projected on facets (...), shape (..., dim)."""
+        return np.einsum("...ki,...i->...k", self.inverse[facet], points - self.origin[facet])
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,13 +50,16 @@ class FacetSet(ABC):
 
     Attributes
     ----------
-    nodes : ndarray, shape (n_facets, order + 1, …, gdim) [m]
-        Geometry nodes of each facet, at equal steps of one or two parameters.
+    nodes : ndarray, shape (n_facets, n_nodes, gdim) [m]
+        Geometry nodes of each facet, at equal steps of the parameters, in the order of
+        `lagrange.lattice`.
     outward : ndarray, shape (n_facets,)
         Sign of the outward normal: +1 along the tangent turned clockwise or the cross product of
         both tangents, -1 opposite to it.
     rank, cell, local_facet : ndarray of int, shape (n_facets,)
         Rank that owns the cell of the facet, local cell index, and local facet index.
+    kind : str
+        ``"interval"`` in a section, ``"quadrilateral"`` or ``"triangle"`` in space.
     softness : float or ndarray, shape (n_facets,)
         ``(1 - ν²) / E`` of the material at each facet [1/Pa]; only its ratio to that of the other
         face matters.
@@ -77,6 +75,7 @@ class FacetSet(ABC):
     cell: np.ndarray
     local_facet: np.ndarray
     _: KW_ONLY
+    kind: str = "interval"
     softness: float | np.ndarray = 1.0
     name: str = "the contact face"
     wears: bool = False
@@ -84,20 +83,23 @@ class FacetSet(ABC):
     @property
     @abstractmethod
     def corner_numbers(self) -> np.ndarray:
-        """Corner numbers shared by adjacent facets, shape (n_facets, 2) or (n_facets, 2, 2)."""
+        """Corner numbers shared by adjacent facets, shape (n_facets, n_corners)."""
 
     @abstractmethod
-    def nearby(self, distance: np.ndarray) -> np.ndarray:
-        """Candidates for the closest facet by the distances (n, n_facets) from `flattened` ones."""
+    def nearby(self, points: np.ndarray) -> np.ndarray:
+        """Candidates for the closest facet to points (n, gdim), shape (n, n_candidates)."""
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, gdim) [m]."""
-        return np.einsum("nk,nki->ni", on_lattice(self.order, t)[0], self._listed[facet])
+        return np.einsum("nk,nki->ni", self.shape_functions(t)[0], self.nodes[facet])
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along the parameters, shape (n, dim, gdim) [m]."""
-        slopes = on_lattice(self.order, t, 1)[1:]
-        return np.einsum("dnk,nki->ndi", slopes, self._listed[facet])
+        return np.einsum("dnk,nki->ndi", self.shape_functions(t, 1)[1:], self.nodes[facet])
+
+    def shape_functions(self, t: np.ndarray, derivatives: int = 0) -> np.ndarray:
+        """Lagrange polynomials of the nodes and their derivatives, see `lagrange.on_lattice`."""
+        return on_lattice(self.order, t, derivatives, self.kind)
 
     def normals(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Outward unit normals, shape (n, gdim)."""
@@ -110,7 +112,7 @@ class FacetSet(ABC):
         Shapes (n, gdim) and (n, gdim - 1, gdim).
         """
         t = t.reshape(len(t), self.dim)
-        return smooth_normals(self.nodes, self.outward, self._corrections, facet, t)
+        return smooth_normals(self.kind, self.nodes, self.outward, self._corrections, facet, t)
 
     def softness_at(self, facet: np.ndarray) -> np.ndarray:
         """Softness at facets, shape (n,) [1/Pa]."""
@@ -123,12 +125,17 @@ class FacetSet(ABC):
     @property
     def dim(self) -> int:
         """Number of parameters of a facet."""
-        return self.nodes.ndim - 2
+        return 1 if self.kind == "interval" else 2
+
+    @property
+    def measure(self) -> float:
+        """Length or area of a facet in parameters."""
+        return 0.5 if self.kind == "triangle" else 1.0
 
     @property
     def order(self) -> int:
         """Order of the geometry."""
-        return self.nodes.shape[1] - 1
+        return order_of(self.kind, self.nodes.shape[1])
 
     @cached_property
     def sizes(self) -> np.ndarray:
@@ -142,7 +149,7 @@ class FacetSet(ABC):
 
     def integrals(self, factor: Callable[[np.ndarray], np.ndarray] | None = None) -> np.ndarray:
         """Integrals over the facets of a function of points (n, gdim), by default 1."""
-        t, weights = lobatto(self.order + 5, self.dim)
+        t, weights = lobatto(self.order + 5, self.kind)
         facet, at = self.on_each(t)
         density = self.stretch(facet, at)
         if factor is not None:
@@ -155,26 +162,40 @@ class FacetSet(ABC):
         return np.repeat(np.arange(count), len(t)), np.concatenate([t] * count)
 
     @cached_property
-    def flattened(self) -> Parallelograms:
-        """Best-fit parallelograms, or lines, to the corners of the facets."""
-        inner = tuple(range(1, self.dim + 1))
-        corners = self.nodes[(slice(None), *[slice(None, None, self.order)] * self.dim)]
-        sides = np.stack([np.diff(corners, axis=k).mean(axis=inner) for k in inner], axis=1)
-        return Parallelograms(corners.mean(axis=inner), sides, np.linalg.pinv(sides).mT)
+    def flattened(self) -> FlatFacets:
+        """Best affine fits to the corners of the facets."""
+        t = lattice(1, self.kind).reshape(-1, self.dim)
+        fit = np.linalg.pinv(np.column_stack([np.ones(len(t)), t]))
+        affine = np.einsum("kc,fci->fki", fit, self.corner_points)
+        return FlatFacets(affine[:, 0], affine[:, 1:], np.linalg.pinv(affine[:, 1:]).mT)
+
+    def flat_distances(self, facet: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Distances of points (n, gdim) from flattened facets (n, k), shape (n, k) [m]."""
+        points = points[:, None]
+        t = self.inside(self.flattened.parameters(facet, points))
+        return np.linalg.norm(self.flattened.points(facet, t) - points, axis=2)
+
+    def inside(self, t: np.ndarray) -> np.ndarray:
+        """Parameters (..., dim) moved into the facet."""
+        t = np.clip(t, 0.0, 1.0)
+        if self.kind != "triangle":
+            return t
+        beyond = np.maximum(t.sum(axis=-1, keepdims=True) - 1.0, 0.0) / 2
+        return np.clip(t - beyond, 0.0, 1.0)
+
+    @property
+    def corner_points(self) -> np.ndarray:
+        """Corners of the facets, shape (n_facets, n_corners, gdim) [m]."""
+        return self.nodes[:, corner_nodes(self.order, self.kind)]
 
     @property
     def extent(self) -> float:
         """Size of the face [m]."""
         return float(np.ptp(self.nodes.reshape(-1, self.nodes.shape[-1]), axis=0).max())
 
-    @property
-    def _listed(self) -> np.ndarray:
-        """Nodes of each facet in one list, shape (n_facets, n_nodes, gdim) [m]."""
-        return self.nodes.reshape(len(self.nodes), -1, self.nodes.shape[-1])
-
     @cached_property
     def _corrections(self) -> np.ndarray:
-        return corner_corrections(self.nodes, self.outward, self.corner_numbers)
+        return corner_corrections(self.kind, self.nodes, self.outward, self.corner_numbers)
 
 
 class FacetTable(NamedTuple):

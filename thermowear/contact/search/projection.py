@@ -9,8 +9,10 @@ from .surface import Surface
 
 _MAX_NEWTON_STEPS = 30
 _TOLERANCE = 1e-13
-_BLOCK_SIZE = 1_000_000
-"""Number of point-facet pairs processed at once."""
+_ROUND_TRIANGLE = (-0.5, 1.5)
+"""Bounds of the parameters within which the closest point of a triangle's surface is sought."""
+_EDGES = np.array([[[0, 0], [1, 0]], [[0, 0], [0, 1]], [[1, 0], [-1, 1]]], dtype=float)
+"""First corner and vector of each edge of a triangle, in its parameters."""
 _MAX_ITERATIONS = 10
 _MIN_COSINE = 0.3
 """Smallest magnitude of the cosine between a ray and the normal of the face that it meets."""
@@ -31,9 +33,7 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
     offset : ndarray, shape (n, gdim)
         Vector from each point to its projection [m].
     """
-    chunk = max(1, _BLOCK_SIZE // len(face.nodes))
-    parts = [_closest(face, points[i : i + chunk]) for i in range(0, max(len(points), 1), chunk)]
-    facet, t = (np.concatenate(column) for column in zip(*parts, strict=True))
+    facet, t = _closest(face, points)
     t = t[:, 0] if face.dim == 1 else t
     return facet, t, face.points(facet, t) - points
 
@@ -82,13 +82,11 @@ def overhang(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.
 
 def _closest(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Facets and parameters (n, dim) of the closest points, the best of some candidates."""
-    flat = face.flattened
-    t = np.clip(flat.parameters(points), 0.0, 1.0)
-    facets = face.nearby(np.linalg.norm(flat.points(t) - points[:, None], axis=2))
-    starts = np.take_along_axis(t, facets[:, :, None], axis=1)
+    facets = face.nearby(points)
+    starts = face.inside(face.flattened.parameters(facets, points[:, None]))
     places = np.stack(
         [
-            within(face, points, facet, start, bounds=(0.0, 1.0))
+            _inside(face, points, facet, start)
             for facet, start in zip(facets.T, starts.swapaxes(0, 1), strict=True)
         ]
     )
@@ -98,12 +96,37 @@ def _closest(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.n
     return facets[every, best], places[best, every]
 
 
+def _inside(face: Face | Surface, points, facet: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """Parameters (n, dim) of the closest points of given facets."""
+    if face.kind != "triangle":
+        return within(face, points, facet, start, bounds=(0.0, 1.0))
+    t = within(face, points, facet, start, _ROUND_TRIANGLE)
+    off = np.flatnonzero((t.min(axis=1) < 0.0) | (t.sum(axis=1) > 1.0))
+    if not len(off):
+        return t
+    points, facet = points[off], facet[off]
+    on_edges = np.stack([_on_edge(face, points, facet, t[off], edge) for edge in _EDGES])
+    distance = [np.linalg.norm(face.points(facet, at) - points, axis=1) for at in on_edges]
+    t[off] = on_edges[np.argmin(distance, axis=0), np.arange(len(off))]
+    return t
+
+
+def _on_edge(face: Face | Surface, points, facet, start, edge: np.ndarray) -> np.ndarray:
+    """Parameters (n, 2) of the closest points of an edge, given by its first corner and vector."""
+    origin, along = edge
+    s = np.clip((start - origin) @ along / (along @ along), 0.0, 1.0)[:, None]
+    s = within(face, points, facet, s, (0.0, 1.0), origin, along[None])
+    return np.clip(origin + s * along, 0.0, 1.0)
+
+
 def within(
     face: Face | Surface,
     points: np.ndarray,
     facet: np.ndarray,
     start: np.ndarray,
     bounds: tuple[float, float],
+    origin: np.ndarray | float = 0.0,
+    axes: np.ndarray | None = None,
 ) -> np.ndarray:
     """Parameters of the closest points of given facets, by the Gauss-Newton method.
 
@@ -112,22 +135,28 @@ def within(
     face : Face or Surface
     points : ndarray, shape (n, gdim) [m]
     facet : ndarray of int, shape (n,)
-    start : ndarray, shape (n, dim)
-        Initial parameters.
+    start : ndarray, shape (n, k)
+        Initial parameters s.
     bounds : tuple of float
         Bounds of the parameters; a parameter is fixed at a bound that a step would cross.
+    origin, axes : ndarray, shape (dim,) and (k, dim), optional
+        Subspace ``t = origin + s axes`` of the parameters of the facet, by default all of it.
     """
-    t, moving = start.copy(), np.arange(len(start))
+    axes = np.eye(face.dim) if axes is None else axes
+    s, moving = start.copy(), np.arange(len(start))
     for _ in range(_MAX_NEWTON_STEPS):
-        now, on = t[moving], facet[moving]
-        offset, tangents = face.points(on, now) - points[moving], face.tangents(on, now)
+        now, on = s[moving], facet[moving]
+        t = origin + now @ axes
+        offset, tangents = face.points(on, t) - points[moving], axes @ face.tangents(on, t)
         slope = np.einsum("nki,ni->nk", tangents, offset)
         held = ((now <= bounds[0]) & (slope > 0)) | ((now >= bounds[1]) & (slope < 0))
         tangents = np.where(held[:, :, None], 0.0, tangents)
-        matrix = np.einsum("nki,nli->nkl", tangents, tangents) + held[:, :, None] * np.eye(face.dim)
+        matrix = np.einsum("nki,nli->nkl", tangents, tangents) + held[:, :, None] * np.eye(
+            len(axes)
+        )
         step = np.linalg.solve(matrix, np.where(held, 0.0, slope)[:, :, None])[:, :, 0]
-        t[moving] = np.clip(now - step, *bounds)
-        moving = moving[np.abs(t[moving] - now).max(axis=1) > _TOLERANCE]
+        s[moving] = np.clip(now - step, *bounds)
+        moving = moving[np.abs(s[moving] - now).max(axis=1) > _TOLERANCE]
         if not len(moving):
             break
-    return t
+    return s

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import CaseError
-from ...lagrange import gauss, lobatto, on_lattice
+from ...lagrange import lobatto, on_lattice
 from .clipping import parts_opposite
 from .common_face import MAX_FACING_COSINE, Opposite, opposite
 from .face import Face
@@ -38,7 +38,7 @@ class Rule:
     t : ndarray, shape (n,) or (n, 2)
         Parameters.
     weight : ndarray, shape (n,)
-        Length or area in parameters; the sum is one on a fully opposite facet.
+        Length or area in parameters; the sum is that of the facet if it is fully opposite.
     """
 
     facet: np.ndarray
@@ -96,16 +96,17 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
 
 
 def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
-    """Rules on the opposite parts of facets: Gauss-Lobatto, in triangles Gauss."""
+    """Rules on the opposite parts of facets: Gauss-Lobatto, in triangles without their edges."""
     facet, corners = parts_opposite(face_1, face_2)
     triangular = np.all(corners[:, 2] == corners[:, 3], axis=1)
     parts = []
-    for chosen, (places, weights) in (
-        (~triangular, lobatto(order, 2)),
-        (triangular, gauss(order, 2)),
+    for kind, of_kind, listed in (
+        ("quadrilateral", ~triangular, (0, 3, 1, 2)),
+        ("triangle", triangular, (0, 2, 1)),
     ):
-        table = on_lattice(1, places, 1)
-        at, u, v = np.einsum("dqc,pci->dpqi", table, corners[chosen][:, [0, 3, 1, 2]])
+        chosen, (places, weights) = np.flatnonzero(of_kind), lobatto(order, kind)
+        table = on_lattice(1, places, 1, kind)
+        at, u, v = np.einsum("dqc,pci->dpqi", table, corners[chosen][:, listed])
         area = weights * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
         at = np.clip(at, 0.0, 1.0)  # corners on an edge may lie beyond it by rounding
         parts.append((np.repeat(facet[chosen], len(weights)), at.reshape(-1, 2), area.ravel()))
@@ -117,7 +118,7 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
 
 def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
     """Gauss-Lobatto rule on each whole facet."""
-    places, weights = lobatto(order, dim=2)
+    places, weights = lobatto(order, face_1.kind)
     whole = Rule(*face_1.on_each(places), np.tile(weights, len(face_1.nodes)))
     within = np.flatnonzero(np.all((places > 0) & (places < 1), axis=1))
     inner = within if len(within) else np.arange(len(weights))

@@ -14,53 +14,53 @@ facet.
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 from numpy.polynomial import Legendre
 
-from ...lagrange import on_lattice
+from ...lagrange import lattice, on_lattice, order_of
 
 _MIN_SMOOTH_COSINE = np.cos(np.radians(20.0))
 """Cosine between facet normal and mean normal at a corner, below which it is a sharp edge."""
 _MAX_END_ERROR = 0.02
 """Largest error of a unit normal at the ends of curved or short facets."""
+_BARYCENTRIC_SLOPES = np.array([[-1.0, 0.0, 1.0], [-1.0, 1.0, 0.0]])
+"""Derivatives of the barycentric coordinates of a triangle, corners in the order of a lattice."""
 _SECOND_DERIVATIVES = {1: [[2]], 2: [[3, 4], [4, 5]]}
 """Indices of the second derivatives of `on_lattice` by the number of parameters."""
 
 
-def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarray) -> np.ndarray:
+def corner_corrections(
+    kind: str, nodes: np.ndarray, outward: np.ndarray, corners: np.ndarray
+) -> np.ndarray:
     """Differences between the mean normals at the corners and the facet normals.
 
     Parameters
     ----------
-    nodes : ndarray, shape (n_facets, order + 1, …, gdim) [m]
-        Geometry nodes by one or two parameters.
-    outward : ndarray, shape (n_facets,)
-    corners : ndarray of int, shape (n_facets, 2) or (n_facets, 2, 2)
-        Numbers of the corners by the parameters.
+    kind, nodes, outward
+        See `facets.FacetSet`.
+    corners : ndarray of int, shape (n_facets, n_corners)
+        Numbers of the corners.
 
     Returns
     -------
     ndarray, shape (n_facets, n_corners, gdim)
         Zero at sharp edges of the face.
     """
-    dim = corners.ndim - 1
-    ends = np.array(list(itertools.product((0.0, 1.0), repeat=dim)))
+    ends = lattice(1, kind).reshape(corners.shape[1], -1)
     facet = np.repeat(np.arange(len(nodes)), len(ends))
-    own, _ = _raw(nodes, outward, facet, np.tile(ends, (len(nodes), 1)))
+    own, _ = _raw(kind, nodes, outward, facet, np.tile(ends, (len(nodes), 1)))
     _, number = np.unique(corners.reshape(-1), return_inverse=True)
     # on an arc the error at facet ends scales as the facet size to the power of its order
-    first, last = nodes.reshape(len(nodes), -1, nodes.shape[-1])[:, [0, -1]].swapaxes(0, 1)
-    size = np.linalg.norm(last - first, axis=1)
-    weight = np.repeat((size.min() / size) ** (nodes.shape[1] - 1), len(ends))
+    size = np.linalg.norm(nodes[:, -1] - nodes[:, 0], axis=1)
+    weight = np.repeat((size.min() / size) ** order_of(kind, nodes.shape[1]), len(ends))
     summed = np.column_stack([np.bincount(number, weight * component) for component in own.T])
     mean = summed / np.maximum(np.linalg.norm(summed, axis=1, keepdims=True), 1e-300)
     sharp = np.zeros(len(mean), dtype=bool)
     sharp[number[np.einsum("ni,ni->n", own, mean[number]) < _MIN_SMOOTH_COSINE]] = True
     correction = np.where(sharp[number, None], 0.0, mean[number] - own)
     correction = correction.reshape(len(nodes), len(ends), -1)
-    if dim == 1:  # on an arc the error at an end of the face is minus that of the other facet end
+    if kind == "interval":
+        # on an arc the error at an end of the face is minus that of the other end of its facet
         free = (np.bincount(number) == 1)[number].reshape(-1, 2)
         slight = np.linalg.norm(correction, axis=2).max(axis=1) < _MAX_END_ERROR
         mirrored = free & slight[:, None]
@@ -69,13 +69,13 @@ def corner_corrections(nodes: np.ndarray, outward: np.ndarray, corners: np.ndarr
 
 
 def smooth_normals(
-    nodes: np.ndarray, outward: np.ndarray, corrections: np.ndarray, facet: np.ndarray, t
+    kind: str, nodes: np.ndarray, outward: np.ndarray, corrections: np.ndarray, facet: np.ndarray, t
 ) -> tuple[np.ndarray, np.ndarray]:
     """Continuous outward unit normals, and their derivatives along the parameters.
 
     Parameters
     ----------
-    nodes, outward, corrections : ndarray
+    kind, nodes, outward, corrections
         See `corner_corrections`.
     facet : ndarray of int, shape (n,)
     t : ndarray, shape (n, dim)
@@ -85,19 +85,18 @@ def smooth_normals(
     normals : ndarray, shape (n, gdim)
     turning : ndarray, shape (n, dim, gdim)
     """
-    normal, turning = _raw(nodes, outward, facet, t)
-    values, slopes = _blending(nodes.shape[1] - 1, t)
+    normal, turning = _raw(kind, nodes, outward, facet, t)
+    values, slopes = _blending(kind, order_of(kind, nodes.shape[1]), t)
     chosen = corrections[facet]
     blended = normal + np.einsum("nc,nci->ni", values, chosen)
     changing = turning + np.einsum("nkc,nci->nki", slopes, chosen)
     return _unit(blended, changing)
 
 
-def _raw(nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
+def _raw(kind, nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
     """Outward unit normals of the facets, without blending, and their derivatives."""
-    order, dim = nodes.shape[1] - 1, t.shape[1]
-    on = nodes[facet].reshape(len(facet), -1, nodes.shape[-1])
-    table = on_lattice(order, t, 2)
+    dim, on = t.shape[1], nodes[facet]
+    table = on_lattice(order_of(kind, nodes.shape[1]), t, 2, kind)
     tangents = np.einsum("kna,nai->nki", table[1 : 1 + dim], on)
     bent = np.einsum("klna,nai->nkli", table[_SECOND_DERIVATIVES[dim]], on)
     if dim == 1:
@@ -124,16 +123,21 @@ def _unit(vectors: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return unit, (slopes - along[:, :, None] * unit[:, None]) / size[:, None, None]
 
 
-def _blending(order: int, t: np.ndarray):
+def _blending(kind: str, order: int, t: np.ndarray):
     """Values and derivatives of the corner functions of a facet, 1 at one corner, 0 at others.
 
     Products of ``(P_q(x) + P_{q-1}(x)) / 2``, the right Radau polynomial, and its mirror image for
     the other end, with ``x = 2 t - 1`` and Legendre polynomials P; q is the smallest odd number not
-    below the order of the facet. Shapes (n, n_corners) and (n, dim, n_corners).
+    below the order of the facet. On a triangle t is the barycentric coordinate of the corner, so
+    that the functions agree along the edges of all facets. Shapes (n, n_corners) and
+    (n, dim, n_corners).
     """
     degree = order + 1 - order % 2
     right = Legendre([0.0] * (degree - 1) + [0.5, 0.5], domain=[0.0, 1.0])
     slope = right.deriv()
+    if kind == "triangle":
+        part = np.column_stack([1.0 - t[:, 0] - t[:, 1], t[:, 1], t[:, 0]])
+        return right(part), slope(part)[:, None] * _BARYCENTRIC_SLOPES
     values = [np.column_stack([right(1.0 - along), right(along)]) for along in t.T]
     slopes = [np.column_stack([-slope(1.0 - along), slope(along)]) for along in t.T]
     if len(values) == 1:
@@ -144,4 +148,4 @@ def _blending(order: int, t: np.ndarray):
 
 def _times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Products of functions (n, i) of the first and (n, j) of the second parameter, (n, i j)."""
-    return np.einsum("na,nb->nab", a, b).reshape(len(a), -1)
+    return np.einsum("na,nb->nab", a, b).reshape(len(a), a.shape[1] * b.shape[1])

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from ...lagrange import lattice, on_lattice
+from ...lagrange import lattice, neighbour_nodes
 from ..search.face import Face
 from ..search.pairing import PairedFace, Pairing
 from ..search.surface import Surface
@@ -41,15 +41,15 @@ class Paths:
 
 def nodes_of(face: Face | Surface) -> np.ndarray:
     """Geometry nodes, in a plane model in order along the face, shape (n_nodes, gdim) [m]."""
-    number, gdim = _numbers(face), face.nodes.shape[-1]
+    number, gdim = face.numbers(face.order), face.nodes.shape[-1]
     result = np.empty((number.max() + 1, gdim))
-    result[number] = face.nodes.reshape(*number.shape, gdim)
+    result[number] = face.nodes
     return result
 
 
 def node_normals(face: Face | Surface) -> np.ndarray:
     """Outward unit normals at the nodes, averaged over facets, shape (n_nodes, gdim)."""
-    number = _numbers(face).ravel()
+    number = face.numbers(face.order).ravel()
     normals = _at(face, face.normals, face.order)
     summed = np.column_stack([np.bincount(number, n) for n in normals.reshape(len(number), -1).T])
     return _unit(summed)
@@ -136,20 +136,12 @@ class WornFace:
         return -offsets[:, None] * self._paths.directions
 
 
-def _numbers(face: Face | Surface) -> np.ndarray:
-    """Node numbers of each facet, shape (n_facets, nodes_per_facet)."""
-    return face.numbers(face.order).reshape(len(face.nodes), -1)
-
-
 def _roughness(face: Face | Surface) -> sp.csr_matrix:
     """Matrix of squared differences between neighbouring nodes, weighted by facet sizes."""
     numbers = face.numbers(face.order)
-    a, b = (
-        np.concatenate([np.delete(numbers, k, axis).ravel() for axis in range(1, numbers.ndim)])
-        for k in (0, -1)
-    )
-    size = np.repeat(face.sizes, numbers[0].size - numbers[0].shape[0] ** (face.dim - 1))
-    size = np.tile(size, face.dim)
+    pairs = neighbour_nodes(face.order, face.kind)
+    a, b = (numbers[:, ends].ravel() for ends in pairs.T)
+    size = np.repeat(face.sizes, len(pairs))
     values = np.concatenate([size, size, -size, -size])
     where = np.concatenate([a, b, a, b]), np.concatenate([a, b, b, a])
     return sp.csr_matrix((values, where), shape=(numbers.max() + 1,) * 2)
@@ -157,18 +149,18 @@ def _roughness(face: Face | Surface) -> sp.csr_matrix:
 
 def _at(face: Face | Surface, values, order: int) -> np.ndarray:
     """Values of a face's method on the lattice of each facet, (n_facets, n_places, …)."""
-    t = lattice(order, face.dim)
+    t = lattice(order, face.kind)
     return values(*face.on_each(t)).reshape(len(face.nodes), len(t), -1)
 
 
 def _nodes_at(side: PairedFace) -> np.ndarray:
     """Nodes of the facet at each point, shape (n, nodes_per_facet)."""
-    return _numbers(side.face)[side.facet]
+    return side.face.numbers(side.face.order)[side.facet]
 
 
 def _shape_functions(side: PairedFace) -> np.ndarray:
     """Values of the shape functions of these nodes at the points."""
-    return on_lattice(side.face.order, side.t)[0]
+    return side.face.shape_functions(side.t)[0]
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

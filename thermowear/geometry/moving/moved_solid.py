@@ -177,7 +177,7 @@ class MovableSolid(MovableFace):
 
 def _enclosed(kind: str, order: int, facets: np.ndarray) -> float:
     """Contribution of facets (n, n_nodes, 3) to ``∮ x·n dS / 3``."""
-    places, weights = gauss(2 * order + 1, dim=2)
+    places, weights = gauss(2 * order + 1, kind)
     points = np.einsum("qk,fki->fqi", shape_functions(kind, order, places), facets)
     tangents = np.einsum("qdk,fki->dfqi", slopes(kind, order, places), facets)
     return float(np.einsum("fqi,fqi,q->", points, np.cross(*tangents), weights)) / 3

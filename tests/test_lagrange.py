@@ -75,7 +75,9 @@ def test_facets_of_two_parameters():
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4])
-@pytest.mark.parametrize("kind", ["interval", "triangle", "quadrilateral", "hexahedron"])
+@pytest.mark.parametrize(
+    "kind", ["interval", "triangle", "quadrilateral", "tetrahedron", "hexahedron"]
+)
 def test_cells_in_the_order_of_gmsh(kind, order):
     """requirement: 1 at their own node, exactly 0 at the others; gradients of the coordinates."""
     nodes = reference_nodes(kind, order)

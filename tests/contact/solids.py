@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 from mpi4py import MPI
@@ -17,7 +18,9 @@ from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.geometry.meshing.cells import Lattice, mesh_lattice, tagged_bodies
+from thermowear.geometry.mesh.nodes import boundary, reference_nodes
+from thermowear.geometry.meshing.cells import Lattice, MeshedBody, mesh_lattice, tagged_bodies
+from thermowear.lagrange import matching
 from thermowear.laws.motions import translation
 
 COMM = MPI.COMM_WORLD
@@ -54,7 +57,21 @@ def bent(p):
     )
 
 
-def two_solids(divisions=MATCHING, order=1, maps=(straight, straight)):
+def in_tetrahedra(body: MeshedBody, order: int) -> MeshedBody:
+    """Each hexahedron becomes six tetrahedra along its diagonal, with the same nodes."""
+    nodes = reference_nodes("tetrahedron", order)
+    cells = []
+    for axes in itertools.permutations(np.eye(3)):
+        ends = np.cumsum([np.zeros(3), *axes], axis=0)
+        if np.linalg.det(axes) < 0:
+            ends[[1, 2]] = ends[[2, 1]]
+        places = ends[0] + nodes @ (ends[1:] - ends[0])
+        cells.append(body.cells[:, matching(places, reference_nodes("hexahedron", order))])
+    cells = np.concatenate(cells)
+    return MeshedBody(body.points, cells, boundary("tetrahedron", order, cells))
+
+
+def two_solids(divisions=MATCHING, order=1, maps=(straight, straight), cell_type="hexahedron"):
     """Two boxes, mapped. Surfaces of ``upper`` are ``upper_face``, ``upper_end``, ``upper_low_x``,
     ``upper_high_x`` and so on by the parameters before they are mapped; of ``lower`` likewise.
     """
@@ -63,13 +80,15 @@ def two_solids(divisions=MATCHING, order=1, maps=(straight, straight)):
     for (name, span), counts, place in zip(spans.items(), divisions, maps, strict=True):
         limits = ((0.0, SIZE[0]), (0.0, SIZE[1]), span)
         ends = tuple(np.linspace(*limit, n + 1) for limit, n in zip(limits, counts, strict=True))
-        bodies[name] = mesh_lattice(Lattice(ends, straight), order)
+        body = mesh_lattice(Lattice(ends, straight), order)
+        bodies[name] = body if cell_type == "hexahedron" else in_tetrahedra(body, order)
         points.append(place(bodies[name].points))
         levels = {"face": (2, 0.0), "end": (2, sum(span))}
         for axis, letter in enumerate("xy"):
             levels |= {f"low_{letter}": (axis, 0.0), f"high_{letter}": (axis, SIZE[axis])}
         claims |= {f"{name}_{surface}": _claim(*level) for surface, level in levels.items()}
-    return replace(tagged_bodies(bodies, claims), points=np.concatenate(points))
+    tagged = replace(tagged_bodies(bodies, claims), cell_type=cell_type)
+    return replace(tagged, points=np.concatenate(points))
 
 
 def _claim(axis, value):

@@ -21,6 +21,7 @@ from .solids import COMM, SIZE, bent, gathered, skewed, straight, turned
 from .solids import two_solids as solids
 
 OTHER = ((3, 2, 2), (4, 3, 2))
+CELLS = ["hexahedron", "tetrahedron"]
 
 
 def raised(p):
@@ -29,8 +30,8 @@ def raised(p):
     return np.stack([x, y, z + 3e-3 * np.cos(60 * x) * np.cos(40 * y)], axis=-1)
 
 
-def faces(divisions=OTHER, order=1, maps=(straight, straight)):
-    return gathered(solids(divisions, order, maps))[1]
+def faces(divisions=OTHER, order=1, maps=(straight, straight), cell_type="hexahedron"):
+    return gathered(solids(divisions, order, maps, cell_type))[1]
 
 
 def moved(face, by):
@@ -38,15 +39,17 @@ def moved(face, by):
     return replace(face, nodes=face.nodes + np.array(by))
 
 
+@pytest.mark.parametrize("cell_type", CELLS)
 @pytest.mark.parametrize(("place", "order"), [(straight, 1), (bent, 2), (bent, 3), (turned, 3)])
-def test_facets(place, order):
+def test_facets(place, order, cell_type):
     """requirement: outward normals, areas, shared corners, the order of the mesh file."""
-    upper, lower = faces(OTHER, order, (place, place))
+    upper, lower = faces(OTHER, order, (place, place), cell_type)
+    per_cell = 1 if cell_type == "hexahedron" else 2
     area = SIZE[0] * SIZE[1] if place is not turned else np.pi / 4 * (0.09**2 - 0.05**2)
     for face, count, normal in ((upper, (3, 2), -1.0), (lower, (4, 3), 1.0)):
         every = np.arange(len(face.nodes))
-        assert len(every) == count[0] * count[1]
-        t = np.random.default_rng(0).uniform(size=(len(every), 2))
+        assert len(every) == per_cell * count[0] * count[1]
+        t = np.random.default_rng(0).uniform(size=(len(every), 2)) / per_cell
         np.testing.assert_allclose(face.normals(every, t), [[0, 0, normal]] * len(every), atol=1e-9)
         assert face.sizes.sum() == pytest.approx(area, rel=2e-4 if place is turned else 1e-12)
         places = face.corner_points.reshape(-1, 3)
@@ -56,14 +59,51 @@ def test_facets(place, order):
             assert np.ptp(places[numbers == number], axis=0).max() < 1e-12
 
 
-def test_tangents_are_derivatives():
-    upper, _ = faces(OTHER, 2, (raised, raised))
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_tangents_and_turning_are_derivatives(cell_type):
+    """requirement: of points and of the continuous normals, along both parameters."""
+    upper, _ = faces(OTHER, 2, (raised, raised), cell_type)
     rng = np.random.default_rng(1)
-    facet, t = np.arange(6), rng.uniform(0.1, 0.9, (6, 2))
+    facet, t = np.arange(6), rng.uniform(0.1, 0.4, (6, 2))
     for k in (0, 1):
         step = 1e-6 * np.eye(2)[k]
         slope = (upper.points(facet, t + step) - upper.points(facet, t - step)) / 2e-6
         np.testing.assert_allclose(upper.tangents(facet, t)[:, k], slope, atol=1e-9)
+        after, before = (upper.smooth_normals(facet, at)[0] for at in (t + step, t - step))
+        turning = upper.smooth_normals(facet, t)[1][:, k]
+        np.testing.assert_allclose(turning, (after - before) / 2e-6, atol=1e-8)
+
+
+@pytest.mark.parametrize(("order", "allowed"), [(1, 1e-9), (2, 0.8), (3, 0.8)])
+def test_normals_of_triangles_meet_along_their_edges(order, allowed):
+    """requirement: both facets of an edge have the same normal where they are plane; otherwise the
+    jump is a fraction of that of the facets' own normals, and none at the corners.
+    """
+    upper, _ = faces(OTHER, order, (raised, raised), "tetrahedron")
+    jumps, at_corners, own_jumps = (
+        _jumps(upper, normals, part)
+        for normals, part in (
+            (lambda *at: upper.smooth_normals(*at)[0], np.linspace(0.0, 1.0, 9)),
+            (lambda *at: upper.smooth_normals(*at)[0], np.array([0.0, 1.0])),
+            (upper.normals, np.linspace(0.0, 1.0, 9)),
+        )
+    )
+    assert own_jumps.max() > 1e-3
+    assert at_corners.max() < 1e-12
+    assert np.sqrt((jumps**2).mean()) < allowed * np.sqrt((own_jumps**2).mean())
+
+
+def _jumps(face, normals, part):
+    """Differences of normals of two facets along their common edges."""
+    places = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])  # of the corners, as of a lattice
+    found = {}
+    for facet, numbers in enumerate(face.corners):
+        for a, b in ((0, 1), (1, 2), (0, 2)):
+            a, b = (a, b) if numbers[a] < numbers[b] else (b, a)
+            t = places[a] + part[:, None] * (places[b] - places[a])
+            along = normals(np.full(len(t), facet), t)
+            found.setdefault((numbers[a], numbers[b]), []).append(along)
+    return np.array([first - pair[0] for pair in found.values() for first in pair[1:]])
 
 
 @pytest.mark.parametrize(
@@ -77,9 +117,10 @@ def test_tangents_are_derivatives():
         (((5, 4, 2), (2, 2, 2)), (bent, straight)),
     ],
 )
-def test_weights_integrate_over_the_face(divisions, maps):
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_weights_integrate_over_the_face(divisions, maps, cell_type):
     """requirement: areas; polynomials in space, across the facets of both sides."""
-    pairing = pair(*faces(divisions, 1, maps), Spatial(), 6)
+    pairing = pair(*faces(divisions, 1, maps, cell_type), Spatial(), 6)
     (x, y, _), w = pairing.points.T, pairing.weights
     a, b = SIZE
     if maps[0] is skewed:
@@ -171,11 +212,14 @@ def test_points_of_whole_facets():
     assert pairing.weights.sum() == pytest.approx(SIZE[0] * SIZE[1])
 
 
-def test_projection_on_a_curved_face():
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_projection_on_a_curved_face(cell_type):
     """requirement: closest points; the offset is along the normal, beyond the rim it is not."""
-    _, lower = faces(((3, 2, 2), (5, 4, 2)), 3, (raised, raised))
+    _, lower = faces(((3, 2, 2), (5, 4, 2)), 3, (raised, raised), cell_type)
     rng = np.random.default_rng(2)
     facet, t = rng.integers(20, size=60), rng.uniform(0.05, 0.95, (60, 2))
+    if cell_type == "tetrahedron":
+        t = np.where(t.sum(axis=1, keepdims=True) < 1, t, 1 - t)
     on = lower.points(facet, t)
     points = on + 2e-3 * lower.normals(facet, t)
     found, at, offset = project(lower, points)
@@ -188,16 +232,19 @@ def test_projection_on_a_curved_face():
     np.testing.assert_allclose(rim[1, :2], SIZE, atol=1e-12)
 
 
+@pytest.mark.parametrize("cell_type", CELLS)
 @pytest.mark.parametrize(("place", "order"), [(skewed, 1), (bent, 2)])
-def test_the_closest_point_of_a_rim(place, order):
+def test_the_closest_point_of_a_rim(place, order, cell_type):
     """requirement: beside the face it lies on the rim, nearer than any other point of it."""
-    _, lower = faces(((3, 2, 2), (3, 2, 2)), order, (place, place))
+    _, lower = faces(((3, 2, 2), (3, 2, 2)), order, (place, place), cell_type)
     middle = lower.nodes.mean(axis=(0, 1))
     angles = np.linspace(0, 2 * np.pi, 40)
     points = middle + 0.05 * np.column_stack([np.cos(angles), np.sin(angles), 0.1 + 0 * angles])
     _, _, offset = project(lower, points)
     steps = np.linspace(0, 1, 201)
     s, t = (v.ravel() for v in np.meshgrid(steps, steps))
+    if cell_type == "tetrahedron":
+        s, t = s[s + t <= 1], t[s + t <= 1]
     facet = np.repeat(np.arange(len(lower.nodes)), len(s))
     every = lower.points(facet, np.tile(np.column_stack([s, t]), (len(lower.nodes), 1)))
     distance = np.array([np.linalg.norm(every - p, axis=1).min() for p in points])
@@ -210,16 +257,17 @@ def test_the_closest_point_of_a_rim(place, order):
 @pytest.mark.parametrize(
     ("divisions", "maps"), [(OTHER, (straight, straight)), (((3, 2, 2),) * 2, (bent, bent))]
 )
-def test_pressure_basis(divisions, maps, degree):
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_pressure_basis(divisions, maps, degree, cell_type):
     """requirement: Ψ >= 0, sums to one, continuous, complete to its degree."""
-    pairing = pair(*faces(divisions, 1, maps), Spatial(), degree + 2)
+    pairing = pair(*faces(divisions, 1, maps, cell_type), Spatial(), degree + 2)
     basis = pressure_basis(pairing, degree)
     assert basis.min() >= 0.0
     np.testing.assert_allclose(basis.sum(axis=1), 1.0, rtol=1e-13)
     assert basis.shape[1] == (3 * degree + 1) * (2 * degree + 1)
     x, y, _ = pairing.points.T / SIZE[0]
     field = (x - 2 * y) ** degree
-    if maps[0] is straight:
+    if maps[0] is straight and cell_type == "hexahedron":
         field = field + (x * y) ** degree
     best = np.linalg.lstsq(basis, field, rcond=None)[0]
     np.testing.assert_allclose(basis @ best, field, atol=1e-11)
@@ -250,10 +298,11 @@ def test_pressure_is_continuous_whichever_way_facets_run():
         (((3, 2, 2),) * 2, 2, (bent, bent)),
     ],
 )
-def test_traces(divisions, order, maps, degree):
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_traces(divisions, order, maps, degree, cell_type):
     """requirement: E evaluates fields at the points; B = (u2 - u1)·n, open positive."""
     degree = max(degree, order)
-    bodies, (upper, lower) = gathered(solids(divisions, order, maps))
+    bodies, (upper, lower) = gathered(solids(divisions, order, maps, cell_type))
     pairing = pair(upper, lower, Spatial(), degree + 2)
     scalar, vector = lagrange_space(bodies.mesh, degree), lagrange_space(bodies.mesh, degree, 3)
     power = degree // order  # in the cells' own parameters the degree is higher

@@ -55,7 +55,7 @@ def test_nodes_are_numbered_as_gmsh_does(order):
 def test_facets_look_outward(order):
     """requirement: nodes of facets in gmsh's order, their normals outward."""
     nodes = reference_nodes("hexahedron", order)
-    for facet in facet_nodes(order):
+    for facet in facet_nodes("hexahedron", order):
         corners = nodes[facet[:4]]
         normal = np.cross(corners[1] - corners[0], corners[3] - corners[0])
         assert normal @ (corners.mean(axis=0) - 0.5) > 0

@@ -35,8 +35,8 @@ _CORNERS = {
 }
 """Corners of a facet in anticlockwise order."""
 _SIDES = {
-    "quadrilateral": ((0, 1, 0), (1, -1, 0), (0, 0, 1), (1, 0, -1)),
-    "triangle": ((0, 1, 0), (0, 0, 1), (1, -1, -1)),
+    "quadrilateral": np.array([(0, 1, 0), (1, -1, 0), (0, 0, 1), (1, 0, -1)], dtype=float),
+    "triangle": np.array([(0, 1, 0), (0, 0, 1), (1, -1, -1)], dtype=float),
 }
 """Distances ``a + b t_0 + c t_1`` from the sides of a facet, positive inside."""
 
@@ -98,8 +98,8 @@ def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.nda
     """
     first, second = _candidates(face_1, face_2)
     polygons, first = _outlines_in(face_1, face_2, first, second)
-    for a, b, c in _SIDES[face_1.kind]:
-        polygons = _cut(polygons, a + polygons.points @ np.array([b, c], dtype=float))
+    for side in range(len(_SIDES[face_1.kind])):
+        polygons = _cut(polygons, _heights(face_1.kind, polygons.points)[:, side])
     corners, of = _divided(_tidied(polygons), face_1.kind)
     return first[of], corners
 
@@ -134,8 +134,8 @@ def _outlines_in(
     facing = -face_1.middle_normals[first][:, None, None]
     opposed = np.abs(normals - facing).max(axis=(1, 2, 3), initial=0.0) < _TOLERANCE
     parallel = face_1.flat[first] & opposed
-    margin = np.where(parallel, 0.0, 0.5)[:, None]
-    near = np.all((t.min(axis=(1, 2)) < 1 + margin) & (t.max(axis=(1, 2)) > -margin), axis=1)
+    near = _heights(face_1.kind, t).max(axis=(1, 2)) > -np.where(parallel, 0.0, 0.5)[:, None]
+    near = near.all(axis=1)
     first, t, parallel = first[near], t[near], parallel[near]
     close = np.all((t > -1) & (t < 2), axis=-1)  # points farther away need no accuracy
     close[parallel] = False
@@ -172,6 +172,11 @@ def _opposite_within(face_1: Surface, facet: np.ndarray, points, normals, softne
 
     start = locate(points, slice(None))
     return opposite_parameters(points, normals, softness, face_1, *start, locate)[1]
+
+
+def _heights(kind: str, t: np.ndarray) -> np.ndarray:
+    """Distances of parameters (..., 2) from the sides of a facet, shape (..., n_sides)."""
+    return _SIDES[kind][:, 0] + t @ _SIDES[kind][:, 1:].T
 
 
 def _snapped(t: np.ndarray, kind: str) -> np.ndarray:

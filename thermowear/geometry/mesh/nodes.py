@@ -9,25 +9,38 @@ import numpy as np
 from ...lagrange import equispaced, matching, tabulated
 
 CORNERS = {"triangle": 3, "quadrilateral": 4}
-FACETS = {"triangle": "interval", "quadrilateral": "interval", "hexahedron": "quadrilateral"}
+FACETS = {
+    "triangle": "interval",
+    "quadrilateral": "interval",
+    "tetrahedron": "triangle",
+    "hexahedron": "quadrilateral",
+}
 """Facet type of each cell type."""
 _SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 _PLACES = {
     "interval": np.array([[0.0], [1.0]]),
     "triangle": np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
     "quadrilateral": _SQUARE,
+    "tetrahedron": np.vstack([np.zeros((1, 3)), np.eye(3)]),
     "hexahedron": np.vstack([np.insert(_SQUARE, 2, z, axis=1) for z in (0.0, 1.0)]),
 }
 _EDGES = {
     "interval": [(0, 1)],
     "triangle": [(0, 1), (1, 2), (2, 0)],
     "quadrilateral": [(0, 1), (1, 2), (2, 3), (3, 0)],
+    "tetrahedron": [(0, 1), (1, 2), (2, 0), (3, 0), (3, 2), (3, 1)],
     "hexahedron": [(0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3)]
     + [(2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7)],
 }
-_HEXAHEDRON_FACETS = np.array(
-    [(0, 3, 2, 1), (0, 1, 5, 4), (0, 4, 7, 3), (1, 2, 6, 5), (2, 3, 7, 6), (4, 5, 6, 7)]
-)
+_SPATIAL_FACETS = {
+    "tetrahedron": np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (3, 1, 2)]),
+    "hexahedron": np.array(
+        [(0, 3, 2, 1), (0, 1, 5, 4), (0, 4, 7, 3), (1, 2, 6, 5), (2, 3, 7, 6), (4, 5, 6, 7)]
+    ),
+}
+"""Corners of the facets of spatial cells, with outward normal by the right-hand rule."""
+_INNER = {"triangle": 3, "tetrahedron": 4}
+"""Order of a simplex less that of the simplex of its inner nodes; of other cells it is 2."""
 
 
 def reference_nodes(cell_type: str, order: int) -> np.ndarray:
@@ -41,9 +54,9 @@ def reference_nodes(cell_type: str, order: int) -> np.ndarray:
     steps = np.arange(1, order)[:, None] / order
     nodes = [corners]
     nodes += [corners[a] + steps * (corners[b] - corners[a]) for a, b in _EDGES[cell_type]]
-    if cell_type == "hexahedron":
-        s, t = _inner("quadrilateral", order).T[..., None]
-        nodes += [_on_facet(corners[facet], s, t) for facet in _HEXAHEDRON_FACETS]
+    if cell_type in _SPATIAL_FACETS:
+        inner = _inner(FACETS[cell_type], order)
+        nodes += [_on_facet(corners[facet], inner) for facet in _SPATIAL_FACETS[cell_type]]
     if cell_type != "interval":
         nodes.append(_inner(cell_type, order))
     return np.concatenate(nodes)
@@ -51,25 +64,25 @@ def reference_nodes(cell_type: str, order: int) -> np.ndarray:
 
 def _inner(cell_type: str, order: int) -> np.ndarray:
     """Nodes inside a cell: the nodes of a smaller cell."""
-    left = order - (3 if cell_type == "triangle" else 2)
+    left = order - _INNER.get(cell_type, 2)
     if left < 0:
         return np.empty((0, _PLACES[cell_type].shape[1]))
     return 1 / order + left / order * reference_nodes(cell_type, left)
 
 
-def _on_facet(corners: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Points of a facet of a hexahedron at parameters of shape (n, 1)."""
-    return corners[0] + s * (corners[1] - corners[0]) + t * (corners[3] - corners[0])
+def _on_facet(corners: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Points of a facet of a spatial cell at parameters (n, 2)."""
+    return corners[0] + t[:, :1] * (corners[1] - corners[0]) + t[:, 1:] * (corners[-1] - corners[0])
 
 
-def facet_nodes(order: int) -> np.ndarray:
-    """Nodes of each facet of a hexahedron, with outward normal by the right-hand rule.
+def facet_nodes(cell_type: str, order: int) -> np.ndarray:
+    """Nodes of each facet of a spatial cell, with outward normal by the right-hand rule.
 
-    Numbered as gmsh quadrilaterals, shape (6, (order + 1)²).
+    Numbered as gmsh triangles or quadrilaterals, shape (n_facets, nodes_per_facet).
     """
-    nodes, corners = reference_nodes("hexahedron", order), _PLACES["hexahedron"]
-    s, t = reference_nodes("quadrilateral", order).T[..., None]
-    facets = [_on_facet(corners[facet], s, t) for facet in _HEXAHEDRON_FACETS]
+    nodes, corners = reference_nodes(cell_type, order), _PLACES[cell_type]
+    t = reference_nodes(FACETS[cell_type], order)
+    facets = [_on_facet(corners[facet], t) for facet in _SPATIAL_FACETS[cell_type]]
     return matching(np.array(facets), nodes)
 
 
@@ -90,13 +103,13 @@ def edge_nodes(cell_type: str, order: int) -> np.ndarray:
 def boundary(cell_type: str, order: int, cells: np.ndarray) -> np.ndarray:
     """Nodes of the edges or facets that belong to a single cell, in gmsh's order.
 
-    Shape (n_edges, order + 1) of plane cells, (n_facets, (order + 1)²) of hexahedra.
+    Shape (n_edges, order + 1) of plane cells, (n_facets, nodes_per_facet) of spatial ones.
     """
-    in_space = cell_type == "hexahedron"
-    local = facet_nodes(order) if in_space else edge_nodes(cell_type, order)
+    in_space = cell_type in _SPATIAL_FACETS
+    local = facet_nodes(cell_type, order) if in_space else edge_nodes(cell_type, order)
     every = cells[:, local].reshape(-1, local.shape[1])
     _, index, count = np.unique(
-        np.sort(every[:, : 4 if in_space else 2], axis=1),
+        np.sort(every[:, : len(_PLACES[FACETS[cell_type]])], axis=1),
         axis=0,
         return_inverse=True,
         return_counts=True,

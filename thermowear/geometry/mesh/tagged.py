@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...lagrange import order_of
 from .nodes import FACETS, reference_nodes, shape_functions, slopes
 
 _PLACES = {2: 7, 3: 4}
@@ -29,7 +29,8 @@ class TaggedMesh:
     ----------
     points : ndarray, shape (n_points, gdim) [m]
     cell_type : str
-        ``"quadrilateral"``, ``"triangle"`` or ``"hexahedron"``; the same for all cells.
+        ``"quadrilateral"`` or ``"triangle"``, in space ``"hexahedron"`` or ``"tetrahedron"``; the
+        same for all cells.
     cells : ndarray of int64, shape (n_cells, nodes_per_cell)
         Nodes, of any order: curved cells have nodes between their corners.
     cell_tags : ndarray of int32, shape (n_cells,)
@@ -54,14 +55,13 @@ class TaggedMesh:
 
     @property
     def facet_type(self) -> str:
-        """``"interval"`` or ``"quadrilateral"``."""
+        """``"interval"``, in space ``"quadrilateral"`` or ``"triangle"``."""
         return FACETS[self.cell_type]
 
     @property
     def order(self) -> int:
         """Geometric order of the cells."""
-        nodes = self.facets.shape[1]
-        return (math.isqrt(nodes) if self.facet_type == "quadrilateral" else nodes) - 1
+        return order_of(self.facet_type, self.facets.shape[1])
 
     def checksum(self) -> str:
         """SHA-256 of the mesh, in hexadecimal digits."""
@@ -175,7 +175,8 @@ def quality(mesh: TaggedMesh, parts: tuple[str, ...]) -> float:
 def _grid(cell_type: str, along: int, dim: int) -> np.ndarray:
     """Reference points (n, dim) on a grid with `along` points on each side of a cell."""
     places = np.array(list(itertools.product(np.linspace(0.0, 1.0, along), repeat=dim)))
-    return places[places.sum(axis=1) <= 1.0 + 1e-9] if cell_type == "triangle" else places
+    simplex = cell_type in ("triangle", "tetrahedron")
+    return places[places.sum(axis=1) <= 1.0 + 1e-9] if simplex else places
 
 
 def _determinants(matrices: np.ndarray) -> np.ndarray:

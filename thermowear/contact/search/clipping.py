@@ -164,14 +164,13 @@ def _outlines(face: Surface) -> tuple[np.ndarray, ...]:
 
 def _opposite_within(face_1: Surface, facet: np.ndarray, points, normals, softness) -> np.ndarray:
     """Parameters, on facets extended beyond their edges, opposite to points, shape (n, 2)."""
+    start = _on_extended(face_1, points, facet, face_1.flattened.parameters(facet, points))
+    return opposite_parameters(points, normals, softness, face_1, *start, _on_extended)[1]
 
-    def locate(points: np.ndarray, now: np.ndarray | slice) -> tuple[np.ndarray, np.ndarray]:
-        on = facet[now]
-        start = face_1.flattened.parameters(on, points)
-        return on, within(face_1, points, on, start, bounds=(-np.inf, np.inf))
 
-    start = locate(points, slice(None))
-    return opposite_parameters(points, normals, softness, face_1, *start, locate)[1]
+def _on_extended(face: Surface, points, facet: np.ndarray, t) -> tuple[np.ndarray, np.ndarray]:
+    """Closest points on given facets extended beyond their edges, from parameters nearby."""
+    return facet, within(face, points, facet, t, bounds=(-np.inf, np.inf))
 
 
 def _heights(kind: str, t: np.ndarray) -> np.ndarray:

@@ -28,7 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .face import Face
-from .projection import overhang, project
+from .projection import nearest, overhang, project
 from .smooth_normals import across
 from .surface import Surface
 
@@ -109,15 +109,11 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     -------
     Opposite
     """
-
-    def locate(points: np.ndarray, _) -> tuple[np.ndarray, np.ndarray]:
-        return project(other, points)[:2]
-
     points, outward = face.points(facet, t), face.smooth_normals(facet, t)[0]
     closest, at, offset = project(other, points)
     overhangs = overhang(other, closest, at, offset)
     facet, t, line = opposite_parameters(
-        points, outward, face.softness_at(facet), other, closest, at, locate
+        points, outward, face.softness_at(facet), other, closest, at, nearest
     )
     return Opposite(facet, t, *line, overhangs)
 
@@ -129,7 +125,7 @@ def opposite_parameters(
     other: Face | Surface,
     facet: np.ndarray,
     t: np.ndarray,
-    locate: Callable[[np.ndarray, np.ndarray | slice], tuple[np.ndarray, np.ndarray]],
+    locate: Callable,
 ) -> tuple[np.ndarray, np.ndarray, Line]:
     """Facets and parameters of a face opposite to points of a body, and the lines between them.
 
@@ -148,8 +144,8 @@ def opposite_parameters(
     facet, t : ndarray
         Closest points on it.
     locate : callable
-        Closest facets and parameters on the other face, from positions (m, gdim) and the indices
-        of their points.
+        Closest facets and parameters on the other face, from that face, positions (m, gdim), and
+        facets and parameters nearby.
     """
     facet, t = facet.copy(), t.copy()
     opposite_points = other.points(facet, t)
@@ -157,7 +153,7 @@ def opposite_parameters(
     for _ in range(_MAX_ITERATIONS):
         now = slice(None) if len(moving) == len(points) else moving
         line = _line(points[now], outward[now], softness[now], other, facet[now], t[now])
-        facet[now], t[now] = locate(points[now] + line[1], now)
+        facet[now], t[now] = locate(other, points[now] + line[1], facet[now], t[now])
         before, opposite_points[now] = opposite_points[now].copy(), other.points(facet[now], t[now])
         change = np.linalg.norm(opposite_points[now] - before, axis=1)
         moving = moving[change > _TOLERANCE * other.extent]

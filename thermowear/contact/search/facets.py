@@ -91,11 +91,18 @@ class FacetSet(ABC):
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, gdim) [m]."""
-        return np.einsum("nk,nki->ni", self.shape_functions(t)[0], self.nodes[facet])
+        return (self.shape_functions(t)[0][:, None] @ self.nodes[facet])[:, 0]
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along the parameters, shape (n, dim, gdim) [m]."""
-        return np.einsum("dnk,nki->ndi", self.shape_functions(t, 1)[1:], self.nodes[facet])
+        return self.shape_functions(t, 1)[1:].swapaxes(0, 1) @ self.nodes[facet]
+
+    def points_and_tangents(
+        self, facet: np.ndarray, t: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Results of `points` and `tangents`."""
+        both = self.shape_functions(t, 1).swapaxes(0, 1) @ self.nodes[facet]
+        return both[:, 0], both[:, 1:]
 
     def shape_functions(self, t: np.ndarray, derivatives: int = 0) -> np.ndarray:
         """Lagrange polynomials of the nodes and their derivatives, see `lagrange.on_lattice`."""
@@ -182,6 +189,11 @@ class FacetSet(ABC):
             return t
         beyond = np.maximum(t.sum(axis=-1, keepdims=True) - 1.0, 0.0) / 2
         return np.clip(t - beyond, 0.0, 1.0)
+
+    def at_edge(self, t: np.ndarray) -> np.ndarray:
+        """True for parameters (n, dim) on the edge of a facet."""
+        outside = np.any((t <= 0.0) | (t >= 1.0), axis=1)
+        return outside | (t.sum(axis=1) >= 1.0) if self.kind == "triangle" else outside
 
     @property
     def corner_points(self) -> np.ndarray:

@@ -38,6 +38,21 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
     return facet, t, face.points(facet, t) - points
 
 
+def nearest(
+    face: Face | Surface, points: np.ndarray, facet: np.ndarray, t: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Closest facets and parameters to points (n, gdim) that have moved from places nearby.
+
+    Points whose closest one on the given facet lies inside it are not sought elsewhere.
+    """
+    facet, start = facet.copy(), t.reshape(len(points), -1)
+    place = _inside(face, points, facet, start)
+    beyond = np.flatnonzero(face.at_edge(place))
+    if len(beyond):
+        facet[beyond], place[beyond] = _closest(face, points[beyond])
+    return facet, place.reshape(t.shape)
+
+
 def ray_intersections(
     face: Face | Surface, points: np.ndarray, directions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -147,7 +162,8 @@ def within(
     for _ in range(_MAX_NEWTON_STEPS):
         now, on = s[moving], facet[moving]
         t = origin + now @ axes
-        offset, tangents = face.points(on, t) - points[moving], axes @ face.tangents(on, t)
+        places, tangents = face.points_and_tangents(on, t)
+        offset, tangents = places - points[moving], axes @ tangents
         slope = np.einsum("nki,ni->nk", tangents, offset)
         held = ((now <= bounds[0]) & (slope > 0)) | ((now >= bounds[1]) & (slope < 0))
         tangents = np.where(held[:, :, None], 0.0, tangents)

@@ -1,0 +1,158 @@
+"""Conjugate gradients with p-multigrid, for bodies in space too large to be factorised.
+
+Two levels of degree: the elements of the problem and linear ones on the same mesh, for which
+smoothed aggregation (GAMG) continues with the rigid-body motions, or constants, as near-nullspace.
+The smoother is a Chebyshev polynomial of the point-block Jacobi method. Iterations hardly grow with
+the number of unknowns.
+"""
+
+from __future__ import annotations
+
+from petsc4py import PETSc
+
+import numpy as np
+import scipy.sparse as sp
+from dolfinx import fem
+from dolfinx.fem.petsc import interpolation_matrix
+
+from ..errors import ComputationError
+from .field import owned
+
+RELATIVE_TOLERANCE = 1e-9
+"""Reduction of the residual at which a solution is accepted."""
+_MAX_ITERATIONS = 500
+_SMOOTHING_STEPS = 4
+_OPTIONS = {
+    "mg_levels_ksp_type": "chebyshev",
+    "mg_levels_ksp_max_it": _SMOOTHING_STEPS,
+    "mg_levels_ksp_norm_type": "none",
+    "mg_levels_pc_type": "pbjacobi",
+    "mg_coarse_ksp_type": "preonly",
+    "mg_coarse_pc_type": "gamg",
+    "mg_coarse_pc_gamg_threshold": 0.01,
+    "mg_coarse_mg_levels_ksp_type": "chebyshev",
+    "mg_coarse_mg_levels_pc_type": "pbjacobi",
+}
+"""Options of PETSc; measured as the best of several on bodies of 6e4 to 1e6 unknowns."""
+
+
+class MultigridSolver:
+    """Iterative solver of a symmetric positive definite problem; same interface as `DirectSolver`.
+
+    Parameters
+    ----------
+    matrix : petsc4py.PETSc.Mat
+        Assembled, with the rows and columns of fixed values eliminated.
+    coarse : petsc4py.PETSc.Mat
+        The same problem with linear elements on the same mesh.
+    space, coarse_space : dolfinx.fem.FunctionSpace
+        Their spaces.
+    fixed, coarse_fixed : ndarray of bool
+        Masks of their fixed values among the owned ones.
+
+    Raises
+    ------
+    ComputationError
+        If the iteration does not converge.
+    """
+
+    negative_pivots = 0
+
+    def __init__(
+        self,
+        matrix: PETSc.Mat,
+        coarse: PETSc.Mat,
+        space: fem.FunctionSpace,
+        coarse_space: fem.FunctionSpace,
+        fixed: np.ndarray,
+        coarse_fixed: np.ndarray,
+    ):
+        self.iterations: list[int] = []
+        self._matrix, self._coarse = matrix, coarse
+        for level in (matrix, coarse):
+            level.setBlockSize(space.dofmap.index_map_bs)
+            level.setOption(PETSc.Mat.Option.SPD, True)
+        coarse.setNearNullSpace(_near_nullspace(coarse_space, coarse))
+        self._solver = _conjugate_gradients(matrix)
+        multigrid = self._solver.getPC()
+        multigrid.setMGInterpolation(1, _prolongation(coarse_space, space, coarse_fixed, fixed))
+        multigrid.getMGCoarseSolve().setOperators(coarse)
+        options = PETSc.Options(self._solver.getOptionsPrefix())
+        for name, value in _OPTIONS.items():
+            options[name] = value
+        self.repeat()  # which reads the options of all levels
+        for name in _OPTIONS:
+            options.delValue(name)
+
+    def repeat(self) -> None:
+        """Set up the levels, again after a change of values with unchanged sparsity pattern."""
+        self._solver.setOperators(self._matrix)
+        self._solver.setUp()
+
+    def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
+        """Solve for one or several right-hand sides; see `DirectSolver.solve`."""
+        columns = loads if isinstance(loads, np.ndarray) else loads.toarray()
+        if columns.ndim == 1:
+            return self._solved(columns)
+        result = np.empty(columns.shape, order="F")
+        for k, column in enumerate(columns.T):
+            result[:, k] = self._solved(column)
+        return result
+
+    solve_transposed = solve
+
+    def _solved(self, load: np.ndarray) -> np.ndarray:
+        right, x = self._matrix.createVecs()
+        right.setArray(load)
+        self._solver.solve(right, x)
+        reason, count = self._solver.getConvergedReason(), self._solver.getIterationNumber()
+        if reason < 0:
+            raise ComputationError(
+                f"the multigrid solver has not converged in {count} iterations (PETSc reason "
+                f"{reason}): a part of a body is not supported, or cells are nearly flat; "
+                "solver = direct may tell which"
+            )
+        self.iterations.append(count)
+        return x.getArray().copy()
+
+
+def _conjugate_gradients(matrix: PETSc.Mat) -> PETSc.KSP:
+    """Conjugate gradients with two levels of multigrid, whose operators are not yet set."""
+    solver = PETSc.KSP().create(matrix.comm)
+    solver.setOptionsPrefix("multigrid_")
+    solver.setType(PETSc.KSP.Type.CG)
+    solver.setOperators(matrix)
+    solver.setTolerances(rtol=RELATIVE_TOLERANCE, atol=0.0, max_it=_MAX_ITERATIONS)
+    solver.setNormType(PETSc.KSP.NormType.NORM_UNPRECONDITIONED)
+    multigrid = solver.getPC()
+    multigrid.setType(PETSc.PC.Type.MG)
+    multigrid.setMGLevels(2)
+    return solver
+
+
+def _prolongation(
+    coarse_space: fem.FunctionSpace,
+    space: fem.FunctionSpace,
+    coarse_fixed: np.ndarray,
+    fixed: np.ndarray,
+) -> PETSc.Mat:
+    """Interpolation of linear elements in the space, zero from and to fixed values."""
+    result = interpolation_matrix(coarse_space, space)
+    result.assemble()
+    right, left = result.createVecs()
+    right.setArray((~coarse_fixed).astype(float))
+    left.setArray((~fixed).astype(float))
+    result.diagonalScale(left, right)
+    return result
+
+
+def _near_nullspace(space: fem.FunctionSpace, matrix: PETSc.Mat) -> PETSc.NullSpace:
+    """Rigid motions of a vector space, constants of a scalar one."""
+    if space.dofmap.index_map_bs == 1:
+        return PETSc.NullSpace().create(constant=True, comm=matrix.comm)
+    places = matrix.createVecRight()
+    dim = space.mesh.geometry.dim
+    nodes = space.tabulate_dof_coordinates()[: owned(space) // dim, :dim]
+    places.setArray(nodes.ravel())
+    places.setBlockSize(dim)
+    return PETSc.NullSpace().createRigidBody(places)

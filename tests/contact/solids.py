@@ -17,7 +17,7 @@ from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.geometry.meshing.cells import Lattice, mesh_lattice, tagged_bodies
+from thermowear.geometry.meshing.cells import mesh_lattice, tagged_bodies
 from thermowear.laws.motions import translation
 
 COMM = MPI.COMM_WORLD
@@ -63,7 +63,7 @@ def two_solids(divisions=MATCHING, order=1, maps=(straight, straight)):
     for (name, span), counts, place in zip(spans.items(), divisions, maps, strict=True):
         limits = ((0.0, SIZE[0]), (0.0, SIZE[1]), span)
         ends = tuple(np.linspace(*limit, n + 1) for limit, n in zip(limits, counts, strict=True))
-        bodies[name] = mesh_lattice(Lattice(ends, straight), order)
+        bodies[name] = mesh_lattice(ends, order, straight)
         points.append(place(bodies[name].points))
         levels = {"face": (2, 0.0), "end": (2, sum(span))}
         for axis, letter in enumerate("xy"):

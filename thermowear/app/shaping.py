@@ -12,8 +12,7 @@ from ..case import Case, as_plain
 from ..case.tables.plane_geometry import PlaneGeometry
 from ..errors import CaseError
 from ..geometry.cad.design import CARRIERS, Design, add_table, write_table
-from ..geometry.cad.step_prism import write_prism
-from ..geometry.cad.step_section import write_section
+from ..geometry.cad.step import write_prism, write_section
 from ..geometry.cad.worn_body import only_body, write_design_mesh
 
 _FORMATS = (".csv", *CARRIERS)

@@ -12,10 +12,18 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
-import scipy
 
 from ...lagrange import gauss
-from ..mesh.nodes import FACETS, boundary, edge_nodes, reference_nodes, shape_functions, slopes
+from ..mesh.nodes import (
+    FACETS,
+    boundary,
+    components,
+    edge_nodes,
+    meeting,
+    reference_nodes,
+    shape_functions,
+    slopes,
+)
 from ..mesh.tagged import TaggedMesh
 from .moved import Extension, MovableFace, cells_of, nodes_at
 
@@ -53,22 +61,20 @@ class Patches:
         self.facets = boundary(mesh.cell_type, mesh.order, cells)
         on_face = np.logical_and.reduce(np.isin(self.facets, face), axis=1)
         self._edges = self.facets[:, edge_nodes("quadrilateral", mesh.order)]
-        meeting = _meeting(self._edges)  # edge number: 4 facet + local edge
-        one, other = np.moveaxis(self._normals(meeting), 1, 0)
+        # edge number: 4 facet + local edge
+        pairs = meeting(self._edges[..., :2].reshape(-1, 2))
+        one, other = np.moveaxis(self._normals(pairs), 1, 0)
         smooth = np.einsum("ei,ei->e", one, other) > _SMOOTH
-        facet = meeting // 4
+        facet = pairs // 4
         inside = ~on_face[facet].any(axis=1)
-        links = facet[inside & smooth]
-        count = len(self.facets)
-        graph = scipy.sparse.coo_matrix((np.ones(len(links)), links.T), shape=(count, count))
-        patch = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+        patch = components(facet[inside & smooth], len(self.facets))
         rim = on_face[facet[:, 0]] != on_face[facet[:, 1]]
-        beside = np.where(on_face[facet[:, 0]], *meeting.T[::-1])
+        beside = np.where(on_face[facet[:, 0]], *pairs.T[::-1])
         self._sharp, self._level = beside[rim & ~smooth], beside[rim & smooth]
         slides = np.isin(patch, patch[self._sharp // 4]) & ~on_face
         between = inside & (patch[facet[:, 0]] != patch[facet[:, 1]]) & slides[facet].all(axis=1)
         self.sliding = self.facets[slides]
-        self.seams = self._edges.reshape(-1, mesh.order + 1)[meeting[between, 0]]
+        self.seams = self._edges.reshape(-1, mesh.order + 1)[pairs[between, 0]]
         self.still = np.unique(self.facets[~slides & ~on_face])
 
     def inward(self) -> tuple[np.ndarray, np.ndarray]:
@@ -101,15 +107,6 @@ class Patches:
         tangents = np.einsum("...dk,...ki->d...i", derivatives, self._points[self.facets[facet]])
         normals = np.cross(*tangents)
         return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
-
-
-def _meeting(edges: np.ndarray) -> np.ndarray:
-    """Pairs of edge numbers that are the same edge of two facets, shape (n, 2)."""
-    ends = np.sort(edges[..., :2].reshape(-1, 2), axis=1)
-    _, number, count = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
-    number = number.ravel()
-    order = np.argsort(number, kind="stable")
-    return order[count[number[order]] == 2].reshape(-1, 2)
 
 
 class MovableSolid(MovableFace):

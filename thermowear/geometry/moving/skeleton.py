@@ -11,15 +11,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from ...lagrange import lattice, on_lattice
-from ..mesh.nodes import boundary
 from ..mesh.tagged import TaggedMesh
-
-_CORNER = np.cos(np.radians(20.0))
-"""Cosine of the largest turn of a smooth line; sharper turns are corners."""
+from .outline import COMPLEX, CORNER, outline_edges
 
 Label = tuple[int, tuple[int, ...], bool]
 """Tag of the surface or 0, tags of the adjacent parts, True if it is the worn face."""
@@ -93,10 +91,8 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
         Nodes of its worn face in order along it.
     """
     edges, beside = _edges(mesh, mesh.tags_of(parts))
-    corners = np.sort(mesh.facets[:, :2], axis=1)
-    surfaces = {
-        (int(a), int(b)): int(tag) for (a, b), tag in zip(corners, mesh.facet_tags, strict=True)
-    }
+    corners = map(tuple, np.sort(mesh.facets[:, :2], axis=1).tolist())
+    surfaces = dict(zip(corners, mesh.facet_tags.tolist(), strict=True))
     on_face = set(face.tolist())
     labels: dict[tuple[int, int], Label] = {}
     for key, edge in edges.items():
@@ -110,8 +106,8 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
     lines, left = [], set(edges)
     while left:
         # closed lines without split points come last
-        key = next((k for k in edges if k in left and not cuts.isdisjoint(k)), None)
-        key = next(k for k in edges if k in left) if key is None else key
+        waiting = [k for k in edges if k in left]
+        key = next((k for k in waiting if not cuts.isdisjoint(k)), waiting[0])
         chain = _chain(key, edges, at, cuts, left)
         first = min(chain[0][[0, -1]]), max(chain[0][[0, -1]])
         forward = chain[0][0] == edges[first][0]
@@ -141,10 +137,10 @@ def _edges(mesh: TaggedMesh, tags: list[int]):
     edges: dict[tuple[int, int], np.ndarray] = {}
     beside: dict[tuple[int, int], dict[int, bool]] = defaultdict(dict)
     for tag in tags:
-        for edge in boundary(mesh.cell_type, mesh.order, mesh.cells[mesh.cell_tags == tag]):
-            key = (int(min(edge[:2])), int(max(edge[:2])))
-            edges.setdefault(key, np.concatenate([edge[:1], edge[2:], edge[1:2]]))
-            beside[key][tag] = bool(edges[key][0] == edge[0])
+        for edge in outline_edges(mesh, mesh.cells[mesh.cell_tags == tag]):
+            first, last = sorted(edge[[0, -1]].tolist())
+            kept = edges.setdefault((first, last), edge)
+            beside[first, last][tag] = bool(kept[0] == edge[0])
     return edges, beside
 
 
@@ -154,12 +150,9 @@ def _is_cut(points: np.ndarray, point: int, keys, edges, labels) -> bool:
         return True
     if labels[keys[0]][2]:
         return False
-    ways = []
-    for key in keys:
-        edge = edges[key] if edges[key][0] == point else edges[key][::-1]
-        way = points[edge[1]] - points[point]
-        ways.append(way / np.linalg.norm(way))
-    return bool(-ways[0] @ ways[1] < _CORNER)
+    ends = [edges[key][1 if edges[key][0] == point else -2] for key in keys]
+    one, other = (points[ends] - points[point]) @ COMPLEX
+    return bool(abs(np.angle(-other / one)) > CORNER)
 
 
 def even(lines: list[OutlinePiece]) -> list[np.ndarray]:
@@ -170,14 +163,7 @@ def even(lines: list[OutlinePiece]) -> list[np.ndarray]:
         limits = _limits(lines, lengths)
         if all(np.all(a <= b) for a, b in zip(lengths, limits, strict=True)):
             break
-        spans = [
-            [
-                part
-                for span, far in zip(pairs, long > most, strict=True)
-                for part in _parts(span, far)
-            ]
-            for pairs, long, most in zip(spans, lengths, limits, strict=True)
-        ]
+        spans = [_halved(*of_line) for of_line in zip(spans, lengths, limits, strict=True)]
     return [np.array([*(u for span in pairs for u in span[:2]), pairs[-1][2]]) for pairs in spans]
 
 
@@ -193,12 +179,13 @@ def _pairs(lengths: np.ndarray) -> list[Span]:
     return found
 
 
-def _parts(span: Span, divided: np.bool) -> list[Span]:
-    """Pair, or its two halves as pairs."""
-    start, middle, end = span
-    if not divided:
-        return [span]
-    return [(a, (a + b) / 2, b) for a, b in ((start, middle), (middle, end))]
+def _halved(spans: list[Span], lengths: np.ndarray, limits: np.ndarray) -> list[Span]:
+    """Pairs of a line, with the halves of those beyond the limits as pairs."""
+    found = []
+    for (start, middle, end), far in zip(spans, lengths > limits, strict=True):
+        ends = (start, middle, end) if far else (start, end)
+        found += [(a, (a + b) / 2, b) for a, b in pairwise(ends)]
+    return found
 
 
 def _limits(lines: list[OutlinePiece], lengths: list[np.ndarray]) -> list[np.ndarray]:

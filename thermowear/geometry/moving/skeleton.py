@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
 from ...lagrange import lattice, on_lattice
+from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh
 from .outline import COMPLEX, CORNER, outline_edges
 
@@ -25,9 +25,6 @@ _UNEVEN = 1.6
 """Largest length ratio of the two edges of a pair."""
 _GROWTH = 4.0
 """Largest length ratio of neighbouring pairs."""
-
-Span = tuple[float, float, float]
-"""Start, middle and end of a pair, as edge numbers and fractions."""
 
 
 @dataclass(frozen=True)
@@ -157,57 +154,43 @@ def _is_cut(points: np.ndarray, point: int, keys, edges, labels) -> bool:
 
 def even(lines: list[OutlinePiece]) -> list[np.ndarray]:
     """Edge ends of the new division of each line, as numbers and fractions of its edges."""
-    spans = [_pairs(_sizes(line)) for line in lines]
+    chords = [chord_lengths(np.vstack([line.edges[:, 0], line.edges[-1:, -1]])) for line in lines]
+    pairs = [_paired(np.diff(chord)) for chord in chords]
     while True:
-        lengths = [_lengths(line, pairs) for line, pairs in zip(lines, spans, strict=True)]
-        limits = _limits(lines, lengths)
-        if all(np.all(a <= b) for a, b in zip(lengths, limits, strict=True)):
-            break
-        spans = [_halved(*of_line) for of_line in zip(spans, lengths, limits, strict=True)]
-    return [np.array([*(u for span in pairs for u in span[:2]), pairs[-1][2]]) for pairs in spans]
+        # with uniform chord length within each edge
+        lengths = [
+            np.diff(np.interp(ends, np.arange(len(chord)), chord))
+            for ends, chord in zip(pairs, chords, strict=True)
+        ]
+        far = [a > b for a, b in zip(lengths, _limits(lines, lengths), strict=True)]
+        if not any(map(np.any, far)):
+            return [_halved(ends, ...) for ends in pairs]
+        pairs = list(map(_halved, pairs, far))
 
 
-def _pairs(lengths: np.ndarray) -> list[Span]:
-    """Pairs of neighbours of similar length, and halves of the other edges."""
-    found: list[Span] = []
-    k = 0
-    while k < len(lengths):
+def _paired(lengths: np.ndarray) -> np.ndarray:
+    """Ends of pairs of neighbours of similar length, and of single edges, by numbers of edges."""
+    ends = [0]
+    while ends[-1] < len(lengths):
+        k = ends[-1]
         short, long = min(lengths[k : k + 2]), max(lengths[k : k + 2])
-        step = 2 if k + 1 < len(lengths) and long <= _UNEVEN * short else 1
-        found.append((k, k + step / 2, k + step))
-        k += step
-    return found
+        ends.append(k + (2 if k + 1 < len(lengths) and long <= _UNEVEN * short else 1))
+    return np.array(ends, dtype=float)
 
 
-def _halved(spans: list[Span], lengths: np.ndarray, limits: np.ndarray) -> list[Span]:
-    """Pairs of a line, with the halves of those beyond the limits as pairs."""
-    found = []
-    for (start, middle, end), far in zip(spans, lengths > limits, strict=True):
-        ends = (start, middle, end) if far else (start, end)
-        found += [(a, (a + b) / 2, b) for a, b in pairwise(ends)]
-    return found
+def _halved(ends: np.ndarray, which) -> np.ndarray:
+    """Ends of pairs, some of which are divided into halves."""
+    return np.sort(np.append(ends, ((ends[:-1] + ends[1:]) / 2)[which]))
 
 
 def _limits(lines: list[OutlinePiece], lengths: list[np.ndarray]) -> list[np.ndarray]:
     """Largest length of the pairs of each line, given by their neighbours."""
-    at = defaultdict(list)
+    at: dict[int, float] = {}
     for line, own in zip(lines, lengths, strict=True):
         for end, length in zip(line.ends, own[[0, -1]], strict=True):
-            at[end].append(length)
+            at[end] = min(length, at.get(end, np.inf))
     found = []
     for line, own in zip(lines, lengths, strict=True):
-        around = np.concatenate([[min(at[line.ends[0]])], own, [min(at[line.ends[1]])]])
+        around = np.concatenate([[at[line.ends[0]]], own, [at[line.ends[1]]]])
         found.append(_GROWTH * np.minimum(around[:-2], around[2:]))
     return found
-
-
-def _sizes(line: OutlinePiece) -> np.ndarray:
-    return np.linalg.norm(line.edges[:, -1] - line.edges[:, 0], axis=1)
-
-
-def _lengths(line: OutlinePiece, spans: list[Span]) -> np.ndarray:
-    """Lengths of pairs, with uniform chord length within each edge [m]."""
-    so_far = np.concatenate([[0.0], np.cumsum(_sizes(line))])
-    start, _, end = np.array(spans).T
-    numbers = np.arange(len(so_far))
-    return np.interp(end, numbers, so_far) - np.interp(start, numbers, so_far)

@@ -89,7 +89,7 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
     """
     edges, beside = _edges(mesh, mesh.tags_of(parts))
     corners = map(tuple, np.sort(mesh.facets[:, :2], axis=1).tolist())
-    surfaces = dict(zip(corners, mesh.facet_tags.tolist(), strict=True))
+    surfaces: dict[tuple[int, ...], int] = dict(zip(corners, mesh.facet_tags.tolist(), strict=True))
     on_face = set(face.tolist())
     labels: dict[tuple[int, int], Label] = {}
     for key, edge in edges.items():

@@ -105,11 +105,11 @@ def read_isolated(path: Path) -> MeshContents:
         If it is malformed, refers to other files, or exceeds the limits of memory or time.
     """
     memory = _MEMORY + _PER_BYTE * path.stat().st_size
-    command = [sys.executable, "-P", _READER, path.resolve(), path.suffix.lower(), str(memory)]
+    command = [sys.executable, "-P", str(_READER), str(path.resolve())]
     single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     try:
         done = subprocess.run(
-            command,
+            [*command, path.suffix.lower(), str(memory)],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=_SECONDS,

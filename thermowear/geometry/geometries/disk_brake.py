@@ -104,15 +104,8 @@ class DiskBrake(PadsOnDisk, Stacked):
     @keyed
     def surfaces(self) -> tuple[str, ...]:
         disk = named("disk", "face", "middle", "outside", "inside")
-        rest = () if self.covers_disk else ("disk_rest",)
+        rest = () if self.covers else ("disk_rest",)
         return *named("pad", "face", "back", "inside", "outside"), *disk, *rest
-
-    @property
-    def covers_disk(self) -> bool:
-        """True if the pads are as wide as the disk, so that no free ring of its face remains."""
-        return math.isclose(
-            self.pad_inner_radius, self.disk_inner_radius, rel_tol=SAME
-        ) and math.isclose(self.pad_outer_radius, self.disk_outer_radius, rel_tol=SAME)
 
     @property
     def upper(self) -> Rectangle:

@@ -223,12 +223,7 @@ def _linear(ends, s):
 def _ring_block(inner: np.ndarray, join: bool) -> tuple[np.ndarray, np.ndarray]:
     """Cells of a block of a ring in (s, t), and t at its element ends on the outside.
 
-    Parameters
-    ----------
-    inner : ndarray
-        t at the element ends on the inside.
-    join : bool
-        True if three elements are merged into one.
+    Of those on the inside, at t = `inner`, three are merged into one for `join`.
     """
     n = len(inner) - 1
     triples = n // 3 if join else 0

@@ -88,8 +88,8 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
         Nodes of its worn face in order along it.
     """
     edges, beside = _edges(mesh, mesh.tags_of(parts))
-    corners = map(tuple, np.sort(mesh.facets[:, :2], axis=1).tolist())
-    surfaces: dict[tuple[int, ...], int] = dict(zip(corners, mesh.facet_tags.tolist(), strict=True))
+    corners = (tuple(map(int, pair)) for pair in np.sort(mesh.facets[:, :2], axis=1))
+    surfaces = dict(zip(corners, map(int, mesh.facet_tags), strict=True))
     on_face = set(face.tolist())
     labels: dict[tuple[int, int], Label] = {}
     for key, edge in edges.items():

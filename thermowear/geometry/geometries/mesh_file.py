@@ -155,10 +155,10 @@ class MeshFile(HalvableGeometry):
         contents = replace(contents, points=contents.points * self.length_unit)
         bodies = [Named(b, self.sets_of(b), f"geometry.bodies.{b}") for b in self.bodies]
         tagged = assemble(contents, bodies, list(self._purposes().values()))
-        owners = [self.bodies.index(body) for body in self.zones.values()]
         sets = [
-            Named(zone, (name,), f"bodies.{zone.removesuffix(name)}materials.{name}", owner)
-            for (zone, name), owner in zip(self.set_of.items(), owners, strict=True)
+            Named(f"{body}.{name}", (name,), f"bodies.{body}.materials.{name}", index)
+            for index, body in enumerate(self.bodies)
+            for name in self._with_material.get(body, ())
         ]
         return divided(tagged, contents, bodies, sets)
 

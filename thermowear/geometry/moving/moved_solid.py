@@ -15,7 +15,6 @@ import numpy as np
 
 from ...lagrange import gauss
 from ..mesh.nodes import (
-    FACETS,
     boundary,
     components,
     edge_nodes,
@@ -151,8 +150,9 @@ class MovableSolid(MovableFace):
         facets = facets[np.any(outlined[facets] != 0.0, axis=(1, 2))]
         points = self._mesh.points[facets]
         points = points - points.reshape(-1, 3).mean(axis=0)
-        kind, order = self._kind, self._mesh.order
-        before, after = (_enclosed(kind, order, p) for p in (points, points + outlined[facets]))
+        before, after = (
+            _enclosed(self._mesh.order, p) for p in (points, points + outlined[facets])
+        )
         return (before - after) * float(factor(np.zeros((1, 3)))[0])
 
     @cached_property
@@ -161,20 +161,17 @@ class MovableSolid(MovableFace):
         known = np.zeros(len(self._mesh.points), dtype=bool)
         known[self._patches.still] = known[self.face] = True
         found = []
-        for kind, cells in (("interval", self._patches.seams), (self._kind, self._patches.sliding)):
+        patches = self._patches
+        for kind, cells in (("interval", patches.seams), ("quadrilateral", patches.sliding)):
             if len(cells):
                 found.append(self._extension(self._mesh, kind, cells, known.copy()))
                 known[cells] = True
         return found
 
-    @property
-    def _kind(self) -> str:
-        return FACETS[self._mesh.cell_type]
 
-
-def _enclosed(kind: str, order: int, facets: np.ndarray) -> float:
+def _enclosed(order: int, facets: np.ndarray) -> float:
     """Contribution of facets (n, n_nodes, 3) to ``∮ x·n dS / 3``."""
-    places, weights = gauss(2 * order + 1, dim=2)
+    kind, (places, weights) = "quadrilateral", gauss(2 * order + 1, dim=2)
     points = np.einsum("qk,fki->fqi", shape_functions(kind, order, places), facets)
     tangents = np.einsum("qdk,fki->dfqi", slopes(kind, order, places), facets)
     return float(np.einsum("fqi,fqi,q->", points, np.cross(*tangents), weights)) / 3

@@ -65,11 +65,13 @@ def write_mesh(
     points = np.pad(mesh.points, ((0, 0), (0, 3 - mesh.points.shape[1])))
     result = meshio.Mesh(points, cells, point_data=point_data)
     if path.suffix == ".inp":
-        result.cell_sets = {k: [np.flatnonzero(of == tag) for of in tags] for tag, k in names}
+        result.cell_sets = {name: [np.flatnonzero(of == tag) for of in tags] for tag, name in names}
     elif path.suffix == ".msh":
         result.cell_data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
         dim = mesh.points.shape[1]
-        result.field_data = {k: np.array([tag, dim - (tag > n)]) for tag, k in names}
+        result.field_data = {
+            name: np.array([tag, dim if tag <= n else dim - 1]) for tag, name in names
+        }
     else:
         result.cell_data = {"tag": tags}
     try:

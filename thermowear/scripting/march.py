@@ -14,7 +14,7 @@ from ..output.checkpoint import read_checkpoint, write_checkpoint
 from ..parallel import on_root
 from ..results import HistoryRow
 from ..serialise import Checkpoint, pack
-from ..simulation.analyses.transient import transient_history
+from ..simulation.analyses.transient import TransientHistory
 from ..simulation.interface.interface_problem import InterfaceProblem
 from ..simulation.results.recording import Snapshot, snapshot_at
 from ..simulation.runtime.checkpoint_data import Progress, Saved
@@ -99,8 +99,8 @@ def march(
         before: Progress | None = start.progress
     else:
         before = None if start is None else _saved(Path(start), system)
-    history, passing = transient_history(system, settings, Observer(), before)
-    for moment in passing:
+    history = TransientHistory(system, settings, Observer())
+    for moment in history.states(history.resume(before)):
         history.keep(moment)
         row = history.table(HistoryRow)[-1]
         now = history.loop.now

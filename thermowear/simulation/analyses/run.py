@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 from numpy.linalg import LinAlgError
@@ -20,8 +20,8 @@ from ...model.model import Model
 from ...results import Result
 from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
-from ..cycles.fretting import fretting_history
-from ..cycles.reciprocating import reciprocating_history
+from ..cycles.fretting import FrettingHistory
+from ..cycles.reciprocating import ReciprocatingHistory
 from ..geometry_update.wider_zone import reaches_open_end
 from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
@@ -35,7 +35,7 @@ from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare
 from .stability import stability
 from .static import initial, steady, unworn
-from .transient import transient_history
+from .transient import TransientHistory
 
 _UNPAIRED = 1e-6
 
@@ -115,8 +115,9 @@ def analyse(
         end, result = _STATIC[analysis.type](system, observer)
     else:
         before = None if saved is None else saved.of(system)
-        history, states = _STEPPED[type(analysis)](system, analysis, observer, before)
-        end, result = history.conclude(history.follow(states))
+        history = _STEPPED[type(analysis)](system, analysis, observer)
+        last = history.resume(before)
+        end, result = history.conclude(history.follow(history.states(last)))
     if reaches_open_end(end.system, end.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
@@ -176,8 +177,8 @@ _STATIC: dict[str, Callable[[System, Observer], tuple[Snapshot, Result]]] = {
     "steady": steady,
     "stability": _stability,
 }
-_STEPPED: dict[type, Callable[..., tuple[AnalysisHistory, Iterator]]] = {
-    TransientAnalysis: transient_history,
-    FrettingAnalysis: fretting_history,
-    ReciprocatingAnalysis: reciprocating_history,
+_STEPPED: dict[type, Callable[..., AnalysisHistory]] = {
+    TransientAnalysis: TransientHistory,
+    FrettingAnalysis: FrettingHistory,
+    ReciprocatingAnalysis: ReciprocatingHistory,
 }

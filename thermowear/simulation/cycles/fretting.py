@@ -13,7 +13,6 @@ from ...model.analyses import FrettingAnalysis
 from ...results import CycleRow, FrictionInterface, LoadRow
 from ..interface.body_state import contact_state
 from ..results.recording import Snapshot, snapshot
-from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.system import System
@@ -23,49 +22,28 @@ from .load_path import Increment, Jump
 _SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips
 
 
-def fretting_history(
-    system: System,
-    settings: FrettingAnalysis,
-    observer: Observer,
-    before: Progress | None = None,
-) -> tuple[FrettingHistory, Iterator[Increment]]:
-    """History of a fretting analysis, and the increments to keep in it, made one by one.
-
-    From the start or from a checkpoint.
+class FrettingHistory(AnalysisHistory[Increment]):
+    """History of the increments of a load history and of its cycles.
 
     Raises
     ------
     CaseError
         If the holder has no load history.
     """
-    path = FrettingPath(system, settings)
-    history = FrettingHistory(system, settings, observer, path)
-    return history, path.increments(history.resume(before))
-
-
-class FrettingHistory(AnalysisHistory[Increment]):
-    """History of the increments of a load history and of its cycles.
-
-    Parameters
-    ----------
-    system : System
-    settings : FrettingAnalysis
-    observer : Observer
-    path : FrettingPath
-    """
 
     phase = "load steps"
 
-    def __init__(
-        self, system: System, settings: FrettingAnalysis, observer: Observer, path: FrettingPath
-    ):
+    def __init__(self, system: System, settings: FrettingAnalysis, observer: Observer):
         super().__init__(system, settings, observer)
-        self._path, self._repeats = path, settings.cycles > 1
-        begin, turn = path.cycle_of_history or (0.0, np.inf)
+        self._path, self._repeats = FrettingPath(system, settings), settings.cycles > 1
+        begin, turn = self._path.cycle_of_history or (0.0, np.inf)
         self._duration = turn - begin
         self._cycle: list[Increment] = []  # increments of the current cycle, and that before it
         self._turn: Increment | None = None  # end of the last jump, or of the first pass
         self._per_cycle = np.zeros((2, len(system.weights)))
+
+    def states(self, last: Increment | None) -> Iterator[Increment]:
+        return self._path.increments(last)
 
     def rows_of(self, state: Increment) -> list[LoadRow | CycleRow]:
         if self._cycle and self._cycle[-1].segment.cycle != state.segment.cycle:

@@ -59,7 +59,7 @@ def Heat(
     flux: Mapping[BodySurface, Any] | None = None,
     power: Mapping[BodySurface, Any] | None = None,
 ) -> heat.Heat:
-    """Heat sources and thermal boundary conditions by surface, see `model.heat.Heat`."""
+    """Heat sources and thermal boundary conditions by surface, see `model.conditions.Heat`."""
     return heat.Heat(
         ambient=in_python(units.Temperature, ambient, "Heat.ambient"),
         ambient_history=ambient_history,

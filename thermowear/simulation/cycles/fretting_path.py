@@ -15,7 +15,7 @@ from ...contact.operators.tangential import condense_tangential
 from ...errors import CaseError
 from ...laws.time_course import LoadHistory
 from ...model.analyses import FrettingAnalysis
-from ...model.holder import Holder
+from ...model.conditions import Holder
 from ..system.system import System
 from .cycle_jump import adaptive_jumps, fixed_jumps
 from .load_path import (

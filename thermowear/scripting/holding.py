@@ -13,8 +13,7 @@ from ..errors import CaseError
 from ..laws.time_course import LoadHistory, TimeFunction
 from ..model.conditions import Holder, Motion
 from .body import BodySurface, require_surface
-from .conversion import each_quantity, quantities
-from .physics import by_surface
+from .conversion import by_surface, each_quantity, quantities
 
 _LOADS = {
     "force": units.Force,

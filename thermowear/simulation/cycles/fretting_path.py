@@ -18,15 +18,7 @@ from ...model.analyses import FrettingAnalysis
 from ...model.conditions import Holder
 from ..system.system import System
 from .cycle_jump import adaptive_jumps, fixed_jumps
-from .load_path import (
-    Increment,
-    LoadSegment,
-    RestartPoint,
-    cycle_segments,
-    cycles_to_stop_at,
-    first_pass,
-    jumped_cycles,
-)
+from .load_path import Increment, LoadPath, LoadSegment, RestartPoint
 
 _ACROSS = (1.0, 0.0)
 
@@ -60,7 +52,8 @@ class FrettingPath:
         history = system.model.holder.history
         if history is None:
             raise CaseError("load.history: missing; required in a fretting analysis")
-        self._holder, self._settings, self._history = system.model.holder, settings, history
+        self._holder, self._settings = system.model.holder, settings
+        self._path = LoadPath(history, settings.output_times)
         self._friction, self._laws = system.friction, tuple(system.laws.values())
         self.cycle_of_history = history.cycle
         self.translations = _translations(system.model.holder, history)
@@ -76,34 +69,29 @@ class FrettingPath:
 
         Either all increments, or the ones after an increment with a restart point.
         """
-        history, settings = self._history, self._settings
         restart, passed = RestartPoint(0, unloaded(self._contact, len(self._laws))), -math.inf
         if last is not None:
             assert last.restart is not None
             restart, passed = last.restart, last.segment.end
         if restart.cycle == 0:
-            first = first_pass(history, settings.output_times)
-            left = (segment for segment in first if segment.end > passed)
+            left = (segment for segment in self._path.first_pass() if segment.end > passed)
             for increment in self._along(left, restart.state):
                 restart = RestartPoint(0, increment.state)
                 yield increment
-        if history.cycle is not None:
+        if self.cycle_of_history is not None:
             yield from self._cycles_after(restart)
 
     def _cycles_after(self, restart: RestartPoint) -> Iterator[Increment]:
         """Increments of the cycles after a restart point."""
-        history, settings = self._history, self._settings
-        count = settings.cycles
+        settings, count = self._settings, self._settings.cycles
         if settings.jump == "auto":
-            stops = cycles_to_stop_at(history, settings, count)
+            stops = self._path.cycles_to_stop_at(count)
             return adaptive_jumps(self, stops, restart, settings.tolerance, settings.max_jump)
-        numbers = jumped_cycles(history, settings, count, settings.jump)
-        return fixed_jumps(self, numbers, restart)
+        return fixed_jumps(self, self._path.jumped_cycles(count, settings.jump), restart)
 
     def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Increment]:
         """See `cycle_jump.Cycles`."""
-        times = self._settings.output_times
-        return self._along(cycle_segments(self._history, times, number, repeats), state)
+        return self._along(self._path.cycle(number, repeats), state)
 
     def equilibrium(self, end: Increment, worn: np.ndarray) -> StickSlipState:
         """See `cycle_jump.Cycles`."""
@@ -126,7 +114,7 @@ class FrettingPath:
 
     def _loads(self, instant: float) -> Loads:
         """Loads at a time of the history [s]."""
-        given, holder = self._history.at(instant), self._holder
+        given, holder = self._path.history.at(instant), self._holder
         if "force" not in given and "approach" not in given:
             return Loads(normal_force=holder.force, approach=holder.approach, **given)
         return Loads(normal_force=given.pop("force", None), **given)

@@ -8,13 +8,12 @@ import scipy
 from ...contact.search.surface import Surface
 from ...errors import CaseError
 from ...laws.distribution import InPlace
+from ...model.model import Zone
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
 from ..system.building import build
 from ..system.system import System
-
-Zone = tuple[float, float]
 
 _WIDER = 1.6
 """Width of the next zone relative to the contact, at the same number of elements."""

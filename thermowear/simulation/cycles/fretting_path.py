@@ -13,9 +13,7 @@ from ...contact.friction.stick_slip import advance, follow
 from ...contact.friction.stick_slip_state import Loads, StickSlipState, unloaded
 from ...contact.operators.tangential import condense_tangential
 from ...errors import CaseError
-from ...laws.time_course import LoadHistory
 from ...model.analyses import FrettingAnalysis
-from ...model.conditions import Holder
 from ..system.system import System
 from .cycle_jump import adaptive_jumps, fixed_jumps
 from .load_path import Increment, LoadPath, LoadSegment, RestartPoint
@@ -36,7 +34,7 @@ class FrettingPath:
     cycle_of_history : tuple of float or None
         Start and end of the repeated part of the load history [s].
     translations : ndarray, shape (k, 2)
-        Unit translations of the holder.
+        Unit translations of the holder: along the load, and tangential if so given.
     profiles : tuple of WornProfile
         Worn profiles of the wearing bodies.
     areas : ndarray, shape (m,)
@@ -56,7 +54,8 @@ class FrettingPath:
         self._path = LoadPath(history, settings.output_times)
         self._friction, self._laws = system.friction, tuple(system.laws.values())
         self.cycle_of_history = history.cycle
-        self.translations = _translations(system.model.holder, history)
+        across = [_ACROSS] if history.tangential else []
+        self.translations = np.array([system.model.holder.load_direction, *across])
         bodies = system.elastic, system.pairing, system.basis
         with system.phases("condense elasticity"):
             self._contact = condense_tangential(*bodies, self.translations)
@@ -118,11 +117,3 @@ class FrettingPath:
         if "force" not in given and "approach" not in given:
             return Loads(normal_force=holder.force, approach=holder.approach, **given)
         return Loads(normal_force=given.pop("force", None), **given)
-
-
-def _translations(holder: Holder, history: LoadHistory) -> np.ndarray:
-    """Unit holder translations: along the load, and tangential if the history prescribes it."""
-    directions = [holder.load_direction]
-    if history.tangential:
-        directions.append(_ACROSS)
-    return np.array(directions)

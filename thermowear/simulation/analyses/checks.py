@@ -7,7 +7,7 @@ import numpy as np
 from ...errors import ComputationError
 from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
 from ...results import InterfaceFields
-from ..geometry_update.moving_faces import GapWear
+from ..geometry_update.outer_loop import GapWear
 from ..results.recording import Snapshot
 from ..system.rigid_modes import applied
 from ..system.system import System

@@ -1,4 +1,4 @@
-"""Faces worn in place: wear kept in their gap, the part that nodes can follow, paths of nodes."""
+"""Motion of the faces worn in place: smoothed wear, the part that nodes can follow, their paths."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...bulk.mesh_motion import serial_extension
-from ...compat import geometry_dofmap
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ray_intersections
 from ...contact.search.surface import Surface
@@ -17,7 +16,6 @@ from ...contact.wear.unresolved_gap import unresolved_gap
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,
-    curvatures,
     directions_between,
     node_normals,
     nodes_of,
@@ -33,8 +31,6 @@ from ..results.recording import snapshot_at
 from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
 
-_TILT = 0.1
-"""Weight of the element tilt: depth difference of its ends relative to its size."""
 _WALL_SLOPE = 0.2
 """Largest slope of groove walls in a mesh."""
 
@@ -96,41 +92,6 @@ class MovingFaces:
         distances = before, side.face.sizes.sum() - before
         ends = zip(held[[0, -1]], distances, strict=True)
         return np.minimum(*(np.where(stays, distance, np.inf) for stays, distance in ends))
-
-
-class GapWear:
-    """Wear kept in the gap of a system, relative to the dimensions of the bodies.
-
-    Dimensions are the thickness behind the face and the radius of curvature of either face; a tenth
-    of the element tilt (depth difference of its ends over its size) counts, too.
-
-    Attributes
-    ----------
-    faces : MovingFaces
-        Faces that may follow the wear.
-    """
-
-    def __init__(self, system: System):
-        self._system, side = system, system.pairing.sides[0]
-        facets, self._first = np.unique(side.facet, return_index=True)
-        self._lengths = side.face.lengths[facets]
-        self._curvature = max(float(curvatures(s.face).max()) for s in system.pairing.sides)
-        self.faces = MovingFaces(system)
-        self._thickness = {index: _thickness(system, index) for index in self.faces.bodies}
-
-    def depth(self, state: InterfaceState) -> np.ndarray:
-        """Depths kept in the gap in a state, shape (2, n) [m]."""
-        return state.by_body(self._system.laws) - self._system.moved
-
-    def fraction(self, depth: np.ndarray) -> float:
-        """Largest ratio of a depth (2, n) of both bodies to their dimensions."""
-        ratios = [0.0]
-        for index, thickness in self._thickness.items():
-            largest = float(np.abs(depth[index]).max())
-            low, high = (f.reduceat(depth[index], self._first) for f in (np.minimum, np.maximum))
-            tilt = float(((high - low) / self._lengths).max())
-            ratios += [largest / thickness, largest * self._curvature, _TILT * tilt]
-        return max(ratios)
 
 
 def _unworn(system: System, bodies: list[int]) -> WornGeometry:
@@ -224,15 +185,3 @@ def smoothed_wear(problem: InterfaceProblem, state: InterfaceState, time: float)
     shares = np.divide(ours, whole, out=np.zeros_like(ours), where=whole > 0.0)
     found = state.worn - shares * excess
     return found if np.all(found >= 0.0) else state.worn
-
-
-def _thickness(system: System, index: int) -> float:
-    """Thickness of a body behind the middle of its contact face [m]; every rank calls."""
-    pairing, bodies = system.pairing, system.bodies
-    out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
-    out = out / np.linalg.norm(out)
-    middle = np.average(pairing.points, axis=0, weights=pairing.weights)
-    parts = system.model.bodies[index].parts
-    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
-    nodes = bodies.mesh.geometry.x[geometry_dofmap(bodies.mesh)[cells].ravel(), : len(middle)]
-    return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

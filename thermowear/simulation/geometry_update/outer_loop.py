@@ -9,28 +9,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from operator import add
-from typing import Any
 
 import numpy as np
 
+from ...compat import geometry_dofmap
+from ...contact.wear.worn_face import curvatures
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
 from ...model.model import Zone
-from ...serialise import serialisable
 from ..interface.factory import interface_problem
 from ..interface.interface_problem import InterfaceProblem
-from ..interface.sdirk import advance_with_error
+from ..interface.sdirk import InterfaceState, advance_with_error
 from ..interface.steady import SteadyState
 from ..runtime.observer import Observer
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from ..system.worn_geometry import WornGeometry
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
-from .moving_faces import GapWear, smoothed_wear
-from .wider_zone import meshed_wider, wider_zone
+from .moving_faces import MovingFaces, smoothed_wear
+from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
 _CHANGE = 5e-3
 """Target change of pressure and temperatures by an automatic update."""
@@ -38,39 +36,46 @@ _OVER = 0.1
 """Overshoot of the allowed fraction that a step may cause, relative to it."""
 _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
-_COMBINED: dict[str, Callable[[Any, Any], Any]] = {
-    "updates": add,
-    "meshed_anew": add,
-    "quality": min,
-}
-"""Combination of the counters of successive meshes, by default the largest."""
+_TILT = 0.1
+"""Weight of the element tilt: depth difference of its ends relative to its size."""
 
 Principle = Callable[[System], SteadyState | None]
 """Steady state that a system approaches; None if there is none."""
 
 
-@serialisable
-@dataclass(frozen=True)
-class UpdateCounts:
-    """Number of updates, and their worst errors and cell quality; see `WornGeometry`.
+class GapWear:
+    """Wear kept in the gap of a system, relative to the dimensions of the bodies.
 
-    A mesh for a wider zone starts with no updates; the counts of previous meshes are kept here.
+    Dimensions are the thickness behind the face and the radius of curvature of either face; a tenth
+    of the element tilt (depth difference of its ends over its size) counts, too.
+
+    Attributes
+    ----------
+    faces : MovingFaces
+        Faces that may follow the wear.
     """
 
-    updates: int = 0
-    quality: float = float("inf")
-    volume_error: float = 0.0
-    change: float = 0.0
-    heat_error: float = 0.0
-    meshed_anew: int = 0
-    carrying_error: float = 0.0
+    def __init__(self, system: System):
+        self._system, side = system, system.pairing.sides[0]
+        facets, self._first = np.unique(side.facet, return_index=True)
+        self._lengths = side.face.lengths[facets]
+        self._curvature = max(float(curvatures(s.face).max()) for s in system.pairing.sides)
+        self.faces = MovingFaces(system)
+        self._thickness = {index: _thickness(system, index) for index in self.faces.bodies}
 
-    def counting(self, worn: WornGeometry | None) -> UpdateCounts:
-        """Counters including the updates of a mesh."""
-        if worn is None:
-            return self
-        pairs = {name: (value, getattr(worn, name)) for name, value in vars(self).items()}
-        return UpdateCounts(**{name: _COMBINED.get(name, max)(*v) for name, v in pairs.items()})
+    def depth(self, state: InterfaceState) -> np.ndarray:
+        """Depths kept in the gap in a state, shape (2, n) [m]."""
+        return state.by_body(self._system.laws) - self._system.moved
+
+    def fraction(self, depth: np.ndarray) -> float:
+        """Largest ratio of a depth (2, n) of both bodies to their dimensions."""
+        ratios = [0.0]
+        for index, thickness in self._thickness.items():
+            largest = float(np.abs(depth[index]).max())
+            low, high = (f.reduceat(depth[index], self._first) for f in (np.minimum, np.maximum))
+            tilt = float(((high - low) / self._lengths).max())
+            ratios += [largest / thickness, largest * self._curvature, _TILT * tilt]
+        return max(ratios)
 
 
 @dataclass(frozen=True)
@@ -193,21 +198,7 @@ class OuterLoop:
         """Summary entries of the geometry updates; empty without updates."""
         worn = self.now.system.worn
         lost = np.zeros(2) if worn is None else worn.lost
-        counts = self.earlier.counting(worn)
-        if counts.updates == 0:
-            return {}
-        return {
-            "geometry_updates": counts.updates,
-            "geometry_largest_kept": self.largest_kept,
-            "geometry_smallest_scaled_jacobian": counts.quality,
-            "geometry_volume_1_m3": float(lost[0]),
-            "geometry_volume_2_m3": float(lost[1]),
-            "geometry_volume_error": counts.volume_error,
-            "geometry_change": counts.change,
-            "geometry_temperature_error": counts.heat_error,
-            "geometry_meshed_anew": counts.meshed_anew,
-            "geometry_remeshing_error": counts.carrying_error,
-        }
+        return self.earlier.counting(worn).summary(self.largest_kept, lost)
 
     def _naming_zone_limit(self, passing: Iterator[Moment]) -> Iterator[Moment]:
         """Pass the moments on; add to an error that the contact has outgrown the meshed zone."""
@@ -224,7 +215,7 @@ class OuterLoop:
     def _wider(self, now: MeshPeriod, moment: Moment) -> Zone | None:
         """Zone to mesh for, if a wearing contact has outgrown its own before the end of the run."""
         worn = moment.state.worn.any()
-        if self._narrow or not worn or is_over(self._settings, moment):
+        if self._narrow or now.system.zone is None or not worn or is_over(self._settings, moment):
             return None
         return wider_zone(now.system, moment.state.pressure)
 
@@ -293,3 +284,15 @@ class OuterLoop:
             wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
             self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
         return self._period(problem), replace(last, state=state)
+
+
+def _thickness(system: System, index: int) -> float:
+    """Thickness of a body behind the middle of its contact face [m]; every rank calls."""
+    pairing, bodies = system.pairing, system.bodies
+    out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
+    out = out / np.linalg.norm(out)
+    middle = np.average(pairing.points, axis=0, weights=pairing.weights)
+    parts = system.model.bodies[index].parts
+    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
+    nodes = bodies.mesh.geometry.x[geometry_dofmap(bodies.mesh)[cells].ravel(), : len(middle)]
+    return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

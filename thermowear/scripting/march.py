@@ -84,17 +84,7 @@ def march(
     settings: TransientAnalysis,
     start: MarchState | str | PathLike[str] | None,
 ) -> Iterator[MarchState]:
-    """States of a running-in, from the unworn contact or from an earlier state or file of one.
-
-    Every rank calls.
-
-    Raises
-    ------
-    CaseError
-        If the file is not one of a state of these bodies.
-    ComputationError
-        If a step fails, or its balances do not hold.
-    """
+    """States of a running-in, see `ScriptedModel.march`. Every rank calls."""
     if isinstance(start, MarchState):
         before: Progress | None = start.progress
     else:

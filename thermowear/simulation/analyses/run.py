@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from mpi4py import MPI
+
 from numpy.linalg import LinAlgError
 
 from ...balances import judged
@@ -68,14 +70,10 @@ def run(
         If there is no result at all; a transient run that stops early is returned with its error,
         and likewise a run whose balances do not hold.
     """
-    if comm is None:
-        from mpi4py import MPI
-
-        comm = MPI.COMM_WORLD
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
-    _, result = solve(prepare(model, comm, phases), analysis, observer, saved)
-    return result
+    system = prepare(model, MPI.COMM_WORLD if comm is None else comm, phases)
+    return solve(system, analysis, observer, saved)[1]
 
 
 def solve(
@@ -177,10 +175,9 @@ _STEPPED: dict[type, Callable[..., AnalysisHistory]] = {
 class Series:
     """Sequence of models with a shared set-up cache, on all ranks; see `groups`."""
 
-    def __init__(self):
-        from mpi4py import MPI
+    comm = MPI.COMM_WORLD
 
-        self.comm = MPI.COMM_WORLD
+    def __init__(self):
         self._parts = SetupCache()
 
     def run(

@@ -39,7 +39,7 @@ class Kinematics(ABC):
         Parameters
         ----------
         points : ndarray, shape (n, gdim) [m]
-        motion : thermowear.model.holder.Motion
+        motion : thermowear.model.conditions.Motion
         center : tuple of float, optional
             x and y of the point, or of the vertical axis, about which body 2 rotates [m].
         across : bool

@@ -18,8 +18,7 @@ from ..model.analyses import (
     StaticAnalysis,
     TransientAnalysis,
 )
-from ..model.heat import Heat
-from ..model.holder import Motion
+from ..model.conditions import Heat, Motion
 from ..model.model import Discretisation, Model
 from ..simulation.analyses.run import solve
 from ..simulation.runtime.observer import Observer

@@ -16,7 +16,7 @@ FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
 
 
 class HolderTable(Section):
-    """Rigid holder of body 1, see `model.holder.Holder`.
+    """Rigid holder of body 1, see `model.conditions.Holder`.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class LoadTable(Section):
 
 
 class MotionTable(Section):
-    """Sliding motion, see `model.holder.Motion`.
+    """Sliding motion, see `model.conditions.Motion`.
 
     Attributes
     ----------
@@ -137,8 +137,8 @@ class HeatTable(Section):
     """Heat sources, thermal boundary conditions and thermal properties of the interface.
 
     Friction heats the faces while the bodies slide; bodies in contact conduct also at rest. Keys
-    are those of `model.heat.Heat`; `conductance`, `gap_conductance` and `partition` are those of
-    `model.interface.Interface`.
+    are those of `model.conditions.Heat`; `conductance`, `gap_conductance` and `partition` are those
+    of `model.interface.Interface`.
     """
 
     conductance: Conductance | None = None

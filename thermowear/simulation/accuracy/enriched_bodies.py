@@ -18,7 +18,7 @@ from ...bulk.mechanics.surplus import surplus_space
 from ...contact.operators.heat import BaselineResponse, InterfaceHeat
 from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import gap_trace, value_trace, vector_trace
-from ...model.heat import Heat
+from ...model.conditions import Heat
 from ...parallel import sum_over_ranks
 from ..interface.body_state import BodyState, ContactState
 from ..system.elastic_system import supports, surface_loads

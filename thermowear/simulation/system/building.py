@@ -14,8 +14,7 @@ from ...contact.search.closed_face import gather_faces
 from ...contact.search.pairing import Pairing
 from ...geometry.mesh.tagged import TaggedMesh
 from ...model.body import Facing
-from ...model.meshes import Zone
-from ...model.model import Model
+from ...model.model import Model, Zone
 from ...parallel import on_root
 from ...timer import Phases
 from .contact_points import (

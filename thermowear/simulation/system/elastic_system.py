@@ -15,7 +15,7 @@ from ...bulk.surfaces import pressure_work, surface_work
 from ...contact.operators.traces import gap_trace
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion
-from ...model.holder import Holder
+from ...model.conditions import Holder
 from ...model.model import Model
 from ...parallel import sum_over_ranks
 

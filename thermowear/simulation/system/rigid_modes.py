@@ -9,7 +9,7 @@ import numpy as np
 from ...contact.operators.holder import RigidMode
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion, rotation, translation
-from ...model.holder import Holder
+from ...model.conditions import Holder
 from ...model.model import Model
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}

@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from ...model.meshes import Zone
-from ...model.model import Model
+from ...model.model import Model, Zone
 from .contact_points import softness_of_parts
 
 Part = TypeVar("Part")

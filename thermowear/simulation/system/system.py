@@ -19,8 +19,7 @@ from ...laws.distribution import Distribution
 from ...laws.interfaces import Law
 from ...laws.motions import RigidMotion
 from ...model.body import Facing
-from ...model.meshes import Zone
-from ...model.model import Model
+from ...model.model import Model, Zone
 from ...parallel import sum_over_ranks
 from ...timer import Phases
 from .contact_points import facing_parts

@@ -13,7 +13,7 @@ from ...bulk.heat.heat_equation import given_rises
 from ...bulk.kinematics import Kinematics
 from ...bulk.surfaces import surface_area, surface_heat
 from ...laws.time_course import TimeFunction
-from ...model.heat import Heat
+from ...model.conditions import Heat
 from ...model.model import Model
 
 

@@ -26,7 +26,7 @@ from ...contact.operators.heat_condensation import bath_matrix, condense_heat
 from ...contact.operators.traces import value_trace
 from ...contact.search.pairing import Pairing
 from ...model.body import Facing
-from ...model.heat import Heat
+from ...model.conditions import Heat
 from ...model.model import Model
 from ...timer import Phases
 from .thermal_loads import ThermalLoads, temperature_at, thermal_loads

@@ -205,12 +205,6 @@ class MovingBand:
         """Largest temperature rise of the surface [K]."""
         return float(self.rise(self.hottest_place))
 
-    @property
-    def fast_peak(self) -> float:
-        """Largest temperature rise in the limit of large L, ``(2 q/k) √(2 κ b/(π v))`` [K]."""
-        passing = 2 * self.half_width / self.speed
-        return 2 * self.flux / self.conductivity * sqrt(self.diffusivity * passing / pi)
-
 
 PEAKS = {
     0.1: 0.691254,

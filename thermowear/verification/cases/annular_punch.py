@@ -10,8 +10,7 @@ import numpy as np
 
 from ...reference import annular_punch as reference
 from ...results import Result
-from ..check import Check, along, compare, compare_each
-from ..starter import computed, run_starter, starter
+from ..check import Check, along, compare, compare_each, computed, run_starter, starter
 from .finite_elements import away_from_ends
 
 TABLE = "converged tables of degree 8 to 10 on other meshes"

@@ -14,8 +14,7 @@ import numpy as np
 from ...reference.hertz import contact_modulus
 from ...reference.mindlin import MindlinLine
 from ...results import Result
-from ..check import Check, along, compare
-from ..starter import run_starter
+from ..check import Check, along, compare, run_starter
 
 STARTER = "tube-in-support"
 TUBE, CLEARANCE, THICKNESS = 4.75e-3, 0.05e-3, 10e-3

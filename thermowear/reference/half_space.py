@@ -58,11 +58,6 @@ class HalfSpace:
         return 2 * flux / self.conductivity * reach * _ierfc(np.asarray(depth) / (2 * reach))
 
 
-def share(first: HalfSpace, second: HalfSpace) -> float:
-    """Fraction of the friction heat into the first one for equal surface temperatures."""
-    return first.effusivity / (first.effusivity + second.effusivity)
-
-
 def surface_rises(
     bodies: tuple[HalfSpace, HalfSpace],
     friction_heat: float,

@@ -77,21 +77,3 @@ def conductance(
     pressure : float [Pa]
     """
     return coefficient * harmonic_mean(*conductivities) * pressure / harmonic_mean(*hardnesses)
-
-
-def block_temperatures(
-    lengths: tuple[float, float],
-    conductivities: tuple[float, float],
-    hardnesses: tuple[float, float],
-    ends: tuple[float, float],
-    coefficient: float,
-    pressure: float,
-    friction_heat: float = 0.0,
-    partition: float = 0.5,
-) -> tuple[float, float]:
-    """Temperatures of the faces of two blocks in contact, with a conductance by pressure.
-
-    Parameters as in `conductance` and `contact_temperatures`.
-    """
-    h = conductance(coefficient, conductivities, hardnesses, pressure)
-    return contact_temperatures(lengths, conductivities, ends, friction_heat, partition, h)[0]

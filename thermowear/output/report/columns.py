@@ -8,10 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ...results import TABLES
-from ...results.quantity import Quantity, from_key
+from ...results.quantity import TABLES, Quantity, from_key
 from ...results.summary_keys import of_key
-from ..names import name_at, states
+from ..files import name_at, states
 from ..tables import TableColumns, read
 from .unit_format import number
 

@@ -12,8 +12,7 @@ from typing import Any
 
 from ...errors import CaseError
 from ...results import TABLES
-from ..atomic_write import write_text
-from ..names import PICTURES, is_report
+from ..files import PICTURES, is_report, write_text
 from ..tables import read
 from .columns import AT_TIMES, output_times, shown_table
 from .figures import balances, key_figures, verdict

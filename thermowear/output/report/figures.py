@@ -8,8 +8,8 @@ from datetime import datetime
 from typing import Any
 
 from ...balances import ALLOWED, BALANCES, holds
+from ...results.quantity import split_key
 from ...results.summary_keys import GROUPS, OTHER, PHASES, group_of, of_key
-from ...results.units import split_key
 from .unit_format import NOTHING, number, quantity
 
 

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from ...results.units import multiple, split_key
+from ...results.quantity import multiple, split_key
 
 NOTHING = "–"
 _QUANTITY = re.compile(r"([-+]?[.\d]+(?:e[-+]?\d+)?) (\S+)")

@@ -59,7 +59,7 @@ def _heat(result: Result) -> Iterator[Check]:
     rises = along(interface, reference.RADII, interface.temperature_1 - AMBIENT)
     known = reference.TEMPERATURE_RISE
     yield from compare_each(quantity, 1e3 * reference.RADII, rises, known, 5e-4, TABLE)
-    power = reference.friction_power(FORCE, INNER, OUTER, FRICTION, 0.1)
+    power = 0.1 * reference.uniform_wear_torque(FORCE, FRICTION, INNER, OUTER)
     found = result.summary["friction_power_W"]
     yield compare("friction power, b = 1, hot [W]", found, power, 1e-6, CLOSED_FORM)
 

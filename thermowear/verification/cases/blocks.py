@@ -14,7 +14,7 @@ import numpy as np
 
 from ...case.tables.schema import Case
 from ...laws import LocalState
-from ...reference.slabs import block_temperatures, contact_temperatures
+from ...reference.slabs import conductance, contact_temperatures
 from ...results import Result
 from ..check import Check, compare, compare_worst, computed, run_starter, starter
 
@@ -108,18 +108,16 @@ def pressure_conductance() -> Iterator[Check]:
     """Pressure-dependent conductance under several loads and speeds, steady and unworn."""
     for analysis, pressure, speed in product(("steady", "initial"), (0.5, 5.0, 50.0), (1e-9, 0.01)):
         heat = 0.2 * 1e6 * pressure * speed
-        proportional = block_temperatures(
-            LENGTHS, CONDUCTIVITIES, HARDNESSES, ENDS, COEFFICIENT, 1e6 * pressure, heat
-        )
-        h = np.interp(pressure, (1.0, 10.0), (1e3, 5e3))
-        tabulated, _ = contact_temperatures(LENGTHS, CONDUCTIVITIES, ENDS, heat, 0.5, h)
-        for label, conductance, exact, source in (
+        proportional = conductance(COEFFICIENT, CONDUCTIVITIES, HARDNESSES, 1e6 * pressure)
+        tabulated = np.interp(pressure, (1.0, 10.0), (1e3, 5e3))
+        for label, law, h, source in (
             ("proportional", _MODEL, proportional, MODEL),
             ("table", _TABLE, tabulated, TABLE),
         ):
+            exact, _ = contact_temperatures(LENGTHS, CONDUCTIVITIES, ENDS, heat, 0.5, h)
             i = run_starter(
                 "stacked-blocks",
-                conductance,
+                law,
                 *_HARD,
                 f'load.mean_pressure="{pressure} MPa"',
                 f'motion.velocity="{speed} m/s"',

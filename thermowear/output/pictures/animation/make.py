@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 from ....errors import CaseError
+from ...files import FRAMES
 from ...frames import frame_files
-from ...names import FRAMES
 from ..maps import is_surface
 from ..scales import COLORS
 from .panels import SectionPanel, SolidPanel, TimeCurve, contact_curves, face_maps

@@ -11,14 +11,15 @@ import numpy as np
 from ...results import FIELDS
 from .. import tables
 from .maps import is_surface
-from .panels import MAP_STYLE, label_coordinates, panels
-from .scales import (
-    COLORS,
+from .panels import (
+    MAP_STYLE,
     Extent,
     add_color_bar,
     color_limits,
     contact_window,
     inside,
+    label_coordinates,
+    panels,
     proportion,
     whole,
 )
@@ -62,13 +63,8 @@ def _draw_windows(
     bars_below = sum(shape < _FLAT for shape in shapes)
     size = (5.2, min(3.45 * height / rows, 6.0))
     margin = (0.0, 0.7 * (rows + bars_below) + (0.3 if title else 0.0))
-    ratios = None if is_single else shapes
-    options: dict[str, Any] = {
-        "margin": margin,
-        "style": MAP_STYLE,
-        "crop": True,
-        "height_ratios": ratios,
-    }
+    options: dict[str, Any] = {"margin": margin, "style": MAP_STYLE, "crop": True}
+    options["height_ratios"] = None if is_single else shapes
     with panels(path, rows * columns, columns, size, **options) as (figure, axes):
         for row, window in zip(axes.T if is_single else axes, windows, strict=True):
             place = "bottom" if proportion(window) < _FLAT else "right"
@@ -77,8 +73,8 @@ def _draw_windows(
                 limits = color_limits(seen)
                 section.draw(axis, name, limits, window)
                 label_coordinates(axis, interface)
-                options = {"ax": axis, "label": FIELDS[name].axis, "shrink": 0.8}
-                add_color_bar(axis, COLORS[name], limits, seen.max(), location=place, **options)
+                label = FIELDS[name].axis
+                add_color_bar(axis, name, label, limits, seen.max(), location=place)
         if title:
             figure.suptitle(title, fontsize=11)
 

@@ -15,7 +15,7 @@ from matplotlib.tri import Triangulation
 from scipy.spatial import cKDTree
 
 from ...results import FIELDS
-from .scales import COLORS, Extent, Limits, inside
+from .panels import Extent, Limits, color_map, inside
 
 _CORNERS = {"triangle": [[0, 1, 2]], "quad": [[0, 1, 2], [0, 2, 3]]}
 _SAME = 1e-5  # tolerance for identical points, relative to the size of the bodies
@@ -59,7 +59,7 @@ class BodySection:
                 Triangulation(self.points[:, 0], self.points[:, 1], own),
                 self.fields[name],
                 shading="gouraud",
-                cmap=COLORS[name],
+                cmap=color_map(name),
                 norm=Normalize(*limits),
                 zorder=number,
             )

@@ -12,7 +12,7 @@ from ...results.quantity import TABLES, Quantity, from_key
 from ...results.summary_keys import of_key
 from ..files import name_at, states
 from ..tables import TableColumns, read
-from .unit_format import number
+from .figures import number
 
 _ROWS = 20
 

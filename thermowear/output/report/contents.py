@@ -15,8 +15,7 @@ from ...results import TABLES
 from ..files import PICTURES, is_report, write_text
 from ..tables import read
 from .columns import AT_TIMES, output_times, shown_table
-from .figures import balances, key_figures, verdict
-from .unit_format import NOTHING, table_lines
+from .figures import NOTHING, balances, key_figures, table_lines, verdict
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

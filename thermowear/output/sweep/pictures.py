@@ -15,8 +15,14 @@ from ...results.summary_keys import of_key
 from .. import tables
 from ..files import model_of
 from ..pictures.maps import is_surface, triangulated
-from ..pictures.panels import MAP_STYLE, clip_singular, label_coordinates, panels, plot_along
-from ..pictures.scales import COLORS
+from ..pictures.panels import (
+    MAP_STYLE,
+    clip_singular,
+    color_map,
+    label_coordinates,
+    panels,
+    plot_along,
+)
 from .layout import (
     LINES,
     Layout,
@@ -143,7 +149,7 @@ def _draw_maps(layout: Layout, path: Path) -> None:
     levels = np.linspace(
         np.min(np.concatenate(values)), np.max(np.concatenate(values)), _LEVELS + 1
     )
-    scale = ScalarMappable(Normalize(levels[0], levels[-1]), COLORS["shape"])
+    scale = ScalarMappable(Normalize(levels[0], levels[-1]), color_map("shape"))
     options: dict[str, Any] = {"margin": (1.4, 0.3), "style": MAP_STYLE}
     options |= {"sharex": True, "sharey": True}
     with panels(path, count, _ACROSS, (2.6, 2.7), **options) as (figure, axes):

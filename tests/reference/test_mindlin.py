@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from thermowear.reference.mindlin import MindlinLine
+from thermowear.reference.hertz import MindlinLine
 
 
 @dataclass(frozen=True)

@@ -23,28 +23,22 @@ _POWERS = str.maketrans({"2": "²", "3": "³", "^": None})
 
 @dataclass(frozen=True)
 class Figure:
-    """Line of the key figures.
+    """Line of the report.
 
     Attributes
     ----------
     label, text : str
         Description, and value with its unit.
     source : str
-        Key and SI value.
+        Key and SI value of a key figure.
+    mark : str
+        ``good``, ``bad`` or ``unsure``; empty if there is nothing to judge.
     """
 
     label: str
     text: str
-    source: str
-
-
-@dataclass(frozen=True)
-class BalanceFigure:
-    """Result of a balance check; `good` is None if there is nothing to balance."""
-
-    label: str
-    text: str
-    good: bool | None
+    source: str = ""
+    mark: str = ""
 
 
 def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
@@ -59,25 +53,25 @@ def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
     return groups
 
 
-def balances(summary: dict[str, Any]) -> list[BalanceFigure]:
+def balances(summary: dict[str, Any]) -> list[Figure]:
     """Balance errors of a summary compared with the allowed limit."""
     found = []
     for key, kept in BALANCES.items():
         error = summary.get(key)
         if isinstance(error, int | float):
             text = f"{error:.1e}" if math.isfinite(error) else NOTHING
-            found.append(BalanceFigure(kept.name, f"{text} (allowed {ALLOWED:g})", holds(error)))
+            mark = "good" if holds(error) else "bad"
+            found.append(Figure(kept.name, f"{text} (allowed {ALLOWED:g})", mark=mark))
         elif key in summary:
-            found.append(BalanceFigure(kept.name, NOTHING, None))
+            found.append(Figure(kept.name, NOTHING))
     return found
 
 
 def figure_text(key: str, value: Any, entry: str = "") -> str:
     """Format a value of a summary, or of one of its tables, in the unit that suits its size."""
     shown = of_key(key)
-    if shown.unit == "°C" and isinstance(
-        value, int | float
-    ):  # differences of temperatures are in K
+    # differences of temperatures are in K
+    if shown.unit == "°C" and isinstance(value, int | float):
         return f"{number(shown.drawn(value))} °C"
     return quantity(value, split_key(entry)[1] or shown.si)
 
@@ -97,15 +91,7 @@ def _figures(key: str, value: Any) -> list[Figure]:
     ]
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """Status line, with the mark ``good``, ``bad`` or ``unsure``."""
-
-    text: str
-    mark: str
-
-
-def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Verdict:
+def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Figure:
     """Status line from ``run.json`` and the time reached.
 
     Parameters
@@ -115,14 +101,15 @@ def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Verdict:
     """
     status, reason = run.get("status"), run.get("message") or "no reason was recorded"
     if status == "done":
-        return Verdict(f"Finished{_when(run)}.", "good")
+        return Figure("status", f"Finished{_when(run)}.", mark="good")
     texts = {
         "failed": f"Stopped: {reason}.",
         "interrupted": f"Interrupted{_when(run)}.",
         "running": "Still running when this report was written, or killed.",
     }
     text = texts.get(str(status), f"Unknown status: {status}.")
-    return Verdict(f"{text} {_reached(summary)}", "bad" if status == "failed" else "unsure")
+    mark = "bad" if status == "failed" else "unsure"
+    return Figure("status", f"{text} {_reached(summary)}", mark=mark)
 
 
 def _reached(summary: dict[str, Any]) -> str:

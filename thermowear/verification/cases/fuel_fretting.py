@@ -11,8 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...reference.hertz import contact_modulus
-from ...reference.mindlin import MindlinLine
+from ...reference.hertz import MindlinLine, contact_modulus
 from ...results import Result
 from ..check import Check, along, compare, run_starter
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from functools import partial
 
 from ..check import Checks
-from ..closed_forms.flat import case_1, case_2, case_6
 from ..closed_forms.guided import case_3, case_4, case_5, case_7
-from ..closed_forms.turning import case_8, case_9
+from ..closed_forms.punches import case_1, case_2, case_6, case_8, case_9
 from .annular_punch import story
 from .finite_elements import running_in
 

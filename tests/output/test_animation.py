@@ -13,7 +13,7 @@ from thermowear.case.starters import starter_text
 from thermowear.output.pictures.animation import make
 from thermowear.output.pictures.animation.panels import SectionPanel, top
 from thermowear.output.pictures.animation.states import read_frames
-from thermowear.output.pictures.section import outline
+from thermowear.output.pictures.bodies import outline
 
 from ..conftest import COLD_RUNNING_IN
 

@@ -73,14 +73,6 @@ def multiple(si: str, size: float) -> tuple[str, float]:
     return si, 1.0  # the size is not a number
 
 
-def scale_of(unit: str, si: str) -> tuple[float, float]:
-    """Scale and offset of a unit: value = scale · SI value + offset."""
-    if unit == "°C":
-        return 1.0, -273.15
-    known = {name: scale for _, name, scale in _MULTIPLES.get(si, ())}
-    return (1.0, 0.0) if unit == (si or "1") else (known[unit], 0.0)
-
-
 @dataclass(frozen=True)
 class Quantity:
     """Column of a table or number of the summary.
@@ -122,8 +114,11 @@ class Quantity:
 
     def drawn(self, values):
         """Convert SI values to the unit of plots."""
-        scale, offset = scale_of(self.unit, self.si)
-        return scale * values + offset
+        if self.unit == "°C":
+            return values - 273.15
+        known = {name: scale for _, name, scale in _MULTIPLES.get(self.si, ())}
+        scale = 1.0 if self.unit == (self.si or "1") else known[self.unit]
+        return scale * values + 0.0  # no negative zeros
 
     def in_model(self, model: str) -> Quantity:
         """Quantity whose label names the coordinates as the kinematic model does."""

@@ -232,5 +232,5 @@ def add_color_bar(
     """Add the colour bar of a quantity, with a tip if the largest value is beyond its limits."""
     extend = "max" if largest > limits[1] * (1 + 1e-9) else "neither"
     scale = ScalarMappable(Normalize(*limits), color_map(name))
-    options = {"ax": axis, "shrink": 0.8, "label": label, "extend": extend} | options
-    axis.figure.colorbar(scale, **options)
+    options = dict[str, Any](ax=axis, shrink=0.8) | options
+    axis.figure.colorbar(scale, label=label, extend=extend, **options)

@@ -76,8 +76,8 @@ def case_5() -> Iterator[Check]:
     for (b, sense), ends in reference.LEVER_ENDS.items():
         face = replace(lever, b=b, friction=sense * lever.friction)
         case = cases.brake_block(face, moment, probes=(lever.inner, lever.outer))
-        found = case.steady().pressure[-2:] / MPA
-        for place, p, known in zip(("inner", "outer"), found, ends, strict=True):
+        pressures = case.steady().pressure[-2:] / MPA
+        for place, p, known in zip(("inner", "outer"), pressures, ends, strict=True):
             quantity = f"pressure at the {place} end, b = {b:g}, sense {sense:+d} [MPa]"
             yield printed(quantity, p, known)
     rng = np.random.default_rng(5)

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ....results import FIELDS
+from ..bodies import read_section
 from ..maps import draw_colors, triangulated
 from ..panels import (
     BODIES,
@@ -24,7 +25,6 @@ from ..panels import (
     proportion,
     whole,
 )
-from ..section import read_section
 from .states import FrameSequence, FrameState, ScenePanel
 
 _SCALE = 0.05  # width of the colour bar relative to the panel

@@ -119,8 +119,8 @@ class FaceMap(ScenePanel):
         while self._drawn:
             self._drawn.pop().remove()
         x, y, values = map(state.interface.drawn, ("x", "y", self._name))
-        range_ = dict(zip(("vmin", "vmax"), self._limits, strict=True))
-        self._drawn = [draw_colors(self._axis, triangulated(x, y), values, self._name, **range_)]
+        ends = dict(zip(("vmin", "vmax"), self._limits, strict=True))
+        self._drawn = [draw_colors(self._axis, triangulated(x, y), values, self._name, **ends)]
 
 
 def face_maps(frames: FrameSequence) -> list[FaceMap]:

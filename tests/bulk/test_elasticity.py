@@ -15,9 +15,9 @@ from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.surfaces import pressure_work
-from thermowear.reference import cylinder
 
 from ..conftest import two_blocks
+from ..reference import cylinder
 
 STEEL = ElasticMaterial(2e11, 0.3, 1.2e-5)
 SOFT = ElasticMaterial(1e9, 0.45, 5e-5)

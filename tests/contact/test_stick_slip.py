@@ -26,8 +26,7 @@ from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.parallel import sum_over_ranks
-from thermowear.reference.hertz import contact_modulus
-from thermowear.reference.mindlin import MindlinLine
+from thermowear.reference.hertz import MindlinLine, contact_modulus
 
 from ..conftest import two_blocks
 from .half_plane import half_plane

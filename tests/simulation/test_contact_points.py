@@ -13,7 +13,7 @@ from thermowear.simulation.system.building import build
 from thermowear.simulation.system.setup_cache import SetupCache
 from thermowear.simulation.system.worn_geometry import along
 from thermowear.timer import Phases
-from thermowear.verification.starter import run_starter, starter
+from thermowear.verification.check import run_starter, starter
 
 from ..systems import built
 

@@ -7,7 +7,7 @@ from .operators.condensation import CondensedContact, condense
 from .operators.heat import InterfaceHeat, ThermalState
 from .operators.heat_condensation import condense_distortion, condense_heat
 from .operators.holder import RigidHolder, RigidMode, hold
-from .operators.pressure import pressure_basis
+from .operators.pressure import contact_zones, pressure_basis
 from .operators.sliding import Sliding, sliding
 from .operators.tangential import FrictionalContact, condense_tangential
 from .operators.traces import gap_trace, value_trace, vector_trace
@@ -15,5 +15,4 @@ from .operators.traction import normal_traction
 from .search.face import Face, gather_face
 from .search.pairing import Pairing, pair
 from .search.surface import Surface
-from .search.zones import contact_zones
 from .solvers.signorini import SignoriniSolution, solve_contact

@@ -1,12 +1,13 @@
 """Contact face of a plane body, gathered from all ranks as a chain of curved facets.
 
-The chain is replicated on all ranks, so that pairing needs no communication. Faces in space: see
-`surface`.
+The chain is replicated on all ranks, so that pairing needs no communication. Contact points are
+ordered along it from its first end to its last; a closed curve (full pin in a full bush) is cut at
+the vertex farthest from the other face. Faces in space: see `surface`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from dolfinx import fem
@@ -16,6 +17,7 @@ from ...compat import entities_to_geometry_layout
 from ...errors import CaseError
 from ...lagrange import lobatto
 from .facets import FacetSet, FacetTable, gather_facets
+from .projection import project
 from .surface import Surface, gather_surface
 
 ONWARD = (1.0, 0.3)
@@ -64,6 +66,33 @@ class Face(FacetSet):
         return np.clip(distance.argmin(axis=1)[:, None] + (0, -1, 1), 0, len(self.nodes) - 1)
 
 
+def gather_faces(
+    bodies: Bodies, surfaces: tuple[str, str], softness: fem.Function | None = None
+) -> tuple[Face | Surface, Face | Surface]:
+    """Gather both contact faces, closed curves cut; see `gather_face`. Every rank calls."""
+    first, second = (gather_face(bodies, surface, softness) for surface in surfaces)
+    return _opened(first, second), _opened(second, first)
+
+
+def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
+    """Face; a closed curve is cut far from the other face and runs along `ONWARD` past it."""
+    if isinstance(face, Surface) or not face.closed:
+        return face
+    first = int(np.linalg.norm(project(other, face.nodes[:, 0])[2], axis=1).argmax())
+    order = np.roll(np.arange(len(face.nodes)), -first)
+    position = np.concatenate([[0.0], np.cumsum(face.sizes[order])])
+    middle = order[np.searchsorted(position, position[-1] / 2, side="right") - 1]
+    onward = (face.nodes[middle, -1] - face.nodes[middle, 0]) @ ONWARD
+    order = order if onward > 0 else order[::-1]
+    names = ("nodes", "outward", "rank", "cell", "local_facet", "reversed")
+    columns = {name: getattr(face, name)[order] for name in names}
+    face = replace(face, **columns, softness=face.softness_at(order))
+    if onward > 0:
+        return face
+    nodes = face.nodes[:, ::-1]
+    return replace(face, nodes=nodes, outward=-face.outward, reversed=~face.reversed)
+
+
 def gather_face(
     bodies: Bodies, surface: str, softness: fem.Function | None = None
 ) -> Face | Surface:
@@ -97,7 +126,7 @@ def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -
 def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:
     """Order of the facets from the first end to the last, and mask of those to reverse.
 
-    A closed curve begins at an arbitrary vertex, see `closed_face`.
+    A closed curve begins at an arbitrary vertex, see `_opened`.
     """
     vertices, compact = np.unique(ends, return_inverse=True)
     ends = compact.reshape(ends.shape)

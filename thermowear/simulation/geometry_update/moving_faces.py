@@ -9,10 +9,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...bulk.mesh_motion import serial_extension
+from ...contact.operators.pressure import unresolved_gap
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ray_intersections
 from ...contact.search.surface import Surface
-from ...contact.wear.unresolved_gap import unresolved_gap
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,

@@ -10,14 +10,6 @@ import inspect
 import numpy as np
 from dolfinx import cpp, fem
 
-__all__ = [
-    "coordinate_element",
-    "entities_to_geometry_layout",
-    "evaluate",
-    "exterior_facet_domain",
-    "geometry_dofmap",
-]
-
 
 def geometry_dofmap(mesh) -> np.ndarray:
     """Geometry nodes of each cell, shape (n_cells, nodes_per_cell)."""

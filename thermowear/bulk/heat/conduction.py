@@ -19,7 +19,7 @@ from ...parallel import sum_over_ranks
 from ..direct_solver import DirectSolver, multiply
 from ..field import without_fixed
 from .advection import Advection
-from .even_paths import EvenFactor, EvenPaths
+from .even_paths import EvenPaths
 
 _BALANCE_FLOOR = 1e-8
 """Fraction of the flows between neighbouring nodes that serves as scale of the heat balance where
@@ -48,10 +48,8 @@ class Conduction:
         Mask of prescribed temperatures.
     prescribed : ndarray, shape (n_owned,)
         Prescribed rise in the fixed values, zero elsewhere [K].
-    factor : DirectSolver or EvenFactor
+    factor : DirectSolver
         Factorisation of conductivity plus bath, with prescribed temperatures eliminated.
-    prescribed_load : ndarray, shape (n_owned,)
-        Nodal heat on the free values equivalent to the prescribed temperatures [W].
     advection : Advection or None
     even : EvenPaths or None
         Paths of a fast moving body, along which the temperature is uniform.
@@ -67,8 +65,7 @@ class Conduction:
     bath: PETSc.Mat
     fixed: np.ndarray
     prescribed: np.ndarray
-    factor: DirectSolver | EvenFactor
-    prescribed_load: np.ndarray
+    factor: DirectSolver
     advection: Advection | None
     even: EvenPaths | None
     symmetric: bool
@@ -85,15 +82,11 @@ class Conduction:
 
     def solve(self, heat: np.ndarray) -> np.ndarray:
         """Rise [K] due to nodal heat [W] and prescribed temperatures."""
-        return self.prescribed + self.respond(heat + self.prescribed_load)
+        return self.prescribed + self.respond(heat - self._from_prescribed)
 
     def with_prescribed(self, prescribed: np.ndarray | None) -> Conduction:
         """Copy with other prescribed rises (n_owned,), zero in the free values; None: as is [K]."""
-        if prescribed is None:
-            return self
-        return replace(
-            self, prescribed=prescribed, prescribed_load=-multiply(self.conductivity, prescribed)
-        )
+        return self if prescribed is None else replace(self, prescribed=prescribed)
 
     def per_ambient(self) -> np.ndarray:
         """Nodal heat per rise of ambient and of entering material, (n_owned,) [W/K]."""
@@ -132,7 +125,6 @@ class Conduction:
             self,
             conductivity=total,
             factor=factorised(self.space, total, self.bath, self.fixed, symmetric, self.even),
-            prescribed_load=-multiply(total, self.prescribed),
             symmetric=symmetric,
         )
 
@@ -189,6 +181,11 @@ class Conduction:
         return (heat - multiply(self.conductivity, rise))[self.fixed]
 
     @cached_property
+    def _from_prescribed(self) -> np.ndarray:
+        """Nodal heat of the prescribed temperatures alone [W]. Every rank calls."""
+        return multiply(self.conductivity, self.prescribed)
+
+    @cached_property
     def _has_prescribed(self) -> bool:
         """True if any rank has a prescribed temperature. Every rank calls."""
         return any(self.space.mesh.comm.allgather(bool(self.fixed.any())))
@@ -214,7 +211,7 @@ def factorised(
     fixed: np.ndarray,
     symmetric: bool,
     even: EvenPaths | None,
-) -> DirectSolver | EvenFactor:
+) -> DirectSolver:
     """Factorise conductivity plus bath, rows and columns of prescribed temperatures eliminated."""
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)

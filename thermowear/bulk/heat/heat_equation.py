@@ -12,8 +12,7 @@ import ufl
 from dolfinx import default_scalar_type, fem
 
 from ..bodies import Bodies
-from ..compiled import assembled_matrix
-from ..direct_solver import multiply
+from ..compiled import assembled_matrix, nodal_loads
 from ..field import owned
 from ..kinematics import Kinematics, section_measure
 from .advection import Passage, advection
@@ -91,7 +90,6 @@ def conduction(
 
     fixed, values = given_rises(bodies, space, given, even)
     factor = factorised(space, conductivity, bath, fixed, carried is None, even)
-    lifted = -multiply(conductivity, values)
     return Conduction(
         space,
         conductivity,
@@ -102,7 +100,6 @@ def conduction(
         fixed,
         values,
         factor,
-        lifted,
         moving,
         even,
         symmetric=carried is None,
@@ -140,6 +137,18 @@ def transferring(
         return lambda T, δT: kinematics.integral(mesh, constant * T * δT, ds)
 
     return [form(h) for h in dict.fromkeys(coefficients.values())]
+
+
+def surface_heat(
+    bodies: Bodies, kinematics: Kinematics, space: fem.FunctionSpace, surface: str, flux: float
+) -> np.ndarray:
+    """Nodal heat of a uniform flux [W/m²] into the body through a surface [W], owned rows.
+
+    Every rank calls; `space` is that of the temperature.
+    """
+    measure = bodies.surface_measure(surface)
+    q = fem.Constant(bodies.mesh, default_scalar_type(flux))
+    return nodal_loads(space, lambda δT: kinematics.integral(bodies.mesh, q * δT, measure))
 
 
 def given_rises(

@@ -112,7 +112,7 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
     return Rule(*(column[counting][by_facet] for column in columns))
 
 
-def _on_facets(face_1, face_2, order: int, max_overhang: float) -> Rule:
+def _on_facets(face_1: Face | Surface, face_2, order: int, max_overhang: float) -> Rule:
     """Gauss-Lobatto rule on each whole facet."""
     places, weights = lobatto(order, face_1.dim)
     whole = Rule(*face_1.on_each(places), np.tile(weights, len(face_1.nodes)))

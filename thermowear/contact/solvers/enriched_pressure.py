@@ -14,8 +14,8 @@ import numpy as np
 
 from ...parallel import sum_over_ranks
 from ..operators.condensation import Influence
-from ..operators.holder import RigidHolder
 from ..operators.pressure import pressure_basis
+from ..operators.rigid_motion import RigidHolder
 from ..search.pairing import Pairing
 from .signorini import solve_contact
 

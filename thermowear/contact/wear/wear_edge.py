@@ -24,7 +24,7 @@ from functools import cached_property
 import numpy as np
 
 from ..operators.condensation import CondensedContact
-from ..operators.holder import RigidHolder
+from ..operators.rigid_motion import RigidHolder
 
 _ZERO = 1e-12
 """Relative area of a basis function that counts as zero."""

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.operators.holder import hold
+from ...contact.operators.rigid_motion import hold
 from ...contact.search.pairing import pair
 from ...contact.search.surface import Surface
 from ...contact.solvers.enriched_pressure import enriched_pressure

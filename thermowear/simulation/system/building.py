@@ -8,8 +8,7 @@ import numpy as np
 
 from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
-from ...contact.operators.holder import hold
-from ...contact.operators.sliding import Sliding, sliding
+from ...contact.operators.rigid_motion import Sliding, hold, sliding
 from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
 from ...geometry.mesh.tagged import TaggedMesh

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import basix
 import numpy as np
@@ -23,17 +23,8 @@ _TOLERANCE = 1e-6
 """Tolerance of the bounding-box search, relative to the size of a cell."""
 
 
-@dataclass(frozen=True)
-class _Cells:
-    """Cells of one body, gathered from all ranks.
-
-    Attributes
-    ----------
-    nodes : ndarray, shape (n_cells, n_nodes, gdim)
-        Coordinates of the geometry nodes [m].
-    values : ndarray, shape (n_cells, n_dofs)
-        Nodal values of the field.
-    """
+class _Cells(NamedTuple):
+    """Cells of one body from all ranks: geometry nodes (n_cells, n_nodes, gdim), nodal values."""
 
     nodes: np.ndarray
     values: np.ndarray
@@ -96,12 +87,7 @@ def _same_connectivity(old: fem.FunctionSpace, new: fem.FunctionSpace) -> bool:
 
 
 class _Field:
-    """Evaluation of fields of a space in given cells.
-
-    Parameters
-    ----------
-    space : dolfinx.fem.FunctionSpace
-    """
+    """Evaluation of fields of a space in given cells."""
 
     def __init__(self, space: fem.FunctionSpace):
         mesh = space.mesh

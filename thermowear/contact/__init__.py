@@ -15,7 +15,6 @@ from .operators.rigid_motion import RigidHolder, RigidMode, Sliding, hold, slidi
 from .operators.tangential import FrictionalContact, condense_tangential
 from .operators.traces import gap_trace, value_trace, vector_trace
 from .operators.traction import normal_traction
-from .search.face import Face, gather_face
+from .search.face import Face, Surface, gather_face
 from .search.pairing import Pairing, pair
-from .search.surface import Surface
 from .solvers.signorini import SignoriniSolution, solve_contact

@@ -18,6 +18,7 @@ stationarity conditions of a convex energy.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -97,17 +98,10 @@ class Residual:
         return self.pressure > 0.0
 
 
-@dataclass(frozen=True)
-class _Motions:
+class _Motions(NamedTuple):
     """Global degrees of freedom of the gap: holder, then spring-supported face points.
 
-    Attributes
-    ----------
-    modes, weighted_force_modes : ndarray, shape (n, k)
-        Modes R, and w T.
-    springs : ndarray, shape (k, k)
-        Spring stiffness; zero for the holder.
-    load : ndarray, shape (k,)
+    Modes R and w T (n, k), the stiffness of the springs (k, k), zero for the holder, and the load.
     """
 
     modes: np.ndarray

@@ -169,10 +169,8 @@ class FullContact(ContactEquations):
         Newton's method from all springs closed: with one motion each step ends at or beyond the
         solution, so convergence is monotonic.
         """
-        gap, springs = (
-            self.gap(loading, displacement),
-            self.weighted_force_modes * self.stiffness[:, None],
-        )
+        gap = self.gap(loading, displacement)
+        springs = self.weighted_force_modes * self.stiffness[:, None]
         closed: np.ndarray = np.ones(len(gap), dtype=bool)
         motion = np.zeros(len(loading.load))
         for _ in range(_MAX_ITERATIONS):

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import comb
 
+from ..search.face import Surface
 from ..search.pairing import Pairing
-from ..search.surface import Surface
 
 _ZERO_PRESSURE = 1e-9  # of the largest pressure
 _FIT_FRACTION = 0.8  # fraction of half a zone used to fit its edge

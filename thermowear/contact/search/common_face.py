@@ -27,10 +27,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .face import Face
+from .face import Face, Surface
 from .projection import overhang, project
 from .smooth_normals import across
-from .surface import Surface
 
 Line = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 MAX_FACING_COSINE = -0.5

@@ -14,8 +14,7 @@ from ...errors import CaseError
 from ...lagrange import gauss, lobatto, on_lattice
 from .clipping import parts_opposite
 from .common_face import MAX_FACING_COSINE, Opposite, opposite
-from .face import Face
-from .surface import Surface
+from .face import Face, Surface
 
 OVERHANG_TOLERANCE = 1e-9
 """Largest tangential distance from body 2, relative to the face, of paired points."""

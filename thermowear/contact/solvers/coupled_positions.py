@@ -131,18 +131,15 @@ def _with_active(
     eliminated = _eliminated(contacts, active)
     if eliminated is None:
         return None
-    at_zero_depth, per_depth = eliminated
-    m = active.shape[1]
+    m, at_zero_depth, per_depth = active.shape[1], eliminated[..., 0], eliminated[..., 1:]
     spread = np.eye(len(start)) - np.einsum("jnm,jmk->nk", gains, per_depth[:, :m])
     depths = np.linalg.solve(spread, start + np.einsum("jnm,jm->n", gains, at_zero_depth[:, :m]))
     unknowns = at_zero_depth + per_depth @ depths
     return CoupledSolution(unknowns[:, :m], unknowns[:, m:], active, depths)
 
 
-def _eliminated(
-    contacts: CoupledContacts, active: np.ndarray
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """λ and d at zero depths, shape (J, m + k), and their derivatives, shape (J, m + k, N)."""
+def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> np.ndarray | None:
+    """λ and d at zero depths, then their derivatives by the depths, shape (J, m + k, 1 + N)."""
     count, m, k = contacts.modes.shape
     pressed = active[..., None]
     both = pressed & active[:, None] | np.eye(m, dtype=bool)
@@ -153,8 +150,7 @@ def _eliminated(
         np.where(pressed, part, 0.0) for part in (contacts.modes, contacts.force_modes, gap)
     )
     compliance = np.where(both, contacts.compliance, 0.0)
-    unknowns = saddle_point(compliance, modes, force_modes, gap, load)
-    return None if unknowns is None else (unknowns[..., 0], unknowns[..., 1:])
+    return saddle_point(compliance, modes, force_modes, gap, load)
 
 
 def _pressing(contacts: CoupledContacts, solution: CoupledSolution) -> np.ndarray:

@@ -15,9 +15,8 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from ...lagrange import lattice, on_lattice
-from ..search.face import Face
+from ..search.face import Face, Surface
 from ..search.pairing import PairedFace, Pairing
-from ..search.surface import Surface
 
 _ROUGH = 1e-8
 """Relative weight of the smoothing term, which determines nodes without contact points nearby."""

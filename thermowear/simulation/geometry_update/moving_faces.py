@@ -10,9 +10,9 @@ from scipy.spatial import cKDTree
 
 from ...bulk.mesh_motion import serial_extension
 from ...contact.operators.pressure import unresolved_gap
+from ...contact.search.face import Surface
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ray_intersections
-from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from ...contact.search.surface import Surface
+from ...contact.search.face import Surface
 from ...errors import CaseError
 from ...laws.distribution import InPlace
 from ..interface.factory import interface_problem

@@ -61,7 +61,8 @@ def transferred(
     count, gdim = new.dofmap.index_map.size_local, old.mesh.geometry.dim
     result, stays, error = np.zeros(count), np.zeros(count, dtype=bool), 0.0
     places = new.tabulate_dof_coordinates()[:count, :gdim]
-    if _same_connectivity(old, new):
+    unchanged = np.array_equal(old.dofmap.list, new.dofmap.list)
+    if all(new.mesh.comm.allgather(unchanged)):  # the meshes differ in node positions only
         stays = np.all(places == old.tabulate_dof_coordinates()[:count, :gdim], axis=1)
         result[stays] = values[stays]
     field = _Field(old)
@@ -78,12 +79,6 @@ def transferred(
         at, found = field.between_nodes(again)
         error = max(error, float(np.abs(field.at(cells, at) - found).max(initial=0.0)))
     return result, error
-
-
-def _same_connectivity(old: fem.FunctionSpace, new: fem.FunctionSpace) -> bool:
-    """True if the meshes have equal connectivity on all ranks and differ in node positions only."""
-    same = np.array_equal(old.dofmap.list, new.dofmap.list)
-    return all(new.mesh.comm.allgather(same))
 
 
 class _Field:

@@ -35,7 +35,15 @@ def nitsche_stiffness(elastic: Elasticity, pairing: Pairing, gamma: float = GAMM
     Hesthaven, Comput. Methods Appl. Mech. Eng. 192 (2003) 2765), for any cell shape; λ + 2μ is the
     exact factor between the square of a normal stress and the energy.
     """
-    return gamma * elastic.space.ufl_element().degree ** 2 * _modulus_over_depth(elastic, pairing)
+    side, point, _ = on_every_facet(pairing)
+    comm, face = elastic.bodies.mesh.comm, side.face
+    volume = np.zeros(len(face.nodes))
+    for facet in np.flatnonzero(face.rank == comm.rank):
+        volume[facet] = _cell_rule(elastic, face.cell[facet])[0].sum()
+    depth = sum_over_ranks(comm, volume) / face.integrals(elastic.kinematics.area_factor)
+    modulus = at_points(elastic.lame[0], side) + 2 * at_points(elastic.lame[1], side)
+    degree = elastic.space.ufl_element().degree
+    return gamma * degree**2 * _largest_at(point, modulus / depth[side.facet])
 
 
 def default_penalty(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
@@ -60,7 +68,9 @@ def stability_limit(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
             traction = cell_traction(elastic, side, chosen, pairing.normals[point[chosen]])
             traction *= np.sqrt(pairing.weights[point] * share)[chosen, None, None]
             stiffness = _cell_stiffness(elastic, side.face.cell[facet])
-            limit[facet] = _largest_share(traction.reshape(len(chosen), -1), stiffness)
+            traction = traction.reshape(len(chosen), -1)
+            against = traction @ np.linalg.solve(stiffness, traction.T)
+            limit[facet] = np.linalg.eigvalsh(against)[-1]
     limit = sum_over_ranks(elastic.bodies.mesh.comm, limit)
     return _largest_at(point, limit[side.facet])
 
@@ -86,18 +96,6 @@ def nitsche_warning(stiffness: np.ndarray, limit: np.ndarray, theta: int) -> str
             "a stiff penalty and the equations are ill conditioned. Make it smaller"
         )
     return None
-
-
-def _modulus_over_depth(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
-    """Ratio (λ + 2μ) / h at the points; the larger value where two facets meet."""
-    side, point, _ = on_every_facet(pairing)
-    comm, face = elastic.bodies.mesh.comm, side.face
-    volume = np.zeros(len(face.nodes))
-    for facet in np.flatnonzero(face.rank == comm.rank):
-        volume[facet] = _cell_rule(elastic, face.cell[facet])[0].sum()
-    depth = sum_over_ranks(comm, volume) / face.integrals(elastic.kinematics.area_factor)
-    modulus = at_points(elastic.lame[0], side) + 2 * at_points(elastic.lame[1], side)
-    return _largest_at(point, modulus / depth[side.facet])
 
 
 def _largest_at(point: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -131,8 +129,3 @@ def _cell_stiffness(elastic: Elasticity, cell: int) -> np.ndarray:
     stiffness = strain.T @ strain + trace.T @ trace
     stiffness[np.diag_indices_from(stiffness)] += _REGULARISATION * stiffness.max()
     return stiffness
-
-
-def _largest_share(traction: np.ndarray, stiffness: np.ndarray) -> float:
-    """Largest eigenvalue of ``tractionᵀ traction`` against the stiffness."""
-    return np.linalg.eigvalsh(traction @ np.linalg.solve(stiffness, traction.T))[-1]

@@ -15,6 +15,7 @@ from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .heat import InterfaceHeat, ThermalDistortion
+from .pressure import PressureSpace
 from .rigid_motion import RigidHolder
 from .traces import distributed, transpose_product
 
@@ -23,17 +24,13 @@ _COLUMNS = {2: 32, 3: 128}
 
 
 @dataclass(frozen=True)
-class CondensedContact:
+class CondensedContact(PressureSpace):
     """Condensed elastic bodies: weak gap as a function of the pressure.
 
-    With ``p = Ψ λ``, the weak gap is ``Ψᵀ w (g0 + W) + A λ - Rw d`` (+ thermal distortion).
+    The weak gap is ``Ψᵀ w (g0 + W) + A λ - Rw d`` (+ thermal distortion).
 
     Attributes
     ----------
-    basis : ndarray, shape (n, m)
-        Basis Ψ of the pressure.
-    weighted : ndarray, shape (n, m)
-        ``diag(w) Ψ``.
     compliance : ndarray, shape (m, m)
         A = Ψᵀ w B K⁻¹ B_tᵗ w Ψ [m⁵/N = weak gap per coefficient].
     modes : ndarray, shape (m, k)
@@ -42,19 +39,13 @@ class CondensedContact:
         Ψᵀ w T: generalised force of each coefficient on each of these motions.
     """
 
-    basis: np.ndarray
-    weighted: np.ndarray
     compliance: np.ndarray
     modes: np.ndarray
     force_modes: np.ndarray
 
-    def weak(self, values: np.ndarray) -> np.ndarray:
-        """Weighted means ``Ψᵀ w v`` of values at the points, shape (m,)."""
-        return self.weighted.T @ values
-
 
 @dataclass(frozen=True)
-class Influence:
+class Influence(PressureSpace):
     """Elastic response to each pressure function: the solutions that condensation needs.
 
     Independent of loads, friction and wear.
@@ -63,10 +54,6 @@ class Influence:
     ----------
     trace : csr_matrix, shape (n_owned, n)
         Transposed gap trace Bᵀ.
-    basis : ndarray, shape (n, m)
-        Basis Ψ of the pressure.
-    weighted : ndarray, shape (n, m)
-        ``diag(w) Ψ``.
     touching : ndarray of int, shape (n_touching,)
         Owned degrees of freedom in cells at the contact, the only ones loaded by its tractions.
     near : ndarray, shape (n_touching, m)
@@ -77,8 +64,6 @@ class Influence:
     """
 
     trace: sp.csr_matrix
-    basis: np.ndarray
-    weighted: np.ndarray
     touching: np.ndarray
     near: np.ndarray
     per_rise: tuple[np.ndarray, ...]
@@ -97,7 +82,7 @@ class Influence:
         compliance = sum_over_ranks(self.comm, (pulls.T @ self.near).T)
         if traction is self.trace:
             compliance = (compliance + compliance.T) / 2
-        modes, force_modes = (self.weighted.T @ m for m in (holder.modes, holder.force_modes))
+        modes, force_modes = self.weak(holder.modes), self.weak(holder.force_modes)
         return CondensedContact(self.basis, self.weighted, compliance, modes, force_modes)
 
 
@@ -138,9 +123,9 @@ def influence(
         for matrix, products in zip(thermal_loads, per_rise, strict=True):
             products.append(transpose_product(matrix, displacements))
     return Influence(
-        trace,
         basis,
         weighted,
+        trace,
         touching,
         np.hstack(near),
         tuple(np.hstack(products) for products in per_rise),

@@ -8,6 +8,8 @@ nonnegative weights.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.special import comb
 
@@ -18,6 +20,30 @@ _ZERO_PRESSURE = 1e-9  # of the largest pressure
 _FIT_FRACTION = 0.8  # fraction of half a zone used to fit its edge
 _DEGREE = 2
 _SKIPPED_ELEMENTS = 2  # number of elements next to the edge
+
+
+@dataclass(frozen=True)
+class PressureSpace:
+    """Pressures ``p = Ψ λ`` at the contact points.
+
+    Attributes
+    ----------
+    basis : ndarray, shape (n, m)
+        Basis Ψ.
+    weighted : ndarray, shape (n, m)
+        ``diag(w) Ψ``.
+    """
+
+    basis: np.ndarray
+    weighted: np.ndarray
+
+    def weak(self, values: np.ndarray) -> np.ndarray:
+        """Weighted means ``Ψᵀ w v`` of values at the points, shape (m,)."""
+        return self.weighted.T @ values
+
+    def projected(self, values: np.ndarray) -> np.ndarray:
+        """Coefficients of the L² projection of values at the points, by columns."""
+        return np.linalg.solve(self.weighted.T @ self.basis, self.weighted.T @ values)
 
 
 def pressure_basis(pairing: Pairing, degree: int) -> np.ndarray:

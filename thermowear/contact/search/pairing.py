@@ -57,6 +57,11 @@ class PairedFace:
         """Coordinates, shape (n, gdim) [m]."""
         return self.face.points(self.facet, self.t)
 
+    @property
+    def position(self) -> np.ndarray:
+        """Arc length along the face, shape (n,), NaN on a surface [m]."""
+        return self.face.position(self.facet, self.t)
+
 
 @dataclass(frozen=True)
 class Pairing:

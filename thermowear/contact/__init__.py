@@ -3,6 +3,7 @@
 from .friction.stick_slip import advance, follow
 from .friction.stick_slip_state import Loads, StickSlipState
 from .full.full_system import FullContact, FullSolution
+from .full.nitsche import normal_traction
 from .operators.condensation import (
     CondensedContact,
     condense,
@@ -14,7 +15,6 @@ from .operators.pressure import contact_zones, pressure_basis
 from .operators.rigid_motion import RigidHolder, RigidMode, Sliding, hold, sliding
 from .operators.tangential import FrictionalContact, condense_tangential
 from .operators.traces import gap_trace, value_trace, vector_trace
-from .operators.traction import normal_traction
 from .search.face import Face, Surface, gather_face
 from .search.pairing import Pairing, pair
 from .solvers.signorini import SignoriniSolution, solve_contact

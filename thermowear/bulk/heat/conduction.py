@@ -38,8 +38,6 @@ class Conduction:
         Conduction, cooling and advection, without given temperatures and without `bath` [W/K].
     cooling : petsc4py.PETSc.Mat
         Cooling term alone: its row sums times the rise give the heat removed [W/K].
-    advective : petsc4py.PETSc.Mat or None
-        Advection term alone, likewise [W/K].
     capacity : petsc4py.PETSc.Mat or None
         Heat capacity matrix, if given by the materials [J/K].
     bath : petsc4py.PETSc.Mat
@@ -60,7 +58,6 @@ class Conduction:
     space: fem.FunctionSpace
     conductivity: PETSc.Mat
     cooling: PETSc.Mat
-    advective: PETSc.Mat | None
     capacity: PETSc.Mat | None
     bath: PETSc.Mat
     fixed: np.ndarray
@@ -92,7 +89,7 @@ class Conduction:
         """Nodal heat per rise of ambient and of entering material, (n_owned,) [W/K]."""
         ones = np.ones(len(self.fixed))
         heat = multiply(self.cooling, ones)
-        return heat if self.advective is None else heat + multiply(self.advective, ones)
+        return heat if self.advection is None else heat + multiply(self.advection.carried, ones)
 
     def implicit_euler(self, step: float) -> Conduction:
         """Conduction at the end of an implicit Euler step of time [s].
@@ -196,7 +193,7 @@ class Conduction:
         nothing = np.zeros(len(self.fixed))
         return (
             _column_sums(self.cooling),
-            nothing if self.advective is None else _column_sums(self.advective),
+            nothing if self.advection is None else _column_sums(self.advection.carried),
         )
 
     def _free(self, heat):

@@ -79,22 +79,21 @@ def conduction(
     cooled = assembled_matrix(*transfers, pattern=conductivity)
     structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
     conductivity.axpy(1.0, cooled, structure)
-    carried, test = None, δT
+    test = δT
     if moving is not None:
-        carried, test = assembled_matrix(moving.carried), δT + moving.upwind
-        conductivity.axpy(1.0, carried, structure)
+        test = δT + moving.upwind
+        conductivity.axpy(1.0, moving.carried, structure)
     capacity = None
     if len(capacities) == len(materials):
         density = bodies.per_body(capacities) * T * test
         capacity = assembled_matrix(kinematics.integral(mesh, density, measure))
 
     fixed, values = given_rises(bodies, space, given, even)
-    factor = factorised(space, conductivity, bath, fixed, carried is None, even)
+    factor = factorised(space, conductivity, bath, fixed, moving is None, even)
     return Conduction(
         space,
         conductivity,
         cooled,
-        carried,
         capacity,
         bath,
         fixed,
@@ -102,7 +101,7 @@ def conduction(
         factor,
         moving,
         even,
-        symmetric=carried is None,
+        symmetric=moving is None,
     )
 
 

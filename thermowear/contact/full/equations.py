@@ -11,7 +11,7 @@ as d does, with ``Tᵀ w p`` equal to the spring force.
 
 Without S and s this is the penalty method. With them it is Nitsche's method, which is consistent
 for any γ (Chouly, Hild and Renard, Math. Comput. 84 (2015) 1089); θ = 1 is symmetric and needs γ
-above a limit (see `stabilisation`), θ = -1 works with any γ. Symmetric equations are the
+above a limit (see `nitsche`), θ = -1 works with any γ. Symmetric equations are the
 stationarity conditions of a convex energy.
 """
 
@@ -29,7 +29,7 @@ from ...bulk.field import without_fixed
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from ..wear.edge_deflection import EdgeDeflection
+from .edge_deflection import EdgeDeflection
 from .newton_matrix import NewtonMatrix
 
 

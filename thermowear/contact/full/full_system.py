@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from ...errors import ComputationError
 from ...serialise import serialisable
 from ..solvers.signorini import solve_contact
-from ..wear.edge_deflection import EdgeDeflection
+from .edge_deflection import EdgeDeflection
 from .equations import ContactEquations, Loading
 
 _TOLERANCE = 1e-10

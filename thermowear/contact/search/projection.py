@@ -11,8 +11,8 @@ _TOLERANCE = 1e-13
 _BLOCK_SIZE = 1_000_000
 """Number of point-facet pairs processed at once."""
 _MAX_ITERATIONS = 10
-_MIN_COSINE = 0.3
-"""Smallest magnitude of the cosine between a ray and the normal of the face that it meets."""
+MIN_COSINE = 0.3
+"""Smallest magnitude of the cosine between a line and the normal of the face that it meets."""
 
 
 def project(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -62,7 +62,7 @@ def ray_intersections(
     for _ in range(_MAX_ITERATIONS):
         facet, t, offset = project(face, points + distance[:, None] * directions)
         normals = face.normals(facet, t)
-        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_MIN_COSINE)
+        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -MIN_COSINE)
         change = np.einsum("ni,ni->n", offset, normals) / against
         distance += change
         if np.abs(change).max() <= _TOLERANCE * face.extent:

@@ -13,12 +13,13 @@ as the fallback.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from ...serialise import serialisable
-from .signorini import saddle_point, solve_contact
+from .signorini import active_set, saddle_point, solve_contact
 
 _TOLERANCE = 1e-9
 
@@ -88,17 +89,9 @@ def solve_coupled(
     ComputationError
         If there is no solution.
     """
-    tried, expected = set(), active
-    while active.tobytes() not in tried:
-        tried.add(active.tobytes())
-        solution = _with_active(contacts, start, gains, active)
-        if solution is None:
-            break
-        next_active = _pressing(contacts, solution)
-        if np.array_equal(next_active, active):
-            return solution
-        active = next_active
-    return _stacked(contacts, start, gains, expected)
+    solve = partial(_with_active, contacts, start, gains)
+    solution = active_set(active, solve, partial(_pressing, contacts))
+    return _stacked(contacts, start, gains, active) if solution is None else solution
 
 
 def _stacked(

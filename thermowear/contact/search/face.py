@@ -17,7 +17,7 @@ from dolfinx import fem
 
 from ...bulk.bodies import Bodies
 from ...bulk.field import reference_element
-from ...compat import coordinate_element, entities_to_geometry_layout
+from ...compat import coordinate_element
 from ...errors import CaseError
 from ...lagrange import equispaced, lattice, lobatto, matching
 from .facets import FacetSet, FacetTable, gather_facets
@@ -182,10 +182,7 @@ def gather_face(
 
 
 def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -> Face:
-    layout = np.array(entities_to_geometry_layout(bodies.mesh, 1))
-    # closure dofs list both ends first, then the interior nodes
-    along = np.concatenate([layout[:, :1], layout[:, 2:], layout[:, 1:2]], axis=1)
-    table = gather_facets(bodies, surface, along, softness)
+    table = gather_facets(bodies, surface, _grids(bodies.mesh), softness)
     order, flip = _chain(table.numbers[:, [0, -1]], table.nodes, surface)
     table, flip = FacetTable(*(column[order] for column in table)), flip[order]
     nodes = np.where(flip[:, None, None], table.nodes[:, ::-1], table.nodes)
@@ -248,9 +245,12 @@ def _gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None)
 
 
 def _grids(mesh) -> np.ndarray:
-    """Node indices of each facet of a cell on a parameter grid, shape (6, (order + 1)²)."""
+    """Node indices of each facet of a cell on a parameter grid, shape (n_facets, n_nodes)."""
     kind, order = reference_element(mesh, 1).cell_type, coordinate_element(mesh).degree
+    dim = mesh.topology.dim - 1
     corners, facets = np.asarray(basix.geometry(kind)), np.array(basix.topology(kind)[-2])
-    a, b, c = np.moveaxis(corners[facets[:, :3]], 1, 0)[:, :, None]
-    s, t = lattice(order, dim=2).T[..., None]
-    return matching(a + s * (b - a) + t * (c - a), equispaced(kind.name, order).points)
+    first, *others = np.moveaxis(corners[facets[:, : dim + 1]], 1, 0)[:, :, None]
+    places = first
+    for t, other in zip(lattice(order, dim).reshape(-1, dim).T, others, strict=True):
+        places = places + t[:, None] * (other - first)
+    return matching(places, equispaced(kind.name, order).points)

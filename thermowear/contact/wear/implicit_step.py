@@ -68,6 +68,8 @@ class Slope:
 
     def __matmul__(self, pressure: np.ndarray) -> np.ndarray:
         """Gap opened by a pressure [m]."""
+        if not len(self.rows):
+            return self.point * pressure
         return self.point * pressure + self.reach @ (self.rows @ pressure)
 
 

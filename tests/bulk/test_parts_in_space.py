@@ -10,7 +10,6 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.surfaces import pressure_work
 from thermowear.geometry.meshing.cells import level, mesh_lattice, tagged_bodies
 
 COMM = MPI.COMM_WORLD
@@ -31,7 +30,7 @@ def test_layers_in_series():
     bodies = distribute(bar() if COMM.rank == 0 else None, COMM)
     materials = {"bar": ElasticMaterial(2e9, 0.0), "core": ElasticMaterial(5e10, 0.0)}
     elastic = elasticity(bodies, Spatial(), 2, materials, ["bar_bottom"])
-    u = elastic.solve(nodal_loads(elastic.space, pressure_work(elastic, "bar_top", 3e6))).reshape(
+    u = elastic.solve(nodal_loads(elastic.space, elastic.pressure_work("bar_top", 3e6))).reshape(
         -1, 3
     )
     top = np.abs(elastic.nodes()[:, 2] - 0.04) < 1e-12

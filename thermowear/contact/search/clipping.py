@@ -13,8 +13,8 @@ from functools import lru_cache
 import numpy as np
 
 from .common_face import MAX_FACING_COSINE, opposite_parameters
+from .face import Surface
 from .projection import within
-from .surface import Surface
 
 _TOLERANCE = 1e-9
 """Relative size of a facet below which corners coincide with each other or with a side."""

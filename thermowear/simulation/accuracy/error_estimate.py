@@ -22,9 +22,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.operators.holder import hold
+from ...contact.operators.rigid_motion import hold
+from ...contact.search.face import Surface
 from ...contact.search.pairing import pair
-from ...contact.search.surface import Surface
 from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
 from ...laws.principle.steady import steady_pressure

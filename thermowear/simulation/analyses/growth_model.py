@@ -136,8 +136,8 @@ class GrowthModel:
         f = np.reshape(thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # each field satisfies the interface heat law
         carried = np.zeros((X.shape[1],) * 2)
-        if conduction.advective is not None:
-            carried = self._product(conduction.advective, X)
+        if conduction.advection is not None:
+            carried = self._product(conduction.advection.carried, X)
         return PerturbationMatrices(
             elastic=space(self._elastic),
             opening=space.gaps.T @ at.opening,

@@ -64,7 +64,7 @@ class PerturbedContact:
     @property
     def has_advection(self) -> bool:
         """True if a body convects heat: perturbations then move, and no static modes exist."""
-        return self._thermal_bodies.conduction.advective is not None
+        return self._thermal_bodies.conduction.advection is not None
 
     @cached_property
     def static(self) -> StaticModes:

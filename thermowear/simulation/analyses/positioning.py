@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...contact.search.zones import contact_zones
+from ...contact.operators.pressure import contact_zones
 from ...errors import ComputationError
 from ...model.model import Model
 from ...timer import Phases

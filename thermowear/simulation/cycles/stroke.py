@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.operators.holder import hold
-from ...contact.operators.sliding import sliding
+from ...contact.operators.rigid_motion import hold, sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.solvers.coupled_positions import CoupledContacts
 from ...contact.wear.track import StrokeGrid

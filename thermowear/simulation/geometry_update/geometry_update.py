@@ -9,8 +9,8 @@ import numpy as np
 from ...balances import relative, require
 from ...bulk.mesh_motion import HarmonicExtension
 from ...bulk.transfer import transferred
+from ...contact.search.face import Surface
 from ...contact.search.refinement import Rule
-from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import WornFace, nodes_of
 from ...errors import CaseError, ComputationError
 from ...geometry.mesh.tagged import TaggedMesh, scaled_jacobians

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from ...contact.search.surface import Surface
+from ...contact.search.face import Surface
 from ...errors import CaseError
 from ...laws.distribution import InPlace
 from ...model.model import Zone

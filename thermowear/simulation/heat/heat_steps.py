@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
+from ...contact.operators.condensation import condense_distortion, condense_heat
 from ...contact.operators.heat import (
     BaselineResponse,
     HeatExchange,
@@ -18,7 +19,6 @@ from ...contact.operators.heat import (
     ThermalState,
     baseline_response,
 )
-from ...contact.operators.heat_condensation import condense_distortion, condense_heat
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions

@@ -9,7 +9,7 @@ import numpy as np
 from ...balances import ALLOWED, relative, require
 from ...compat import coordinate_element
 from ...contact.operators.heat import ThermalState
-from ...contact.operators.holder import RigidMode
+from ...contact.operators.rigid_motion import RigidMode
 from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import PairedFace

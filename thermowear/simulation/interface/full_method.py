@@ -6,15 +6,16 @@ from functools import cached_property
 
 import numpy as np
 
+from ...contact.full.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
 from ...contact.full.full_system import FullContact, FullSolution
-from ...contact.full.stabilisation import (
+from ...contact.full.nitsche import (
     default_penalty,
     nitsche_stiffness,
     nitsche_warning,
+    normal_traction,
     stability_limit,
+    thermal_traction,
 )
-from ...contact.operators.traction import normal_traction, thermal_traction
-from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
 from ...contact.wear.implicit_step import WearRates
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
@@ -31,7 +32,7 @@ class FullMethod:
     """Pointwise contact conditions on all nodal displacements.
 
     At the edge of the wear points have a deflection of their own, see
-    `contact.wear.edge_deflection`.
+    `contact.full.edge_deflection`.
 
     Heat and contact are solved in a staggered iteration: friction heat distorts the bodies, and the
     distortion changes the pressure. It uses Anderson acceleration, as its plain convergence rate is

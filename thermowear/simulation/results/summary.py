@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...bulk.field import total
-from ...contact.search.zones import contact_zones
+from ...contact.operators.pressure import contact_zones
 from ...laws.coefficients import Constant
 from ...results import Result
 from ..system.rigid_modes import applied, guides

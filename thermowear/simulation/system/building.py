@@ -8,9 +8,8 @@ import numpy as np
 
 from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
-from ...contact.operators.holder import hold
-from ...contact.operators.sliding import Sliding, sliding
-from ...contact.search.closed_face import gather_faces
+from ...contact.operators.rigid_motion import Sliding, hold, sliding
+from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
 from ...geometry.mesh.tagged import TaggedMesh
 from ...model.body import Facing

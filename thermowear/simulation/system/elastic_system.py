@@ -11,7 +11,6 @@ from ...bulk.bodies import Bodies
 from ...bulk.compiled import nodal_loads
 from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
-from ...bulk.surfaces import pressure_work, surface_work
 from ...contact.operators.traces import gap_trace
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion
@@ -55,14 +54,14 @@ def dead_load(holder: Holder, elastic: Elasticity) -> np.ndarray | None:
 
 
 def surface_loads(holder: Holder, elastic: Elasticity) -> list[Callable]:
-    """Forms of the work of the loads on surfaces, see `bulk.surfaces`."""
+    """Forms of the work of the loads on surfaces, see `Elasticity`."""
     direction = np.array(holder.load_direction)
     forces = [
-        surface_work(elastic, surface, force * direction)
+        elastic.surface_work(surface, force * direction)
         for surface, force in holder.surface_forces.items()
     ]
     pressures = holder.surface_pressures.items()
-    return forces + [pressure_work(elastic, *given) for given in pressures]
+    return forces + [elastic.pressure_work(*given) for given in pressures]
 
 
 def dead_resultant(

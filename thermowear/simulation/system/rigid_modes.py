@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...contact.operators.holder import RigidMode
+from ...contact.operators.rigid_motion import RigidMode
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion, rotation, translation
 from ...model.conditions import Holder

@@ -11,8 +11,7 @@ import scipy.sparse as sp
 from ...bulk.bodies import Bodies
 from ...bulk.mechanics.elasticity import Elasticity
 from ...contact.operators.condensation import CondensedContact, Influence, influence
-from ...contact.operators.holder import RigidHolder, hold
-from ...contact.operators.sliding import Sliding
+from ...contact.operators.rigid_motion import RigidHolder, Sliding, hold
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
 from ...laws.distribution import Distribution

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...bulk.bodies import Bodies
+from ...bulk.compiled import surface_area
 from ...bulk.heat.conduction import Conduction
-from ...bulk.heat.heat_equation import given_rises
+from ...bulk.heat.heat_equation import given_rises, surface_heat
 from ...bulk.kinematics import Kinematics
-from ...bulk.surfaces import surface_area, surface_heat
 from ...laws.time_course import TimeFunction
 from ...model.conditions import Heat
 from ...model.model import Model

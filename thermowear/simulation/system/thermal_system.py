@@ -21,8 +21,8 @@ from ...bulk.heat.varying import (
     varying_expansion,
 )
 from ...bulk.mechanics.elasticity import Elasticity
+from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.heat import InterfaceHeat
-from ...contact.operators.heat_condensation import bath_matrix, condense_heat
 from ...contact.operators.traces import value_trace
 from ...contact.search.pairing import Pairing
 from ...model.body import Facing

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy
 
+from ...contact.search.face import Surface
 from ...contact.search.pairing import PairedFace, Pairing
 from ...contact.search.refinement import Rule
-from ...contact.search.surface import Surface
 from ...geometry.mesh.tagged import TaggedMesh
 from ...geometry.moving.new_face import NewFace
 

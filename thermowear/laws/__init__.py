@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from .distribution import Distribution, DutyFactor, InPlace, Rings, UniformTrack, rings
+from .distribution import Distribution, InPlace, rings, uniform_track
 from .formulas import interface_law, wear_rate
 from .interfaces import Law, LocalState
 from .motions import RigidMotion, rotation, translation

@@ -39,7 +39,7 @@ class TimeCourse:
             return begin + (time - begin) % self.period
         return min(max(time, begin), end)
 
-    def value(self, values: Sequence[float], time: float) -> float:
+    def interpolate(self, values: Sequence[float], time: float) -> float:
         """Interpolate values given at the instants at a time."""
         return float(np.interp(self.instant(time), self.time, values))
 
@@ -54,35 +54,28 @@ class TimeCourse:
 
 
 @dataclass(frozen=True)
-class TimeFunction:
+class TimeFunction(TimeCourse):
     """Piecewise linear function of time.
 
     Attributes
     ----------
-    course : TimeCourse
     values : tuple of float
-        Values at its instants, in SI.
+        Values at the instants, in SI.
     """
 
-    course: TimeCourse
     values: tuple[float, ...]
 
     def at(self, time: float) -> float:
         """Value at a time [s]."""
-        return self.course.value(self.values, time)
-
-    def corners(self, end: float) -> tuple[float, ...]:
-        """Corner times after 0 and up to a time, repetitions included [s]."""
-        return self.course.corners(end)
+        return self.interpolate(self.values, time)
 
 
 @dataclass(frozen=True)
-class LoadHistory:
+class LoadHistory(TimeCourse):
     """Loads at instants, with straight lines between them.
 
     Attributes
     ----------
-    course : TimeCourse
     force, approach : tuple of float or None
         Along the load direction [N, m]; at most one of them. Neither: the constant load.
     tangential_force, tangential_displacement : tuple of float or None
@@ -92,17 +85,11 @@ class LoadHistory:
         with the loads of the last one [s].
     """
 
-    course: TimeCourse
     force: tuple[float, ...] | None = None
     approach: tuple[float, ...] | None = None
     tangential_force: tuple[float, ...] | None = None
     tangential_displacement: tuple[float, ...] | None = None
     cycle_start: float | None = None
-
-    @property
-    def time(self) -> tuple[float, ...]:
-        """Instants [s]."""
-        return self.course.time
 
     @property
     def cycle(self) -> tuple[float, float] | None:
@@ -125,16 +112,8 @@ class LoadHistory:
     def at(self, time: float) -> dict[str, float]:
         """Values of the given loads, by key, at a time [s]."""
         given = {key: getattr(self, key) for key in KEYS}
-        return {
-            key: self.course.value(values, time)
-            for key, values in given.items()
-            if values is not None
-        }
+        return {k: self.interpolate(v, time) for k, v in given.items() if v is not None}
 
     def factor_at(self, time: float) -> float:
         """Force at a time [s] relative to the largest one; 1 where the force is constant."""
         return 1.0 if self.force is None else self.at(time)["force"] / max(self.force)
-
-    def corners(self, end: float) -> tuple[float, ...]:
-        """Corner times after 0 and up to a time, repetitions included [s]."""
-        return self.course.corners(end)

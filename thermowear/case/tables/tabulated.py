@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Generic, TypeVar
 from pydantic import Field, TypeAdapter, ValidationError, ValidationInfo, model_validator
 
 from ...laws.coefficients import Multipliers, Table1D
-from ...laws.time_course import KEYS, LoadHistory, TimeCourse, TimeFunction
+from ...laws.time_course import LoadHistory, TimeFunction
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
 from ..values.section import KeyFault, Number, Section, Switch, UserFile
@@ -155,11 +155,6 @@ class TimeHistory(Section):
                 raise KeyFault("repeat", f"the last value of {key} must equal the first one")
         return self
 
-    @property
-    def course(self) -> TimeCourse:
-        """Instants of the history."""
-        return TimeCourse(self.time, self.repeat)
-
 
 def _report_line(error: ValidationError, columns: Columns) -> None:
     """Report an invalid value of a file with its line; leave other faults to the table."""
@@ -194,7 +189,7 @@ class FactorHistory(TimeHistory):
     @property
     def function(self) -> TimeFunction:
         """Factor as a function of time."""
-        return TimeFunction(self.course, self.factor)
+        return TimeFunction(self.time, self.repeat, self.factor)
 
 
 class TemperatureHistory(TimeHistory):
@@ -213,7 +208,7 @@ class TemperatureHistory(TimeHistory):
     @property
     def function(self) -> TimeFunction:
         """Temperature [K] as a function of time."""
-        return TimeFunction(self.course, self.temperature)
+        return TimeFunction(self.time, self.repeat, self.temperature)
 
 
 class History(TimeHistory):
@@ -253,5 +248,4 @@ class History(TimeHistory):
     @property
     def loads(self) -> LoadHistory:
         """Loads as functions of time."""
-        values = {key: getattr(self, key) for key in KEYS}
-        return LoadHistory(self.course, **values, cycle_start=self.cycle_start)
+        return LoadHistory(**dict(self))

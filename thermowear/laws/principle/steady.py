@@ -166,15 +166,13 @@ def _common(
     laws: Sequence[BoundLaw], factors: np.ndarray, spread: Sequence[Distribution]
 ) -> Common | None:
     """Means of the rates shared by several points; None without any."""
-    n = factors.shape[1]
-    tracks = [(k, track.rows, track) for k, track in enumerate(spread) if track.rows is not None]
+    tracks = [(k, track.means) for k, track in enumerate(spread) if track.means is not None]
     if not tracks:
         return None
-    owners = [k for k, rows, _ in tracks for _ in rows]
-    means = _rate_sum(
-        [laws[k] for k in owners], factors[owners], np.vstack([rows for _, rows, _ in tracks])
-    )
-    return Common(means, np.hstack([track.reach(n) for *_, track in tracks]))
+    owners = [k for k, means in tracks for _ in means.rows]
+    rows = np.vstack([means.rows for _, means in tracks])
+    rates = _rate_sum([laws[k] for k in owners], factors[owners], rows)
+    return Common(rates, np.hstack([means.reach for _, means in tracks]))
 
 
 def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:

@@ -7,7 +7,7 @@ from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTa
 from ...case.tables.schema import Case
 from ...case.tables.wear import BodyWearTable
 from ...laws.coefficients import Multipliers
-from ...laws.distribution import DutyFactor, InPlace
+from ...laws.distribution import Distribution, InPlace
 from ...laws.interfaces import Law
 from ...laws.power_wear import PowerWear
 from ...model.interface import ContactMethod, HardnessConductance, Interface
@@ -71,10 +71,10 @@ def _face_wear(case: Case, wear: BodyWearTable) -> FaceWear:
     return FaceWear(law, factors, b, track, wear.per)
 
 
-def _track(case: Case, wear: BodyWearTable) -> DutyFactor | EvenTrack | CircularTrack:
+def _track(case: Case, wear: BodyWearTable) -> Distribution | EvenTrack | CircularTrack:
     geometry = case.geometry
     if wear.spread == "in-place":
         return InPlace()
     if geometry.duty is not None and geometry.rotation_center is not None:
         return CircularTrack(geometry.rotation_center, geometry.duty)
-    return DutyFactor(geometry.sector) if geometry.track is None else EvenTrack(geometry.track)
+    return Distribution(geometry.sector) if geometry.track is None else EvenTrack(geometry.track)

@@ -10,10 +10,8 @@ from scipy.optimize import brentq
 
 from thermowear.errors import ComputationError
 from thermowear.laws import InPlace, PowerWear, steady_pressure, uniform_track
-from thermowear.laws.formulas import FormulaWear, wear_rate
-from thermowear.laws.interfaces import WEAR_VARIABLES, LocalState
-from thermowear.laws.plain_function import PlainFunction
-from thermowear.laws.registry import registered_laws
+from thermowear.laws.formulas import FormulaWear, PlainFunction, wear_rate
+from thermowear.laws.interfaces import WEAR_VARIABLES, LocalState, registered_laws
 
 N = 40
 RADIUS = np.linspace(0.02, 0.12, N)

@@ -17,6 +17,7 @@ from ..values.section import KeyFault, Number, Section, Switch, UserFile
 _PATH = TypeAdapter(UserFile)
 _CLOSED = 1e-9
 """Largest difference between start and end of a closed cycle, relative to the largest value."""
+_VARIABLES = {"temperature": "T", "pressure": "p", "speed": "v"}
 Positive = Annotated[Number, Field(gt=0.0)]
 NotNegative = Annotated[Number, Field(ge=0.0)]
 At = TypeVar("At", bound=float)
@@ -93,7 +94,7 @@ class MultiplierTables(Section):
     @property
     def multipliers(self) -> Multipliers:
         """Factors as a law."""
-        return Multipliers(**{name: getattr(self, name).table for name in self.depends_on})
+        return Multipliers({_VARIABLES[key]: getattr(self, key).table for key in self.depends_on})
 
 
 class TimeHistory(Section):

@@ -19,8 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .dimensions import Dimension
-from .tokens import Token, fault, tokens, unit_end
+from .tokens import Dimension, Token, fault, tokens, unit_end
 from .tree import EXTREMES, FUNCTIONS, KNOWN, Expression, Node, evaluate, variables
 
 Units = Callable[[str], tuple[float, Dimension]]

@@ -24,8 +24,7 @@ from ..power_wear import PowerWear
 from .functionals import PowerFunctional, wear_dissipation
 from .interior_point import solve
 from .rate_sums import PowerSum
-from .solvability import not_carried
-from .steady import steady_pressure
+from .steady import not_carried, steady_pressure
 
 _SEARCH = 16  # number of search intervals for the ratio of κ
 _TOLERANCE, _ACCEPTED = 1e-13, 1e-9  # of the direction: target, and largest accepted error

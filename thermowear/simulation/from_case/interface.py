@@ -45,7 +45,7 @@ def conductance(case: Case) -> Law | HardnessConductance | None:
     """Contact conductance of a case; None: perfect contact, or no heat."""
     given = None if case.heat is None else case.heat.conductance
     if isinstance(given, TabulatedConductanceTable):
-        return Multipliers(pressure=given.table)
+        return Multipliers({"p": given.table})
     if isinstance(given, PressureConductanceTable):
         return HardnessConductance(given.coefficient)
     return None if given is None else law_of(given, "heat.conductance", 0.0)

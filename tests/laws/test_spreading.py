@@ -31,14 +31,14 @@ LENGTHS = np.array([0.1, 0.2, 0.2, 0.1])
 )
 def test_rates(way, expected):
     """requirement: in place, a share of the time, or the mean over the length of the track."""
-    np.testing.assert_allclose(way.operator(4) @ LOCAL, expected, rtol=1e-14)
-    assert way.operator(4).shape == (4, 4)
+    np.testing.assert_allclose(way.rate(np.eye(4)) @ LOCAL, expected, rtol=1e-14)
+    assert way.rate(np.eye(4)).shape == (4, 4)
 
 
 def test_volume_is_kept():
     """requirement: what a strip loses over its whole track is what the contact takes off it."""
     track = 3.0
-    rate = uniform_track(LENGTHS / track).operator(4) @ LOCAL
+    rate = uniform_track(LENGTHS / track).rate(np.eye(4)) @ LOCAL
     assert track * rate[0] == pytest.approx(LENGTHS @ LOCAL, rel=1e-14)
 
 
@@ -47,7 +47,7 @@ def test_share_and_rows_say_the_same():
     turning = rings(np.array([1.0, 2.0, 2.0, 3.0]), np.array([1.0, 2.0, 1.0, 2.0]), 0.2)
     for way in (InPlace(), Distribution(0.3), uniform_track(LENGTHS), turning):
         common = 0.0 if way.means is None else way.means.reach @ (way.means.rows @ LOCAL)
-        np.testing.assert_allclose(way.operator(4) @ LOCAL, way.share * LOCAL + common)
+        np.testing.assert_allclose(way.rate(np.eye(4)) @ LOCAL, way.share * LOCAL + common)
 
 
 def test_a_share_of_the_wear():
@@ -134,7 +134,7 @@ def test_a_disk_wears_at_each_radius_by_the_mean_along_its_circle():
     """requirement: the mean of the local rate round the axis, by quadrature; no volume is lost."""
     r, angle, w = disk_under_a_pad()
     local = r * (1 + 0.5 * angle + angle**2)
-    found = rings(r, w, 1 / 6).operator(len(r)) @ local
+    found = rings(r, w, 1 / 6).rate(np.eye(len(r))) @ local
     mean = r * (1 + (np.pi / 6) ** 2 / 3) / 6
     np.testing.assert_allclose(found, mean, rtol=1e-12)
     assert w @ found == pytest.approx(w @ local / 6, rel=1e-13)
@@ -166,7 +166,7 @@ def test_the_principle_with_a_disk_that_wears_along_its_track(b_1, b_2):
     load = np.array([1e3, 2.0, 1.0])
     steady = steady_pressure(w, modes, modes, load, laws, 10 * r, [InPlace(), way])
     p = steady.pressure
-    disk = way.operator(len(r)) @ laws[1].value(LocalState(p, 10 * r))
+    disk = way.rate(np.eye(len(r))) @ laws[1].value(LocalState(p, 10 * r))
     np.testing.assert_allclose(steady.rates[1], disk, rtol=1e-12)
     total, scale = laws[0].value(LocalState(p, 10 * r)) + disk, steady.approach.max()
     np.testing.assert_allclose(total[p > 0], steady.approach[p > 0], atol=1e-10 * scale)

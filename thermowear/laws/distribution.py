@@ -62,10 +62,6 @@ class Distribution:
         own, means = self.share * local, self.means
         return own if means is None else own + means.reach @ (means.rows @ local)
 
-    def operator(self, n: int) -> np.ndarray:
-        """Matrix of `rate`, shape (n, n)."""
-        return self.rate(np.eye(n))
-
 
 @dataclass(frozen=True)
 class InPlace(Distribution):

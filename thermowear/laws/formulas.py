@@ -11,7 +11,8 @@ import numpy as np
 
 from ..errors import CaseError, ComputationError
 from .coefficients import Constant
-from .interfaces import INTERFACE_VARIABLES, UNITS, WEAR_VARIABLES, Formula, Law, LocalState
+from .expressions import Expression
+from .interfaces import INTERFACE_VARIABLES, UNITS, WEAR_VARIABLES, Law, LocalState
 from .plausible import require_wear_rate
 from .power_wear import floored
 
@@ -29,7 +30,7 @@ class FormulaLaw:
 
     Attributes
     ----------
-    formula : Formula
+    formula : Expression or PlainFunction
         Value in the variables of `NAMES`.
     name : str
         Name of the law, for messages.
@@ -39,7 +40,7 @@ class FormulaLaw:
 
     NAMES: ClassVar[tuple[str, ...]] = INTERFACE_VARIABLES
 
-    formula: Formula
+    formula: Expression | PlainFunction
     name: str = "coefficient"
     least: float = -np.inf
 

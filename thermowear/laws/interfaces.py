@@ -81,21 +81,6 @@ class Law(Protocol):
         ...
 
 
-class Formula(Protocol):
-    """Function of named variables with its derivatives: an expression, or a plain function."""
-
-    @property
-    def variables(self) -> frozenset[str]: ...
-
-    def value(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Value at arrays of the variables, of their common shape."""
-        ...
-
-    def slope(self, at: Mapping[str, np.ndarray], by: str) -> np.ndarray:
-        """Derivative with respect to one of the variables."""
-        ...
-
-
 def parameter(unit: str, example: str, *, default: Any = None, **bounds: float) -> Any:
     """Field of a registered law.
 

@@ -98,6 +98,11 @@ class LoadHistory(TimeCourse):
         closed = [start for start in starts if self.ends_as(start)]
         return (closed[0], self.time[-1]) if closed else None
 
+    def end(self, cycles: int) -> float:
+        """Time at the end of a number of cycles [s]."""
+        last = self.time[-1]
+        return last if self.cycle is None else last + (cycles - 1) * (last - self.cycle[0])
+
     @property
     def tangential(self) -> bool:
         """True if the holder has a tangential displacement or force."""

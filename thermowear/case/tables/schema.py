@@ -23,7 +23,6 @@ from .materials import BodyTable, Properties
 from .tabulated import FactorHistory, MultiplierTables, TimeHistory
 from .wear import WearTable
 
-Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
 _MOST_NODES = 2_000_000
 """Largest number of displacement nodes: larger matrices exceed the memory of a workstation."""
 

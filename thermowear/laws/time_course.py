@@ -32,16 +32,11 @@ class TimeCourse:
         """Time from the first instant to the last [s]."""
         return self.time[-1] - self.time[0]
 
-    def instant(self, time: float) -> float:
-        """Time mapped to the range between the first and the last instant [s]."""
-        begin, end = self.time[0], self.time[-1]
-        if self.repeat and time > end:
-            return begin + (time - begin) % self.period
-        return min(max(time, begin), end)
-
     def interpolate(self, values: Sequence[float], time: float) -> float:
         """Interpolate values given at the instants at a time."""
-        return float(np.interp(self.instant(time), self.time, values))
+        if self.repeat and time > self.time[-1]:
+            time = self.time[0] + (time - self.time[0]) % self.period
+        return float(np.interp(time, self.time, values))
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Corner times after 0 and up to a time, repetitions included [s]."""

@@ -94,7 +94,7 @@ class BoundLaw:
 
 @dataclass(frozen=True)
 class LawSum(RateSum):
-    """Weighted rates of several laws, in units of a pressure at each point and of a value.
+    """Weighted rates of several laws, in units of a pressure at each point.
 
     Attributes
     ----------
@@ -103,23 +103,20 @@ class LawSum(RateSum):
     weights : ndarray, shape (m, n)
     pressure : ndarray, shape (n,)
         Unit of the pressures [Pa].
-    value : float
-        Unit of the rates.
     """
 
     laws: Sequence[BoundLaw]
     weights: np.ndarray
     pressure: np.ndarray
-    value: float = 1.0
 
     def terms(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        p, shape, factors = self.pressure * pressure, self.weights.shape, self.weights / self.value
+        p, shape = self.pressure * pressure, self.weights.shape
         rates = np.reshape([law.rate(p) for law in self.laws], shape)
         slopes = np.reshape([law.slope(p) for law in self.laws], shape)
-        return factors * rates, factors * self.pressure * slopes
+        return self.weights * rates, self.weights * self.pressure * slopes
 
     def scaled(self, pressure: np.ndarray, value: float) -> LawSum:
-        return LawSum(self.laws, self.weights, self.pressure * pressure, self.value * value)
+        return LawSum(self.laws, self.weights / value, self.pressure * pressure)
 
 
 @dataclass(frozen=True)

@@ -102,7 +102,9 @@ class WearRates:
         rates = np.zeros_like(self.factors)
         for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
             local = self.factors[row] * law.value(LocalState(pressure, *self.states[row]))
-            rates[row] = spread.rate(local)
+            rates[row] = spread.share * local
+            if spread.means is not None:
+                rates[row] += spread.means.reach @ (spread.means.rows @ local)
         return rates
 
     def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:

@@ -16,7 +16,7 @@ from ..laws.coefficients import (
     PressureConductance,
     harmonic_mean,
 )
-from ..laws.distribution import Distribution, DutyFactor, InPlace, Rings, UniformTrack, rings
+from ..laws.distribution import Distribution, InPlace, rings, uniform_track
 from ..laws.interfaces import Law
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
@@ -37,9 +37,9 @@ class EvenTrack:
 
     def distribution(
         self, points: np.ndarray, weights: np.ndarray, thickness: float
-    ) -> UniformTrack:
+    ) -> Distribution:
         """Distribution of the wear; see `FaceWear.distribution`."""
-        return UniformTrack(weights / thickness / self.length)
+        return uniform_track(weights / thickness / self.length)
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,9 @@ class CircularTrack:
     center: tuple[float, float]
     duty: float
 
-    def distribution(self, points: np.ndarray, weights: np.ndarray, thickness: float) -> Rings:
+    def distribution(
+        self, points: np.ndarray, weights: np.ndarray, thickness: float
+    ) -> Distribution:
         """Distribution of the wear; see `FaceWear.distribution`."""
         arms = points[:, :2] - np.array(self.center)
         return rings(np.linalg.norm(arms, axis=1), weights, self.duty)
@@ -74,7 +76,7 @@ class FaceWear:
         Tabulated factors of the rate, by the temperature of the face, the pressure and the speed.
     friction_exponent : float
         Exponent of the coefficient of friction in a law per friction stress; 0 in other laws.
-    track : DutyFactor, EvenTrack or CircularTrack
+    track : Distribution, EvenTrack or CircularTrack
         In place, at a constant duty factor, or along a track that passes the contact.
     per : str or None
         Stress that a coefficient of wear multiplies, for the summary; None for other laws.
@@ -83,7 +85,7 @@ class FaceWear:
     law: Law
     factors: Multipliers = field(default_factory=Multipliers)
     friction_exponent: float = 0.0
-    track: DutyFactor | EvenTrack | CircularTrack = field(default_factory=InPlace)
+    track: Distribution | EvenTrack | CircularTrack = field(default_factory=InPlace)
     per: str | None = None
 
     @property
@@ -103,7 +105,7 @@ class FaceWear:
         thickness : float
             Thickness of a plane model; 1 in the others [m].
         """
-        if isinstance(self.track, DutyFactor):
+        if isinstance(self.track, Distribution):
             return self.track
         return self.track.distribution(points, weights, thickness)
 

@@ -16,7 +16,7 @@ from ..laws.coefficients import Constant, Table1D
 from ..laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
 from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
 from ..laws.plausible import require_interface_law
-from ..laws.time_course import TimeCourse, TimeFunction
+from ..laws.time_course import TimeFunction
 from ..model import body, conditions, interface
 from .body import BodySurface, require_surface
 
@@ -124,7 +124,7 @@ def TimeHistory(time: Sequence[Any], values: Sequence[Any], repeat: bool = False
     ]
     if len(read) != len(time):
         raise CaseError(f"{name}: has {len(time)} instants and {len(read)} values")
-    return TimeFunction(_course(time, repeat, name), tuple(read))
+    return TimeFunction(_instants(time, name), repeat, tuple(read))
 
 
 def LoadHistory(
@@ -139,7 +139,7 @@ def LoadHistory(
 ) -> time_course.LoadHistory:
     """Loads of a holder at instants, see `laws.time_course.LoadHistory`."""
     loads = force, approach, tangential_force, tangential_displacement
-    course, read = _course(time, repeat, "LoadHistory"), {}
+    instants, read = _instants(time, "LoadHistory"), {}
     for (key, kind), values in zip(_LOADS.items(), loads, strict=True):
         if values is not None:
             name = f"LoadHistory.{key}"
@@ -148,14 +148,14 @@ def LoadHistory(
             read[key] = each_quantity(kind, values, name)
     if cycle_start is not None:
         cycle_start = in_python(units.Instant, cycle_start, "LoadHistory.cycle_start")
-    return time_course.LoadHistory(course, **read, cycle_start=cycle_start)
+    return time_course.LoadHistory(instants, repeat, **read, cycle_start=cycle_start)
 
 
-def _course(time: Sequence[Any], repeat: bool, name: str) -> TimeCourse:
+def _instants(time: Sequence[Any], name: str) -> tuple[float, ...]:
     instants = each_quantity(units.Instant, time, f"{name}.time")
     if len(instants) < 2 or any(b <= a for a, b in pairwise(instants)):
         raise CaseError(f"{name}.time: needs two or more increasing instants")
-    return TimeCourse(instants, repeat)
+    return instants
 
 
 def Material(

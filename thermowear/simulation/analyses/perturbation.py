@@ -165,7 +165,7 @@ class PerturbedContact:
         laws = zip(system.laws.values(), system.spreads.values(), strict=True)
         for row, (law, spread) in enumerate(laws):
             slope = conditions.wear_slope(row, law, self._pressure)
-            worn += spread.operator(len(slope)) @ (slope[:, None] * pressed)
+            worn += spread.rate(slope[:, None] * pressed)
         return space.gaps.T @ (system.contact.weighted.T @ worn)
 
 

@@ -23,7 +23,7 @@ from ...case.values.section import Section
 from ...errors import CaseError
 from ...geometry.mesh.tagged import TaggedMesh
 from ...laws.coefficients import Multipliers
-from ...laws.distribution import DutyFactor, InPlace
+from ...laws.distribution import Distribution, InPlace
 from ...laws.interfaces import Law
 from ...laws.power_wear import PowerWear
 from ...model.body import Body, Material
@@ -205,7 +205,7 @@ def _conductance(case: Case) -> Law | HardnessConductance | None:
     """Contact conductance of a case; None: perfect contact, or no heat."""
     given = None if case.heat is None else case.heat.conductance
     if isinstance(given, TabulatedConductanceTable):
-        return Multipliers(pressure=given.table)
+        return Multipliers({"p": given.table})
     if isinstance(given, PressureConductanceTable):
         return HardnessConductance(given.coefficient)
     return None if given is None else law_of(given, "heat.conductance", 0.0)
@@ -231,10 +231,10 @@ def _face_wear(case: Case, wear: BodyWearTable) -> FaceWear:
     return FaceWear(law, factors, b, track, wear.per)
 
 
-def _track(case: Case, wear: BodyWearTable) -> DutyFactor | EvenTrack | CircularTrack:
+def _track(case: Case, wear: BodyWearTable) -> Distribution | EvenTrack | CircularTrack:
     geometry = case.geometry
     if wear.spread == "in-place":
         return InPlace()
     if geometry.duty is not None and geometry.rotation_center is not None:
         return CircularTrack(geometry.rotation_center, geometry.duty)
-    return DutyFactor(geometry.sector) if geometry.track is None else EvenTrack(geometry.track)
+    return Distribution(geometry.sector) if geometry.track is None else EvenTrack(geometry.track)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...laws.principle.patch import wear_vectors
-from ...laws.principle.solvability import SelfLocking
+from ...laws.principle.steady import SelfLocking
 from ...reference import guided_face as reference
 from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
 from ..check import Check, compare, printed

@@ -21,7 +21,8 @@ from ...contact.operators.traces import gap_trace, value_trace, vector_trace
 from ...model.heat import Heat
 from ...parallel import sum_over_ranks
 from ..interface.body_state import BodyState, ContactState
-from ..system.elastic_system import supports, surface_loads
+from ..system.building import supports
+from ..system.rigid_modes import surface_loads
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 

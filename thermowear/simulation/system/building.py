@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
+from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
 from ...contact.operators.holder import hold
 from ...contact.operators.sliding import Sliding, sliding
+from ...contact.operators.traces import gap_trace
 from ...contact.search.closed_face import gather_faces
 from ...contact.search.pairing import Pairing
 from ...geometry.mesh.tagged import TaggedMesh
-from ...model.body import Facing
 from ...model.meshes import Zone
 from ...model.model import Model
 from ...parallel import on_root
@@ -24,11 +26,10 @@ from .contact_points import (
     softness_of_parts,
     worn_contact_points,
 )
-from .elastic_system import dead_load, dead_resultant, elastic_system
-from .rigid_modes import rigid_modes
+from .rigid_modes import dead_load, dead_resultant, rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
-from .thermal_system import ThermalSystem, thermal_system
+from .thermal_system import thermal_system
 from .worn_geometry import WornGeometry
 
 
@@ -86,11 +87,15 @@ def build(
     driven = rigid_modes(
         model.holder, pairing, lambda motion: dead_resultant(elastic, upper, dead, motion)[0]
     )
-    thermal = parts.get(
-        "conduction",
-        made_from.conduction,
-        lambda: thermal_system(model, bodies, pairing, elastic, basis, facing, phases),
-    )
+    thermal, heat = None, model.heat
+    if heat is not None:
+        partition = interface.heat_partition(facing, model.materials)
+        thermal = parts.get(
+            "conduction",
+            made_from.conduction,
+            lambda: thermal_system(model, heat, pairing, elastic, basis, partition, phases),
+        )
+        thermal = replace(thermal, face=replace(thermal.face, partition=partition))
     return System(
         model=model,
         bodies=bodies,
@@ -103,7 +108,7 @@ def build(
         traction_direction=traction_direction,
         speed=speed,
         dead_load=dead,
-        thermal=None if thermal is None else _exchanging(thermal, model, facing),
+        thermal=thermal,
         phases=phases,
         parts=parts,
         inputs=made_from,
@@ -141,10 +146,32 @@ def _paired(
     return worn_contact_points(model, kinematics, worn, *faces)
 
 
-def _exchanging(thermal: ThermalSystem, model: Model, facing: Facing) -> ThermalSystem:
-    """Thermal system with the heat partition of this model."""
-    partition = model.interface.heat_partition(facing, model.materials)
-    return replace(thermal, face=replace(thermal.face, partition=partition))
+def elastic_system(
+    model: Model, kinematics: Kinematics, bodies: Bodies, pairing: Pairing
+) -> tuple[Elasticity, sp.csr_matrix]:
+    """Assemble and factorise the elastic bodies. Every rank calls.
+
+    Returns
+    -------
+    elastic : Elasticity
+    trace : csr_matrix, shape (n_owned, n)
+        Bᵀ of the gap in the displacement space.
+    """
+    hot = model.heat is not None
+    materials = {
+        part: ElasticMaterial(m.young_modulus, m.poisson_ratio, m.expansion if hot else 0.0)
+        for part, m in model.materials.items()
+    }
+    degree = model.discretisation.degree
+    elastic = elasticity(bodies, kinematics, degree, materials, *supports(model))
+    return elastic, gap_trace(elastic.space, pairing)
+
+
+def supports(model: Model) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]:
+    """Clamped surfaces, symmetry planes, and surfaces on rollers."""
+    clamped = [surface for body in model.bodies for surface in body.fixed]
+    rollers = tuple(surface for body in model.bodies for surface in body.rollers)
+    return clamped, model.symmetry, rollers
 
 
 def sliding_of(model: Model, kinematics: Kinematics, pairing: Pairing) -> Sliding | None:

@@ -24,7 +24,7 @@ from ...model.model import Model
 from ...parallel import sum_over_ranks
 from ...timer import Phases
 from .contact_points import facing_parts
-from .elastic_system import dead_resultant
+from .rigid_modes import dead_resultant
 from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem
 from .worn_geometry import WornGeometry

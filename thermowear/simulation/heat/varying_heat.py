@@ -52,9 +52,10 @@ class TangentOperators(HeatOperators):
 
     @cached_property
     def per_rise(self) -> np.ndarray:
-        result, at = self._system.influence.per_rise[0], self._at
-        for expansion, per_excess in () if at is None else self._expansions:
-            result = result + expansion.slope(at)[:, None] * per_excess
+        result = self._system.influence.per_rise[0]
+        if self._at is not None:
+            for expansion, per_excess in self._expansions:
+                result = result + expansion.slope(self._at)[:, None] * per_excess
         return result
 
     def baseline(self, rise: np.ndarray, about: np.ndarray | None = None) -> BaselineResponse:

@@ -22,17 +22,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.operators.holder import hold
 from ...contact.search.pairing import pair
 from ...contact.search.surface import Surface
 from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
-from ...laws.principle.steady import steady_pressure
 from ...model.analyses import Analysis
 from ...results import InterfaceFields
 from ..interface.body_state import ContactState
+from ..interface.steady import principle
 from ..results.recording import Snapshot
-from ..system.building import sliding_of
+from ..system.building import sliding_contact
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from .enriched_bodies import EnrichedBodies, TemperatureChange, temperature_change
@@ -215,7 +214,10 @@ def _finer_principle(system: System, contact: ContactState) -> np.ndarray:
         raise ComputationError("not estimated on moved meshes")
     if any("T" in law.variables for law in system.laws.values()):
         raise ComputationError("not estimated where wear depends on the temperature")
-    coarse, fine = (_principle(part) for part in (system, _finer(system)))
+    coarse, fine = (
+        principle(each, each.holder.load, speed=each.speed, friction=each.friction)
+        for each in (system, _finer(system))
+    )
     velocity = system.holder.modes @ coarse.velocity
     change = system.holder.modes @ fine.velocity - velocity
     pressure = contact.pressure
@@ -242,29 +244,5 @@ def _finer(system: System) -> System:
     lobatto = model.interface.pressure_degree == "lobatto"
     order = model.discretisation.degree + (2 if lobatto else 3)
     pairing = pair(face_1, face_2, kinematics, order, refine=not lobatto)
-    slides = sliding_of(model, kinematics, pairing)
-    assert slides is not None
-    friction = system.friction, model.interface.transverse_friction
-    traction_direction = slides.traction_direction(pairing.normals, *friction)
-    holder = hold(pairing, traction_direction, system.holder.rigid_modes)
-    return replace(
-        system,
-        pairing=pairing,
-        slides=slides,
-        traction_direction=traction_direction,
-        speed=slides.speed,
-        holder=holder,
-    )
-
-
-def _principle(system: System):
-    return steady_pressure(
-        system.weights,
-        system.holder.modes,
-        system.holder.force_modes,
-        system.holder.load,
-        list(system.laws.values()),
-        system.speed,
-        list(system.spreads.values()),
-        friction=system.friction,
-    )
+    driven = system.holder.rigid_modes
+    return replace(system, pairing=pairing, **sliding_contact(model, kinematics, pairing, driven))

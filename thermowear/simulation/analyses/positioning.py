@@ -8,7 +8,7 @@ from ...contact.search.zones import contact_zones
 from ...errors import ComputationError
 from ...model.model import Model
 from ...timer import Phases
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..system.building import build
 from ..system.system import System
 

@@ -27,9 +27,8 @@ from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
 from ..results.fields import sample
 from ..results.recording import Snapshot
-from ..runtime.checkpoint_data import Saved, mesh_checksum
 from ..runtime.history import AnalysisHistory
-from ..runtime.observer import Observer
+from ..runtime.observer import Observer, Saved, mesh_checksum
 from ..system.system import System
 from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare

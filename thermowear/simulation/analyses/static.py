@@ -8,8 +8,7 @@ from ...laws.motions import combined
 from ...laws.principle.least_worn import least_worn
 from ...results import Result
 from ..interface.body_state import body_state
-from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
+from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.steady import steady_state
 from ..results.recording import Snapshot, record, snapshot_at
 from ..results.summary import conclude

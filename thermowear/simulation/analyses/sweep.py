@@ -11,8 +11,7 @@ from ...results import Result
 from ...timer import Phases
 from ..runtime.observer import Observer
 from ..system.building import build
-from ..system.setup_cache import SetupCache, inputs
-from ..system.system import System
+from ..system.system import SetupCache, System, inputs
 from .positioning import prepare
 from .run import analyse, balanced
 

@@ -14,13 +14,12 @@ from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
 from ..results.recording import Snapshot, snapshot_at
-from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory
-from ..runtime.observer import Observer
+from ..runtime.observer import Observer, Progress
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit

@@ -13,9 +13,8 @@ from ...model.analyses import FrettingAnalysis
 from ...results import CycleRow, FrictionInterface, LoadRow
 from ..interface.body_state import contact_state
 from ..results.recording import Snapshot, snapshot
-from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory
-from ..runtime.observer import Observer
+from ..runtime.observer import Observer, Progress
 from ..system.system import System
 from .fretting_path import FrettingPath
 from .load_path import Increment, Jump

@@ -11,12 +11,11 @@ from ...laws.motions import combined
 from ...model.analyses import ReciprocatingAnalysis
 from ...results import HistoryRow, WornTrack
 from ..interface.body_state import contact_state
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..results.recording import Snapshot, snapshot
-from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory
-from ..runtime.observer import Observer
+from ..runtime.observer import Observer, Progress
 from ..system.system import System
 from ..time.time_loop import AnySize, Moment, moments
 from .reciprocating_problem import ReciprocatingProblem

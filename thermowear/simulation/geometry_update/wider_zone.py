@@ -8,8 +8,7 @@ import scipy
 from ...contact.search.surface import Surface
 from ...errors import CaseError
 from ...laws.distribution import InPlace
-from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
+from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState
 from ..system.building import build
 from ..system.system import System

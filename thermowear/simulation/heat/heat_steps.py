@@ -22,8 +22,7 @@ from ...contact.operators.heat_condensation import condense_distortion, condense
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
-from ..system.setup_cache import SetupCache
-from ..system.system import System
+from ..system.system import SetupCache, System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
 
 _ROUNDING = 1e-3

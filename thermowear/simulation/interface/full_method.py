@@ -18,8 +18,7 @@ from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wav
 from ...contact.wear.implicit_step import WearRates
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..system.setup_cache import SetupCache
-from ..system.system import System
+from ..system.system import SetupCache, System
 from .contact_solver import ContactSolution
 from .fixed_point import AndersonMixing
 

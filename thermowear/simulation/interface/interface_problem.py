@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
-from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat
+from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
+from .condensed_method import CondensedMethod
 from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent
+from .full_method import FullMethod
 from .growing_edge import GrowingEdge
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
@@ -76,7 +79,6 @@ class InterfaceProblem(WearProblem):
         return self._solve(depth[None], conditions, None, guess=guess)
 
     def start(self) -> InterfaceState:
-        """State of the unworn faces at time 0."""
         if not self.stores_heat:
             return self.unworn()
         assert self.heat is not None
@@ -254,14 +256,10 @@ class InterfaceProblem(WearProblem):
         return self.heat.steps.largest(one.stored.rise - other.stored.rise)
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Times up to an end at which a history has a corner [s]."""
         return self._condition_model.corners(end)
 
     def first_step(self, state: InterfaceState) -> float:
-        """Initial step: wear small against elastic deflection, small penetration of heat [s].
-
-        May be infinite.
-        """
+        """Initial step: wear small against elastic deflection, small penetration of heat [s]."""
         conditions = self.conditions(state, 0.0)
         fastest = float(self._rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0))
         step = np.inf
@@ -282,3 +280,25 @@ class InterfaceProblem(WearProblem):
         if steady is None:
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
+
+
+def interface_problem(
+    system: System, note: Callable[[str], None] | None = None
+) -> InterfaceProblem:
+    """Interface problem of a system, with the contact method of its model. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    note : callable, optional
+        Called with a warning about settings that may impair the solution.
+    """
+    method: ContactSolver
+    if system.model.interface.method.name == "condensed":
+        method = CondensedMethod(system)
+    else:
+        with system.phases("contact operators"):
+            method = FullMethod(system)
+    if note is not None and method.note is not None:
+        note(method.note)
+    return InterfaceProblem(system, method, friction_heat(system))

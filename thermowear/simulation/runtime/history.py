@@ -26,8 +26,7 @@ from ..results.fields import sample
 from ..results.recording import Snapshot
 from ..results.summary import conclude
 from ..system.system import System
-from .checkpoint_data import Progress, Saved
-from .observer import AnyRow, Observer
+from .observer import AnyRow, Observer, Progress, Saved
 
 Row = TypeVar("Row", bound=AnyRow)
 

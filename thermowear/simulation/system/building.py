@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -10,8 +11,8 @@ import scipy.sparse as sp
 from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
 from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
-from ...contact.operators.holder import hold
-from ...contact.operators.sliding import Sliding, sliding
+from ...contact.operators.holder import RigidMode, hold
+from ...contact.operators.sliding import sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.search.closed_face import gather_faces
 from ...contact.search.pairing import Pairing
@@ -27,8 +28,7 @@ from .contact_points import (
     worn_contact_points,
 )
 from .rigid_modes import dead_load, dead_resultant, rigid_modes
-from .setup_cache import SetupCache, inputs
-from .system import System
+from .system import SetupCache, System, inputs
 from .thermal_system import thermal_system
 from .worn_geometry import WornGeometry
 
@@ -75,12 +75,6 @@ def build(
             made_from.elasticity,
             lambda: elastic_system(model, kinematics, bodies, pairing),
         )
-    slides = sliding_of(model, kinematics, pairing)
-    traction_direction, speed = pairing.normals, np.zeros(len(pairing.weights))
-    if slides is not None:
-        friction = interface.nominal_friction, interface.transverse_friction
-        traction_direction = slides.traction_direction(pairing.normals, *friction)
-        speed = slides.speed
     facing = facing_parts(bodies, pairing)
     dead = dead_load(model.holder, elastic)
     upper = model.bodies[0].parts
@@ -103,10 +97,7 @@ def build(
         elastic=elastic,
         trace=trace,
         basis=basis,
-        holder=hold(pairing, traction_direction, driven),
-        slides=slides,
-        traction_direction=traction_direction,
-        speed=speed,
+        **sliding_contact(model, kinematics, pairing, driven),
         dead_load=dead,
         thermal=thermal,
         phases=phases,
@@ -174,10 +165,25 @@ def supports(model: Model) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]
     return clamped, model.symmetry, rollers
 
 
-def sliding_of(model: Model, kinematics: Kinematics, pairing: Pairing) -> Sliding | None:
-    """Sliding kinematics of body 1; None at rest."""
-    motion = model.motion
-    if motion.at_rest:
-        return None
-    velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
-    return sliding(velocity, pairing.normals, model.holder.load_direction)
+def sliding_contact(
+    model: Model, kinematics: Kinematics, pairing: Pairing, driven: tuple[RigidMode, ...]
+) -> dict[str, Any]:
+    """Attributes of a `System` that follow from its contact points and rigid modes of the holder.
+
+    Sliding of body 1, its speed, the traction direction and the holder.
+    """
+    motion, slides = model.motion, None
+    traction_direction, speed = pairing.normals, np.zeros(len(pairing.weights))
+    if not motion.at_rest:
+        velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
+        slides = sliding(velocity, pairing.normals, model.holder.load_direction)
+        friction = model.interface.nominal_friction, model.interface.transverse_friction
+        traction_direction = slides.traction_direction(pairing.normals, *friction)
+        speed = slides.speed
+    holder = hold(pairing, traction_direction, driven)
+    return {
+        "slides": slides,
+        "speed": speed,
+        "traction_direction": traction_direction,
+        "holder": holder,
+    }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 
@@ -112,7 +111,6 @@ class ConditionModel:
         model, interface = system.model, system.model.interface
         self._system = system
         self._interface = interface
-        self._wearing = list(interface.wear.items())
         self._friction_law = interface.friction_law
         self.depends_on_state, self._friction_varies = interface.varies, interface.friction_varies
         self._load, self._motion = model.holder.history, model.motion.history
@@ -145,16 +143,16 @@ class ConditionModel:
         pressed = 1.0 if self._load is None else _part(self._load.factor_at(time))
         speed = self._speed(time)
         temperatures = self._temperatures(faces)
-        own = None if temperatures is None else [temperatures[index] for index, _ in self._wearing]
         friction = self._friction(time, temperatures, pressure, speed)
+        wear, temperature, worn = self._wear(temperatures, depth, pressure, speed, friction)
         return InterfaceConditions(
             load=pressed * system.holder.load + system.holder.dead,
             speed=speed,
             friction=friction,
-            wear=self._wear(own, pressure, speed, friction),
+            wear=wear,
             conductance=self._conductance(temperatures, pressure, speed, closed),
-            temperature=self._of_wear("T", own, pressure),
-            depth=self._of_wear("depth", depth, pressure),
+            temperature=temperature,
+            depth=worn,
         )
 
     def corners(self, end: float) -> tuple[float, ...]:
@@ -178,16 +176,6 @@ class ConditionModel:
     def _mean(temperatures) -> np.ndarray | float:
         """Mean temperature of both faces; 0 and unused without heat [K]."""
         return 0.0 if temperatures is None else (temperatures[0] + temperatures[1]) / 2
-
-    def _of_wear(
-        self, name: str, values: Sequence[np.ndarray] | np.ndarray | None, pressure: np.ndarray
-    ) -> np.ndarray:
-        """Values of a state variable for the wear laws that depend on it; 0 for the others."""
-        result = np.zeros((len(self._wearing), len(pressure)))
-        for row, (_, wear) in enumerate(self._wearing):
-            if values is not None and name in wear.law.variables:
-                result[row] = values[row]
-        return result
 
     def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
         """Coefficient of friction, at least 0; `require_friction` checks the converged state."""
@@ -217,15 +205,23 @@ class ConditionModel:
                 "bound the law, max(0.05, …), or reduce load or speed"
             )
 
-    def _wear(self, temperatures, pressure, speed, friction) -> np.ndarray:
-        """Factors of the wear rates from tables and from friction other than the nominal."""
-        result = np.ones((len(self._wearing), len(pressure)))
-        for row, (_, wear) in enumerate(self._wearing):
-            own = 0.0 if temperatures is None else temperatures[row]
-            result[row] = wear.factors.value(LocalState(pressure, speed, own))
+    def _wear(self, temperatures, depth, pressure, speed, friction) -> np.ndarray:
+        """Factors of the wear rates by tables and friction; temperatures and depths for the laws.
+
+        Each of shape (n_wearing, n), stacked. A state variable that a law does not use is 0.
+        """
+        wearing = self._interface.wear.items()
+        factors, used, depths = result = np.zeros((3, len(wearing), len(pressure)))
+        for row, (index, wear) in enumerate(wearing):
+            own = 0.0 if temperatures is None else temperatures[index]
+            factors[row] = wear.factors.value(LocalState(pressure, speed, own))
             if wear.friction_exponent and self._friction_varies:
                 nominal = self._interface.nominal_friction
-                result[row] *= (friction / nominal) ** wear.friction_exponent
+                factors[row] *= (friction / nominal) ** wear.friction_exponent
+            if "T" in wear.law.variables:
+                used[row] = own
+            if "depth" in wear.law.variables and depth is not None:
+                depths[row] = depth[row]
         return result
 
     @cached_property

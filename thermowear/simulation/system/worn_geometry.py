@@ -87,7 +87,11 @@ class WornGeometry:
 
     def carried(self, values: np.ndarray, pairing: Pairing) -> np.ndarray:
         """Interpolate values (..., n_before) to the points of a new pairing of the same faces."""
-        return carried(values, self.at, pairing)
+        before, after = self.at, along(pairing)
+        if before.shape == after.shape and np.abs(before - after).max() < _SAME:
+            return values
+        curve = scipy.interpolate.Akima1DInterpolator(before, values, axis=-1, method="makima")
+        return curve(np.clip(after, before[0], before[-1]))
 
     def moved(self, pairing: Pairing) -> np.ndarray:
         """Wear depths removed from both meshes at the points of a pairing, shape (2, n) [m]."""
@@ -113,12 +117,3 @@ def along(pairing: Pairing) -> np.ndarray:
     if isinstance(side.face, Surface):
         return np.column_stack([side.facet, side.t])
     return side.facet + side.t
-
-
-def carried(values: np.ndarray, before: np.ndarray, pairing: Pairing) -> np.ndarray:
-    """Interpolate values (..., n) at positions on a face, see `along`, to another pairing."""
-    after = along(pairing)
-    if before.shape == after.shape and np.abs(before - after).max() < _SAME:
-        return values
-    curve = scipy.interpolate.Akima1DInterpolator(before, values, axis=-1, method="makima")
-    return curve(np.clip(after, before[0], before[-1]))

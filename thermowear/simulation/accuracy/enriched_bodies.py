@@ -7,6 +7,7 @@ change with the better discretisation.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import gap_trace, value_trace, vector_trace
 from ...model.heat import Heat
 from ...parallel import sum_over_ranks
+from ..heat.friction_heat import TemperatureField
 from ..interface.body_state import BodyState, ContactState
 from ..system.building import supports
 from ..system.rigid_modes import surface_loads
@@ -35,14 +37,12 @@ class TemperatureChange:
     ----------
     faces : ndarray, shape (2, n)
         Change at the points of both faces [K].
-    problem : EnrichedProblem
-    field : ndarray
-        Change in the bodies, a field of that problem [K].
+    rise : UFL expression
+        Rise in the bodies including the change [K].
     """
 
     faces: np.ndarray
-    problem: EnrichedProblem
-    field: np.ndarray
+    rise: Any
 
 
 class EnrichedBodies:
@@ -69,17 +69,13 @@ class EnrichedBodies:
     def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
         system, problem = self._system, self._problem
-        loads = self._loads(contact)
+        loads, thermal, before = self._loads(contact), system.thermal, state.temperatures
         if heated is not None:
-            assert system.thermal is not None
-            space = system.thermal.conduction.space
-            before = heated.problem.field(np.asarray(state.rise))
-            rise = heated.problem.function(before + heated.field)
             loads = loads + problem.loads(
-                lambda δu: system.elastic.thermal_work(rise, δu, space.ufl_element().degree + 1)
+                lambda δu: system.elastic.thermal_work(heated.rise, δu, self._degree)
             )
-        elif state.rise is not None and system.thermal is not None:
-            loads[: owned(problem.space)] += system.thermal.forces(state.rise)
+        elif before is not None and thermal is not None:
+            loads[: owned(problem.space)] += thermal.forces(before.rise)
         residual = problem.residual(problem.field(state.displacement), loads)
         return self._gap(problem.correction(residual))
 
@@ -114,23 +110,24 @@ class EnrichedBodies:
 
 
 def temperature_change(
-    system: System, heat: Heat, thermal: ThermalSystem, contact: ContactState, state: BodyState
-):
-    """Change of the steady temperatures by the next degree for a given friction heat.
-
-    Every rank calls.
-    """
-    assert state.thermal is not None
+    system: System,
+    heat: Heat,
+    thermal: ThermalSystem,
+    temperatures: TemperatureField,
+    conductance: np.ndarray,
+) -> TemperatureChange:
+    """Change of steady temperatures by the next degree for a given friction heat; collective."""
     conduction, face, pairing = thermal.conduction, thermal.face, system.pairing
     problem = _conducting(system, heat, thermal)
     count = owned(conduction.space)
     surplus = [value_trace(problem.surplus, side) for side in pairing.sides]
     given = sum(
         trace @ (face.weights * flux)
-        for trace, flux in zip(surplus, state.thermal.flux, strict=True)
+        for trace, flux in zip(surplus, temperatures.faces.flux, strict=True)
     )
-    loads = np.concatenate([face.nodal_heat(state.thermal, bath=False), given])
-    change = problem.correction(problem.residual(problem.field(np.asarray(state.rise)), loads))
+    loads = np.concatenate([face.nodal_heat(temperatures.faces, bath=False), given])
+    before = problem.field(temperatures.rise)
+    change = problem.correction(problem.residual(before, loads))
     uncoupled = np.array(
         [
             sum_over_ranks(system.comm, trace.T @ change[:count] + more.T @ change[count:])
@@ -143,12 +140,12 @@ def temperature_change(
         face.basis
         @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ uncoupled.T, rcond=None)[0]
     )
-    exchange = face.exchange(contact.conditions.conductance)
+    exchange = face.exchange(conductance)
     none = np.zeros(len(face.weights))
     coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
     change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
-    details = _levelled(uncoupled - resolved.T, face, contact.conditions.conductance)
-    return TemperatureChange(np.array(coupled.rise) + details, problem, change)
+    details = _levelled(uncoupled - resolved.T, face, conductance)
+    return TemperatureChange(np.array(coupled.rise) + details, problem.function(before + change))
 
 
 def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:

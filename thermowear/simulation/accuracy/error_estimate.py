@@ -120,7 +120,8 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
 def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
     thermal, heat = end.system.thermal, end.system.model.heat
-    if thermal is None or heat is None or end.bodies.thermal is None:
+    found = end.bodies.temperatures
+    if thermal is None or heat is None or found is None:
         return None, "isothermal"
     if heat.transient:
         return None, "not estimated where temperatures are followed in time"
@@ -130,12 +131,13 @@ def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | 
         return None, "not estimated where conductivity or expansion change with temperature"
     if heat.advection != "none":
         return None, "not estimated where a body carries heat along"
-    return temperature_change(end.system, heat, thermal, end.contact, end.bodies), None
+    conductance = end.contact.conditions.conductance
+    return temperature_change(end.system, heat, thermal, found, conductance), None
 
 
 def _of_temperature(end: Snapshot, heated: TemperatureChange) -> float | None:
-    assert end.bodies.thermal is not None
-    largest = float(np.abs(end.bodies.thermal.rise).max())
+    assert end.bodies.temperatures is not None
+    largest = float(np.abs(end.bodies.temperatures.faces.rise).max())
     return _FOLLOWING * float(np.abs(heated.faces).max()) / largest if largest > 0 else None
 
 

@@ -38,12 +38,11 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
     u = as_function(elastic.space, with_holder(system, state.displacement, motion), "u")
     du = as_function(elastic.space, state.displacement, "u")
-    rise, straining, ambient, thermal = None, None, 0.0, system.thermal
-    if state.rise is not None and thermal is not None:
+    rise, straining, heated, thermal = None, None, state.temperatures, system.thermal
+    if heated is not None and thermal is not None:
         space = thermal.conduction.space
-        rise = as_function(space, state.rise, "rise")
-        straining = straining_rise(space, state.rise, system.bodies, thermal.expansions)
-        ambient = thermal.ambient
+        rise = as_function(space, heated.rise, "rise")
+        straining = straining_rise(space, heated.rise, system.bodies, thermal.expansions)
     σ = elastic.stress(du, straining)
     wanted = [u, _von_mises(σ)] + ([] if rise is None else [rise])
     values = [evaluate(fem.Expression(ufl.SpatialCoordinate(mesh), grid), mesh, cells)]
@@ -64,7 +63,7 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
         placed = RigidMotion(*system.worn.holder, np.zeros(3)).at(points[body == 1])
         points[body == 1] += placed
         displacement[body == 1] -= placed
-    absolute = temperature[0][..., 0] + ambient if temperature else None
+    absolute = None if thermal is None else temperature[0][..., 0] + thermal.ambient
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 
@@ -89,27 +88,26 @@ def _von_mises(σ):
     return ufl.sqrt(1.5 * ufl.inner(s, s))
 
 
-def _box(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points of an (n + 1)ᵈ grid on the reference cell, and its small cells in the order of VTK."""
+def _grid(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of an (n + 1)ᵈ grid on the unit cell, and the corners of its small cells."""
     axes = np.meshgrid(*[np.linspace(0.0, 1.0, n + 1)] * dim, indexing="ij")
     points = np.column_stack([axis.ravel() for axis in axes[::-1]])
     numbers = np.arange(len(points)).reshape(axes[0].shape)
-    corners = sliding_window_view(numbers, (2,) * dim).reshape(-1, 2**dim)
+    return points, sliding_window_view(numbers, (2,) * dim).reshape(-1, 2**dim)
+
+
+def _box(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points of a grid on a reference cell, and its small cells in the order of VTK."""
+    points, corners = _grid(n, dim)
     return points, corners[:, [0, 1, 3, 2, 4, 5, 7, 6][: 2**dim]]
 
 
 def _triangle(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Points of a regular grid on the reference triangle, and its small triangles."""
-    x = np.linspace(0.0, 1.0, n + 1)
-    points = np.array([(x[i], x[j]) for j in range(n + 1) for i in range(n + 1 - j)])
-    start = np.cumsum([0, *(n + 1 - j for j in range(n + 1))])
-    upright = [(start[j] + i, start[j] + i + 1, start[j + 1] + i) for j, i in _below(n)]
-    turned = [(start[j] + i + 1, start[j + 1] + i + 1, start[j + 1] + i) for j, i in _below(n - 1)]
-    return points, np.array(upright + turned)
-
-
-def _below(n: int) -> list[tuple[int, int]]:
-    return [(j, i) for j in range(n) for i in range(n - j)]
+    points, corners = _grid(n, 2)
+    inside = points.sum(axis=1) < 1 + 0.5 / n
+    halves = np.vstack([corners[:, [0, 1, 2]], corners[:, [1, 3, 2]]])
+    return points[inside], (np.cumsum(inside) - 1)[halves[inside[halves].all(axis=1)]]
 
 
 _GRIDS: dict[str, Callable[[int], tuple[np.ndarray, np.ndarray]]] = {

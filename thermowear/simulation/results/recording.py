@@ -106,10 +106,10 @@ def record(
     rates = _local_rates(system, contact) if rates is None else rates
     temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
     fluxes = temperatures
-    if bodies.thermal is not None and system.thermal is not None:
-        T1, T2 = bodies.thermal.rise
+    if bodies.temperatures is not None and system.thermal is not None:
+        T1, T2 = bodies.temperatures.faces.rise
         temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
-        fluxes = bodies.thermal.flux
+        fluxes = bodies.temperatures.faces.flux
     interface = InterfaceFields(
         x=points[:, 0],
         y=points[:, 1],

@@ -103,7 +103,6 @@ def build(
         phases=phases,
         parts=parts,
         inputs=made_from,
-        zone=made_from.zone,
         worn=worn,
     )
 

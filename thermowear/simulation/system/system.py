@@ -76,11 +76,6 @@ class CacheKeys:
     elasticity: tuple
     conduction: tuple
 
-    @property
-    def zone(self) -> Zone | None:
-        """Range of x that the bodies are meshed for [m]."""
-        return self.mesh[-1]
-
 
 def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     """Cache keys of a model meshed for a zone (by default the expected contact zone)."""
@@ -133,8 +128,6 @@ class System:
         Set-up results shared with other systems.
     inputs : CacheKeys
         Cache keys of this system.
-    zone : tuple of float or None
-        Range of x that the bodies are meshed for; None where the mesh has no zone [m].
     worn : WornGeometry or None
         Present if the meshes have been moved to the worn faces. The gap of the pairing remains that
         of the unworn bodies: the gap of the moved meshes minus the depths that they have lost.
@@ -155,12 +148,16 @@ class System:
     phases: Phases
     parts: SetupCache
     inputs: CacheKeys
-    zone: Zone | None
     worn: WornGeometry | None = None
 
     @cached_property
     def comm(self):
         return self.bodies.mesh.comm
+
+    @property
+    def zone(self) -> Zone | None:
+        """Range of x that the bodies are meshed for; None where the mesh has no zone [m]."""
+        return self.inputs.mesh[-1]
 
     @cached_property
     def weights(self) -> np.ndarray:

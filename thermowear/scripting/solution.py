@@ -12,8 +12,7 @@ from dolfinx import fem
 
 from ..errors import CaseError
 from ..results import Result
-from ..simulation.results.fields import with_holder
-from ..simulation.results.recording import Snapshot
+from ..simulation.results.recording import Snapshot, with_holder
 from .body import MeshBody
 from .user_mesh import UserMeshes
 

@@ -25,8 +25,7 @@ from ..cycles.reciprocating import reciprocating_history
 from ..geometry_update.wider_zone import reaches_open_end
 from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem
-from ..results.fields import sample
-from ..results.recording import Snapshot
+from ..results.recording import Snapshot, sample
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
 from ..system.system import System

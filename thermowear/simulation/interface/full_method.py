@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -37,9 +38,9 @@ class FullMethod:
     the ratio of the speed to the critical one.
     """
 
-    def __init__(self, system: System):
+    def __init__(self, system: System, note: Callable[[str], None] | None):
         self._system = system
-        self._contact, self.note = _full_contact(system)
+        self._contact = _full_contact(system, note)
         unloaded = np.zeros(len(system.elastic.fixed))
         self._dead = unloaded if system.dead_load is None else system.dead_load
         heated = system.thermal is not None
@@ -118,21 +119,23 @@ class FullMethod:
         return ContactSolution(solution.pressure, motion, solution)
 
 
-def _full_contact(system: System) -> tuple[FullContact, str | None]:
-    """Contact equations of a system, and a warning if its parameters are out of range."""
+def _full_contact(system: System, note: Callable[[str], None] | None) -> FullContact:
+    """Contact equations of a system; a note tells if its parameters are out of range."""
     settings, holder = system.model.interface.method, system.holder
     elastic, pairing = system.elastic, system.pairing
-    stress, note = None, None
+    stress = None
     if settings.name == "nitsche":
         stress = normal_traction(elastic, pairing)
         gamma = () if settings.gamma is None else (settings.gamma,)
         stiffness = nitsche_stiffness(elastic, pairing, *gamma)
-        note = nitsche_warning(stiffness, stability_limit(elastic, pairing), settings.theta)
+        warning = nitsche_warning(stiffness, stability_limit(elastic, pairing), settings.theta)
+        if note is not None and warning is not None:
+            note(warning)
     elif settings.penalty is not None:
         stiffness = np.full(len(pairing.weights), settings.penalty)
     else:
         stiffness = default_penalty(elastic, pairing)
-    contact = FullContact(
+    return FullContact(
         elastic,
         pairing,
         system.trace,
@@ -143,4 +146,3 @@ def _full_contact(system: System) -> tuple[FullContact, str | None]:
         stress,
         settings.theta,
     )
-    return contact, note

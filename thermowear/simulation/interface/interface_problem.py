@@ -298,7 +298,5 @@ def interface_problem(
         method = CondensedMethod(system)
     else:
         with system.phases("contact operators"):
-            method = FullMethod(system)
-    if note is not None and method.note is not None:
-        note(method.note)
+            method = FullMethod(system, note)
     return InterfaceProblem(system, method, friction_heat(system))

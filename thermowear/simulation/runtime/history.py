@@ -22,8 +22,7 @@ from ...results import (
     Result,
     TrackHistory,
 )
-from ..results.fields import sample
-from ..results.recording import Snapshot
+from ..results.recording import Snapshot, sample
 from ..results.summary import conclude
 from ..system.system import System
 from .observer import AnyRow, Observer, Progress, Saved

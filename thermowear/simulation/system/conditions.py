@@ -68,14 +68,10 @@ class InterfaceConditions:
         """True if the load has dropped to zero."""
         return self.load.size > 0 and not self.load.any()
 
-    def differ(self, other: InterfaceConditions) -> float:
-        """Largest relative difference of all conditions."""
-        pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
-        return max(_difference(a, b) for a, b in pairs)
-
     def same_as(self, other: InterfaceConditions) -> bool:
         """True if the conditions are equal up to rounding."""
-        return self is other or self.differ(other) <= _SETTLED
+        pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        return self is other or all(_difference(a, b) <= _SETTLED for a, b in pairs)
 
 
 def _difference(a: np.ndarray, b: np.ndarray) -> float:

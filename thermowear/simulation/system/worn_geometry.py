@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy
 
-from ...contact.search.pairing import PairedFace, Pairing
+from ...contact.search.pairing import Pairing
 from ...contact.search.refinement import Rule
 from ...contact.search.surface import Surface
 from ...geometry.mesh.tagged import TaggedMesh
@@ -97,15 +97,11 @@ class WornGeometry:
         """Wear depths removed from both meshes at the points of a pairing, shape (2, n) [m]."""
         depth = self.carried(self.depth, pairing)
         for index, new in self.renewed.items():
-            depth[index] += depth_behind_curve(pairing.sides[index], new)
+            side = pairing.sides[index]
+            out = side.face.normals(side.facet, side.t)
+            behind = new.on_curve(side.facet + side.t) - side.face.points(side.facet, side.t)
+            depth[index] += np.einsum("ni,ni->n", behind, out)
         return depth
-
-
-def depth_behind_curve(side: PairedFace, new: NewFace) -> np.ndarray:
-    """Distance of a redivided face behind its smooth curve at the contact points [m]."""
-    on_curve = new.on_curve(side.facet + side.t)
-    out = side.face.normals(side.facet, side.t)
-    return np.einsum("ni,ni->n", on_curve - side.face.points(side.facet, side.t), out)
 
 
 def along(pairing: Pairing) -> np.ndarray:

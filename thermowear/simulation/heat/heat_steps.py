@@ -153,6 +153,12 @@ class HeatOperators:
         return last[2]
 
 
+def unheated(baseline: BaselineResponse) -> ThermalState:
+    """State of the faces without any heat at the contact."""
+    zeros = np.zeros(len(baseline.rise[0]))
+    return ThermalState(baseline.rise, (zeros, zeros))
+
+
 @dataclass(eq=False)
 class HeatStep:
     """Linear conduction at one time: operators, loads and stored heat.
@@ -172,12 +178,6 @@ class HeatStep:
     supplied: np.ndarray
     baseline: BaselineResponse
     _gap: tuple[HeatExchange, np.ndarray] | None = None
-
-    @property
-    def unheated(self) -> ThermalState:
-        """State of the faces without any heat at the contact."""
-        zeros = np.zeros(len(self.baseline.rise[0]))
-        return ThermalState(self.baseline.rise, (zeros, zeros))
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
+from ..heat.heat_steps import unheated
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
@@ -69,7 +70,7 @@ class InterfaceProblem(WearProblem):
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return InterfaceState(worn, contact, faces=faces)
 
-        faces = None if heat is None else heat.unheated
+        faces = None if heat is None else unheated(heat.baseline)
         start = Trial(self._guess.pressure, faces, worn)
         return self_consistent(self._condition_model, time, start, respond, _UNWORN)[1]
 
@@ -79,9 +80,8 @@ class InterfaceProblem(WearProblem):
         return self._solve(depth[None], conditions, None, guess=guess)
 
     def start(self) -> InterfaceState:
-        if not self.stores_heat:
+        if self.heat is None or not self.stores_heat:
             return self.unworn()
-        assert self.heat is not None
         return self._at_temperatures(self._unworn, self.heat.initial, 0.0)
 
     def take_over(
@@ -128,7 +128,7 @@ class InterfaceProblem(WearProblem):
         pointwise: np.ndarray | None = None,
     ) -> InterfaceState:
         """Contact at given temperatures."""
-        guess = InterfaceState(worn, self._guess, faces=heat.state)
+        guess = InterfaceState(worn, self._guess, faces=unheated(heat.baseline))
         conditions = self.conditions(guess, time)
         contact = self._solve(worn, conditions, heat, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
@@ -208,9 +208,8 @@ class InterfaceProblem(WearProblem):
         """
         gap = self._gap + worn.sum(axis=0)
         if conditions.released:  # the holder stays where it is
-            rigid_modes = self.system.holder.rigid_modes
-            motion = np.zeros(len(rigid_modes)) if guess is None else guess.motion
-            return ContactSolution(np.zeros(len(gap)), motion, None)
+            at_rest = np.zeros(len(self.system.holder.rigid_modes))
+            return ContactSolution(np.zeros(len(gap)), guess.motion if guess else at_rest, None)
 
         def solve(opened, slope, last):
             softened = slope.with_compliance(self._softness)
@@ -293,10 +292,8 @@ def interface_problem(
     note : callable, optional
         Called with a warning about settings that may impair the solution.
     """
-    method: ContactSolver
     if system.model.interface.method.name == "condensed":
-        method = CondensedMethod(system)
-    else:
-        with system.phases("contact operators"):
-            method = FullMethod(system, note)
+        return InterfaceProblem(system, CondensedMethod(system), friction_heat(system))
+    with system.phases("contact operators"):
+        method = FullMethod(system, note)
     return InterfaceProblem(system, method, friction_heat(system))

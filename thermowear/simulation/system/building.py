@@ -16,7 +16,6 @@ from ...contact.operators.sliding import sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.search.closed_face import gather_faces
 from ...contact.search.pairing import Pairing
-from ...geometry.mesh.tagged import TaggedMesh
 from ...model.meshes import Zone
 from ...model.model import Model
 from ...parallel import on_root
@@ -119,10 +118,8 @@ def check_contact_points(model: Model, comm) -> None:
 
 
 def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) -> Bodies:
-    def mesh() -> TaggedMesh:
-        return model.meshes.mesh(zone) if worn is None else worn.mesh
-
-    return distribute(on_root(comm, mesh), comm)
+    mesh = on_root(comm, lambda: model.meshes.mesh(zone) if worn is None else worn.mesh)
+    return distribute(mesh, comm)
 
 
 def _paired(

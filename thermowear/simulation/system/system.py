@@ -154,7 +154,7 @@ class System:
     def comm(self):
         return self.bodies.mesh.comm
 
-    @property
+    @cached_property
     def zone(self) -> Zone | None:
         """Range of x that the bodies are meshed for; None where the mesh has no zone [m]."""
         return self.inputs.mesh[-1]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...bulk.field import owned
 from ...bulk.heat.heat_equation import conducting, given_rises, transferring
@@ -17,7 +18,6 @@ from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
 from ...bulk.mechanics.surplus import surplus_space
 from ...contact.operators.heat import BaselineResponse, InterfaceHeat
-from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import gap_trace, value_trace, vector_trace
 from ...model.heat import Heat
 from ...parallel import sum_over_ranks
@@ -64,7 +64,7 @@ class EnrichedBodies:
             elastic.solve,
             (elastic.fixed, held),
         )
-        self._trace = gap_trace(surplus, system.pairing)
+        self._trace = sp.vstack([system.trace, gap_trace(surplus, system.pairing)])
 
     def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
@@ -81,26 +81,19 @@ class EnrichedBodies:
 
     def answer(self, pressure: np.ndarray) -> np.ndarray:
         """Approximate gap opened by a pressure at the points, shape (n,) [m]."""
-        loads = self._system.weights * pressure
-        nodal = np.concatenate([self._system.trace @ loads, self._trace @ loads])
+        nodal = self._trace @ (self._system.weights * pressure)
         return self._gap(self._problem.approximate(nodal))
 
     def _gap(self, field: np.ndarray) -> np.ndarray:
-        count = owned(self._problem.space)
-        opened = self._system.trace.T @ field[:count] + self._trace.T @ field[count:]
-        return sum_over_ranks(self._system.comm, opened)
+        return sum_over_ranks(self._system.comm, self._trace.T @ field)
 
     def _loads(self, contact: ContactState) -> np.ndarray:
         """Nodal loads of the contact and of the surface loads in the enriched space."""
         system, problem = self._system, self._problem
-        pairing = system.pairing
-        traction_direction = system.with_friction(contact.conditions.friction).traction_direction
-        traction = contact.pressure[:, None] * traction_direction
-        if contact.shear is not None:
-            traction = traction - contact.shear[:, None] * tangents(pairing.normals)[0]
+        traction = contact.traction(system.with_friction(contact.conditions.friction))
         loads = np.concatenate(
             [
-                vector_trace(space, pairing, traction) @ system.weights
+                vector_trace(space, system.pairing, traction) @ system.weights
                 for space in (problem.space, problem.surplus)
             ]
         )
@@ -119,21 +112,15 @@ def temperature_change(
     """Change of steady temperatures by the next degree for a given friction heat; collective."""
     conduction, face, pairing = thermal.conduction, thermal.face, system.pairing
     problem = _conducting(system, heat, thermal)
-    count = owned(conduction.space)
-    surplus = [value_trace(problem.surplus, side) for side in pairing.sides]
-    given = sum(
-        trace @ (face.weights * flux)
-        for trace, flux in zip(surplus, temperatures.faces.flux, strict=True)
-    )
-    loads = np.concatenate([face.nodal_heat(temperatures.faces, bath=False), given])
+    traces = [
+        sp.vstack([trace, value_trace(problem.surplus, side)])
+        for trace, side in zip(face.traces, pairing.sides, strict=True)
+    ]
+    fluxes = zip(traces, temperatures.faces.flux, strict=True)
+    loads = sum(trace @ (face.weights * flux) for trace, flux in fluxes)
     before = problem.field(temperatures.rise)
-    change = problem.correction(problem.residual(before, loads))
-    uncoupled = np.array(
-        [
-            sum_over_ranks(system.comm, trace.T @ change[:count] + more.T @ change[count:])
-            for trace, more in zip(face.traces, surplus, strict=True)
-        ]
-    )
+    change = problem.correction(problem.residual(before, np.asarray(loads)))
+    uncoupled = np.array([sum_over_ranks(system.comm, trace.T @ change) for trace in traces])
     # the nodal space cannot represent the response to a flux that levels finer details
     weighted = face.weights[:, None] * face.basis
     resolved = (
@@ -143,7 +130,7 @@ def temperature_change(
     exchange = face.exchange(conductance)
     none = np.zeros(len(face.weights))
     coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
-    change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
+    change[: owned(conduction.space)] += conduction.respond(face.nodal_heat(coupled, bath=True))
     details = _levelled(uncoupled - resolved.T, face, conductance)
     return TemperatureChange(np.array(coupled.rise) + details, problem.function(before + change))
 

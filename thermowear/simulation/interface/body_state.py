@@ -41,6 +41,13 @@ class ContactState:
     temperatures: TemperatureField | None
     shear: np.ndarray | None = None
 
+    def traction(self, system: System) -> np.ndarray:
+        """Traction on body 2 in a system with this friction, shape (n, gdim) [Pa]."""
+        traction = self.pressure[:, None] * system.traction_direction
+        if self.shear is None:
+            return traction
+        return traction - self.shear[:, None] * tangents(system.pairing.normals)[0]
+
 
 def contact_state(
     system: System, pressure: np.ndarray, shear: np.ndarray | None = None
@@ -163,10 +170,7 @@ def _work(system: System, contact: ContactState, rigid_modes, side: PairedFace) 
     """Work of the contact traction on motions of a body at the points of its face, (k, n)."""
     points = side.face.points(side.facet, side.t)
     moved = np.array([mode.motion.at(points) for mode in rigid_modes])
-    traction = contact.pressure[:, None] * system.traction_direction
-    if contact.shear is not None:
-        traction = traction - contact.shear[:, None] * tangents(system.pairing.normals)[0]
-    return system.weights * np.einsum("kni,ni->kn", moved, traction)
+    return system.weights * np.einsum("kni,ni->kn", moved, contact.traction(system))
 
 
 def _across(system: System) -> list[RigidMode]:

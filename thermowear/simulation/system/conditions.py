@@ -137,16 +137,16 @@ class ConditionModel:
         """
         system = self._system
         pressed = 1.0 if self._load is None else _part(self._load.factor_at(time))
-        speed = self._speed(time)
-        temperatures = self._temperatures(faces)
-        friction = self._friction(time, temperatures, pressure, speed)
+        speed, temperatures = self._speed(time), self._temperatures(faces)
+        at = LocalState(pressure, speed, (temperatures[0] + temperatures[1]) / 2)
+        friction = self._friction(time, at)
         wear, temperature, worn = self._wear(temperatures, depth, pressure, speed, friction)
         return InterfaceConditions(
             load=pressed * system.holder.load + system.holder.dead,
             speed=speed,
             friction=friction,
             wear=wear,
-            conductance=self._conductance(temperatures, pressure, speed, closed),
+            conductance=self._conductance(at, closed),
             temperature=temperature,
             depth=worn,
         )
@@ -160,24 +160,18 @@ class ConditionModel:
         part = 1.0 if self._motion is None else _part(self._motion.at(time))
         return part * self._system.speed
 
-    def _temperatures(self, faces: ThermalState | None):
-        if self._system.thermal is None:
-            return None
-        ambient = self._system.thermal.ambient
-        if faces is None:
-            return np.full((2, len(self._system.weights)), ambient)
-        return faces.rise[0] + ambient, faces.rise[1] + ambient
+    def _temperatures(self, faces: ThermalState | None) -> np.ndarray:
+        """Temperatures of both faces, shape (2, n) [K]; 0 and unused without heat."""
+        rise, thermal = np.zeros((2, len(self._system.weights))), self._system.thermal
+        if thermal is None:
+            return rise
+        return thermal.ambient + (rise if faces is None else np.asarray(faces.rise))
 
-    @staticmethod
-    def _mean(temperatures) -> np.ndarray | float:
-        """Mean temperature of both faces; 0 and unused without heat [K]."""
-        return 0.0 if temperatures is None else (temperatures[0] + temperatures[1]) / 2
-
-    def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
+    def _friction(self, time: float, at: LocalState) -> np.ndarray:
         """Coefficient of friction, at least 0; `require_friction` checks the converged state."""
-        value = self._friction_law.value(LocalState(pressure, speed, self._mean(temperatures)))
         history = self._interface.friction_history
-        return (1.0 if history is None else _part(history.at(time))) * np.maximum(value, 0.0)
+        factor = 1.0 if history is None else _part(history.at(time))
+        return factor * np.maximum(self._friction_law.value(at), 0.0)
 
     def require_friction(
         self, time: float, pressure: np.ndarray, faces: ThermalState | None
@@ -190,8 +184,7 @@ class ConditionModel:
         """
         if not self._friction_law.variables:
             return
-        mean = np.broadcast_to(self._mean(self._temperatures(faces)), pressure.shape)
-        speed = self._speed(time)
+        mean, speed = self._temperatures(faces).mean(axis=0), self._speed(time)
         value = self._friction_law.value(LocalState(pressure, speed, mean))
         lowest = int(np.argmin(np.where(pressure > 0, value, np.inf)))
         if pressure[lowest] > 0 and value[lowest] < 0:
@@ -209,7 +202,7 @@ class ConditionModel:
         wearing = self._interface.wear.items()
         factors, used, depths = result = np.zeros((3, len(wearing), len(pressure)))
         for row, (index, wear) in enumerate(wearing):
-            own = 0.0 if temperatures is None else temperatures[index]
+            own = temperatures[index]
             factors[row] = wear.factors.value(LocalState(pressure, speed, own))
             if wear.friction_exponent and self._friction_varies:
                 nominal = self._interface.nominal_friction
@@ -224,10 +217,10 @@ class ConditionModel:
     def _conductance_law(self) -> Law | None:
         return self._interface.conductance_law(self._system.facing, self._system.model.materials)
 
-    def _conductance(self, temperatures, pressure, speed, touching) -> np.ndarray:
+    def _conductance(self, at: LocalState, touching: np.ndarray) -> np.ndarray:
+        """Conductance of touching points and of the gap at the others, shape (n,) [W/(m² K)]."""
         if self._system.thermal is None:
-            return np.zeros(len(pressure))
+            return np.zeros(len(touching))
         law = self._conductance_law
-        at = LocalState(pressure, speed, self._mean(temperatures))
         closed = np.inf if law is None else law.value(at)
         return np.where(touching, closed, self._interface.gap_conductance)

@@ -82,38 +82,35 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     """Estimate the errors at the end of an analysis. Every rank calls."""
     system, steady = end.system, analysis.type == "steady"
     missing: dict[str, str] = {}
+    errors: dict[str, float | None] = dict.fromkeys(
+        ("pressure", "max_pressure", "shape", "temperature")
+    )
     heated, why = _temperature_change(end)
-    temperature = None if heated is None else _of_temperature(end, heated)
-    if temperature is None:
+    if heated is not None:
+        errors["temperature"] = _of_temperature(end, heated)
+    if errors["temperature"] is None:
         missing["temperature"] = why or "no temperature differs from the ambient one"
     bodies = EnrichedBodies(system)
     opened = bodies.opening(end.contact, end.bodies, heated)
-    shape = None
     if system.thermal is not None and heated is None:
         missing["shape"] = f"temperature: {why}"
     else:
-        shape = _of_shape(end, opened, steady)
-        if shape is None:
+        errors["shape"] = _of_shape(end, opened, steady)
+        if errors["shape"] is None:
             missing["shape"] = "the faces have no shape by wear"
-    pressure = largest = None
     if not end.interface.pressure.any():
         missing["pressure"] = "nothing presses"
-    else:
-        try:
-            if steady:
-                enriched = _finer_principle(system, end.contact)
-            else:
-                enriched = _enriched_pressure(end, bodies, opened)
-            pressure, largest = _of_pressure(system, end.contact.pressure, enriched)
-            pressure = max(pressure, _of_edges(system, end.interface))
-        except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
-            missing["pressure"] = str(error)
-    errors = {
-        "pressure": pressure,
-        "max_pressure": largest,
-        "shape": shape,
-        "temperature": temperature,
-    }
+        return ErrorEstimates(errors, missing)
+    try:
+        if steady:
+            enriched = _finer_principle(system, end.contact)
+        else:
+            enriched = _enriched_pressure(end, bodies, opened)
+        mean, largest = _of_pressure(system, end.contact.pressure, enriched)
+        errors["pressure"] = max(mean, _of_edges(system, end.interface))
+        errors["max_pressure"] = largest
+    except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
+        missing["pressure"] = str(error)
     return ErrorEstimates(errors, missing)
 
 

@@ -222,7 +222,9 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
         placed = RigidMotion(*system.worn.holder, np.zeros(3)).at(points[body == 1])
         points[body == 1] += placed
         displacement[body == 1] -= placed
-    absolute = None if thermal is None else temperature[0][..., 0] + thermal.ambient
+    absolute = None
+    if temperature and thermal is not None:
+        absolute = temperature[0][..., 0] + thermal.ambient
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 

@@ -7,7 +7,7 @@ import thermowear as tw
 from thermowear.case.starters import starter_text
 from thermowear.contact.wear.implicit_step import Slope
 from thermowear.parallel import sum_over_ranks
-from thermowear.simulation.interface.factory import interface_problem
+from thermowear.simulation.interface.interface_problem import interface_problem
 from thermowear.simulation.system.conditions import ConditionModel
 
 from ..conftest import EXPLORES

@@ -18,8 +18,7 @@ from ..parallel import on_root
 from ..results import Frame, HistoryRow, InterfaceFields, LoadRow
 from ..serialise import Checkpoint, pack
 from ..simulation import Observer, run
-from ..simulation.runtime.checkpoint_data import Saved
-from ..simulation.runtime.observer import AnyRow
+from ..simulation.runtime.observer import AnyRow, Saved
 from ..timer import Phases
 
 COMPARED = (

@@ -17,8 +17,7 @@ from ..serialise import Checkpoint, pack
 from ..simulation.analyses.transient import TransientHistory
 from ..simulation.interface.interface_problem import InterfaceProblem
 from ..simulation.results.recording import Snapshot, snapshot_at
-from ..simulation.runtime.checkpoint_data import Progress, Saved
-from ..simulation.runtime.observer import Observer
+from ..simulation.runtime.observer import Observer, Progress, Saved
 from ..simulation.system.system import System
 from .solution import ContactResults
 from .user_mesh import UserMeshes

@@ -8,10 +8,9 @@ from ...contact.operators.pressure import contact_zones
 from ...errors import ComputationError
 from ...model.model import Model
 from ...timer import Phases
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..system.building import build
-from ..system.setup_cache import SetupCache
-from ..system.system import System
+from ..system.system import SetupCache, System
 
 _ITERATIONS = 12
 _TOLERANCE = 0.1  # relative to the element at the edge

@@ -26,13 +26,10 @@ from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import FrettingHistory
 from ..cycles.reciprocating import ReciprocatingHistory
 from ..geometry_update.wider_zone import reaches_open_end
-from ..results.fields import sample
-from ..results.recording import Snapshot
-from ..runtime.checkpoint_data import Saved, mesh_checksum
+from ..results.recording import Snapshot, sample
 from ..runtime.history import AnalysisHistory
-from ..runtime.observer import Observer
-from ..system.setup_cache import SetupCache, inputs
-from ..system.system import System
+from ..runtime.observer import Observer, Saved, mesh_checksum
+from ..system.system import SetupCache, System, inputs
 from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare
 from .static import initial, stability, steady

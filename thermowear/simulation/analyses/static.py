@@ -13,8 +13,7 @@ from ...laws.stability import Rate
 from ...results import Modes, Result
 from ..interface.body_state import body_state
 from ..interface.condensed_method import CondensedMethod
-from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
+from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.steady import steady_state
 from ..results.recording import Snapshot, record, snapshot_at
 from ..results.summary import conclude

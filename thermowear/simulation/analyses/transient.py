@@ -14,7 +14,7 @@ from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
 from ..results.recording import Snapshot, snapshot_at

@@ -11,7 +11,7 @@ from ...laws.motions import combined
 from ...model.analyses import ReciprocatingAnalysis
 from ...results import HistoryRow, WornTrack
 from ..interface.body_state import contact_state
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory

@@ -17,8 +17,7 @@ from ...model.analyses import (
 from ...results import Result
 from ...timer import Phases
 from ..analyses import run as analyses
-from ..runtime.checkpoint_data import Saved
-from ..runtime.observer import Observer
+from ..runtime.observer import Observer, Saved
 from .model import attributes, model_of
 
 

@@ -17,14 +17,12 @@ from ...contact.wear.worn_face import curvatures
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
 from ...model.model import Zone
-from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
+from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState, advance_with_error
 from ..interface.steady import SteadyState
 from ..runtime.observer import Observer
 from ..system.building import build
-from ..system.setup_cache import SetupCache
-from ..system.system import System
+from ..system.system import SetupCache, System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
 from .moving_faces import MovingFaces, smoothed_wear

@@ -15,8 +15,7 @@ from ...errors import CaseError
 from ...laws.distribution import InPlace
 from ...model.model import Zone
 from ...serialise import serialisable
-from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
+from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState
 from ..system.building import build
 from ..system.system import System

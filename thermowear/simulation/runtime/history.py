@@ -22,12 +22,10 @@ from ...results import (
     Result,
     TrackHistory,
 )
-from ..results.fields import sample
-from ..results.recording import Snapshot
+from ..results.recording import Snapshot, sample
 from ..results.summary import conclude
 from ..system.system import System
-from .checkpoint_data import Progress, Saved
-from .observer import AnyRow, Observer
+from .observer import AnyRow, Observer, Progress, Saved
 
 Row = TypeVar("Row", bound=AnyRow)
 

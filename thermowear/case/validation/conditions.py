@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..tables.conditions import HeatTable
+from ..tables.geometry import Geometry
 from ..tables.schema import Case
 from ..values.section import Fault
 
@@ -113,7 +114,7 @@ def surface_pressure(case: Case) -> Iterator[Fault]:
         if name in refused:
             yield f"load.pressure.{name}", refused[name]
     alone = load.pressure and case.force() is None and case.approach() is None
-    if alone and geometry.follows_contact:
+    if alone and type(geometry).expected_zone is not Geometry.expected_zone:
         yield (
             "load",
             "needs one of force, mean_pressure and approach besides load.pressure: "

@@ -211,9 +211,10 @@ def _pressing(problem: _Problem, solution: SignoriniSolution) -> np.ndarray:
     scales = problem.scales(solution)
     presses = solution.active & (solution.coefficients > -_TOLERANCE * scales[0])
     presses |= ~solution.active & (residual < -_TOLERANCE * scales[1])
-    if presses.any() or len(problem.load) == 0:
-        return presses
-    return solution.active | (problem.gap <= problem.gap.min())
+    nearest = ~solution.active & (problem.gap <= problem.gap.min())
+    # where no coefficient presses, a load needs more of them; if there are none, the set is empty
+    lost = len(problem.load) > 0 and not presses.any() and nearest.any()
+    return solution.active | nearest if lost else presses
 
 
 def _verified(problem: _Problem, solution: SignoriniSolution) -> SignoriniSolution:

@@ -122,11 +122,24 @@ def test_a_model_in_python_on_a_distributed_mesh(tmp_path):
             )
 
 
+def test_a_state_is_saved_on_two_ranks(tmp_path):
+    """requirement: continued from its file a running-in is bit by bit the same on each rank."""
+    done = thermowear(2, "saved", tmp_path, module="tests.scripting.on_ranks", timeout=120)
+    assert done.returncode == 0, done.stderr
+    first, second = (np.load(tmp_path / f"found_{rank}.npz") for rank in (0, 1))
+    assert first["state"].max() > 0.0
+    assert all(np.array_equal(first["state"], other) for other in (first["read"], second["read"]))
+
+
 @pytest.mark.parametrize(
     ("fault", "message"),
-    [("empty", "Body 'plate': has no cells"), ("bent", "must lie in a plane z = const")],
+    [
+        ("empty", "Body 'plate': has no cells"),
+        ("bent", "must lie in a plane z = const"),
+        ("unsendable", "local object"),
+    ],
 )
-def test_a_fault_of_a_user_s_mesh_is_raised_on_all_ranks(tmp_path, fault, message):
+def test_a_fault_of_one_rank_is_raised_on_all(tmp_path, fault, message):
     """requirement: no deadlock; each rank raises the error that rank 0 finds."""
     done = thermowear(2, fault, tmp_path, module="tests.scripting.on_ranks", timeout=60)
     assert done.returncode == 0, done.stderr

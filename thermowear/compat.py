@@ -8,15 +8,7 @@ from __future__ import annotations
 import inspect
 
 import numpy as np
-from dolfinx import cpp, fem
-
-__all__ = [
-    "coordinate_element",
-    "entities_to_geometry_layout",
-    "evaluate",
-    "exterior_facet_domain",
-    "geometry_dofmap",
-]
+from dolfinx import fem
 
 
 def geometry_dofmap(mesh) -> np.ndarray:
@@ -29,16 +21,6 @@ def coordinate_element(mesh):
     """Coordinate element of the (single) cell type of a mesh."""
     geometry = mesh.geometry
     return geometry.cmaps[0] if hasattr(geometry, "cmaps") else geometry.cmap
-
-
-def entities_to_geometry_layout(mesh, facet_dim: int) -> list[np.ndarray]:
-    """Geometry nodes of each local facet, as positions in the node list of the cell."""
-    layout = coordinate_element(mesh).create_dof_layout()
-    count = cpp.mesh.cell_num_entities(mesh.topology.cell_type, facet_dim)
-    return [
-        np.asarray(layout.entity_closure_dofs(facet_dim, facet), dtype=np.int32)
-        for facet in range(count)
-    ]
 
 
 def evaluate(expression: fem.Expression, mesh, cells: np.ndarray) -> np.ndarray:

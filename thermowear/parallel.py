@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 from typing import Any
 
@@ -20,13 +21,13 @@ def on_root(comm, action: Callable[[], Any]) -> Any:
     """Run an action on rank 0 only; return its result, or raise its error, on every rank."""
     if comm.size == 1:
         return action()
-    result, error = None, None
+    sent = None
     if comm.rank == 0:
         try:
-            result = action()
+            sent = pickle.dumps((action(), None))
         except (Exception, KeyboardInterrupt) as caught:
-            error = caught
-    result, error = comm.bcast((result, error), root=0)
+            sent = pickle.dumps((None, caught))
+    result, error = pickle.loads(comm.bcast(sent, root=0))
     if error is not None:
         raise error
     return result

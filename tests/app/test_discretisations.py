@@ -7,8 +7,8 @@ import json
 import pytest
 
 from thermowear.app.cli import main
-from thermowear.app.discretisations import neighbours
-from thermowear.verification.starter import starter
+from thermowear.app.session import neighbours
+from thermowear.verification.check import starter
 
 from ..simulation.test_accuracy import LINE
 

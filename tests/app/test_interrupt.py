@@ -11,7 +11,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.app.cli import main
-from thermowear.app.session import SavingRecorder
+from thermowear.app.session import Recorder
 from thermowear.errors import ComputationError, UnwritableError
 from thermowear.output import tables
 from thermowear.output.folder import ResultsFolder
@@ -40,7 +40,7 @@ def after_the_last_step(heeds_ctrl_c, monkeypatch):
         return checkpoint
 
     handler = signal.getsignal(signal.SIGTERM)
-    for kind in (Observer, SavingRecorder):
+    for kind in (Observer, Recorder):
         monkeypatch.setattr(kind, "checkpoint", interrupted(kind.checkpoint))
     yield
     signal.signal(signal.SIGTERM, handler)
@@ -146,7 +146,7 @@ def test_ctrl_c_after_the_last_step_of_a_coarser_run(after_the_last_step, tmp_pa
     """requirement: `--accuracy` does not start the finer discretisation."""
     folder = tmp_path / "r"
     words = ["run", str(COLD_RUNNING_IN), *SHORT, "-o", str(folder), "--no-pictures", "--accuracy"]
-    monkeypatch.setattr(SavingRecorder, "checkpoint", lambda *_: None)  # the run itself passes
+    monkeypatch.setattr(Recorder, "checkpoint", lambda *_: None)  # the run itself passes
     assert main(words) == 130
     assert status(folder) == "interrupted"
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from thermowear.reference.hertz import contact_modulus, line_contact
 from thermowear.results import Result
-from thermowear.verification.starter import run_starter
+from thermowear.verification.check import run_starter
 
 NEGLIGIBLE = 1e-4
 """Relative: what references are exact to; estimates and true errors below are not compared."""

@@ -15,7 +15,7 @@ import time
 import numpy as np
 
 from thermowear.verification.cases.growing import CYLINDER, SPEED, SPHERE
-from thermowear.verification.starter import run_starter
+from thermowear.verification.check import run_starter
 
 SHAPES = {"cylinder": CYLINDER, "sphere": SPHERE}
 METHODS = ("condensed", "penalty", "nitsche")

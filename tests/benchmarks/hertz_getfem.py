@@ -49,7 +49,7 @@ from thermowear.geometry.mesh.nodes import reference_nodes
 from thermowear.reference.hertz import contact_modulus
 from thermowear.simulation.analyses.positioning import prepare
 from thermowear.simulation.from_case import model_of
-from thermowear.simulation.interface.factory import interface_problem
+from thermowear.simulation.interface.interface_problem import interface_problem
 from thermowear.simulation.system.building import build
 from thermowear.timer import Phases
 

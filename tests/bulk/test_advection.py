@@ -63,8 +63,10 @@ def test_velocity_is_that_of_a_rigid_body(center):
         velocity = (-3.0 * (HEIGHT / 2 - center[1]), 3.0 * (LENGTH / 2 - center[0]))
     for axis, mean in enumerate(velocity):
         rise = interpolated(moving.space, lambda x, axis=axis: x[axis])
-        coming_in = times(moving.advective, np.ones(len(rise))) * rise  # not inside: 1 has no slope
-        carried = total(times(moving.advective, rise) - coming_in)
+        coming_in = (
+            times(moving.advection.carried, np.ones(len(rise))) * rise
+        )  # not inside: 1 has no slope
+        carried = total(times(moving.advection.carried, rise) - coming_in)
         assert carried == pytest.approx(C * mean * LENGTH * HEIGHT, abs=1e-9 * C * LENGTH * HEIGHT)
 
 
@@ -81,7 +83,7 @@ def test_what_a_strip_carries_out(degree, bend, speed):
     normal = ufl.FacetNormal(moving.space.mesh)[0]
     out = fem.assemble_scalar(fem.form(C * speed * ufl.max_value(normal, 0) * field * ds))
     out = total(out)
-    carried = times(moving.advective, rise)
+    carried = times(moving.advection.carried, rise)
     assert total(carried) == pytest.approx(out, abs=1e-12 * C * speed * HEIGHT)
 
 
@@ -91,10 +93,10 @@ def test_a_ring_loses_and_makes_nothing(degree, speed):
     """requirement: heat is conserved on curved cells to 1e-12, stabilised or not."""
     moving = conducting(ring(), degree, turning(speed))
     rise = random_rise(moving)
-    carried = times(moving.advective, rise)
+    carried = times(moving.advection.carried, rise)
     assert abs(total(carried)) < 1e-12 * C * speed * OUTER**2
     assert abs(total(carried)) < 1e-11 * total(np.abs(carried))
-    assert largest(times(moving.advective, np.ones(len(rise)))) < 1e-11 * largest(carried)
+    assert largest(times(moving.advection.carried, np.ones(len(rise)))) < 1e-11 * largest(carried)
 
 
 def test_a_ring_that_turns_keeps_what_is_even_round_it():
@@ -115,7 +117,7 @@ def test_a_ring_that_turns_keeps_what_is_even_round_it():
         ψ.interpolate(turning(1.0).stream(moving.space.mesh))
         even = ψ.x.array[: len(rise)] ** 2 / OUTER**4
         if not moving.advection.stabilised:  # upwinding asks what is conducted too
-            assert largest(times(moving.advective, even)) < 1e-13 * C * speed * OUTER**2
+            assert largest(times(moving.advection.carried, even)) < 1e-13 * C * speed * OUTER**2
 
 
 def test_heat_goes_where_the_body_goes():
@@ -150,8 +152,8 @@ def test_upwind_only_where_cells_are_too_large():
     assert fast.advection.stabilised
     for moving in (slow, fast):  # whatever goes round, none of it adds to T² but the upwinding
         rise = random_rise(moving)
-        work = total(rise * times(moving.advective, rise))
-        size = total(np.abs(rise * times(moving.advective, rise)))
+        work = total(rise * times(moving.advection.carried, rise))
+        size = total(np.abs(rise * times(moving.advection.carried, rise)))
         assert (abs(work) > 1e-3 * size) == moving.advection.stabilised
 
 
@@ -232,7 +234,7 @@ def test_bodies_that_stay_are_left_alone():
     block = np.unique(still.space.dofmap.list[bodies.cell_tags.find(bodies.body_tag("block"))])
     rise = np.zeros(owned(still.space))
     rise[block] = random_rise(still)[block]
-    np.testing.assert_array_equal(times(moving.advective, rise), 0.0)
+    np.testing.assert_array_equal(times(moving.advection.carried, rise), 0.0)
     for name in ("conductivity", "capacity"):
         before, after = (times(getattr(found, name), rise) for found in (still, moving))
         np.testing.assert_allclose(after, before, rtol=0, atol=1e-14 * largest(before))

@@ -14,10 +14,9 @@ from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.surfaces import pressure_work
-from thermowear.reference import cylinder
 
 from ..conftest import two_blocks
+from ..reference import cylinder
 
 STEEL = ElasticMaterial(2e11, 0.3, 1.2e-5)
 SOFT = ElasticMaterial(1e9, 0.45, 5e-5)
@@ -97,7 +96,7 @@ def test_pressure_on_the_surface_inside_a_thick_walled_cylinder():
     elastic = build(6, materials=(STEEL, STEEL), clamped=(), rollers=(*ENDS, *FACES))
     p, inner, outer = 1e8, 0.05, 0.09
     loads = sum(
-        nodal_loads(elastic.space, pressure_work(elastic, f"{b}_inside", p))
+        nodal_loads(elastic.space, elastic.pressure_work(f"{b}_inside", p))
         for b in ("upper", "lower")
     )
     u = elastic.solve(loads).reshape(-1, 2)

@@ -13,7 +13,7 @@ from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.case.tables.conditions import MotionTable
-from thermowear.contact.operators.sliding import sliding
+from thermowear.contact.operators.rigid_motion import sliding
 
 from ..conftest import two_blocks
 

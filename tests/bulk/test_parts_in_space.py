@@ -10,8 +10,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.surfaces import pressure_work
-from thermowear.geometry.meshing.cells import Lattice, level, mesh_lattice, tagged_bodies
+from thermowear.geometry.meshing.cells import level, mesh_lattice, tagged_bodies
 
 COMM = MPI.COMM_WORLD
 ENDS = (np.linspace(0.0, 0.02, 3), np.linspace(0.0, 0.01, 3), np.array([0.0, 0.01, 0.03, 0.04]))
@@ -19,7 +18,7 @@ ENDS = (np.linspace(0.0, 0.02, 3), np.linspace(0.0, 0.01, 3), np.array([0.0, 0.0
 
 def bar():
     """Bar of three layers of 10, 20 and 10 mm, the middle one a part, loaded at its top."""
-    body = mesh_lattice(Lattice(ENDS, lambda p: p), 1)
+    body = mesh_lattice(ENDS, 1)
     middles = body.points[body.cells].mean(axis=1)[:, 2]
     body = replace(body, zones={"core": np.flatnonzero((middles > 0.01) & (middles < 0.03))})
     surfaces = {"bar_bottom": level(2, 0.0), "bar_top": level(2, 0.04)}
@@ -31,7 +30,7 @@ def test_layers_in_series():
     bodies = distribute(bar() if COMM.rank == 0 else None, COMM)
     materials = {"bar": ElasticMaterial(2e9, 0.0), "core": ElasticMaterial(5e10, 0.0)}
     elastic = elasticity(bodies, Spatial(), 2, materials, ["bar_bottom"])
-    u = elastic.solve(nodal_loads(elastic.space, pressure_work(elastic, "bar_top", 3e6))).reshape(
+    u = elastic.solve(nodal_loads(elastic.space, elastic.pressure_work("bar_top", 3e6))).reshape(
         -1, 3
     )
     top = np.abs(elastic.nodes()[:, 2] - 0.04) < 1e-12

@@ -10,7 +10,7 @@ from dolfinx import fem
 from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial, kinematics_of
 from thermowear.case.tables.conditions import MotionTable
-from thermowear.contact.operators.sliding import sliding
+from thermowear.contact.operators.rigid_motion import sliding
 from thermowear.parallel import sum_over_ranks
 
 from ..contact.solids import HEIGHTS, MODULI, SIZE, bent, elastic_bodies, gathered, straight, turned

@@ -9,7 +9,7 @@ import numpy as np
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.transfer import transferred
-from thermowear.verification.starter import starter
+from thermowear.verification.check import starter
 
 
 def _carried(amount):

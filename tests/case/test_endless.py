@@ -10,14 +10,14 @@ import tomli_w
 
 import thermowear as tw
 from thermowear.app.cli import main
-from thermowear.case.starters import starter_text
-from thermowear.case.values.bounds import (
+from thermowear.case.loading import (
     LARGEST_FILE,
     LONGEST_KEY,
     MOST_PARTS,
     MOST_VALUES,
     check_keys,
 )
+from thermowear.case.starters import starter_text
 from thermowear.errors import MOST_FAULTS
 
 from .bad import faults

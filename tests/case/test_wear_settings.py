@@ -4,7 +4,7 @@ import pytest
 
 from thermowear.case import as_plain, load
 from thermowear.errors import CaseError
-from thermowear.verification.starter import starter
+from thermowear.verification.check import starter
 
 NAME = "annular-punch-running-in"
 

@@ -13,13 +13,13 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators.condensation import condense
-from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.mesh.nodes import boundary, reference_nodes
-from thermowear.geometry.meshing.cells import Lattice, MeshedBody, mesh_lattice, tagged_bodies
+from thermowear.geometry.meshing.cells import MeshedBody, mesh_lattice, tagged_bodies
 from thermowear.lagrange import matching
 from thermowear.laws.motions import translation
 
@@ -80,7 +80,7 @@ def two_solids(divisions=MATCHING, order=1, maps=(straight, straight), cell_type
     for (name, span), counts, place in zip(spans.items(), divisions, maps, strict=True):
         limits = ((0.0, SIZE[0]), (0.0, SIZE[1]), span)
         ends = tuple(np.linspace(*limit, n + 1) for limit, n in zip(limits, counts, strict=True))
-        body = mesh_lattice(Lattice(ends, straight), order)
+        body = mesh_lattice(ends, order, straight)
         bodies[name] = body if cell_type == "hexahedron" else in_tetrahedra(body, order)
         points.append(place(bodies[name].points))
         levels = {"face": (2, 0.0), "end": (2, sum(span))}

@@ -10,8 +10,8 @@ from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.operators import condensation
 from thermowear.contact.operators.condensation import condense, influence
-from thermowear.contact.operators.holder import RigidMode, hold
 from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace, vector_trace
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair

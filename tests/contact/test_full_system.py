@@ -18,16 +18,20 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.full.edge_deflection import edge_deflection, wave_compliance
 from thermowear.contact.full.equations import Loading
 from thermowear.contact.full.full_system import FullContact, step_length
-from thermowear.contact.full.stabilisation import default_penalty, nitsche_stiffness
+from thermowear.contact.full.nitsche import (
+    default_penalty,
+    nitsche_stiffness,
+    normal_traction,
+    thermal_traction,
+)
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace, vector_trace
-from thermowear.contact.operators.traction import normal_traction, thermal_traction
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
-from thermowear.contact.wear.edge_deflection import edge_deflection, wave_compliance
 from thermowear.parallel import sum_over_ranks
 
 from ..conftest import two_blocks

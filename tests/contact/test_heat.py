@@ -12,15 +12,15 @@ from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.contact.operators.condensation import influence
-from thermowear.contact.operators.heat import baseline_response
-from thermowear.contact.operators.heat_condensation import (
+from thermowear.contact.operators.condensation import (
     bath_matrix,
     condense_distortion,
     condense_heat,
+    influence,
 )
-from thermowear.contact.operators.holder import RigidMode, hold
+from thermowear.contact.operators.heat import baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair

@@ -7,7 +7,7 @@ import pytest
 
 from thermowear.contact.wear.implicit_step import WearRates, newton_with_wear
 from thermowear.errors import ComputationError
-from thermowear.laws.distribution import DutyFactor
+from thermowear.laws.distribution import Distribution
 from thermowear.laws.power_wear import PowerWear
 
 STIFFNESS = np.array([1.0, 2.0])
@@ -92,7 +92,7 @@ def test_rates_of_two_bodies():
     pressure, factors = np.array([2.0, 3.0]), np.array([[1.0, 2.0], [3.0, 5.0]])
     states = [tuple(np.full(2, value) for value in (speed, 0.0, 0.0, 0.0)) for speed in (2.0, 3.0)]
     laws = [PowerWear(0.1, 2.0, 1.0), PowerWear(0.2, 1.0, 2.0)]
-    wear = WearRates(laws, [DutyFactor(0.5), DutyFactor(0.25)], factors, states, step=7.0)
+    wear = WearRates(laws, [Distribution(0.5), Distribution(0.25)], factors, states, step=7.0)
     first = 0.5 * factors[0] * 0.1 * pressure**2 * 2.0
     second = 0.25 * factors[1] * 0.2 * pressure * 9.0
     np.testing.assert_allclose(wear(pressure), [first, second], rtol=1e-14)

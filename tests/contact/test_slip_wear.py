@@ -11,7 +11,7 @@ from thermowear.contact.friction.stick_slip import follow
 from thermowear.contact.friction.stick_slip_state import Loads, Status, unloaded
 from thermowear.laws import PowerWear
 from thermowear.reference.growing_contact import growing_line
-from thermowear.reference.mindlin import MindlinLine
+from thermowear.reference.hertz import MindlinLine
 
 from .half_plane import half_plane
 

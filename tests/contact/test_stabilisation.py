@@ -7,14 +7,14 @@ from thermowear import ComputationError
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial
 from thermowear.contact.full.full_system import FullContact
-from thermowear.contact.full.stabilisation import (
+from thermowear.contact.full.nitsche import (
     default_penalty,
     nitsche_stiffness,
     nitsche_warning,
+    normal_traction,
     stability_limit,
 )
 from thermowear.contact.operators.traces import gap_trace
-from thermowear.contact.operators.traction import normal_traction
 
 from .test_traction import MODELS, build, deformed_blocks
 

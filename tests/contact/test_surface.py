@@ -9,12 +9,11 @@ from dolfinx import fem
 from thermowear import CaseError
 from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial
-from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.pressure import contact_zones, pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.clipping import parts_opposite
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.search.projection import project
-from thermowear.contact.search.zones import contact_zones
 from thermowear.parallel import sum_over_ranks
 
 from .solids import COMM, SIZE, bent, gathered, skewed, straight, turned

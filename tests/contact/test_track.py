@@ -20,9 +20,7 @@ def close(value, rel=1e-6):
 def placed(*positions):
     """Something like a pairing, with contact points at lengths along the face of body 2."""
     places = np.array(positions, dtype=float)
-    face = SimpleNamespace(position=lambda facet, t: t)
-    side = SimpleNamespace(face=face, facet=np.zeros(len(places), dtype=int), t=places)
-    return SimpleNamespace(sides=(None, side))
+    return SimpleNamespace(sides=(None, SimpleNamespace(position=places)))
 
 
 def test_the_grid_covers_what_is_touched():

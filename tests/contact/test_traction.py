@@ -12,7 +12,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import owned
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.contact.operators.traction import (
+from thermowear.contact.full.nitsche import (
     normal_traction,
     on_every_facet,
     thermal_traction,

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from thermowear.contact.wear.unresolved_gap import unresolved_gap
+from thermowear.contact.operators.pressure import unresolved_gap
 
 FACETS, DEGREE = 4, 3
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.geometry.mesh.nodes import facet_nodes, reference_nodes, shape_functions
-from thermowear.geometry.meshing.cells import Lattice, mesh_lattice, tagged_bodies
+from thermowear.geometry.meshing.cells import mesh_lattice, tagged_bodies
 from thermowear.geometry.meshing.divisions import graded_face
 from thermowear.geometry.reading.export import write_mesh
 
@@ -18,13 +18,13 @@ def turned(p):
 
 
 def ring(order):
-    return mesh_lattice(Lattice(ENDS, turned, closed=True), order)
+    return mesh_lattice(ENDS, order, turned, closed=True)
 
 
 def tagged_ring(order):
     """A ring with a box on it as a second body."""
     sides = (np.array([1.0, 2.0]), ENDS[2], ENDS[2])
-    box = mesh_lattice(Lattice(sides, lambda p: p + np.array([0.0, 0.0, 1.0])), order)
+    box = mesh_lattice(sides, order, lambda p: p + np.array([0.0, 0.0, 1.0]))
     claims = {
         "ring_inside": lambda p: np.all(np.hypot(p[..., 0], p[..., 1]) < 1 + 1e-9, axis=1),
         "ring_rest": lambda p: np.ones(len(p), dtype=bool),

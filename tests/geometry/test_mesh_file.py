@@ -12,7 +12,7 @@ from thermowear.app.cli import main
 from thermowear.case.tables.schema import MeshTable
 from thermowear.errors import CaseError, CaseNote
 from thermowear.geometry.geometries.mesh_file import MeshFile
-from thermowear.geometry.geometries.round_on_block import CylinderOnBlock
+from thermowear.geometry.geometries.on_block import CylinderOnBlock
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.geometry.reading.export import write_mesh
 

@@ -13,7 +13,7 @@ from thermowear.geometry.mesh.tagged import quality
 from thermowear.geometry.moving.moved import MovableBody
 from thermowear.geometry.moving.remeshed import meshed_anew
 from thermowear.geometry.moving.skeleton import skeleton
-from thermowear.verification.starter import starter
+from thermowear.verification.check import starter
 
 from .measure import areas, edges, followed, volume
 from .measure import scaled_jacobians as measured

@@ -12,7 +12,7 @@ from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
-from thermowear.geometry.geometries.round_on_block import CylinderOnBlock, SphereOnBlock
+from thermowear.geometry.geometries.on_block import CylinderOnBlock, SphereOnBlock
 
 from .measure import areas, dofs, edges, ends, scaled_jacobians, unnamed
 

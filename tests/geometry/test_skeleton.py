@@ -5,7 +5,7 @@ import pytest
 
 from tests.conftest import two_blocks
 from thermowear.geometry.moving.skeleton import skeleton
-from thermowear.verification.starter import starter
+from thermowear.verification.check import starter
 
 
 @pytest.mark.parametrize("order", [1, 2])

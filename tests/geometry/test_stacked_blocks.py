@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.case.tables.schema import MeshTable
-from thermowear.geometry.geometries.stacked_blocks import StackedBlocks
+from thermowear.geometry.geometries.stacked import StackedBlocks
 
 from .measure import edges, ends, unnamed
 from .sound import check_mesh, fault, spans

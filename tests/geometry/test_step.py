@@ -8,8 +8,7 @@ import pytest
 import thermowear as tw
 from thermowear.errors import CaseError
 from thermowear.geometry.cad.design import Design
-from thermowear.geometry.cad.step_prism import face_grid, write_prism
-from thermowear.geometry.cad.step_section import write_section
+from thermowear.geometry.cad.step import face_grid, write_prism, write_section
 from thermowear.geometry.cad.worn_body import only_body
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 

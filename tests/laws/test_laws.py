@@ -17,8 +17,8 @@ from thermowear.laws.coefficients import (
     harmonic_mean,
 )
 from thermowear.laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
+from thermowear.laws.interfaces import registered_laws
 from thermowear.laws.plausible import require_interface_law, require_wear_rate
-from thermowear.laws.registry import registered_laws
 
 P = np.array([1e5, 2e6, 7e6, 3e7])
 V = np.array([0.05, 0.2, 0.5, 1.0])
@@ -42,12 +42,14 @@ def energy(p, v, mu):
 
 INTERFACE = {
     "constant": Constant(0.3),
-    "multiplied": Multiplied(Constant(0.3), Multipliers(FALLS, HARD, Table1D((0.0,), (0.9,)))),
+    "multiplied": Multiplied(
+        Constant(0.3), Multipliers({"T": FALLS, "p": HARD, "v": Table1D((0.0,), (0.9,))})
+    ),
     "multiplied expression": Multiplied(
-        FormulaLaw(written("0.3 + p/(1 GPa)")), Multipliers(pressure=HARD)
+        FormulaLaw(written("0.3 + p/(1 GPa)")), Multipliers({"p": HARD})
     ),
     "by pressure": PressureConductance(2e4, np.full(4, 40.0), np.full(4, 2e9)),
-    "table": Multipliers(pressure=Table1D((1e6, 1e7), (1e3, 5e3))),
+    "table": Multipliers({"p": Table1D((1e6, 1e7), (1e3, 5e3))}),
     "expression": FormulaLaw(written("0.1 + 0.2*exp(-p/(5 MPa))*(T/(300 K))")),
     "function": interface_law(lambda p, T: 0.1 + 0.2 * np.exp(-p / 5e6) * T / 300),
     "stribeck": registered_laws("friction")["stribeck"](0.35, 0.1, 0.5),
@@ -90,7 +92,7 @@ def test_laws_by_hand():
     friction = registered_laws("friction")["stribeck"](0.35, 0.1, 0.5)
     assert friction.value(state._replace(v=0.5)) == pytest.approx(0.1 + 0.25 / np.e)
     assert harmonic_mean(10.0, 40.0) == pytest.approx(16.0)
-    factors = Multipliers(FALLS, HARD, None)
+    factors = Multipliers({"T": FALLS, "p": HARD})
     assert factors.variables == {"T", "p"}
     state = LocalState(np.array([3e6]), 0.1, np.array([393.15]))
     assert factors.value(state) == pytest.approx([0.75 * 1.5])

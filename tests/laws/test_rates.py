@@ -5,10 +5,10 @@ import numpy as np
 from thermowear.laws import (
     InPlace,
     PowerWear,
-    UniformTrack,
     contact_patch,
     rotation,
     translation,
+    uniform_track,
     wear_vectors,
 )
 
@@ -77,7 +77,7 @@ def test_where_the_faces_part_a_track_wears_along_its_normal():
         np.column_stack([np.full(41, 0.03), 0 * z, z]), np.full(41, 1e-5), (1, 0, 0),
         [translation((1, 0, 0)), rotation((0, 1, 0), (0, 0, 0))], 1.0,
     )  # fmt: skip
-    laws, track = [PowerWear(1e-13), PowerWear(1e-13)], UniformTrack(np.full(41, 1e-3))
+    laws, track = [PowerWear(1e-13), PowerWear(1e-13)], uniform_track(np.full(41, 1e-3))
     steady = patch.steady([1e3, 30.0], laws, [InPlace(), track])
     vectors = wear_vectors(patch, steady)
     away = steady.approach <= 0

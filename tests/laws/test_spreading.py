@@ -5,16 +5,16 @@ import pytest
 
 from thermowear import ComputationError
 from thermowear.laws import (
-    DutyFactor,
+    Distribution,
     InPlace,
     LocalState,
     PowerWear,
-    UniformTrack,
     contact_patch,
     rings,
     rotation,
     steady_pressure,
     translation,
+    uniform_track,
 )
 
 LOCAL = np.array([1.0, 4.0, 0.0, 2.5])
@@ -25,29 +25,29 @@ LENGTHS = np.array([0.1, 0.2, 0.2, 0.1])
     ("way", "expected"),
     [
         (InPlace(), LOCAL),
-        (DutyFactor(0.125), LOCAL / 8),
-        (UniformTrack(LENGTHS / 3.0), np.full(4, (0.1 + 0.8 + 0.25) / 3)),
+        (Distribution(0.125), LOCAL / 8),
+        (uniform_track(LENGTHS / 3.0), np.full(4, (0.1 + 0.8 + 0.25) / 3)),
     ],
 )
 def test_rates(way, expected):
     """requirement: in place, a share of the time, or the mean over the length of the track."""
-    np.testing.assert_allclose(way.operator(4) @ LOCAL, expected, rtol=1e-14)
-    assert way.operator(4).shape == (4, 4)
+    np.testing.assert_allclose(way.rate(np.eye(4)) @ LOCAL, expected, rtol=1e-14)
+    assert way.rate(np.eye(4)).shape == (4, 4)
 
 
 def test_volume_is_kept():
     """requirement: what a strip loses over its whole track is what the contact takes off it."""
     track = 3.0
-    rate = UniformTrack(LENGTHS / track).operator(4) @ LOCAL
+    rate = uniform_track(LENGTHS / track).rate(np.eye(4)) @ LOCAL
     assert track * rate[0] == pytest.approx(LENGTHS @ LOCAL, rel=1e-14)
 
 
 def test_share_and_rows_say_the_same():
     """requirement: ``rate = share local + reach (rows·local)``, as the principle has it."""
     turning = rings(np.array([1.0, 2.0, 2.0, 3.0]), np.array([1.0, 2.0, 1.0, 2.0]), 0.2)
-    for way in (InPlace(), DutyFactor(0.3), UniformTrack(LENGTHS), turning):
-        common = 0.0 if way.rows is None else way.reach(4) @ (way.rows @ LOCAL)
-        np.testing.assert_allclose(way.operator(4) @ LOCAL, way.share * LOCAL + common)
+    for way in (InPlace(), Distribution(0.3), uniform_track(LENGTHS), turning):
+        common = 0.0 if way.means is None else way.means.reach @ (way.means.rows @ LOCAL)
+        np.testing.assert_allclose(way.rate(np.eye(4)) @ LOCAL, way.share * LOCAL + common)
 
 
 def test_a_share_of_the_wear():
@@ -57,7 +57,7 @@ def test_a_share_of_the_wear():
     r = 0.07 + 0.05 * x
     weights, down, load = 2 * np.pi * r * w * 0.05, np.ones((40, 1)), np.array([4e6])
     shared = steady_pressure(
-        weights, down, down, load, laws, 10 * r, spread=[InPlace(), DutyFactor(0.1)]
+        weights, down, down, load, laws, 10 * r, spread=[InPlace(), Distribution(0.1)]
     )
     tenth = steady_pressure(weights, down, down, load, [laws[0], PowerWear(8e-22, 2.0)], 10 * r)
     np.testing.assert_allclose(shared.pressure, tenth.pressure, rtol=1e-11)
@@ -74,7 +74,7 @@ def block_on_strip(tilting):
         np.column_stack([np.full(30, 0.04), 0 * z, z]), length * 0.01, (1, 0, 0), motions, 1.0,
         0.3, (0, 0, -1),
     )  # fmt: skip
-    return z, patch, UniformTrack(length / 2.0)
+    return z, patch, uniform_track(length / 2.0)
 
 
 @pytest.mark.parametrize("tilting", [False, True])
@@ -88,7 +88,7 @@ def test_wear_that_is_spread_over_a_track(tilting, b_1, b_2, κ_2):
     load = patch.force_modes.T @ (patch.weights * 1e6 * (z / 0.1) ** 2)
     steady = patch.steady(load, laws, [InPlace(), track])
     p = steady.pressure
-    mean = track.row @ laws[1].value(LocalState(p, patch.speed))
+    mean = track.means.rows[0] @ laws[1].value(LocalState(p, patch.speed))
     np.testing.assert_allclose(steady.rates[1], mean, rtol=1e-12)
     assert mean > 0.05 * steady.approach.max()
     touching = p > 0
@@ -134,7 +134,7 @@ def test_a_disk_wears_at_each_radius_by_the_mean_along_its_circle():
     """requirement: the mean of the local rate round the axis, by quadrature; no volume is lost."""
     r, angle, w = disk_under_a_pad()
     local = r * (1 + 0.5 * angle + angle**2)
-    found = rings(r, w, 1 / 6).operator(len(r)) @ local
+    found = rings(r, w, 1 / 6).rate(np.eye(len(r))) @ local
     mean = r * (1 + (np.pi / 6) ** 2 / 3) / 6
     np.testing.assert_allclose(found, mean, rtol=1e-12)
     assert w @ found == pytest.approx(w @ local / 6, rel=1e-13)
@@ -145,9 +145,11 @@ def test_rings_of_scattered_points():
     rng = np.random.default_rng(1)
     r, angle = np.sqrt(rng.uniform(0.08**2, 0.12**2, 4000)), rng.uniform(-0.5, 0.5, 4000)
     way = rings(r, np.ones(4000), 0.2)
-    np.testing.assert_allclose(way.reach(4000) @ (way.rows @ np.full(4000, 3.0)), 0.6, rtol=1e-12)
+    np.testing.assert_allclose(
+        way.means.reach @ (way.means.rows @ np.full(4000, 3.0)), 0.6, rtol=1e-12
+    )
     local = r * (1 + angle)
-    found = way.reach(4000) @ (way.rows @ local)
+    found = way.means.reach @ (way.means.rows @ local)
     assert found.min() > 0
     assert found.sum() == pytest.approx(0.2 * local.sum(), rel=1e-12)
     np.testing.assert_allclose(found, 0.2 * r, rtol=0.1)
@@ -164,7 +166,7 @@ def test_the_principle_with_a_disk_that_wears_along_its_track(b_1, b_2):
     load = np.array([1e3, 2.0, 1.0])
     steady = steady_pressure(w, modes, modes, load, laws, 10 * r, [InPlace(), way])
     p = steady.pressure
-    disk = way.operator(len(r)) @ laws[1].value(LocalState(p, 10 * r))
+    disk = way.rate(np.eye(len(r))) @ laws[1].value(LocalState(p, 10 * r))
     np.testing.assert_allclose(steady.rates[1], disk, rtol=1e-12)
     total, scale = laws[0].value(LocalState(p, 10 * r)) + disk, steady.approach.max()
     np.testing.assert_allclose(total[p > 0], steady.approach[p > 0], atol=1e-10 * scale)

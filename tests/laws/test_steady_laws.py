@@ -9,11 +9,9 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from thermowear.errors import ComputationError
-from thermowear.laws import InPlace, PowerWear, UniformTrack, steady_pressure
-from thermowear.laws.formulas import FormulaWear, wear_rate
-from thermowear.laws.interfaces import WEAR_VARIABLES, LocalState
-from thermowear.laws.plain_function import PlainFunction
-from thermowear.laws.registry import registered_laws
+from thermowear.laws import InPlace, PowerWear, steady_pressure, uniform_track
+from thermowear.laws.formulas import FormulaWear, PlainFunction, wear_rate
+from thermowear.laws.interfaces import WEAR_VARIABLES, LocalState, registered_laws
 
 N = 40
 RADIUS = np.linspace(0.02, 0.12, N)
@@ -32,7 +30,7 @@ def steady(laws, modes=ONE, load=(FORCE,), **more):
 
 @pytest.mark.parametrize("exponents", [(1.0, 1.0), (0.6, 2.0), (3.0, 0.5)])
 @pytest.mark.parametrize(
-    "spread", [[InPlace(), InPlace()], [InPlace(), UniformTrack(np.full(N, 1e-3))]]
+    "spread", [[InPlace(), InPlace()], [InPlace(), uniform_track(np.full(N, 1e-3))]]
 )
 @pytest.mark.parametrize("modes", [ONE, ROCKING])
 def test_powers_as_functions_lead_to_the_closed_form(exponents, spread, modes):

@@ -12,9 +12,8 @@ from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
 from thermowear.output.pictures.animation import make
 from thermowear.output.pictures.animation.panels import SectionPanel, top
-from thermowear.output.pictures.animation.scene import duration
 from thermowear.output.pictures.animation.states import read_frames
-from thermowear.output.pictures.section import outline
+from thermowear.output.pictures.bodies import outline
 
 from ..conftest import COLD_RUNNING_IN
 
@@ -118,7 +117,7 @@ def test_singular_corners_do_not_flatten_the_rest():
     ("time", "text"), [(0.0, "0 s"), (0.0012345, "0.00123 s"), (12345.6, "12300 s")]
 )
 def test_times_in_words(time, text):
-    assert duration(time) == text
+    assert make.duration(time) == text
 
 
 @pytest.mark.slow

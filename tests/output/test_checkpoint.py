@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.output.atomic_write import atomic_write, final_name
 from thermowear.output.checkpoint import CHECKPOINT, read_checkpoint, write_checkpoint
+from thermowear.output.files import atomic_write, final_name
 from thermowear.output.folder import Lock, finite
 from thermowear.output.resuming import read_run
 from thermowear.output.tables import RowWriter, read

@@ -7,10 +7,10 @@ import pytest
 from matplotlib.figure import Figure
 
 from thermowear.output import tables
-from thermowear.output.coordinates import in_model, model_of
+from thermowear.output.files import model_of
 from thermowear.output.pictures import bodies, panels
-from thermowear.output.pictures.section import BodySection
-from thermowear.output.report.columns import shown_table
+from thermowear.output.pictures.bodies import BodySection
+from thermowear.output.report.contents import shown_table
 from thermowear.results import TABLES
 
 INTERFACE, PROFILE = (TABLES[name].columns for name in ("interface", "profile"))
@@ -21,12 +21,12 @@ AXES = {"axisymmetric": ("r", "z"), "plane-strain": ("x", "y"), "3d": ("x", "y")
 def test_labels_name_the_coordinates_of_the_model(model, names):
     """requirement: r and z in axisymmetric models, x and y in others; headers do not change."""
     for column, name in zip("xy", names, strict=True):
-        shown = in_model(INTERFACE[column], model)
+        shown = INTERFACE[column].in_model(model)
         assert shown.axis == f"{name} [mm]"
         assert shown.header == f"{column}_m"
-        assert in_model(PROFILE[f"normal_{column}"], model).label == f"normal, {name}"
-    assert in_model(INTERFACE["s"], model) == INTERFACE["s"]
-    assert in_model(INTERFACE["pressure"], model) == INTERFACE["pressure"]
+        assert PROFILE[f"normal_{column}"].in_model(model).label == f"normal, {name}"
+    assert INTERFACE["s"].in_model(model) == INTERFACE["s"]
+    assert INTERFACE["pressure"].in_model(model) == INTERFACE["pressure"]
 
 
 @pytest.mark.parametrize(("model", "names"), AXES.items())

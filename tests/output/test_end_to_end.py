@@ -17,7 +17,7 @@ from thermowear.app.cli import main
 from thermowear.case.starters import starter_text, starters
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.output import tables
-from thermowear.output.names import name_at
+from thermowear.output.files import name_at
 
 from ..case import starter
 from ..case.starter import FRETTING, HERTZ, PUNCH, RECIPROCATING, RUNNING_IN, SPHERE, STEADY

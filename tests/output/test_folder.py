@@ -12,8 +12,8 @@ import pytest
 import thermowear as tw
 from thermowear.case import as_plain
 from thermowear.case.starters import starter_text
+from thermowear.output.files import name_at
 from thermowear.output.folder import ResultsFolder
-from thermowear.output.names import name_at
 from thermowear.output.tables import read
 from thermowear.results import HistoryRow
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from thermowear.app.cli import main
+from thermowear.output.files import FRAMES
 from thermowear.output.frames import frame_files, keep_indexed, remove_frames
-from thermowear.output.names import FRAMES
 from thermowear.output.tables import read
 
 from ..conftest import COLD_RUNNING_IN

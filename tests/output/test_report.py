@@ -17,7 +17,7 @@ from thermowear import output
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
 from thermowear.output import tables
-from thermowear.output.names import PICTURES
+from thermowear.output.files import PICTURES
 from thermowear.output.pictures.curves import draw_interface
 from thermowear.output.report import is_report
 from thermowear.results import TABLES

@@ -5,7 +5,8 @@ import pytest
 from scipy.special import erfc
 
 from thermowear.reference.half_space import HalfSpace
-from thermowear.reference.slabs import HeatedSlab
+
+from .heated_slab import HeatedSlab
 
 SLAB = HeatedSlab(0.03, 50.0, 7800 * 460.0)
 DEEP = HalfSpace(50.0, 7800 * 460.0)

@@ -1,12 +1,51 @@
 """Closed forms of contacts that stick and slip, against integrals."""
 
 import itertools
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from thermowear.reference.mindlin import MindlinLine, MindlinSphere
+from thermowear.reference.hertz import MindlinLine
+
+
+@dataclass(frozen=True)
+class MindlinSphere:
+    """Two spheres; slip transverse to Q is neglected, as by Mindlin.
+
+    Attributes
+    ----------
+    force, radius, compliance, friction : float
+        P [N], contact radius a [m], ``(2 - ν1)/G1 + (2 - ν2)/G2`` [1/Pa], and mu.
+    """
+
+    force: float
+    radius: float
+    compliance: float
+    friction: float
+
+    def displacement(self, tangential: float) -> float:
+        """Distant displacement on first loading, ``3 mu P/(16 a) K (1 - (1 - f)^(2/3))`` [m].
+
+        Johnson, section 7.2, with ``f = |Q|/(mu P)`` and K the compliance.
+        """
+        limit = self.friction * self.force
+        scale = 3 * limit * self.compliance / (16 * self.radius)
+        return float(np.sign(tangential) * scale * (1 - (1 - abs(tangential) / limit) ** (2 / 3)))
+
+    def loss_per_cycle(self, amplitude: float) -> float:
+        """Energy dissipated in a full cycle of Q between plus and minus the amplitude [J].
+
+        Area of the loop that results from `displacement` and Masing's rule,
+        ``8 (∫ Q dδ - Q δ/2)``, which is the result of Mindlin and Deresiewicz (1953)
+        ``9 (mu P)²/(10 a) K (1 - (1 - f)^(5/3) - 5 f/6 (1 + (1 - f)^(2/3)))``.
+        """
+        limit = self.friction * self.force
+        f = abs(amplitude) / limit
+        shape = 1 - (1 - f) ** (5 / 3) - 5 * f / 6 * (1 + (1 - f) ** (2 / 3))
+        return 9 * limit**2 * self.compliance / (10 * self.radius) * shape
+
 
 LINE = MindlinLine(force=2e5, radius=0.03, modulus=1.1e11, friction=0.35)
 SPHERE = MindlinSphere(force=300.0, radius=2e-4, compliance=4e-11, friction=0.6)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from thermowear.reference.slabs import (
-    block_temperatures,
     conductance,
+    contact_temperatures,
     harmonic_mean,
 )
 
@@ -26,10 +26,8 @@ def test_softer_and_worse_conducting_body_decides():
 @pytest.mark.parametrize("partition", [0.0, 0.5, 0.9])
 def test_temperatures(pressure, partition):
     """requirement: heat that flows through each block is what its face gets."""
-    T1, T2 = block_temperatures(
-        LENGTHS, CONDUCTIVITIES, HARDNESSES, ENDS, COEFFICIENT, pressure, HEAT, partition
-    )
     h = conductance(COEFFICIENT, CONDUCTIVITIES, HARDNESSES, pressure)
+    (T1, T2), _ = contact_temperatures(LENGTHS, CONDUCTIVITIES, ENDS, HEAT, partition, h)
     a, b = (k / length for k, length in zip(CONDUCTIVITIES, LENGTHS, strict=True))
     heated = [a * ENDS[0] + partition * HEAT, b * ENDS[1] + (1 - partition) * HEAT]
     expected = np.linalg.solve([[a + h, -h], [-h, b + h]], heated)

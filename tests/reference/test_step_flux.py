@@ -7,10 +7,15 @@ import pytest
 from scipy.integrate import quad
 from scipy.linalg import solve_banded
 
-from thermowear.reference.half_space import HalfSpace, share, surface_rises
+from thermowear.reference.half_space import HalfSpace, surface_rises
 
 STEEL, LINING = HalfSpace(50.0, 3.6e6), HalfSpace(0.9, 2.1e6)
 FLUX = 2e5
+
+
+def share(first, second):
+    """Fraction of the friction heat into the first one for equal surface temperatures."""
+    return first.effusivity / (first.effusivity + second.effusivity)
 
 
 def test_conduction_below_the_surface():

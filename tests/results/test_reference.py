@@ -12,9 +12,8 @@ from pathlib import Path
 import pytest
 
 from thermowear.results import TABLES
-from thermowear.results.quantity import from_key
+from thermowear.results.quantity import from_key, key, split_key
 from thermowear.results.summary_keys import GROUPS, OTHER, group_of, of_key
-from thermowear.results.units import key, split_key
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "results.md"

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from thermowear.output.names import is_ours, name_at
+from thermowear.output.files import is_ours, name_at
 from thermowear.output.report.contents import read_contents
 from thermowear.output.tables import read, write_points
 from thermowear.results import TABLES, HistoryRow, InterfaceFields, Profile, Result

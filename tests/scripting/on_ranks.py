@@ -2,7 +2,9 @@
 
 import sys
 from dataclasses import fields, replace
+from itertools import islice
 from pathlib import Path
+from pickle import PicklingError
 
 from mpi4py import MPI
 
@@ -10,6 +12,7 @@ import dolfinx
 import numpy as np
 
 import thermowear as tw
+from thermowear.parallel import on_root
 
 from ..case.starter import STEADY
 from .from_case import python_model
@@ -48,12 +51,27 @@ def faulty(kind):
     return replace(model, interfaces=[pair], heat=None)
 
 
+def saved(folder):
+    """Pressures of a running-in after a saved state, continued from it and from its file."""
+    model, face, _ = python_model(STEADY, *COARSE)
+    state = list(islice(model.march("200 s"), 3))[1]
+    state.save(folder / "state.npz")
+    ways = {"state": state, "read": folder / "state.npz"}
+    following = {name: next(model.march("200 s", start=start)) for name, start in ways.items()}
+    return {name: np.append(np.asarray(s.pressure(face)), s.time) for name, s in following.items()}
+
+
 if __name__ == "__main__":
     kind, folder = sys.argv[1], Path(sys.argv[2])
     rank = MPI.COMM_WORLD.rank
+    runs = {
+        "steady": computed,
+        "saved": lambda: saved(folder),
+        "unsendable": lambda: on_root(MPI.COMM_WORLD, lambda: lambda: 0),
+    }
     try:
-        found = computed() if kind == "steady" else faulty(kind)
-    except tw.CaseError as fault:
+        found = runs[kind]() if kind in runs else faulty(kind)
+    except (tw.CaseError, AttributeError, PicklingError) as fault:
         (folder / f"fault_{rank}.txt").write_text(str(fault))
     else:
         np.savez(folder / f"found_{rank}.npz", **found)

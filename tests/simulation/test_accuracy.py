@@ -6,7 +6,7 @@ import pytest
 
 from thermowear.errors import ComputationError
 from thermowear.simulation import Observer, run
-from thermowear.verification.starter import run_starter, starter
+from thermowear.verification.check import run_starter, starter
 
 from ..benchmarks.error_estimates import LINE, RING, Study, line, worn_shape
 

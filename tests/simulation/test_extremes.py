@@ -12,7 +12,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.reference import slabs
-from thermowear.verification.starter import starter
+from thermowear.verification.check import starter
 
 ALLOWED = 1e-2
 AMBIENT = 293.15

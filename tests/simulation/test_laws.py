@@ -12,7 +12,7 @@ from thermowear.case.tables.schema import as_plain
 from thermowear.contact.wear.implicit_step import newton_with_wear
 from thermowear.errors import ComputationError
 from thermowear.laws import parameter, registered, registered_laws
-from thermowear.laws.registry import REGISTERED
+from thermowear.laws.interfaces import REGISTERED
 from thermowear.simulation.interface import interface_problem
 
 from ..case.starter import FRETTING, GONE, RECIPROCATING, RUNNING_IN, solved, tables

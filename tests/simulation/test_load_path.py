@@ -3,13 +3,7 @@
 from dataclasses import replace
 
 from thermowear.case.tables.tabulated import History
-from thermowear.model import FrettingAnalysis
-from thermowear.simulation.cycles.load_path import (
-    cycle_segments,
-    cycles_to_stop_at,
-    first_pass,
-    jumped_cycles,
-)
+from thermowear.simulation.cycles.load_path import LoadPath
 
 
 def history(*pushes, **keys):
@@ -18,12 +12,12 @@ def history(*pushes, **keys):
 
 
 def way(loads, cycles=1, jump=1, output_times=()):
-    settings = FrettingAnalysis(output_times=output_times)
-    legs, before = list(first_pass(loads, settings.output_times)), 0
+    path = LoadPath(loads, output_times)
+    legs, before = list(path.first_pass()), 0
     if loads.cycle is None:
         return legs
-    for number in jumped_cycles(loads, settings, cycles, jump):
-        legs += cycle_segments(loads, settings.output_times, number, number - before)
+    for number in path.jumped_cycles(cycles, jump):
+        legs += path.cycle(number, number - before)
         before = number
     return legs
 
@@ -33,7 +27,7 @@ def ends(loads, **settings):
 
 
 def stops(loads, cycles, *output_times):
-    return cycles_to_stop_at(loads, FrettingAnalysis(output_times=output_times), cycles)
+    return LoadPath(loads, output_times).cycles_to_stop_at(cycles)
 
 
 LOOP = history(0, 36, -36, 36)

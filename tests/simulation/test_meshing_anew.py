@@ -22,7 +22,7 @@ from thermowear.simulation import Observer
 from thermowear.simulation.from_case import run
 from thermowear.simulation.geometry_update import geometry_update
 from thermowear.simulation.geometry_update import remesh as meshing_anew
-from thermowear.verification.starter import run_starter, starter
+from thermowear.verification.check import run_starter, starter
 
 from .hot_ring import HEAT
 
@@ -163,7 +163,7 @@ def test_a_run_goes_on_from_a_mesh_made_anew():
 SCRIPT = """
 import json, sys
 from tests.simulation.test_meshing_anew import SMALL, slanted
-from thermowear.verification.starter import run_starter
+from thermowear.verification.check import run_starter
 from mpi4py import MPI
 with slanted(1):
     summary = run_starter("annular-punch", *SMALL).summary

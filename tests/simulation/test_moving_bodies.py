@@ -5,7 +5,7 @@ import pytest
 
 from thermowear.output.console import Terminal, print_summary
 from thermowear.verification.cases.moving_band import passed, surface
-from thermowear.verification.starter import run_starter
+from thermowear.verification.check import run_starter
 
 from ..conftest import DEMOS
 from ..test_parallel import pytestmark as needs_mpirun

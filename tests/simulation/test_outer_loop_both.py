@@ -8,7 +8,7 @@ import pytest
 import thermowear as tw
 from thermowear.geometry.reading.export import write_mesh
 from thermowear.simulation.from_case import run
-from thermowear.verification.starter import run_starter
+from thermowear.verification.check import run_starter
 
 from ..conftest import two_blocks
 from .cylinders import case_tables

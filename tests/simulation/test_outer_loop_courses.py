@@ -5,7 +5,7 @@ import pytest
 
 from thermowear.output.tables import write_points
 from thermowear.simulation.from_case import run
-from thermowear.verification.starter import run_starter, starter
+from thermowear.verification.check import run_starter, starter
 
 from .test_checkpoint import Watched, assert_the_same
 

@@ -5,7 +5,7 @@ import pytest
 
 from thermowear.simulation import Observer
 from thermowear.simulation.from_case import run
-from thermowear.verification.starter import run_starter, starter
+from thermowear.verification.check import run_starter, starter
 
 SMALL = ("mesh.degree=3", "mesh.elements=12")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.verification.starter import run_starter
+from thermowear.verification.check import run_starter
 
 SMALL = ("mesh.degree=4", "mesh.elements=4", "wear.update=0.01")
 CASES = {

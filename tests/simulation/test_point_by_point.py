@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.verification.starter import run_starter
+from thermowear.verification.check import run_starter
 
 LOBATTO = "contact.pressure_degree=lobatto"
 

@@ -7,7 +7,7 @@ import thermowear as tw
 from thermowear.case.starters import starter_text
 from thermowear.contact.wear.implicit_step import Slope
 from thermowear.parallel import sum_over_ranks
-from thermowear.simulation.interface.factory import interface_problem
+from thermowear.simulation.interface.interface_problem import interface_problem
 from thermowear.simulation.system.conditions import ConditionModel
 
 from ..conftest import EXPLORES
@@ -63,7 +63,7 @@ def violated(system, method, p, left, scale):
         touching = coefficients > 1e-6 * coefficients.max()
         return weak.min() < -1e-8 * scale or np.abs(weak[touching]).max() > 1e-8 * scale
     if method == "penalty":
-        from thermowear.contact.full.stabilisation import default_penalty
+        from thermowear.contact.full.nitsche import default_penalty
 
         stiffness = default_penalty(system.elastic, system.pairing)
         return np.abs(p - stiffness * np.maximum(-left, 0)).max() > 1e-5 * p.max()

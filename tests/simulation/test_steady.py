@@ -29,7 +29,7 @@ def test_balances(hot_steady):
     summary = hot_steady.summary
     assert summary["heat_balance_relative_error"] < 1e-9
     assert summary["equilibrium_relative_error"] < 1e-9
-    power = reference.friction_power(FORCE, 0.02, 0.12, 0.25, 0.1)
+    power = 0.1 * reference.uniform_wear_torque(FORCE, 0.25, 0.02, 0.12)
     assert summary["friction_power_W"] == pytest.approx(power, rel=1e-6)
     i = hot_steady.interface
     np.testing.assert_allclose(

@@ -9,9 +9,9 @@ import pytest
 
 import thermowear as tw
 from thermowear.bulk.direct_solver import DirectSolver
-from thermowear.simulation.analyses import sweep as module
-from thermowear.simulation.analyses.sweep import Series, groups
+from thermowear.simulation.analyses.run import Series, groups
 from thermowear.simulation.from_case import analysis_of, model_of
+from thermowear.simulation.system.system import inputs
 
 from ..conftest import DEMOS
 
@@ -166,7 +166,7 @@ def test_speed_needs_new_conduction_where_the_disk_carries_heat():
     speeds = [f'motion.angular_velocity="{speed} rad/s"' for speed in (0.1, 0.2)]
     for advection, shared in (("none", True), ("resolved", False)):
         one, two = (
-            module.inputs(model_of(block(speed, f'heat.advection="{advection}"', *STORING)))
+            inputs(model_of(block(speed, f'heat.advection="{advection}"', *STORING)))
             for speed in speeds
         )
         assert one.elasticity == two.elasticity

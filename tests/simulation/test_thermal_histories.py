@@ -5,9 +5,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from thermowear.reference.slabs import HeatedSlab
-
 from ..case.starter import GONE, solved
+from ..reference.heated_slab import HeatedSlab
 
 BLOCKS, STRIP = "stacked-blocks", "punch-on-strip"
 COLD, AREA = 293.15, 1e-4

@@ -84,7 +84,7 @@ def test_tolerance_rules_the_error():
 
 def test_second_order_in_time():
     """requirement: the error of the wear step falls with the square of its size."""
-    from thermowear.simulation.interface.factory import interface_problem
+    from thermowear.simulation.interface.interface_problem import interface_problem
     from thermowear.simulation.interface.sdirk import advance
 
     case = tw.load(COLD_RUNNING_IN, ("mesh.degree=3", "mesh.elements=8"))

@@ -12,7 +12,7 @@ from thermowear.app.cli import main
 from thermowear.output import tables as csv_tables
 from thermowear.reference.instability import SlidingRod
 from thermowear.simulation.heat.heat_steps import HeatSteps
-from thermowear.simulation.interface.factory import interface_problem
+from thermowear.simulation.interface.interface_problem import interface_problem
 from thermowear.simulation.interface.sdirk import advance
 
 from ..case.starter import GONE, solved, tables

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.simulation.from_case import run
-from thermowear.verification.starter import run_starter, starter
+from thermowear.verification.check import run_starter, starter
 
 RING = "annular-punch-running-in", "mesh.degree=6", "mesh.elements=4"
 END = "analysis.end_time=4000 s", "analysis.output_times=[]", "analysis.tolerance=1e-3"

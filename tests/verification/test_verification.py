@@ -9,7 +9,7 @@ from thermowear import verification
 from thermowear.app.cli import main
 from thermowear.errors import CaseError, ComputationError
 from thermowear.verification import CASES, SLOW, Check, compare
-from thermowear.verification.starter import computed, starter
+from thermowear.verification.check import computed, starter
 
 LONG = SLOW | {
     "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "case-2", "case-3",

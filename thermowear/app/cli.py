@@ -29,21 +29,17 @@ def main(arguments: list[str] | None = None) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("default", CaseNote)
         warnings.showwarning = _note_hook(warnings.showwarning)
-        return _main(arguments)
-
-
-def _main(arguments: list[str] | None) -> int:
-    try:
-        chosen = parser().parse_args(arguments)
-        return _COMMANDS[chosen.command](chosen)
-    except CaseError as error:
-        return _report_errors(error.exit_code, *error.faults)
-    except ComputationError as error:
-        return _report_errors(error.exit_code, str(error))
-    except KeyboardInterrupt as error:
-        return _report_errors(_INTERRUPTED, str(error) or "interrupted")
-    except BrokenPipeError:
-        return 0
+        try:
+            chosen = parser().parse_args(arguments)
+            return _COMMANDS[chosen.command](chosen)
+        except CaseError as error:
+            return _report_errors(error.exit_code, *error.faults)
+        except ComputationError as error:
+            return _report_errors(error.exit_code, str(error))
+        except KeyboardInterrupt as error:
+            return _report_errors(_INTERRUPTED, str(error) or "interrupted")
+        except BrokenPipeError:
+            return 0
 
 
 def _note_hook(otherwise):
@@ -260,16 +256,5 @@ def _sweep(chosen) -> int:
     return run_sweep(chosen)
 
 
-_COMMANDS = {
-    "run": _run,
-    "sweep": _sweep,
-    "cases": _cases,
-    "init": _init,
-    "validate": _validate,
-    "mesh": _mesh,
-    "shape": _shape,
-    "verify": _verify,
-    "plot": _plot,
-    "animate": _animate,
-    "report": _report,
-}
+_ALL = _run, _sweep, _cases, _init, _validate, _mesh, _shape, _verify, _plot, _animate, _report
+_COMMANDS = {command.__name__[1:]: command for command in _ALL}

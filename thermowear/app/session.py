@@ -5,10 +5,11 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from .. import load
 from ..case import Case, as_plain
-from ..errors import CaseError, UnwritableError
+from ..errors import CaseError, ComputationError, UnwritableError
 from ..output.checkpoint import CHECKPOINT
 from ..output.console import ConsoleProgress, Terminal, print_discretisations, print_summary
 from ..output.folder import ResultsFolder
@@ -17,19 +18,35 @@ from ..parallel import on_root
 from ..results import Frame, HistoryRow, InterfaceFields, LoadRow
 from ..serialise import Checkpoint, pack
 from ..simulation import Observer, run
-from ..simulation.runtime.checkpoint_data import Saved
-from ..simulation.runtime.observer import AnyRow
+from ..simulation.runtime.observer import AnyRow, Saved
 from ..timer import Phases
-from .discretisations import COMPARED, side_by_side
+
+COMPARED = (
+    "dofs_displacement",
+    "contact_points",
+    "max_pressure_Pa",
+    "mean_pressure_Pa",
+    "contact_area_m2",
+    "approach_m",
+    "shape_range_m",
+    "max_temperature_K",
+    "pressure_error_estimate_relative",
+    "max_pressure_error_estimate_relative",
+    "shape_error_estimate_relative",
+    "temperature_error_estimate_relative",
+)
+"""Keys of the summary that are compared."""
+_LOWEST, _HIGHEST = 1, 10
 
 
 class Recorder(Observer):
-    """Observer that writes to the results folder and to the console, on rank 0."""
+    """Observer that writes to the results folder and to the console, on rank 0.
 
-    def __init__(self, comm, folder, progress: ConsoleProgress | None = None):
-        self._comm = comm
-        self._folder = folder
-        self._progress = progress
+    With the case it also writes checkpoints.
+    """
+
+    def __init__(self, comm, folder, progress: ConsoleProgress | None = None, case=None):
+        self._comm, self._folder, self._progress, self._case = comm, folder, progress, case
         self._steps = -1
 
     def phase(self, name: str) -> None:
@@ -60,18 +77,9 @@ class Recorder(Observer):
             self._steps = len(rows) - 1
         self._save(lambda: self._folder.restore(rows))
 
-    def _save(self, action) -> None:
-        on_root(self._comm, lambda: _writing(action))
-
-
-class SavingRecorder(Recorder):
-    """Recorder that also writes checkpoints."""
-
-    def __init__(self, comm, folder, progress: ConsoleProgress | None, case: Case):
-        super().__init__(comm, folder, progress)
-        self._case = case
-
     def checkpoint(self, saved: Saved) -> None:
+        if self._case is None:
+            return
         packed, time = pack(self._comm, saved), saved.progress.time
 
         def write() -> None:
@@ -80,6 +88,9 @@ class SavingRecorder(Recorder):
             self._folder.checkpoint(about, packed.arrays)
 
         self._save(write)
+
+    def _save(self, action) -> None:
+        on_root(self._comm, lambda: _writing(action))
 
 
 def run_session(chosen, comm, import_seconds: float) -> int:
@@ -106,7 +117,7 @@ def run_session(chosen, comm, import_seconds: float) -> int:
     try:
         with ConsoleProgress(console) as progress:
             shown = progress if comm.rank == 0 else None
-            recorder = SavingRecorder(comm, folder, shown, case)
+            recorder = Recorder(comm, folder, shown, case)
             phases = Phases(recorder.phase)
             phases.add("import", import_seconds)
             result = run(case, comm, recorder, phases, saved)
@@ -182,3 +193,43 @@ def _draw(path: Path, console: Terminal) -> None:
 
     for problem in make_pictures(path):
         console.print(f"note: {problem}")
+
+
+def neighbours(case: Case) -> dict[str, tuple[str, ...]]:
+    """Overrides of a case for a coarser and a finer discretisation.
+
+    One polynomial degree lower and higher, also of the pressure space if its degree is given; half
+    and twice the number of elements at the limits of the degree.
+    """
+    return {"coarser": _changed(case, -1), "finer": _changed(case, 1)}
+
+
+def _changed(case: Case, by: int) -> tuple[str, ...]:
+    degree, given = case.mesh.degree + by, case.contact.pressure_degree
+    if not _LOWEST <= degree <= _HIGHEST:
+        elements = max(case.mesh.elements // 2, 1) if by < 0 else 2 * case.mesh.elements
+        return (f"mesh.elements={elements}",)
+    changes = [f"mesh.degree={degree}"]
+    if isinstance(given, int):
+        pressure_degree = min(max(given + by, _LOWEST), _HIGHEST)
+        changes.append(f"contact.pressure_degree={pressure_degree}")
+    return tuple(changes)
+
+
+def side_by_side(path: Path, overrides: tuple[str, ...], comm) -> dict[str, dict[str, Any]]:
+    """Compute the coarser and finer discretisations for the summary of a case. Every rank calls.
+
+    If one of them cannot be computed, its entry contains the reason instead of numbers.
+    """
+    found: dict[str, dict[str, Any]] = {}
+    for name, changes in neighbours(load(path, overrides)).items():
+        entry: dict[str, Any] = {"changes": ", ".join(changes)}
+        try:
+            result = run(load(path, (*overrides, *changes)), comm)
+            if result.stopped is not None:
+                raise result.stopped
+            entry |= {key: result.summary.get(key) for key in COMPARED}
+        except (CaseError, ComputationError) as error:
+            entry["failed"] = str(error)
+        found[f"{name}_discretisation"] = entry
+    return found

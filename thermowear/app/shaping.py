@@ -12,8 +12,7 @@ from ..case import Case, as_plain
 from ..case.tables.plane_geometry import PlaneGeometry
 from ..errors import CaseError
 from ..geometry.cad.design import CARRIERS, Design, add_table, write_table
-from ..geometry.cad.step_prism import write_prism
-from ..geometry.cad.step_section import write_section
+from ..geometry.cad.step import write_prism, write_section
 from ..geometry.cad.worn_body import only_body, write_design_mesh
 
 _FORMATS = (".csv", *CARRIERS)
@@ -86,7 +85,8 @@ def shape(
     body = bodies[0] if body is None else body
     if body not in bodies:
         raise CaseError(f"--body {body}: not a body of this case; one of: {', '.join(bodies)}")
-    if body == bodies[1] and _passes(case):
+    passes = case.model != "axisymmetric" and not case.geometry.slides_across
+    if body == bodies[1] and passes:
         raise CaseError(
             f"--body {body}: slides past under {bodies[0]}, so that its shape does not stay in the "
             f"contact; use --body {bodies[0]}"
@@ -132,9 +132,3 @@ def write_shape(shaped: Shaped, path: Path) -> None:
         half = bool(geometry.symmetry)
         write_section(mesh, design, face, path, thick=geometry.thickness, half=half)
     add_table(design, path)
-
-
-def _passes(case: Case) -> bool:
-    """True if the material of body 2 moves through the contact (not if it rotates on its axis)."""
-    geometry = case.geometry
-    return case.model != "axisymmetric" and not geometry.slides_across

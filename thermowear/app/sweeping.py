@@ -50,7 +50,7 @@ def sweep(
     KeyboardInterrupt
         If a stop was requested during a variant; no further one is computed.
     """
-    from ..simulation.analyses.sweep import Series, groups
+    from ..simulation.analyses.run import Series, groups
     from ..simulation.from_case import analysis_of, model_of
 
     source = as_plain(case) if isinstance(case, Case) else case
@@ -129,7 +129,7 @@ def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, r
     """Compute groups of variants with shared factorisations, in parallel processes if several."""
     with DeferredSignals():
         start_petsc()
-        from ..simulation.analyses.sweep import groups
+        from ..simulation.analyses.run import groups
         from ..simulation.from_case import model_of
 
     models = [model_of(variant.case) for variant in found]
@@ -147,7 +147,7 @@ def compute(jobs: list[Job], tell: Callable[[Ended], None]) -> None:
     """Compute variants that share factorisations, and write their folders."""
     with DeferredSignals():
         start_petsc()
-        from ..simulation.analyses.sweep import Series
+        from ..simulation.analyses.run import Series
 
     series = Series()
     for job in jobs:

@@ -70,15 +70,12 @@ def variants(
             for line in error.faults:
                 faults.setdefault(line, []).append(f"variant {number} ({', '.join(changes)})")
     if faults:
-        raise CaseError(*_lines(faults, len(combinations)))
+        lines: list[str] = []
+        for line, where in faults.items():
+            common = len(where) == len(combinations)
+            lines += [line] if common else [f"{variant}: {line}" for variant in where]
+        raise CaseError(*lines)
     return found
-
-
-def _lines(faults: dict[str, list[str]], count: int) -> list[str]:
-    lines = []
-    for line, where in faults.items():
-        lines += [line] if len(where) == count else [f"{variant}: {line}" for variant in where]
-    return lines
 
 
 def parse_over(texts: Sequence[str]) -> dict[str, list[str]]:

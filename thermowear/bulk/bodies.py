@@ -41,12 +41,9 @@ class Bodies:
     def body_tag(self, name: str) -> int:
         return self.names.index(name) + 1
 
-    def surface_tag(self, name: str) -> int:
-        return self.surfaces.index(name) + 1
-
     def facets(self, surface: str) -> np.ndarray:
         """Local indices of the facets of a surface, ghosts included."""
-        return self.facet_tags.find(self.surface_tag(surface))
+        return self.facet_tags.find(self.surfaces.index(surface) + 1)
 
     def cells(self, *parts: str) -> np.ndarray:
         """Local indices of the cells of parts of bodies, ghosts included."""

@@ -39,7 +39,7 @@ class Kinematics(ABC):
         Parameters
         ----------
         points : ndarray, shape (n, gdim) [m]
-        motion : thermowear.model.holder.Motion
+        motion : thermowear.model.conditions.Motion
         center : tuple of float, optional
             x and y of the point, or of the vertical axis, about which body 2 rotates [m].
         across : bool
@@ -51,12 +51,16 @@ class Kinematics(ABC):
         """
 
     @abstractmethod
+    def depth(self, x):
+        """Measure of the solid per measure of the mesh at coordinates x[k] [m, or 1 in 3D]."""
+
     def integral(self, mesh, density, measure):
         """Integral form of a density over volume (cells) or surface (facets) of the solid."""
+        return self.depth(ufl.SpatialCoordinate(mesh)) * density * measure
 
-    @abstractmethod
     def area_factor(self, points: np.ndarray) -> np.ndarray:
-        """Area of the solid per measure of mesh facets at points (n, gdim) [m, or 1 in 3D]."""
+        """Area of the solid per measure of mesh facets at points (n, gdim), see `depth`."""
+        return np.full(len(points), self.depth(points.T), dtype=float)
 
     @abstractmethod
     def strain(self, mesh, u):
@@ -134,11 +138,8 @@ class Axisymmetric(Kinematics):
             speed = motion.angular_velocity * points[:, 0]
         return np.outer(speed, (0.0, 0.0, 1.0))
 
-    def integral(self, mesh, density, measure):
-        return 2 * math.pi * self.sector * ufl.SpatialCoordinate(mesh)[0] * density * measure
-
-    def area_factor(self, points):
-        return 2 * math.pi * self.sector * points[:, 0]
+    def depth(self, x):
+        return 2 * math.pi * self.sector * x[0]
 
     def strain(self, mesh, u):
         r = ufl.SpatialCoordinate(mesh)[0]
@@ -175,11 +176,8 @@ class PlaneStrain(Kinematics):
             return np.tile((0.0, 0.0, motion.velocity), (len(points), 1))
         return _along_or_round(points, motion, center)
 
-    def integral(self, mesh, density, measure):
-        return self.thickness * density * measure
-
-    def area_factor(self, points):
-        return np.full(len(points), self.thickness)
+    def depth(self, x):
+        return self.thickness
 
     def strain(self, mesh, u):
         e = ufl.sym(ufl.grad(u))
@@ -214,11 +212,8 @@ class Spatial(Kinematics):
     def sliding(self, points, motion, center=None, across=False):
         return _along_or_round(points, motion, center)
 
-    def integral(self, mesh, density, measure):
-        return density * measure
-
-    def area_factor(self, points):
-        return np.ones(len(points))
+    def depth(self, x):
+        return 1
 
     def strain(self, mesh, u):
         return ufl.sym(ufl.grad(u))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import basix
 import numpy as np
@@ -23,17 +23,8 @@ _TOLERANCE = 1e-6
 """Tolerance of the bounding-box search, relative to the size of a cell."""
 
 
-@dataclass(frozen=True)
-class _Cells:
-    """Cells of one body, gathered from all ranks.
-
-    Attributes
-    ----------
-    nodes : ndarray, shape (n_cells, n_nodes, gdim)
-        Coordinates of the geometry nodes [m].
-    values : ndarray, shape (n_cells, n_dofs)
-        Nodal values of the field.
-    """
+class _Cells(NamedTuple):
+    """Cells of one body from all ranks: geometry nodes (n_cells, n_nodes, gdim), nodal values."""
 
     nodes: np.ndarray
     values: np.ndarray
@@ -70,7 +61,8 @@ def transferred(
     count, gdim = new.dofmap.index_map.size_local, old.mesh.geometry.dim
     result, stays, error = np.zeros(count), np.zeros(count, dtype=bool), 0.0
     places = new.tabulate_dof_coordinates()[:count, :gdim]
-    if _same_connectivity(old, new):
+    unchanged = np.array_equal(old.dofmap.list, new.dofmap.list)
+    if all(new.mesh.comm.allgather(unchanged)):  # the meshes differ in node positions only
         stays = np.all(places == old.tabulate_dof_coordinates()[:count, :gdim], axis=1)
         result[stays] = values[stays]
     field = _Field(old)
@@ -89,19 +81,8 @@ def transferred(
     return result, error
 
 
-def _same_connectivity(old: fem.FunctionSpace, new: fem.FunctionSpace) -> bool:
-    """True if the meshes have equal connectivity on all ranks and differ in node positions only."""
-    same = np.array_equal(old.dofmap.list, new.dofmap.list)
-    return all(new.mesh.comm.allgather(same))
-
-
 class _Field:
-    """Evaluation of fields of a space in given cells.
-
-    Parameters
-    ----------
-    space : dolfinx.fem.FunctionSpace
-    """
+    """Evaluation of fields of a space in given cells."""
 
     def __init__(self, space: fem.FunctionSpace):
         mesh = space.mesh

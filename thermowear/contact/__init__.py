@@ -3,17 +3,18 @@
 from .friction.stick_slip import advance, follow
 from .friction.stick_slip_state import Loads, StickSlipState
 from .full.full_system import FullContact, FullSolution
-from .operators.condensation import CondensedContact, condense
+from .full.nitsche import normal_traction
+from .operators.condensation import (
+    CondensedContact,
+    condense,
+    condense_distortion,
+    condense_heat,
+)
 from .operators.heat import InterfaceHeat, ThermalState
-from .operators.heat_condensation import condense_distortion, condense_heat
-from .operators.holder import RigidHolder, RigidMode, hold
-from .operators.pressure import pressure_basis
-from .operators.sliding import Sliding, sliding
+from .operators.pressure import contact_zones, pressure_basis
+from .operators.rigid_motion import RigidHolder, RigidMode, Sliding, hold, sliding
 from .operators.tangential import FrictionalContact, condense_tangential
 from .operators.traces import gap_trace, value_trace, vector_trace
-from .operators.traction import normal_traction
-from .search.face import Face, gather_face
+from .search.face import Face, Surface, gather_face
 from .search.pairing import Pairing, pair
-from .search.surface import Surface
-from .search.zones import contact_zones
 from .solvers.signorini import SignoriniSolution, solve_contact

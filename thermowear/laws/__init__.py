@@ -5,12 +5,11 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from .distribution import Distribution, DutyFactor, InPlace, Rings, UniformTrack, rings
+from .distribution import Distribution, InPlace, rings, uniform_track
 from .formulas import interface_law, wear_rate
-from .interfaces import Law, LocalState
+from .interfaces import Law, LocalState, parameter, registered, registered_laws
 from .motions import RigidMotion, rotation, translation
 from .power_wear import PowerWear
-from .registry import parameter, registered, registered_laws
 
 _PRINCIPLE = {
     "functionals": (
@@ -22,8 +21,7 @@ _PRINCIPLE = {
     ),
     "minimum": ("Minimum", "least_wear_dissipation", "minimise"),
     "patch": ("ContactPatch", "WearVectors", "contact_patch", "wear_vectors"),
-    "solvability": ("NotCarried", "SelfLocking"),
-    "steady": ("SteadyWear", "steady_pressure"),
+    "steady": ("NotCarried", "SelfLocking", "SteadyWear", "steady_pressure"),
 }
 """Names imported lazily: reading a case needs no optimisation library."""
 

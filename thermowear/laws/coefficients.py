@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -68,19 +69,11 @@ class Multipliers:
 
     Attributes
     ----------
-    temperature, pressure, speed : Table1D or None
-        Table of each factor; None for a factor of 1.
+    tables : mapping of str to Table1D
+        Table of each factor by its variable T, p or v.
     """
 
-    temperature: Table1D | None = None
-    pressure: Table1D | None = None
-    speed: Table1D | None = None
-
-    @property
-    def tables(self) -> dict[str, Table1D]:
-        """Tables by the name of their variable."""
-        tables = {"T": self.temperature, "p": self.pressure, "v": self.speed}
-        return {name: table for name, table in tables.items() if table is not None}
+    tables: Mapping[str, Table1D] = field(default_factory=dict)
 
     @property
     def variables(self) -> frozenset[str]:
@@ -96,8 +89,9 @@ class Multipliers:
 
     def slope(self, at: LocalState) -> np.ndarray:
         """Derivative of the product with respect to the pressure [1/Pa]."""
-        others = Multipliers(self.temperature, None, self.speed).value(at)
-        return others * (0.0 if self.pressure is None else self.pressure.slope(at.p))
+        others = {name: table for name, table in self.tables.items() if name != "p"}
+        slope = self.tables["p"].slope(at.p) if "p" in self.tables else 0.0
+        return Multipliers(others).value(at) * slope
 
 
 @dataclass(frozen=True)

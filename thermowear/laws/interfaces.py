@@ -1,13 +1,20 @@
-"""Interface of laws: wear rate of a body, coefficient of friction, contact conductance.
+"""Interface of laws (wear rate, coefficient of friction, conductance), and their registry.
 
 Every law is a function of the contact state, in SI, with its derivative with respect to the
 pressure. Variables have the names of expressions: ``p``, ``v``, ``T``, ``depth``, ``mu``.
+
+Case files select registered laws by name: ``rate = { type = "energy", … }``. Such a law is a frozen
+dataclass in a module of `named`, registered by a decorator. Its fields are the keys of its table;
+`parameter` defines the unit and the bounds of each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import NamedTuple, Protocol
+import importlib
+import pkgutil
+from collections.abc import Callable, Mapping
+from dataclasses import field
+from typing import Any, Literal, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -16,6 +23,11 @@ UNITS = {"p": "Pa", "v": "m/s", "T": "K", "depth": "m", "mu": ""}
 """SI units of the variables of laws."""
 WEAR_VARIABLES = tuple(UNITS)
 INTERFACE_VARIABLES = ("p", "v", "T")
+Role = Literal["wear", "friction", "conductance"]
+Registered = TypeVar("Registered", bound=type)
+
+REGISTERED: dict[str, dict[str, type]] = {"wear": {}, "friction": {}, "conductance": {}}
+"""Laws by role and name; `registered_laws` imports the modules of `named` first."""
 
 
 class LocalState(NamedTuple):
@@ -69,16 +81,39 @@ class Law(Protocol):
         ...
 
 
-class Formula(Protocol):
-    """Function of named variables with its derivatives: an expression, or a plain function."""
+def parameter(unit: str, example: str, *, default: Any = None, **bounds: float) -> Any:
+    """Field of a registered law.
 
-    @property
-    def variables(self) -> frozenset[str]: ...
+    Parameters
+    ----------
+    unit : str
+        SI unit; empty for a plain number.
+    example : str
+        A well-formed value, for messages.
+    default : float, optional
+        Default in SI; without one the key is required.
+    **bounds
+        Bounds ``gt``, ``ge``, ``le``, ``ne`` in SI.
+    """
+    metadata = {"unit": unit, "example": example, "bounds": bounds}
+    if default is None:
+        return field(metadata=metadata)
+    return field(default=default, metadata=metadata)
 
-    def value(self, at: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Value at arrays of the variables, of their common shape."""
-        ...
 
-    def slope(self, at: Mapping[str, np.ndarray], by: str) -> np.ndarray:
-        """Derivative with respect to one of the variables."""
-        ...
+def registered(role: Role, name: str) -> Callable[[Registered], Registered]:
+    """Decorator that registers a law under a name for case files."""
+
+    def register(law: Registered) -> Registered:
+        REGISTERED[role][name] = law
+        return law
+
+    return register
+
+
+def registered_laws(role: Role) -> Mapping[str, type]:
+    """Laws of a role by name: modules of the folder `named`, and laws of the user."""
+    named = importlib.import_module(f"{__package__}.named")
+    for module in pkgutil.iter_modules(named.__path__):
+        importlib.import_module(f"{named.__name__}.{module.name}")
+    return REGISTERED[role]

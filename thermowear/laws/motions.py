@@ -36,34 +36,32 @@ class RigidMotion:
         ndarray, of the points' shape
             Unit translation, or [m] for a rotation by 1 rad.
         """
-        dim = points.shape[-1]
-        arms = np.zeros((*points.shape[:-1], 3))
-        arms[..., :dim] = points
-        moved = self.translation + np.cross(self.rotation, arms - self.pivot)
-        return moved[..., :dim]
+        moved = self.translation + np.cross(self.rotation, spatial(points) - self.pivot)
+        return moved[..., : points.shape[-1]]
 
 
 def translation(direction) -> RigidMotion:
     """Unit translation along a direction of two or three components."""
-    return RigidMotion(_spatial(direction), np.zeros(3), np.zeros(3))
+    return RigidMotion(spatial(direction), np.zeros(3), np.zeros(3))
 
 
 def rotation(axis, pivot) -> RigidMotion:
     """Unit rotation about an axis (three components) through a point of two or three [m]."""
-    return RigidMotion(np.zeros(3), _spatial(axis), _spatial(pivot))
+    return RigidMotion(np.zeros(3), spatial(axis), spatial(pivot))
 
 
-def _spatial(vector) -> np.ndarray:
-    result = np.zeros(3)
-    result[: len(vector)] = vector
+def spatial(vectors) -> np.ndarray:
+    """Vectors of two or three components (last axis) with three of them."""
+    given = np.asarray(vectors, dtype=float)
+    result = np.zeros((*given.shape[:-1], 3))
+    result[..., : given.shape[-1]] = given
     return result
 
 
 def combined(motions, amplitudes) -> RigidMotion:
     """Superposition of small motions with given amplitudes; its pivot is the origin."""
-    turned = np.zeros(3)
-    moved = np.zeros(3)
-    for motion, amplitude in zip(motions, amplitudes, strict=True):
-        turned = turned + amplitude * motion.rotation
-        moved = moved + amplitude * motion.at(np.zeros(3))
-    return RigidMotion(moved, turned, np.zeros(3))
+    origin = np.zeros(3)
+    pairs = list(zip(motions, amplitudes, strict=True))
+    moved = sum((amplitude * motion.at(origin) for motion, amplitude in pairs), origin)
+    turned = sum((amplitude * motion.rotation for motion, amplitude in pairs), origin)
+    return RigidMotion(moved, turned, origin)

@@ -30,9 +30,7 @@ def require_wear_rate(law: Law) -> None:
     ValueError
         One-line message with a state that violates the condition.
     """
-    at = _grid(law.variables | {"p"})
-    rates = _evaluated(law, at)
-    rates = np.broadcast_to(rates, np.broadcast_shapes(*(v.shape for v in at.values())))
+    at, rates = _sampled(law, law.variables | {"p"})
     _reject_where(~np.isfinite(rates), at, "the rate is not finite")
     _reject_where(rates < 0.0, at, "the rate is negative")
     _reject_where(rates[:1] > _ROUNDING * rates[-1:], at, "there is wear without pressure")
@@ -50,9 +48,7 @@ def require_interface_law(law: Law) -> None:
     ValueError
         One-line message with a state that violates the condition.
     """
-    at = _grid(law.variables)
-    values = _evaluated(law, at)
-    values = np.broadcast_to(values, np.broadcast_shapes(*(v.shape for v in at.values()), (1,)))
+    at, values = _sampled(law, law.variables)
     _reject_where(~np.isfinite(values), at, "the value is not finite")
     typical = typical_value(law)
     if not typical > 0.0:
@@ -66,24 +62,19 @@ def typical_value(law: Law, friction: Values = TYPICAL.mu) -> float:
     return float(law.value(state)[0])
 
 
-def _evaluated(law: Law, at: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Values of a law on a grid of some variables, the others as in `TYPICAL`."""
+def _sampled(law: Law, variables: frozenset[str]) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """Tensor grid of samples, the pressure along its first axis, and values of a law on it.
+
+    The other variables are as in `TYPICAL`.
+    """
+    names = [name for name in SAMPLES if name in variables]
+    at = dict(zip(names, np.ix_(*(SAMPLES[name] for name in names)), strict=True))
     state = LocalState(*np.broadcast_arrays(*TYPICAL._replace(**at)))
     try:
         with np.errstate(all="ignore"):
-            return law.value(state)
+            return at, np.broadcast_to(law.value(state), np.shape(state.p))
     except ComputationError as error:  # of a law that checks its values itself
         raise ValueError(str(error)) from None
-
-
-def _grid(variables: frozenset[str]) -> dict[str, np.ndarray]:
-    """Tensor grid of samples, one axis per variable, the pressure along the first."""
-    names = [name for name in SAMPLES if name in variables]
-    shapes = np.eye(len(names), dtype=int)
-    return {
-        name: SAMPLES[name].reshape(np.where(axis, len(SAMPLES[name]), 1))
-        for name, axis in zip(names, shapes, strict=True)
-    }
 
 
 def _reject_where(wrong: np.ndarray, at: Mapping[str, np.ndarray], what: str) -> None:

@@ -49,10 +49,6 @@ class LoadFree:
         """Reduce an operator from pressure coefficients to weak gaps, (m, m), to ``Yᵀ O Z``."""
         return self.gaps.T @ operator @ self.pressures
 
-    def narrowed(self, columns: np.ndarray) -> LoadFree:
-        """Subspace of combinations of the columns."""
-        return LoadFree(self.pressures @ columns, self.gaps @ columns)
-
 
 def load_free(modes: np.ndarray, force_modes: np.ndarray) -> LoadFree:
     """Spaces Z and Y of R and T, shape (m, k) each."""
@@ -130,7 +126,8 @@ def leading(
     _, vectors, found = schur(matrix, sort=lambda re, im=0.0: abs(complex(re, im)) >= least)
     strong = vectors[:, :found]
     answers = np.linalg.solve(space(elastic), space(depths) @ strong)
-    return space.narrowed(orth(np.hstack([strong, answers / np.linalg.norm(answers, axis=0)])))
+    columns = orth(np.hstack([strong, answers / np.linalg.norm(answers, axis=0)]))
+    return LoadFree(space.pressures @ columns, space.gaps @ columns)
 
 
 def _influence(elastic: np.ndarray, thermal: np.ndarray, space: LoadFree) -> np.ndarray:

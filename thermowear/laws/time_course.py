@@ -32,16 +32,11 @@ class TimeCourse:
         """Time from the first instant to the last [s]."""
         return self.time[-1] - self.time[0]
 
-    def instant(self, time: float) -> float:
-        """Time mapped to the range between the first and the last instant [s]."""
-        begin, end = self.time[0], self.time[-1]
-        if self.repeat and time > end:
-            return begin + (time - begin) % self.period
-        return min(max(time, begin), end)
-
-    def value(self, values: Sequence[float], time: float) -> float:
+    def interpolate(self, values: Sequence[float], time: float) -> float:
         """Interpolate values given at the instants at a time."""
-        return float(np.interp(self.instant(time), self.time, values))
+        if self.repeat and time > self.time[-1]:
+            time = self.time[0] + (time - self.time[0]) % self.period
+        return float(np.interp(time, self.time, values))
 
     def corners(self, end: float) -> tuple[float, ...]:
         """Corner times after 0 and up to a time, repetitions included [s]."""
@@ -54,35 +49,28 @@ class TimeCourse:
 
 
 @dataclass(frozen=True)
-class TimeFunction:
+class TimeFunction(TimeCourse):
     """Piecewise linear function of time.
 
     Attributes
     ----------
-    course : TimeCourse
     values : tuple of float
-        Values at its instants, in SI.
+        Values at the instants, in SI.
     """
 
-    course: TimeCourse
     values: tuple[float, ...]
 
     def at(self, time: float) -> float:
         """Value at a time [s]."""
-        return self.course.value(self.values, time)
-
-    def corners(self, end: float) -> tuple[float, ...]:
-        """Corner times after 0 and up to a time, repetitions included [s]."""
-        return self.course.corners(end)
+        return self.interpolate(self.values, time)
 
 
 @dataclass(frozen=True)
-class LoadHistory:
+class LoadHistory(TimeCourse):
     """Loads at instants, with straight lines between them.
 
     Attributes
     ----------
-    course : TimeCourse
     force, approach : tuple of float or None
         Along the load direction [N, m]; at most one of them. Neither: the constant load.
     tangential_force, tangential_displacement : tuple of float or None
@@ -92,7 +80,6 @@ class LoadHistory:
         with the loads of the last one [s].
     """
 
-    course: TimeCourse
     force: tuple[float, ...] | None = None
     approach: tuple[float, ...] | None = None
     tangential_force: tuple[float, ...] | None = None
@@ -100,16 +87,16 @@ class LoadHistory:
     cycle_start: float | None = None
 
     @property
-    def time(self) -> tuple[float, ...]:
-        """Instants [s]."""
-        return self.course.time
-
-    @property
     def cycle(self) -> tuple[float, float] | None:
         """Begin and end of the cycle that may be repeated [s]; None if there is none."""
         starts = self.time[:-1] if self.cycle_start is None else (self.cycle_start,)
         closed = [start for start in starts if self.ends_as(start)]
         return (closed[0], self.time[-1]) if closed else None
+
+    def end(self, cycles: int) -> float:
+        """Time at the end of a number of cycles [s]."""
+        last = self.time[-1]
+        return last if self.cycle is None else last + (cycles - 1) * (last - self.cycle[0])
 
     @property
     def tangential(self) -> bool:
@@ -125,16 +112,8 @@ class LoadHistory:
     def at(self, time: float) -> dict[str, float]:
         """Values of the given loads, by key, at a time [s]."""
         given = {key: getattr(self, key) for key in KEYS}
-        return {
-            key: self.course.value(values, time)
-            for key, values in given.items()
-            if values is not None
-        }
+        return {k: self.interpolate(v, time) for k, v in given.items() if v is not None}
 
     def factor_at(self, time: float) -> float:
         """Force at a time [s] relative to the largest one; 1 where the force is constant."""
         return 1.0 if self.force is None else self.at(time)["force"] / max(self.force)
-
-    def corners(self, end: float) -> tuple[float, ...]:
-        """Corner times after 0 and up to a time, repetitions included [s]."""
-        return self.course.corners(end)

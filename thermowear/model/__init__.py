@@ -8,9 +8,13 @@ from .analyses import (
     TransientAnalysis,
 )
 from .body import Body, Material
-from .heat import Heat
-from .holder import Holder, Motion
-from .interface import ContactMethod, HardnessConductance, Interface
-from .meshes import MeshSource
-from .model import Discretisation, Model
-from .wear import CircularTrack, EvenTrack, FaceWear
+from .conditions import Heat, Holder, Motion
+from .interface import (
+    CircularTrack,
+    ContactMethod,
+    EvenTrack,
+    FaceWear,
+    HardnessConductance,
+    Interface,
+)
+from .model import Discretisation, MeshSource, Model

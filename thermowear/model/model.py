@@ -1,19 +1,62 @@
-"""Model: bodies, their interfaces, holders and motion, as input of all analyses."""
+"""Model: bodies, their interfaces, holders, motion and meshes, as input of all analyses."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, Protocol
 
 from ..errors import CaseError
+from ..geometry.mesh.tagged import TaggedMesh
 from ..laws.time_course import LoadHistory, TimeFunction
 from .body import Body, Material
-from .heat import Heat
-from .holder import Holder, Motion
+from .conditions import Heat, Holder, Motion
 from .interface import Interface
-from .meshes import MeshSource, Zone
+
+Zone = tuple[float, float]
+"""Range of x [m]."""
+
+
+class MeshSource(Protocol):
+    """Mesh of the bodies with named parts and surfaces; sources of equal meshes compare equal.
+
+    Attributes
+    ----------
+    path : str or None
+        File that the mesh is read from: it is identified by a checksum. None for built meshes.
+    """
+
+    @property
+    def path(self) -> str | None: ...
+
+    def mesh(self, zone: Zone | None) -> TaggedMesh:
+        """Mesh for a contact zone, by default the expected one; called on rank 0.
+
+        Raises
+        ------
+        CaseError
+            If it cannot be made.
+        """
+        ...
+
+    def expected_zone(
+        self, force: float | None, approach: float | None, modulus: float
+    ) -> Zone | None:
+        """Estimate of the contact zone, for which the mesh is refined; None if it has no zone.
+
+        A face may reach beyond its zone: a contact that comes near its end has outgrown the mesh.
+
+        Parameters
+        ----------
+        force : float or None
+            Normal force [N].
+        approach : float or None
+            Approach of body 1 [m].
+        modulus : float
+            Contact modulus E*, ``1/E* = Σ (1 - ν²)/E`` [Pa].
+        """
+        ...
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import CaseError, quoted
-from .atomic_write import atomic_write
+from .files import atomic_write
 
 CHECKPOINT = "checkpoint.npz"
 """Name in a results folder."""

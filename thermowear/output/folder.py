@@ -19,12 +19,10 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from ..results import TABLES
-from ..results.quantity import table_of
-from .atomic_write import final_name, write_text
+from ..results.quantity import TABLES, table_of
 from .checkpoint import CHECKPOINT, write_checkpoint
+from .files import FRAMES, final_name, is_ours, name_at, write_text
 from .frames import remove_frames, write_fields, write_frame
-from .names import FRAMES, is_ours, name_at
 from .tables import RowWriter, write_points
 
 

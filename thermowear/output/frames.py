@@ -10,7 +10,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from ..results import FIELDS
-from .atomic_write import atomic_write, final_name
+from .files import atomic_write, final_name
 from .tables import write_points
 
 _CELLS = {3: "triangle", 4: "quad", 8: "hexahedron"}

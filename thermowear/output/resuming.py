@@ -11,10 +11,9 @@ from ..case import Case, as_plain, load
 from ..case.validation.comparison import forbidden_changes, irrelevant_changes_only
 from ..errors import CaseError, other_mesh
 from .checkpoint import CHECKPOINT, read_checkpoint
-from .coordinates import read_object
+from .files import FRAMES, read_object
 from .folder import ResultsFolder, now, versions
 from .frames import keep_indexed
-from .names import FRAMES
 
 _START_ANEW = "--overwrite starts the run from the beginning"
 

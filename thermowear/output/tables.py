@@ -10,11 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..results import TABLES
-from ..results.quantity import Quantity, Table, table_of, unknown
-from .atomic_write import atomic_write
-from .coordinates import in_model, model_of
-from .names import stem_and_time
+from ..results.quantity import TABLES, Quantity, Table, table_of, unknown
+from .files import atomic_write, model_of, stem_and_time
 
 _NUMBER = "{:.15g}"
 
@@ -48,7 +45,7 @@ class TableColumns(dict[str, np.ndarray]):
         """Quantities of the columns, labelled for the kinematic model of the run."""
         others = {name: unknown(name, self[name]) for name in self if name not in self._known}
         model = model_of(self._path.parent)
-        return {name: in_model(q, model) for name, q in (self._known | others).items()}
+        return {name: q.in_model(model) for name, q in (self._known | others).items()}
 
     def drawn(self, name: str) -> np.ndarray:
         """Column in the unit of plots."""

@@ -1,3 +1,1 @@
 """Closed forms and reference solutions for verification, each with its source."""
-
-from . import annular_punch, cylinder, slabs

@@ -115,13 +115,6 @@ def torque(force: float, inner: float, outer: float, friction: float, b: float, 
     return friction * force * mean
 
 
-def friction_power(
-    force: float, inner: float, outer: float, friction: float, speed: float
-) -> float:
-    """Friction power ``mu F ω (ri + ro)/2`` in the steady state for a = b [W]."""
-    return friction * force * speed * (inner + outer) / 2
-
-
 def power_integral(power: float, low: float, high: float) -> float:
     """Integral ``∫ r^(power - 1) dr``."""
     return log(high / low) if power == 0 else (high**power - low**power) / power

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from math import inf, pi, sqrt
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import erfc, erfcx, k0e, k1e
 
 
@@ -56,11 +55,6 @@ class HalfSpace:
         """
         reach = np.sqrt(self.diffusivity * np.asarray(time))
         return 2 * flux / self.conductivity * reach * _ierfc(np.asarray(depth) / (2 * reach))
-
-
-def share(first: HalfSpace, second: HalfSpace) -> float:
-    """Fraction of the friction heat into the first one for equal surface temperatures."""
-    return first.effusivity / (first.effusivity + second.effusivity)
 
 
 def surface_rises(
@@ -184,32 +178,6 @@ class MovingBand:
         """
         place, L = np.asarray(x) / self.half_width * self.length, self.length
         return self.scale * (_integral(place + L) - _integral(place - L))
-
-    @property
-    def hottest_place(self) -> float:
-        """Position x of the largest temperature, between the rear edge and the middle [m].
-
-        The contributions of both edges are equal there, ``exp(-a) K0(a) = exp(c) K0(c)``, at the
-        distances a from the rear one and ``c = 2 L - a`` from the front one.
-        """
-        L = self.length
-
-        def edges(a):
-            return 2 * a + np.log(k0e(2 * L - a)) - np.log(k0e(a))
-
-        a = brentq(edges, 1e-12 * L, L, xtol=1e-15 * L, rtol=1e-14)
-        return (a / L - 1) * self.half_width
-
-    @property
-    def peak(self) -> float:
-        """Largest temperature rise of the surface [K]."""
-        return float(self.rise(self.hottest_place))
-
-    @property
-    def fast_peak(self) -> float:
-        """Largest temperature rise in the limit of large L, ``(2 q/k) √(2 κ b/(π v))`` [K]."""
-        passing = 2 * self.half_width / self.speed
-        return 2 * self.flux / self.conductivity * sqrt(self.diffusivity * passing / pi)
 
 
 PEAKS = {

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from .points import Profile
 from .quantity import Quantity, from_key, table_of
 from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
 
-_history, _heat, _loads = (table_of(kind).columns for kind in (HistoryRow, HeatRow, LoadRow))
-_cycles, _profile = (table_of(kind).columns for kind in (CycleRow, Profile))
+_history, _heat, _loads, _cycles = (
+    table_of(kind).columns for kind in (HistoryRow, HeatRow, LoadRow, CycleRow)
+)
 OTHER = "Other"
 
 GROUPS: dict[str, tuple[Quantity, ...]] = {

@@ -1,11 +1,17 @@
 """Models written in Python: bodies on a user's dolfinx meshes with their own tags."""
 
 from .body import BodySurface, MeshBody
-from .conversion import LoadHistory, TimeHistory
+from .conversion import (
+    Heat,
+    LoadHistory,
+    Material,
+    PowerWear,
+    PressureConductance,
+    TimeHistory,
+)
 from .face_pair import FacePair
 from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState
-from .physics import Heat, Material, PowerWear, PressureConductance
 from .scripted_model import ScriptedModel
 from .solution import ModelSolution, PointValues
 

@@ -1,4 +1,4 @@
-"""Conversion of Python arguments: quantities, laws, and histories of time."""
+"""Materials, heat, laws and histories of a model from Python arguments with units."""
 
 from __future__ import annotations
 
@@ -6,17 +6,19 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 from ..case.values import units
 from ..case.values.units import expression, in_python
 from ..errors import CaseError
-from ..laws import time_course
-from ..laws.coefficients import Constant
+from ..laws import power_wear, time_course
+from ..laws.coefficients import Constant, Table1D
 from ..laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
 from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
 from ..laws.plausible import require_interface_law
-from ..laws.time_course import TimeCourse, TimeFunction
+from ..laws.time_course import TimeFunction
+from ..model import body, conditions, interface
+from .body import BodySurface, require_surface
 
 _LOADS = {
     "force": units.LeastForce,
@@ -39,9 +41,7 @@ def quantities(name: str, kinds: Mapping[str, Any], given: Mapping[str, Any]) ->
         Arguments; None and those without a type are kept.
     """
     return {
-        key: in_python(kinds[key], value, f"{name}.{key}")
-        if key in kinds and value is not None
-        else value
+        key: _optional(kinds[key], value, f"{name}.{key}") if key in kinds else value
         for key, value in given.items()
     }
 
@@ -124,7 +124,7 @@ def TimeHistory(time: Sequence[Any], values: Sequence[Any], repeat: bool = False
     ]
     if len(read) != len(time):
         raise CaseError(f"{name}: has {len(time)} instants and {len(read)} values")
-    return TimeFunction(_course(time, repeat, name), tuple(read))
+    return TimeFunction(_instants(time, name), repeat, tuple(read))
 
 
 def LoadHistory(
@@ -139,7 +139,7 @@ def LoadHistory(
 ) -> time_course.LoadHistory:
     """Loads of a holder at instants, see `laws.time_course.LoadHistory`."""
     loads = force, approach, tangential_force, tangential_displacement
-    course, read = _course(time, repeat, "LoadHistory"), {}
+    instants, read = _instants(time, "LoadHistory"), {}
     for (key, kind), values in zip(_LOADS.items(), loads, strict=True):
         if values is not None:
             name = f"LoadHistory.{key}"
@@ -148,11 +148,98 @@ def LoadHistory(
             read[key] = each_quantity(kind, values, name)
     if cycle_start is not None:
         cycle_start = in_python(units.Instant, cycle_start, "LoadHistory.cycle_start")
-    return time_course.LoadHistory(course, **read, cycle_start=cycle_start)
+    return time_course.LoadHistory(instants, repeat, **read, cycle_start=cycle_start)
 
 
-def _course(time: Sequence[Any], repeat: bool, name: str) -> TimeCourse:
+def _instants(time: Sequence[Any], name: str) -> tuple[float, ...]:
     instants = each_quantity(units.Instant, time, f"{name}.time")
     if len(instants) < 2 or any(b <= a for a, b in pairwise(instants)):
         raise CaseError(f"{name}.time: needs two or more increasing instants")
-    return TimeCourse(instants, repeat)
+    return instants
+
+
+def Material(
+    young_modulus: Any,
+    poisson_ratio: float,
+    *,
+    expansion: Any = 0.0,
+    conductivity: Any = None,
+    density: Any = None,
+    specific_heat: Any = None,
+    hardness: Any = None,
+    expansion_factor: Table1D | None = None,
+    conductivity_factor: Table1D | None = None,
+    name: str = "Material",
+) -> body.Material:
+    """Material of a body, see `model.body.Material`; `name` is that in messages."""
+    poisson = number(poisson_ratio, f"{name}.poisson_ratio", -1.0, 0.5)
+    if poisson in (-1.0, 0.5):
+        raise CaseError(f"{name}.poisson_ratio: found {poisson}; must be within -1 and 0.5")
+    return body.Material(
+        young_modulus=in_python(units.Pressure, young_modulus, f"{name}.young_modulus"),
+        poisson_ratio=poisson,
+        expansion=in_python(units.Expansion, expansion, f"{name}.expansion"),
+        conductivity=_optional(units.Conductivity, conductivity, f"{name}.conductivity"),
+        density=_optional(units.Density, density, f"{name}.density"),
+        specific_heat=_optional(units.SpecificHeat, specific_heat, f"{name}.specific_heat"),
+        hardness=_optional(units.Pressure, hardness, f"{name}.hardness"),
+        expansion_factor=expansion_factor,
+        conductivity_factor=conductivity_factor,
+        label=name,
+    )
+
+
+def Heat(
+    *,
+    ambient: Any = 293.15,
+    ambient_history: TimeFunction | None = None,
+    initial: Any = None,
+    transient: bool = False,
+    advection: Literal["none", "resolved", "spread"] = "none",
+    cooling: Mapping[BodySurface, Any] | None = None,
+    temperature: Mapping[BodySurface, Any] | None = None,
+    flux: Mapping[BodySurface, Any] | None = None,
+    power: Mapping[BodySurface, Any] | None = None,
+) -> conditions.Heat:
+    """Heat sources and thermal boundary conditions by surface, see `model.conditions.Heat`."""
+    return conditions.Heat(
+        ambient=in_python(units.Temperature, ambient, "Heat.ambient"),
+        ambient_history=ambient_history,
+        initial=_optional(units.Temperature, initial, "Heat.initial"),
+        transient=transient,
+        advection=advection,
+        cooling=by_surface(units.HeatTransfer, cooling, "Heat.cooling"),
+        temperature=by_surface(units.Temperature, temperature, "Heat.temperature"),
+        flux=by_surface(units.HeatFlux, flux, "Heat.flux"),
+        power=by_surface(units.Power, power, "Heat.power"),
+    )
+
+
+def _optional(kind: Any, value: Any, name: str) -> float | None:
+    """Read an argument that may be None; see `case.values.units.in_python`."""
+    return None if value is None else in_python(kind, value, name)
+
+
+def by_surface(kind: Any, given: Mapping[BodySurface, Any] | None, name: str) -> dict[str, Any]:
+    """Quantities, or functions of time, by the name of their surface."""
+    result = {}
+    for surface, value in (given or {}).items():
+        require_surface(surface, name)
+        constant = not isinstance(value, TimeFunction)
+        result[surface.name] = in_python(kind, value, name) if constant else value
+    return result
+
+
+def PowerWear(coefficient: Any, b: float = 1.0, a: float = 1.0) -> power_wear.PowerWear:
+    """Wear rate ``coefficient p^b v^a``, see `laws.power_wear.PowerWear`."""
+    name = "PowerWear"
+    b, a = number(b, f"{name}.b", 0.1, 10.0), number(a, f"{name}.a", 0.0, 10.0)
+    unit = ("" if a == 1 else f"(m/s)^{1 - a:.12g} ") + f"1/Pa^{b:.12g}"
+    kind = units.quantity(unit, f"1e-13 {unit}", gt=0)
+    return power_wear.PowerWear(in_python(kind, coefficient, f"{name}.coefficient"), b, a)
+
+
+def PressureConductance(coefficient: Any) -> interface.HardnessConductance:
+    """Conductance ``coefficient k p / H``, see `model.interface.HardnessConductance`."""
+    name = "PressureConductance.coefficient"
+    return interface.HardnessConductance(in_python(units.PerLength, coefficient, name))

@@ -11,8 +11,7 @@ import numpy as np
 from ..case.values import units
 from ..errors import CaseError
 from ..laws.time_course import TimeFunction
-from ..model.interface import ContactMethod, HardnessConductance, Interface
-from ..model.wear import FaceWear
+from ..model.interface import ContactMethod, FaceWear, HardnessConductance, Interface
 from .body import BodySurface, MeshBody, require_surface
 from .conversion import coefficient_law, number, quantities, rate_law
 

@@ -11,10 +11,9 @@ from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
 from ..laws.time_course import LoadHistory, TimeFunction
-from ..model.holder import Holder, Motion
+from ..model.conditions import Holder, Motion
 from .body import BodySurface, require_surface
-from .conversion import each_quantity, quantities
-from .physics import by_surface
+from .conversion import by_surface, each_quantity, quantities
 
 _LOADS = {
     "force": units.Force,
@@ -27,7 +26,7 @@ _ON_SURFACES = {"surface_forces": units.Force, "surface_pressures": units.Pressu
 
 @dataclass(frozen=True, eq=False)
 class SurfaceHolder:
-    """Rigid holder of a surface, see `model.holder.Holder`.
+    """Rigid holder of a surface, see `model.conditions.Holder`.
 
     It presses along -y in a section and along -z in space.
 

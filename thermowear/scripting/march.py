@@ -14,11 +14,10 @@ from ..output.checkpoint import read_checkpoint, write_checkpoint
 from ..parallel import on_root
 from ..results import HistoryRow
 from ..serialise import Checkpoint, pack
-from ..simulation.analyses.transient import transient_history
+from ..simulation.analyses.transient import TransientHistory
 from ..simulation.interface.interface_problem import InterfaceProblem
 from ..simulation.results.recording import Snapshot, snapshot_at
-from ..simulation.runtime.checkpoint_data import Progress, Saved
-from ..simulation.runtime.observer import Observer
+from ..simulation.runtime.observer import Observer, Progress, Saved
 from ..simulation.system.system import System
 from .solution import ContactResults
 from .user_mesh import UserMeshes
@@ -84,23 +83,13 @@ def march(
     settings: TransientAnalysis,
     start: MarchState | str | PathLike[str] | None,
 ) -> Iterator[MarchState]:
-    """States of a running-in, from the unworn contact or from an earlier state or file of one.
-
-    Every rank calls.
-
-    Raises
-    ------
-    CaseError
-        If the file is not one of a state of these bodies.
-    ComputationError
-        If a step fails, or its balances do not hold.
-    """
+    """States of a running-in, see `ScriptedModel.march`. Every rank calls."""
     if isinstance(start, MarchState):
         before: Progress | None = start.progress
     else:
         before = None if start is None else _saved(Path(start), system)
-    history, passing = transient_history(system, settings, Observer(), before)
-    for moment in passing:
+    history = TransientHistory(system, settings, Observer())
+    for moment in history.states(history.resume(before)):
         history.keep(moment)
         row = history.table(HistoryRow)[-1]
         now = history.loop.now

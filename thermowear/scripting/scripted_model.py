@@ -18,14 +18,12 @@ from ..model.analyses import (
     StaticAnalysis,
     TransientAnalysis,
 )
-from ..model.heat import Heat
-from ..model.holder import Motion
+from ..model.conditions import Heat, Motion
 from ..model.model import Discretisation, Model
 from ..simulation.analyses.run import solve
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
-from ..simulation.system.setup_cache import SetupCache
-from ..simulation.system.system import System
+from ..simulation.system.system import SetupCache, System
 from ..timer import Phases
 from .body import BodySurface, MeshBody
 from .conversion import number

@@ -12,8 +12,7 @@ from dolfinx import fem
 
 from ..errors import CaseError
 from ..results import Result
-from ..simulation.results.fields import with_holder
-from ..simulation.results.recording import Snapshot
+from ..simulation.results.recording import Snapshot, with_holder
 from .body import MeshBody
 from .user_mesh import UserMeshes
 
@@ -125,10 +124,10 @@ class ContactResults(ABC):
         CaseError
             If the model has no heat, or the body has been remeshed.
         """
-        system, rise = self.snapshot.system, self.snapshot.bodies.rise
-        if system.thermal is None or rise is None:
+        system, heated = self.snapshot.system, self.snapshot.bodies.temperatures
+        if system.thermal is None or heated is None:
             raise CaseError("temperature: the model has no heat")
-        space, values = system.thermal.conduction.space, rise + system.thermal.ambient
+        space, values = system.thermal.conduction.space, heated.rise + system.thermal.ambient
         return self.meshes.function(body, system, space, values, "temperature")
 
     def displacement(self, body: MeshBody) -> fem.Function:

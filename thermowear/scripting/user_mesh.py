@@ -24,7 +24,7 @@ _LEVEL = 1e-9
 
 @dataclass(frozen=True)
 class UserMeshes:
-    """Source of the mesh of both bodies, see `model.meshes.MeshSource`.
+    """Source of the mesh of both bodies, see `model.model.MeshSource`.
 
     Attributes
     ----------

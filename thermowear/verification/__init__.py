@@ -4,33 +4,34 @@ from __future__ import annotations
 
 from .cases.annular_punch import annular_punch, running_in
 from .cases.beam_shakedown import beam_shakedown
-from .cases.blocks import pressure_conductance, two_slabs
+from .cases.blocks import pressure_conductance, temperature_dependent, two_slabs
 from .cases.contact_methods import methods_agree, patch
 from .cases.finite_elements import optimal_shape
-from .cases.fretting_wear import fretting_cylinder, fretting_wear
+from .cases.fretting import fretting_cylinder, fretting_wear, mindlin
 from .cases.fuel_fretting import fuel_fretting
 from .cases.geometry_updates import block_on_ring, deep_wear, pin_on_disc
 from .cases.growing import growing_cylinder, growing_sphere
 from .cases.hertz import flat_punch, hertz_line, hertz_sphere
 from .cases.instability import half_plane_instability, sliding_rod
-from .cases.mindlin import mindlin
 from .cases.minimality import minimality
 from .cases.moving_band import moving_band
 from .cases.reciprocating import reciprocating
 from .cases.special_cases import SPECIAL_CASES
-from .cases.temperature_dependent import temperature_dependent
 from .cases.transient_heat import braking_stop, step_flux
 from .check import Check, all_checks, compare, identified
 
-_CASES = (
+_CASES = SPECIAL_CASES | dict.fromkeys((
     annular_punch, running_in, patch, hertz_line, hertz_sphere, flat_punch, methods_agree, mindlin,
     growing_cylinder, growing_sphere, block_on_ring, pin_on_disc, deep_wear, beam_shakedown,
     fretting_wear, fretting_cylinder, fuel_fretting, reciprocating, moving_band, two_slabs,
     pressure_conductance, temperature_dependent, minimality, step_flux, braking_stop, sliding_rod,
     half_plane_instability, optimal_shape,
-)  # fmt: skip
-_BY_ID = SPECIAL_CASES | {case.__name__.replace("_", "-"): case for case in _CASES}
-CASES = {id: identified(id, checks) for id, checks in _BY_ID.items()}
+), ())  # fmt: skip
+CASES = {
+    id: identified(id, case, *runs)
+    for case, runs in _CASES.items()
+    if (id := case.__name__.replace("_", "-"))
+}
 """Verification cases by id in the order of ``verify``; each yields its checks."""
 
 SLOW = frozenset({"deep-wear"})

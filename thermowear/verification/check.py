@@ -1,14 +1,21 @@
-"""Comparison of one number of the program with a reference."""
+"""Completed runs of (starter) cases, and comparison of their numbers with references."""
 
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
+from .. import geometry  # noqa: F401  (makes the geometries known)
+from ..case import load
+from ..case.starters import starter_text
+from ..case.tables.schema import Case
 from ..errors import CaseError, ComputationError
+from ..results import Result
+from ..simulation import run
 
 
 @dataclass(frozen=True)
@@ -98,9 +105,9 @@ def printed(quantity: str, computed: float, text: str) -> Check:
     )
 
 
-def identified(id: str, checks: Checks) -> Checks:
-    """Checks of a case with its id."""
-    return lambda: (replace(check, id=id) for check in checks())
+def identified(id: str, *parts: Checks) -> Checks:
+    """Checks of all parts of a case with its id."""
+    return lambda: (replace(check, id=id) for checks in parts for check in checks())
 
 
 def all_checks(id: str, checks: Checks) -> list[Check]:
@@ -121,3 +128,45 @@ def along(interface, radii, values) -> np.ndarray:
     from scipy.interpolate import CubicSpline
 
     return CubicSpline(interface.x, values)(np.asarray(radii, dtype=float))
+
+
+def computed(case: Case) -> Result:
+    """Compute a case to its end.
+
+    Raises
+    ------
+    ComputationError
+        If it stopped early, or its balances do not hold.
+    KeyboardInterrupt
+        If a stop was requested during the run.
+    """
+    result = run(case)
+    if result.stopped is not None:
+        raise result.stopped
+    return result
+
+
+def starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
+    """Starter case with changes.
+
+    Parameters
+    ----------
+    name : str
+    *overrides : str
+        ``KEY=VALUE`` each.
+    without : tuple of str
+        Paths of tables and keys to leave out.
+    """
+    tables = tomllib.loads(starter_text(name))
+    for path in without:
+        *above, key = path.split(".")
+        table = tables
+        for part in above:
+            table = table[part]
+        del table[key]
+    return load(tables, overrides)
+
+
+def run_starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Result:
+    """Compute a starter case; parameters as in `starter`."""
+    return computed(starter(name, *overrides, without=without))

@@ -9,12 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from petsc4py import PETSc
+
 import numpy as np
 import ufl
 from dolfinx import fem
 
 from ...compat import evaluate
 from ..bodies import Bodies
+from ..compiled import assembled_matrix
 from ..field import geometry_space, reference_element
 from ..kinematics import Kinematics, section_measure
 
@@ -61,16 +64,16 @@ class Advection:
 
     Attributes
     ----------
-    carried : UFL form
-        Bilinear form of the advected heat: its sum over the test functions is the heat that
-        leaves with the body [W/K]. Entering material is at ambient temperature.
+    carried : petsc4py.PETSc.Mat
+        Matrix of the advected heat: its row sums times the rise give the heat that leaves with the
+        body [W/K]. Entering material is at ambient temperature.
     peclet : float
         Largest cell Péclet number ``|v| h/(2 κ degree)``.
     upwind : UFL expression
         Addition to the test function by stabilisation (SUPG).
     """
 
-    carried: ufl.Form
+    carried: PETSc.Mat
     peclet: float
     upwind: ufl.core.expr.Expr
 
@@ -88,7 +91,7 @@ def advection(
     conductivities: dict[str, float],
     capacities: dict[str, float],
 ) -> Advection:
-    """Forms of the advection by a passing body. Every rank calls.
+    """Assemble the advection by a passing body. Every rank calls.
 
     At high cell Péclet numbers, upwind test functions (SUPG, Brooks and Hughes, Comput. Methods
     Appl. Mech. Eng. 32 (1982) 199) prevent oscillations of the temperature. From degree 2 on they
@@ -126,7 +129,8 @@ def advection(
     into = ufl.max_value(-ufl.dot(v, ufl.FacetNormal(mesh)), 0)
     ds = ufl.ds(domain=mesh, metadata={"quadrature_degree": 2 * degree + 2})
     carried = kinematics.integral(mesh, flow, section_measure(mesh, degree))
-    return Advection(carried + kinematics.integral(mesh, ρc * into * T * δT, ds), peclet, upwind)
+    carried += kinematics.integral(mesh, ρc * into * T * δT, ds)
+    return Advection(assembled_matrix(carried), peclet, upwind)
 
 
 def _velocity(mesh, passage: Passage):

@@ -19,7 +19,7 @@ from ...parallel import sum_over_ranks
 from ..direct_solver import DirectSolver, multiply
 from ..field import without_fixed
 from .advection import Advection
-from .even_paths import EvenFactor, EvenPaths
+from .even_paths import EvenPaths
 
 _BALANCE_FLOOR = 1e-8
 """Fraction of the flows between neighbouring nodes that serves as scale of the heat balance where
@@ -38,8 +38,6 @@ class Conduction:
         Conduction, cooling and advection, without given temperatures and without `bath` [W/K].
     cooling : petsc4py.PETSc.Mat
         Cooling term alone: its row sums times the rise give the heat removed [W/K].
-    advective : petsc4py.PETSc.Mat or None
-        Advection term alone, likewise [W/K].
     capacity : petsc4py.PETSc.Mat or None
         Heat capacity matrix, if given by the materials [J/K].
     bath : petsc4py.PETSc.Mat
@@ -48,10 +46,8 @@ class Conduction:
         Mask of prescribed temperatures.
     prescribed : ndarray, shape (n_owned,)
         Prescribed rise in the fixed values, zero elsewhere [K].
-    factor : DirectSolver or EvenFactor
+    factor : DirectSolver
         Factorisation of conductivity plus bath, with prescribed temperatures eliminated.
-    prescribed_load : ndarray, shape (n_owned,)
-        Nodal heat on the free values equivalent to the prescribed temperatures [W].
     advection : Advection or None
     even : EvenPaths or None
         Paths of a fast moving body, along which the temperature is uniform.
@@ -62,13 +58,11 @@ class Conduction:
     space: fem.FunctionSpace
     conductivity: PETSc.Mat
     cooling: PETSc.Mat
-    advective: PETSc.Mat | None
     capacity: PETSc.Mat | None
     bath: PETSc.Mat
     fixed: np.ndarray
     prescribed: np.ndarray
-    factor: DirectSolver | EvenFactor
-    prescribed_load: np.ndarray
+    factor: DirectSolver
     advection: Advection | None
     even: EvenPaths | None
     symmetric: bool
@@ -85,21 +79,17 @@ class Conduction:
 
     def solve(self, heat: np.ndarray) -> np.ndarray:
         """Rise [K] due to nodal heat [W] and prescribed temperatures."""
-        return self.prescribed + self.respond(heat + self.prescribed_load)
+        return self.prescribed + self.respond(heat - self._from_prescribed)
 
     def with_prescribed(self, prescribed: np.ndarray | None) -> Conduction:
         """Copy with other prescribed rises (n_owned,), zero in the free values; None: as is [K]."""
-        if prescribed is None:
-            return self
-        return replace(
-            self, prescribed=prescribed, prescribed_load=-multiply(self.conductivity, prescribed)
-        )
+        return self if prescribed is None else replace(self, prescribed=prescribed)
 
     def per_ambient(self) -> np.ndarray:
         """Nodal heat per rise of ambient and of entering material, (n_owned,) [W/K]."""
         ones = np.ones(len(self.fixed))
         heat = multiply(self.cooling, ones)
-        return heat if self.advective is None else heat + multiply(self.advective, ones)
+        return heat if self.advection is None else heat + multiply(self.advection.carried, ones)
 
     def implicit_euler(self, step: float) -> Conduction:
         """Conduction at the end of an implicit Euler step of time [s].
@@ -132,7 +122,6 @@ class Conduction:
             self,
             conductivity=total,
             factor=factorised(self.space, total, self.bath, self.fixed, symmetric, self.even),
-            prescribed_load=-multiply(total, self.prescribed),
             symmetric=symmetric,
         )
 
@@ -189,6 +178,11 @@ class Conduction:
         return (heat - multiply(self.conductivity, rise))[self.fixed]
 
     @cached_property
+    def _from_prescribed(self) -> np.ndarray:
+        """Nodal heat of the prescribed temperatures alone [W]. Every rank calls."""
+        return multiply(self.conductivity, self.prescribed)
+
+    @cached_property
     def _has_prescribed(self) -> bool:
         """True if any rank has a prescribed temperature. Every rank calls."""
         return any(self.space.mesh.comm.allgather(bool(self.fixed.any())))
@@ -199,7 +193,7 @@ class Conduction:
         nothing = np.zeros(len(self.fixed))
         return (
             _column_sums(self.cooling),
-            nothing if self.advective is None else _column_sums(self.advective),
+            nothing if self.advection is None else _column_sums(self.advection.carried),
         )
 
     def _free(self, heat):
@@ -214,7 +208,7 @@ def factorised(
     fixed: np.ndarray,
     symmetric: bool,
     even: EvenPaths | None,
-) -> DirectSolver | EvenFactor:
+) -> DirectSolver:
     """Factorise conductivity plus bath, rows and columns of prescribed temperatures eliminated."""
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)

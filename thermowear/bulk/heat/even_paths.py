@@ -63,7 +63,7 @@ class EvenPaths:
         first = small.getOwnershipRange()[0]
         held = np.flatnonzero(self.joined(fixed[:, None].astype(float))[:, 0] > 0)
         small.zeroRowsColumns((held + first).astype(PETSc.IntType), diag=1.0)
-        return EvenFactor(self, DirectSolver(small, symmetry, dim=self._dim))
+        return EvenFactor(self, small, symmetry, self._dim)
 
     def joined(self, loads: np.ndarray | sp.csr_matrix):
         """Loads on the unknowns from loads on the nodal values, by columns."""
@@ -105,36 +105,21 @@ class EvenPaths:
         return join
 
 
-class EvenFactor:
-    """Factorised matrix for values that are uniform along paths; interface of `DirectSolver`."""
+class EvenFactor(DirectSolver):
+    """Factorised matrix of the unknowns, for nodal values that are uniform along paths."""
 
-    def __init__(self, paths: EvenPaths, factor: DirectSolver):
+    def __init__(self, paths: EvenPaths, matrix: PETSc.Mat, symmetry: str, dim: int):
+        super().__init__(matrix, symmetry, dim)
         self._paths = paths
-        self._factor = factor
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
-        """Solve for one or several right-hand sides, see `DirectSolver.solve`."""
-        return self._solved(self._factor.solve, loads)
-
-    def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
-        """Solve with the transposed matrix, see `DirectSolver.solve_transposed`."""
-        return self._solved(self._factor.solve_transposed, loads)
-
-    def _solved(self, solve, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         columns = loads if loads.ndim == 2 else loads[:, None]
-        unknowns = solve(self._paths.joined(columns))
+        unknowns = super().solve(self._paths.joined(columns))
         return self._paths.spread(unknowns).reshape(loads.shape, order="F")
 
 
 def _path_numbers(comm, places: np.ndarray) -> tuple[np.ndarray, int]:
-    """Path number of each point, and the number of paths.
-
-    Parameters
-    ----------
-    comm : mpi4py.MPI.Comm
-    places : ndarray, shape (n, 2)
-        Stream function and height of each point.
-    """
+    """Path number of points by stream function and height (n, 2), and the number of paths."""
     everywhere = np.vstack(comm.allgather(places))
     steps = [_ordinals(values) for values in everywhere.T]
     _, number = np.unique(np.column_stack(steps), axis=0, return_inverse=True)

@@ -12,8 +12,7 @@ import ufl
 from dolfinx import default_scalar_type, fem
 
 from ..bodies import Bodies
-from ..compiled import assembled_matrix
-from ..direct_solver import multiply
+from ..compiled import assembled_matrix, nodal_loads
 from ..field import owned
 from ..kinematics import Kinematics, section_measure
 from .advection import Passage, advection
@@ -80,32 +79,29 @@ def conduction(
     cooled = assembled_matrix(*transfers, pattern=conductivity)
     structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
     conductivity.axpy(1.0, cooled, structure)
-    carried, test = None, δT
+    test = δT
     if moving is not None:
-        carried, test = assembled_matrix(moving.carried), δT + moving.upwind
-        conductivity.axpy(1.0, carried, structure)
+        test = δT + moving.upwind
+        conductivity.axpy(1.0, moving.carried, structure)
     capacity = None
     if len(capacities) == len(materials):
         density = bodies.per_body(capacities) * T * test
         capacity = assembled_matrix(kinematics.integral(mesh, density, measure))
 
     fixed, values = given_rises(bodies, space, given, even)
-    factor = factorised(space, conductivity, bath, fixed, carried is None, even)
-    lifted = -multiply(conductivity, values)
+    factor = factorised(space, conductivity, bath, fixed, moving is None, even)
     return Conduction(
         space,
         conductivity,
         cooled,
-        carried,
         capacity,
         bath,
         fixed,
         values,
         factor,
-        lifted,
         moving,
         even,
-        symmetric=carried is None,
+        symmetric=moving is None,
     )
 
 
@@ -140,6 +136,18 @@ def transferring(
         return lambda T, δT: kinematics.integral(mesh, constant * T * δT, ds)
 
     return [form(h) for h in dict.fromkeys(coefficients.values())]
+
+
+def surface_heat(
+    bodies: Bodies, kinematics: Kinematics, space: fem.FunctionSpace, surface: str, flux: float
+) -> np.ndarray:
+    """Nodal heat of a uniform flux [W/m²] into the body through a surface [W], owned rows.
+
+    Every rank calls; `space` is that of the temperature.
+    """
+    measure = bodies.surface_measure(surface)
+    q = fem.Constant(bodies.mesh, default_scalar_type(flux))
+    return nodal_loads(space, lambda δT: kinematics.integral(bodies.mesh, q * δT, measure))
 
 
 def given_rises(

@@ -23,10 +23,10 @@ from ..bodies import Bodies
 from ..compiled import assembled_matrix
 from ..direct_solver import multiply
 from ..field import as_function
-from ..kinematics import Kinematics, section_measure
+from ..kinematics import Kinematics
 from ..mechanics.elasticity import Elasticity
 from .conduction import Conduction
-from .heat_equation import ThermalMaterial
+from .heat_equation import ThermalMaterial, conducting
 
 _SAME_PATTERN = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
 
@@ -124,7 +124,7 @@ class VaryingConduction(Conduction):
 
 
 def varying_conduction(
-    conducting: Conduction,
+    linear: Conduction,
     bodies: Bodies,
     kinematics: Kinematics,
     materials: dict[str, ThermalMaterial],
@@ -132,16 +132,14 @@ def varying_conduction(
     ambient: float,
 ) -> VaryingConduction:
     """Add temperature-dependent conductivities; parameters as in `conduction`, factors by part."""
-    mesh, space = bodies.mesh, conducting.space
+    space = linear.space
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
-    measure = section_measure(mesh, space.ufl_element().degree)
     parts = []
     for name, factor in factors.items():
         alone = {part: (part == name) * m.conductivity for part, m in materials.items()}
-        flow = bodies.per_body(alone) * ufl.inner(ufl.grad(T), ufl.grad(δT))
-        matrix = assembled_matrix(kinematics.integral(mesh, flow, measure))
-        parts.append(VaryingConductivity(name, matrix, factor, ambient))
-    constant = {field.name: getattr(conducting, field.name) for field in fields(Conduction)}
+        form = conducting(bodies, kinematics, alone, space.ufl_element().degree)
+        parts.append(VaryingConductivity(name, assembled_matrix(form(T, δT)), factor, ambient))
+    constant = {field.name: getattr(linear, field.name) for field in fields(Conduction)}
     return VaryingConduction(**constant, parts=tuple(parts))
 
 

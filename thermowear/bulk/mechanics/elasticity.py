@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from petsc4py import PETSc
@@ -9,11 +10,11 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 import ufl
-from dolfinx import fem
+from dolfinx import default_scalar_type, fem
 from dolfinx import mesh as dmesh
 
 from ..bodies import Bodies
-from ..compiled import assembled_matrix
+from ..compiled import assembled_matrix, surface_area
 from ..direct_solver import DirectSolver, multiply
 from ..field import lagrange_space, owned, without_fixed
 from ..kinematics import Kinematics, section_measure
@@ -76,6 +77,29 @@ class Elasticity:
         ε = self.kinematics.strain(mesh, δu)
         measure = section_measure(mesh, degree)
         return self.kinematics.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
+
+    def surface_work(self, surface: str, force: np.ndarray) -> Callable:
+        """Form of the work of a force distributed over a surface, a function of displacement [J].
+
+        Parameters
+        ----------
+        surface : str
+        force : ndarray, shape (gdim,)
+            Total force on the ring or over the thickness [N].
+        """
+        area = surface_area(self.bodies, self.kinematics, surface)
+        force = np.asarray(force, dtype=default_scalar_type)
+        return self._traction_work(surface, fem.Constant(self.bodies.mesh, force / area))
+
+    def pressure_work(self, surface: str, pressure: float) -> Callable:
+        """Form of the work of a pressure [Pa] along the inward normal; see `surface_work`."""
+        mesh = self.bodies.mesh
+        constant = fem.Constant(mesh, default_scalar_type(pressure))
+        return self._traction_work(surface, -constant * ufl.FacetNormal(mesh))
+
+    def _traction_work(self, surface: str, traction) -> Callable:
+        mesh, measure = self.bodies.mesh, self.bodies.surface_measure(surface)
+        return lambda δu: self.kinematics.integral(mesh, ufl.inner(traction, δu), measure)
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""

@@ -16,7 +16,7 @@ FreeMotion = Literal["x", "y", "z", "rotation", "rotation-x", "rotation-y"]
 
 
 class HolderTable(Section):
-    """Rigid holder of body 1, see `model.holder.Holder`.
+    """Rigid holder of body 1, see `model.conditions.Holder`.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class HolderTable(Section):
 
 
 class LoadTable(Section):
-    """Loads that press body 1 on body 2.
+    """Loads that press body 1 on body 2; those without a note are keys of `model.holder.Holder`.
 
     Exactly one of force, mean pressure and approach; a holder that can only rotate may have a
     moment instead, and a fixed one needs forces or pressures on surfaces. Pressures on surfaces
@@ -51,9 +51,6 @@ class LoadTable(Section):
         Mean over the nominal contact area [Pa].
     force : float or None
         Normal force along the load direction, on the whole ring or on the thickness [N].
-    approach : float or None
-        Displacement of the holder along the load direction, towards body 2, from its position in
-        the mesh [m].
     lever : float or None
         Distance along x from the pivot to the line of action of the force [m].
     point : tuple of float or None
@@ -63,17 +60,11 @@ class LoadTable(Section):
         can only rotate, anticlockwise otherwise.
     moments : tuple of float or None
         Moments about x and y through the pivot, in space, by the right-hand rule [N m].
-    tangential_force : float or None
-        Force along x, for a holder that is free along x [N].
     surfaces : dict of str to float
-        Forces along the load direction, distributed evenly over surfaces of body 1 with a fixed
-        holder [N].
+        `surface_forces` of a fixed holder [N].
     pressure : dict of str to float
-        Pressures on surfaces of either body, normal to them and towards the body, in addition to
-        all other loads and constant in time. Their resultant along a free motion of the holder
-        enters its equilibrium with the contact [Pa].
-    history : History or None
-        Time history: of the loads of a fretting analysis, of the force of a transient one.
+        `surface_pressures`, in addition to all other loads. Their resultant along a free motion of
+        the holder enters its equilibrium with the contact [Pa].
     """
 
     mean_pressure: units.Pressure | None = None
@@ -90,7 +81,7 @@ class LoadTable(Section):
 
 
 class MotionTable(Section):
-    """Sliding motion, see `model.holder.Motion`.
+    """Sliding motion, see `model.conditions.Motion`.
 
     Attributes
     ----------
@@ -137,8 +128,8 @@ class HeatTable(Section):
     """Heat sources, thermal boundary conditions and thermal properties of the interface.
 
     Friction heats the faces while the bodies slide; bodies in contact conduct also at rest. Keys
-    are those of `model.heat.Heat`; `conductance`, `gap_conductance` and `partition` are those of
-    `model.interface.Interface`.
+    are those of `model.conditions.Heat`; `conductance`, `gap_conductance` and `partition` are those
+    of `model.interface.Interface`.
     """
 
     conductance: Conductance | None = None

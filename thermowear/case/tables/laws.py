@@ -22,9 +22,8 @@ from ...errors import quoted
 from ...laws.coefficients import Constant, Table1D
 from ...laws.expressions import Expression
 from ...laws.formulas import FormulaLaw, FormulaWear
-from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
+from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law, Role, registered_laws
 from ...laws.plausible import require_interface_law, require_wear_rate
-from ...laws.registry import Role, registered_laws
 from ..values import units
 from ..values.section import KeyFault, Number, Section
 from ..values.units import expression, quantity

@@ -19,11 +19,10 @@ from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Trans
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .geometry import AnyGeometry, Pressing
 from .laws import Friction, law_of
-from .materials import BodyTable, Properties, material_of
+from .materials import BodyTable, Properties
 from .tabulated import FactorHistory, MultiplierTables, TimeHistory
 from .wear import WearTable
 
-Fraction = Annotated[Number, Field(ge=0.0, le=1.0)]
 _MOST_NODES = 2_000_000
 """Largest number of displacement nodes: larger matrices exceed the memory of a workstation."""
 
@@ -245,7 +244,26 @@ class Case(Section):
         ValueError
             If ``like`` names an unknown body, or is circular.
         """
-        return material_of(self.geometry, self.bodies, part)
+        geometry, bodies = self.geometry, self.bodies
+        owner = geometry.zones.get(part, part)
+        name = part if part in bodies else owner
+        chosen = geometry.set_of.get(part)
+        if chosen is None and not bodies[name].has_own and bodies[name].materials:
+            chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
+        table: Properties = bodies[name]
+        path = f"bodies.{name}"
+        if chosen is not None:
+            path, table = f"bodies.{owner}.materials.{chosen}", bodies[owner].materials[chosen]
+        seen = [path]
+        while (other := table.like) is not None:
+            path, known = f"bodies.{other}", ", ".join(bodies)
+            if other not in bodies:
+                raise ValueError(f"like = {quoted(other)} names no body; one of: {known}")
+            if path in seen:
+                raise ValueError(f"like = {quoted(other)} is a circular reference")
+            seen.append(path)
+            table = bodies[other]
+        return path, table
 
 
 def as_plain(case: Case) -> dict[str, Any]:

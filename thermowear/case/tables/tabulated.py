@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Generic, TypeVar
 from pydantic import Field, TypeAdapter, ValidationError, ValidationInfo, model_validator
 
 from ...laws.coefficients import Multipliers, Table1D
-from ...laws.time_course import KEYS, LoadHistory, TimeCourse, TimeFunction
+from ...laws.time_course import LoadHistory, TimeFunction
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
 from ..values.section import KeyFault, Number, Section, Switch, UserFile
@@ -17,6 +17,7 @@ from ..values.section import KeyFault, Number, Section, Switch, UserFile
 _PATH = TypeAdapter(UserFile)
 _CLOSED = 1e-9
 """Largest difference between start and end of a closed cycle, relative to the largest value."""
+_VARIABLES = {"temperature": "T", "pressure": "p", "speed": "v"}
 Positive = Annotated[Number, Field(gt=0.0)]
 NotNegative = Annotated[Number, Field(ge=0.0)]
 At = TypeVar("At", bound=float)
@@ -93,7 +94,7 @@ class MultiplierTables(Section):
     @property
     def multipliers(self) -> Multipliers:
         """Factors as a law."""
-        return Multipliers(**{name: getattr(self, name).table for name in self.depends_on})
+        return Multipliers({_VARIABLES[key]: getattr(self, key).table for key in self.depends_on})
 
 
 class TimeHistory(Section):
@@ -155,11 +156,6 @@ class TimeHistory(Section):
                 raise KeyFault("repeat", f"the last value of {key} must equal the first one")
         return self
 
-    @property
-    def course(self) -> TimeCourse:
-        """Instants of the history."""
-        return TimeCourse(self.time, self.repeat)
-
 
 def _report_line(error: ValidationError, columns: Columns) -> None:
     """Report an invalid value of a file with its line; leave other faults to the table."""
@@ -194,7 +190,7 @@ class FactorHistory(TimeHistory):
     @property
     def function(self) -> TimeFunction:
         """Factor as a function of time."""
-        return TimeFunction(self.course, self.factor)
+        return TimeFunction(self.time, self.repeat, self.factor)
 
 
 class TemperatureHistory(TimeHistory):
@@ -213,7 +209,7 @@ class TemperatureHistory(TimeHistory):
     @property
     def function(self) -> TimeFunction:
         """Temperature [K] as a function of time."""
-        return TimeFunction(self.course, self.temperature)
+        return TimeFunction(self.time, self.repeat, self.temperature)
 
 
 class History(TimeHistory):
@@ -253,5 +249,4 @@ class History(TimeHistory):
     @property
     def loads(self) -> LoadHistory:
         """Loads as functions of time."""
-        values = {key: getattr(self, key) for key in KEYS}
-        return LoadHistory(self.course, **values, cycle_start=self.cycle_start)
+        return LoadHistory(**dict(self))

@@ -184,14 +184,10 @@ class WearTable(Section, Mapping[str, BodyWearTable]):
         return self.AUTOMATIC if self.update == "auto" else float(self.update)
 
     def __getitem__(self, body: str) -> BodyWearTable:
-        return self._laws[body]
+        return self.__pydantic_extra__[body]
 
     def __iter__(self) -> Iterator[str]:  # type: ignore[override]
-        return iter(self._laws)
+        return iter(self.__pydantic_extra__)
 
     def __len__(self) -> int:
-        return len(self._laws)
-
-    @property
-    def _laws(self) -> dict[str, BodyWearTable]:
-        return self.__pydantic_extra__
+        return len(self.__pydantic_extra__)

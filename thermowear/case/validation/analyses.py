@@ -196,11 +196,9 @@ def fretting(case: Case) -> Iterator[Fault]:
 def _cycles_of_loads(case: Case, analysis: Fretting) -> Iterator[Fault]:
     """Cycles need a closed load cycle; output times lie within the history and its repetitions."""
     assert case.load.history is not None
-    loads, count = case.load.history.loads, case.cycles or 1
-    start, end = loads.time[0], loads.time[-1]
-    if loads.cycle is not None:
-        end += (count - 1) * (end - loads.cycle[0])
-    elif count > 1:
+    loads, count = case.load.history.loads, int(case.cycles or 1)
+    start, end = loads.time[0], loads.end(count)
+    if loads.cycle is None and count > 1:
         yield (
             "analysis.cycles" if case.wear.cycles is None else "wear.cycles",
             "no earlier instant of load.history has the loads of its last one: no cycle to repeat",

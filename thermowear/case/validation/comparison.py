@@ -80,23 +80,16 @@ def _end_time(case: Case) -> float | None:
     """Latest end time of an analysis that can be extended [s]."""
     settings = case.analysis
     if isinstance(settings, Fretting):
-        return _end_of_cycles(case)
+        assert case.load.history is not None  # the case has been checked
+        return case.load.history.loads.end(int(case.cycles or 1))
     if not isinstance(settings, Timed):
         return None
     count = case.cycles
     if isinstance(settings, Reciprocating) and count is not None:
-        assert case.motion is not None  # the case has been checked
+        assert case.motion is not None
         assert case.motion.frequency is not None
         return count / case.motion.frequency
     return float("inf") if settings.end_time is None else settings.end_time
-
-
-def _end_of_cycles(case: Case) -> float:
-    """End time of the load history, including the repetitions of its cycle [s]."""
-    assert case.load.history is not None  # the case has been checked
-    loads = case.load.history.loads
-    begin, end = loads.cycle or (0.0, loads.time[-1])
-    return end + (int(case.cycles or 1) - 1) * (end - begin)
 
 
 def _outputs(case: Case, time: float) -> set[float]:

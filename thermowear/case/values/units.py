@@ -111,13 +111,9 @@ def _read(text: str):
 @lru_cache(maxsize=1000)
 def unit_of(text: str):
     """Unit in engineering notation: ``W/(m² K)``, ``/K``, ``mm^3/(N m)``, ``1/MPa**0.5``."""
-    text = _SUPERSCRIPT.sub(_as_power, text)
+    text = _SUPERSCRIPT.sub(lambda found: f"**{found[0].translate(_SUPERSCRIPTS)}", text)
     _check_unit(text)
     return registry().parse_units(f"1{text}" if text.startswith("/") else text, as_delta=True)
-
-
-def _as_power(superscript: re.Match[str]) -> str:
-    return f"**{superscript[0].translate(_SUPERSCRIPTS)}"
 
 
 def _check_unit(unit: str) -> None:
@@ -227,7 +223,7 @@ def expression(text: str, unit: str, variables: tuple[str, ...]) -> Expression:
     ValueError
         One-line message with the position of the fault.
     """
-    known = {name: _dimension(UNITS[name]) for name in variables}
+    known = {name: in_si(UNITS[name])[1] if UNITS[name] else Dimension() for name in variables}
     return parse_expression(text, known, unit, in_si)
 
 
@@ -256,10 +252,6 @@ def in_si(text: str) -> tuple[float, Dimension]:
         if not units.Quantity(1.0, name).dimensionless  # radians and counts
     }
     return float(one.magnitude), Dimension.of(powers)
-
-
-def _dimension(unit: str) -> Dimension:
-    return in_si(unit)[1] if unit else Dimension()
 
 
 _SMALLEST, _FARTHEST = 1e-12, 1e7

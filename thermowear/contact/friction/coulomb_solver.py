@@ -34,12 +34,11 @@ def solve_by_newton(
     near : ndarray, shape (M + k,), optional
         Unknowns of a similar problem, tried as the first guess.
     """
-    if near is not None:
-        solution = _newton(problem, near, damped=False)
-        if solution is not None and not violated(problem, solution):
-            return solution
-    start = _sticking(problem, closed)
-    return None if start is None else _verified_from(problem, start)
+    solution = None if near is None else _verified_from(problem, near, (False,))
+    if solution is None:
+        start = _sticking(problem, closed)
+        solution = None if start is None else _verified_from(problem, start)
+    return solution
 
 
 def solve_with_fallbacks(problem: CoulombProblem, closed: np.ndarray) -> CoulombSolution:
@@ -63,9 +62,11 @@ def solve_with_fallbacks(problem: CoulombProblem, closed: np.ndarray) -> Coulomb
     )
 
 
-def _verified_from(problem: CoulombProblem, start: np.ndarray) -> CoulombSolution | None:
+def _verified_from(
+    problem: CoulombProblem, start: np.ndarray, attempts: tuple[bool, ...] = (False, True)
+) -> CoulombSolution | None:
     """Verified solution from a start, with full steps, otherwise with damped ones."""
-    for damped in (False, True):
+    for damped in attempts:
         solution = _newton(problem, start, damped)
         if solution is not None and not violated(problem, solution):
             return solution

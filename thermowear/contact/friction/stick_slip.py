@@ -62,7 +62,8 @@ def advance(
         raise ValueError(f"loads: the holder has {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
     mean = contact.weighted.T @ contact.basis  # mass matrix: weak values from coefficients
-    displacement = _tangential_displacement(state, loads)
+    # tangential: given at the end, or the current one if free
+    displacement = float(np.where(np.isnan(given), state.motion, given)[1:].sum())
     worn = (
         state.worn.sum(axis=0) if wear is None else wear.depth_at_contact(state.worn, displacement)
     )
@@ -84,14 +85,6 @@ def advance(
     depths = by_slip.profiles(after)
     lost = wear.repeats * (after.dissipated - state.dissipated)
     return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
-
-
-def _tangential_displacement(state: StickSlipState, loads: Loads) -> float:
-    """Tangential displacement of the holder: given at the end, or the current one if free [m]."""
-    if len(state.motion) < 2:
-        return 0.0
-    given = loads.motions[1]
-    return float(state.motion[1] if np.isnan(given) else given)
 
 
 def _increment(contact, friction, state, guess, loads: Loads, compliance, gap) -> StickSlipState:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from enum import IntEnum
 
 import numpy as np
@@ -124,12 +124,7 @@ class Loads:
             0 at the state, 1 at these loads.
         """
 
-        def between(start: np.ndarray, end: float | None, k: int) -> float | None:
-            return None if end is None else float((1 - part) * start[k] + part * end)
+        def between(start: float, end: float | None) -> float | None:
+            return None if end is None else float((1 - part) * start + part * end)
 
-        return Loads(
-            between(force, self.normal_force, 0),
-            between(motion, self.approach, 0),
-            between(force, self.tangential_force, 1),
-            between(motion, self.tangential_displacement, 1),
-        )
+        return Loads(*map(between, np.column_stack([force, motion]).ravel(), astuple(self)))

@@ -11,13 +11,14 @@ as d does, with ``Tᵀ w p`` equal to the spring force.
 
 Without S and s this is the penalty method. With them it is Nitsche's method, which is consistent
 for any γ (Chouly, Hild and Renard, Math. Comput. 84 (2015) 1089); θ = 1 is symmetric and needs γ
-above a limit (see `stabilisation`), θ = -1 works with any γ. Symmetric equations are the
+above a limit (see `nitsche`), θ = -1 works with any γ. Symmetric equations are the
 stationarity conditions of a convex energy.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -28,7 +29,7 @@ from ...bulk.field import without_fixed
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from ..wear.edge_deflection import EdgeDeflection
+from .edge_deflection import EdgeDeflection
 from .newton_matrix import NewtonMatrix
 
 
@@ -97,17 +98,10 @@ class Residual:
         return self.pressure > 0.0
 
 
-@dataclass(frozen=True)
-class _Motions:
+class _Motions(NamedTuple):
     """Global degrees of freedom of the gap: holder, then spring-supported face points.
 
-    Attributes
-    ----------
-    modes, weighted_force_modes : ndarray, shape (n, k)
-        Modes R, and w T.
-    springs : ndarray, shape (k, k)
-        Spring stiffness; zero for the holder.
-    load : ndarray, shape (k,)
+    Modes R and w T (n, k), the stiffness of the springs (k, k), zero for the holder, and the load.
     """
 
     modes: np.ndarray

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from ...errors import ComputationError
 from ...serialise import serialisable
 from ..solvers.signorini import solve_contact
-from ..wear.edge_deflection import EdgeDeflection
+from .edge_deflection import EdgeDeflection
 from .equations import ContactEquations, Loading
 
 _TOLERANCE = 1e-10
@@ -169,10 +169,8 @@ class FullContact(ContactEquations):
         Newton's method from all springs closed: with one motion each step ends at or beyond the
         solution, so convergence is monotonic.
         """
-        gap, springs = (
-            self.gap(loading, displacement),
-            self.weighted_force_modes * self.stiffness[:, None],
-        )
+        gap = self.gap(loading, displacement)
+        springs = self.weighted_force_modes * self.stiffness[:, None]
         closed: np.ndarray = np.ones(len(gap), dtype=bool)
         motion = np.zeros(len(loading.load))
         for _ in range(_MAX_ITERATIONS):

@@ -47,11 +47,11 @@ class NewtonMatrix:
         fixed = supported(elastic.stiffness, elastic.fixed)
         if subtracted.any():
             columns = distributed(elastic.space, stress)
-            rows = _transposed(columns)
+            rows = columns.copy().transpose()
             _scale_rows(rows, subtracted)
             fixed.axpy(-1.0, columns.matMult(rows), _DIFFERENT_PATTERN)
         self._columns = distributed(elastic.space, work)
-        self._rows = _transposed(distributed(elastic.space, closing))
+        self._rows = distributed(elastic.space, closing).transpose()
         self._weighted_rows = self._rows.copy()
         self._product = self._columns.matMult(self._weighted_rows)
         self._matrix = fixed.copy()
@@ -89,12 +89,6 @@ class NewtonMatrix:
             )
         self._factors = factors
         return self._factor
-
-
-def _transposed(matrix: PETSc.Mat) -> PETSc.Mat:
-    result = PETSc.Mat()
-    matrix.transpose(result)
-    return result
 
 
 def _scale_rows(matrix: PETSc.Mat, factors: np.ndarray) -> None:

@@ -1,4 +1,4 @@
-"""Static condensation of elasticity to the contact interface: small dense operators."""
+"""Static condensation of elasticity and conduction to the contact: small dense operators."""
 
 from __future__ import annotations
 
@@ -10,28 +10,27 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
+from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from .holder import RigidHolder
-from .traces import transpose_product
+from .heat import InterfaceHeat, ThermalDistortion
+from .pressure import PressureSpace
+from .rigid_motion import RigidHolder
+from .traces import distributed, transpose_product
 
 _COLUMNS = {2: 32, 3: 128}
 """Right-hand sides per solution, by dimension; limited by the caches, or the memory."""
 
 
 @dataclass(frozen=True)
-class CondensedContact:
+class CondensedContact(PressureSpace):
     """Condensed elastic bodies: weak gap as a function of the pressure.
 
-    With ``p = Ψ λ``, the weak gap is ``Ψᵀ w (g0 + W) + A λ - Rw d`` (+ thermal distortion).
+    The weak gap is ``Ψᵀ w (g0 + W) + A λ - Rw d`` (+ thermal distortion).
 
     Attributes
     ----------
-    basis : ndarray, shape (n, m)
-        Basis Ψ of the pressure.
-    weighted : ndarray, shape (n, m)
-        ``diag(w) Ψ``.
     compliance : ndarray, shape (m, m)
         A = Ψᵀ w B K⁻¹ B_tᵗ w Ψ [m⁵/N = weak gap per coefficient].
     modes : ndarray, shape (m, k)
@@ -40,19 +39,13 @@ class CondensedContact:
         Ψᵀ w T: generalised force of each coefficient on each of these motions.
     """
 
-    basis: np.ndarray
-    weighted: np.ndarray
     compliance: np.ndarray
     modes: np.ndarray
     force_modes: np.ndarray
 
-    def weak(self, values: np.ndarray) -> np.ndarray:
-        """Weighted means ``Ψᵀ w v`` of values at the points, shape (m,)."""
-        return self.weighted.T @ values
-
 
 @dataclass(frozen=True)
-class Influence:
+class Influence(PressureSpace):
     """Elastic response to each pressure function: the solutions that condensation needs.
 
     Independent of loads, friction and wear.
@@ -61,10 +54,6 @@ class Influence:
     ----------
     trace : csr_matrix, shape (n_owned, n)
         Transposed gap trace Bᵀ.
-    basis : ndarray, shape (n, m)
-        Basis Ψ of the pressure.
-    weighted : ndarray, shape (n, m)
-        ``diag(w) Ψ``.
     touching : ndarray of int, shape (n_touching,)
         Owned degrees of freedom in cells at the contact, the only ones loaded by its tractions.
     near : ndarray, shape (n_touching, m)
@@ -75,8 +64,6 @@ class Influence:
     """
 
     trace: sp.csr_matrix
-    basis: np.ndarray
-    weighted: np.ndarray
     touching: np.ndarray
     near: np.ndarray
     per_rise: tuple[np.ndarray, ...]
@@ -95,7 +82,7 @@ class Influence:
         compliance = sum_over_ranks(self.comm, (pulls.T @ self.near).T)
         if traction is self.trace:
             compliance = (compliance + compliance.T) / 2
-        modes, force_modes = (self.weighted.T @ m for m in (holder.modes, holder.force_modes))
+        modes, force_modes = self.weak(holder.modes), self.weak(holder.force_modes)
         return CondensedContact(self.basis, self.weighted, compliance, modes, force_modes)
 
 
@@ -136,9 +123,9 @@ def influence(
         for matrix, products in zip(thermal_loads, per_rise, strict=True):
             products.append(transpose_product(matrix, displacements))
     return Influence(
-        trace,
         basis,
         weighted,
+        trace,
         touching,
         np.hstack(near),
         tuple(np.hstack(products) for products in per_rise),
@@ -165,3 +152,62 @@ def condense(
     Every rank calls.
     """
     return influence(elastic, pairing, trace, basis).condensed(traction, holder)
+
+
+def condense_heat(
+    conduction: Conduction,
+    weights: np.ndarray,
+    basis: np.ndarray,
+    traces: tuple[sp.csr_matrix, sp.csr_matrix],
+    shift: float,
+    partition: float | np.ndarray,
+) -> InterfaceHeat:
+    """Condense conduction to the contact points; parameters as in `InterfaceHeat`.
+
+    Every rank calls.
+    """
+    comm = conduction.space.mesh.comm
+    # the bodies are uncoupled in the bulk: one solution serves a column of both faces
+    heat = ((traces[0] + traces[1]) @ sp.diags(weights)).tocsc()
+    found = []
+    for columns in blocks(len(weights), conduction.space.mesh.topology.dim):
+        field = conduction.respond(heat[:, columns].tocsr())
+        found.append([trace.T @ field for trace in traces])
+    Θ1, Θ2 = (sum_over_ranks(comm, np.hstack(columns)) for columns in zip(*found, strict=True))
+    return InterfaceHeat(weights, basis, traces, shift, (Θ1, Θ2), partition)
+
+
+def condense_distortion(
+    conduction: Conduction, per_rise: np.ndarray, face: InterfaceHeat
+) -> ThermalDistortion:
+    """Condense ``Ψᵀ w B K⁻¹ G K_T⁻¹ Eᵀ w``: weak gap from heat at the contact.
+
+    With the known elastic influence this costs one (adjoint) thermal solution per pressure function
+    and no elastic one. Every rank calls.
+
+    Parameters
+    ----------
+    conduction : Conduction
+    per_rise : ndarray, shape (n_owned, m)
+        Weak gap per nodal rise, see `Influence` [m³/K].
+    face : InterfaceHeat
+    """
+    mesh, found = conduction.space.mesh, []
+    for columns in blocks(per_rise.shape[1], mesh.topology.dim):
+        adjoint = conduction.adjoint_response(per_rise[:, columns])
+        found.append([(trace.T @ adjoint).T * face.weights for trace in face.traces])
+    first, second = (
+        sum_over_ranks(mesh.comm, np.vstack(rows)) for rows in zip(*found, strict=True)
+    )
+    return ThermalDistortion((first, second))
+
+
+def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
+    """Matrix ``Σ E_iᵀ w s E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
+    first, second = (
+        distributed(space, (trace @ sp.diags(np.sqrt(weights * shift))).tocsr()) for trace in traces
+    )
+    matrix = first.matMult(first.copy().transpose())
+    other = second.matMult(second.copy().transpose())
+    matrix.axpy(1.0, other, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    return matrix

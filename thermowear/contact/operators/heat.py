@@ -1,6 +1,6 @@
 """Heat at the interface: friction heat, its partition, exchange between the faces.
 
-The bodies are linear and are condensed to their contact points once (`heat_condensation`); their
+The bodies are linear and are condensed to their contact points once (`condensation`); their
 coupling (conductance, perfect contact, separated points) is solved here with small dense matrices.
 """
 

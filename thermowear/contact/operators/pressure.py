@@ -1,17 +1,49 @@
-"""Pressure space: continuous piecewise Bernstein polynomials on the face of body 1.
+"""Pressure on the face of body 1: its space, the gap orthogonal to it, and the contact zones.
 
-On quadrilaterals they are tensor products in both parameters. Bernstein polynomials are
-nonnegative and sum to one, so that coefficients ``λ >= 0`` give a pressure without tension, and
-each weak gap is a mean of the gap with nonnegative weights.
+The pressure space consists of continuous piecewise Bernstein polynomials, on quadrilaterals tensor
+products in both parameters. They are nonnegative and sum to one, so that coefficients ``λ >= 0``
+give a pressure without tension, and each weak gap is a mean of the gap with nonnegative weights.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import comb, factorial
 
 from ...lagrange import lattice
+from ..search.face import Surface
 from ..search.pairing import Pairing
+
+_ZERO_PRESSURE = 1e-9  # of the largest pressure
+_FIT_FRACTION = 0.8  # fraction of half a zone used to fit its edge
+_DEGREE = 2
+_SKIPPED_ELEMENTS = 2  # number of elements next to the edge
+
+
+@dataclass(frozen=True)
+class PressureSpace:
+    """Pressures ``p = Ψ λ`` at the contact points.
+
+    Attributes
+    ----------
+    basis : ndarray, shape (n, m)
+        Basis Ψ.
+    weighted : ndarray, shape (n, m)
+        ``diag(w) Ψ``.
+    """
+
+    basis: np.ndarray
+    weighted: np.ndarray
+
+    def weak(self, values: np.ndarray) -> np.ndarray:
+        """Weighted means ``Ψᵀ w v`` of values at the points, shape (m,)."""
+        return self.weighted.T @ values
+
+    def projected(self, values: np.ndarray) -> np.ndarray:
+        """Coefficients of the L² projection of values at the points, by columns."""
+        return np.linalg.solve(self.weighted.T @ self.basis, self.weighted.T @ values)
 
 
 def pressure_basis(pairing: Pairing, degree: int) -> np.ndarray:
@@ -61,3 +93,83 @@ def _bernstein(degree: int, t: np.ndarray) -> np.ndarray:
     """Bernstein polynomials on [0, 1], shape (n, degree + 1)."""
     k = np.arange(degree + 1)
     return comb(degree, k) * t[:, None] ** k * (1 - t[:, None]) ** (degree - k)
+
+
+def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: np.ndarray):
+    """Gap component orthogonal to the pressure space, on fully closed facets.
+
+    Weak contact closes the mean of the gap with each basis function, not the gap at each point.
+    Under continued wear this component grows without effect on the pressure. It is the gap less its
+    L² projection on the pressure space of the fully closed facets; zero on all others.
+
+    Parameters
+    ----------
+    gap : ndarray, shape (n,)
+        Gap at the contact points [m].
+    pressing : ndarray of bool, shape (n,)
+    pairing : Pairing
+    basis : ndarray, shape (n, m)
+        Ψ, see `pressure_basis`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Component whose weak values ``Ψᵀ w v`` vanish [m].
+    """
+    facet = pairing.sides[0].facet
+    closed = ~np.isin(facet, facet[~pressing])
+    on_closed, root = basis[closed], np.sqrt(pairing.weights[closed])
+    coefficients = np.linalg.lstsq(root[:, None] * on_closed, root * gap[closed], rcond=None)[0]
+    result = np.zeros_like(gap)
+    result[closed] = gap[closed] - on_closed @ coefficients
+    return result
+
+
+def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, float]]:
+    """Ranges of the position s of the contact zones, in order [m]; empty on a surface.
+
+    At the edge of contact of smooth faces the pressure vanishes as the square root of the distance
+    times an analytic function (Johnson, Contact Mechanics, 1985, ch. 4). The squared pressure is
+    fitted by a polynomial, without the elements next to the edge, and extrapolated to its zero.
+    Zones of few elements end with their last point.
+
+    Parameters
+    ----------
+    pairing : Pairing
+    pressure : ndarray, shape (n,) [Pa]
+    """
+    if isinstance(pairing.sides[0].face, Surface):
+        return []
+    pressing = pressure > _ZERO_PRESSURE * pressure.max(initial=0.0)
+    change = np.flatnonzero(np.diff(pressing.astype(int), prepend=0, append=0))
+    zones = []
+    for first, after in change.reshape(-1, 2):
+        zone = np.arange(first, after)
+        bounded = (first == 0) + (after == len(pressure))
+        part = 0.5 if bounded == 0 else 1.0  # fraction of the zone that belongs to an edge
+        start, end = pairing.position[zone[[0, -1]]]
+        if first > 0:
+            start = _edge(pairing, pressure, zone[::-1], part)
+        if after < len(pressure):
+            end = _edge(pairing, pressure, zone, part)
+        zones.append((float(start), float(end)))
+    return zones
+
+
+def _edge(pairing: Pairing, pressure: np.ndarray, zone: np.ndarray, part: float) -> float:
+    """Position of the edge beyond the last point of a zone."""
+    s, facet = pairing.position[zone], pairing.sides[0].facet[zone]
+    distance = np.abs(s - s[-1])
+    last = np.unique(np.abs(facet - facet[-1]))[:_SKIPPED_ELEMENTS]
+    chosen = ~np.isin(np.abs(facet - facet[-1]), last)
+    chosen &= distance <= _FIT_FRACTION * part * distance[0]
+    if chosen.sum() <= 2 * _DEGREE:
+        return float(s[-1])
+    fit = np.polynomial.Polynomial.fit(distance[chosen], pressure[zone][chosen] ** 2, _DEGREE)
+    roots = fit.roots()
+    nearest = distance[chosen].min()
+    roots = roots[np.abs(roots.imag) < 1e-9].real
+    roots = roots[(roots < nearest) & (roots > -nearest)]
+    if len(roots) == 0:
+        return float(s[-1])
+    return float(s[-1] + np.sign(s[0] - s[-1]) * roots.max())

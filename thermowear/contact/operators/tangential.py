@@ -28,21 +28,18 @@ import scipy.sparse as sp
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
+from .pressure import PressureSpace
 from .traces import vector_trace
 
 
 @dataclass(frozen=True)
-class FrictionalContact:
+class FrictionalContact(PressureSpace):
     """Gap and slip of the elastic bodies as functions of pressure and shear.
 
     Below, t tangential directions give ``M = m (1 + t)`` coefficients.
 
     Attributes
     ----------
-    basis : ndarray, shape (n, m)
-        Basis Ψ.
-    weighted : ndarray, shape (n, m)
-        ``diag(w) Ψ``.
     gap : ndarray, shape (n,)
         Gap of the unloaded, unworn bodies [m].
     response : ndarray, shape (1 + t, n, M)
@@ -58,8 +55,6 @@ class FrictionalContact:
         ``influenceᵀ f``.
     """
 
-    basis: np.ndarray
-    weighted: np.ndarray
     gap: np.ndarray
     response: np.ndarray
     rigid: np.ndarray

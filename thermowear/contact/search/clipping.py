@@ -16,8 +16,8 @@ import numpy as np
 
 from ...lagrange import lattice
 from .common_face import MAX_FACING_COSINE, opposite, opposite_parameters
+from .face import Surface
 from .projection import within
-from .surface import Surface
 
 _TOLERANCE = 1e-9
 """Relative size of a facet below which corners coincide with each other or with a side."""
@@ -111,7 +111,7 @@ def _candidates(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarra
     points = face_2.points(pairs.facet, pairs.t).reshape(len(face_1.nodes), -1, 3)
     centres = points.mean(axis=1)
     radii = np.linalg.norm(points - centres[:, None], axis=2).max(axis=1)
-    first, second = face_2.touching(centres, _REACH * np.maximum(radii, face_1.radii))
+    first, second = face_2.tree.touching(centres, _REACH * np.maximum(radii, face_1.tree.radii))
     cosine = np.einsum("ni,ni->n", face_1.middle_normals[first], face_2.middle_normals[second])
     facing = cosine <= MAX_FACING_COSINE
     return first[facing], second[facing]

@@ -27,16 +27,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .face import Face
-from .projection import nearest, overhang, project
+from .face import Face, Surface
+from .projection import MIN_COSINE, nearest, overhang, project
 from .smooth_normals import across
-from .surface import Surface
 
 Line = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 MAX_FACING_COSINE = -0.5
 """Largest cosine between the outward normals of points that can meet."""
-_MIN_COSINE = 0.3
-"""Smallest magnitude of the cosine between a line and the normal of the face that it meets."""
 _MAX_PENETRATION = 0.25
 """Largest overlap of points, relative to the face; beyond it they are on far sides of bodies."""
 _MAX_ITERATIONS = 40
@@ -193,7 +190,7 @@ def _line(points, outward, softness, other, facet, t) -> Line:
     normals, _ = _direction((1 - share)[:, None] * outward - share[:, None] * against, outward)
     a_1, a_2 = _parts(share, other)
     along, _ = _direction(a_1 * outward - a_2 * against, outward)
-    steep = np.minimum(np.einsum("ni,ni->n", along, against), -_MIN_COSINE)
+    steep = np.minimum(np.einsum("ni,ni->n", along, against), -MIN_COSINE)
     to_plane = np.einsum("ni,ni->n", other.points(facet, t) - points, against) / steep
     cosine = np.einsum("ni,ni->n", outward, against)
     return normals, to_plane[:, None] * along, share, cosine

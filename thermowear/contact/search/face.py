@@ -1,27 +1,49 @@
-"""Contact face of a plane body, gathered from all ranks as a chain of curved facets.
+"""Contact faces, gathered from all ranks: chains of curved facets, or triangles, quadrilaterals.
 
-The chain is replicated on all ranks, so that pairing needs no communication. Faces in space: see
-`surface`.
+Faces are replicated on all ranks, in an order that does not depend on the number of ranks, so that
+pairing needs no communication. Contact points of a plane body are ordered along its chain from the
+first end to the last; a closed curve (full pin in a full bush) is cut at the vertex farthest from
+the other face.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
+import basix
 import numpy as np
 from dolfinx import fem
 
 from ...bulk.bodies import Bodies
-from ...compat import entities_to_geometry_layout
+from ...bulk.field import reference_element
+from ...compat import coordinate_element
 from ...errors import CaseError
-from ...lagrange import lobatto
+from ...lagrange import (
+    corner_nodes,
+    edge_nodes,
+    equispaced,
+    lattice,
+    lobatto,
+    matching,
+    order_of,
+)
+from .facet_tree import FacetTree
 from .facets import FacetSet, FacetTable, gather_facets
-from .surface import Surface, gather_surface
+from .projection import project
 
 _BLOCK_SIZE = 1_000_000
 """Number of pairs of a point and a facet processed at once."""
 ONWARD = (1.0, 0.3)
 """Direction of a chain: along x; upright faces begin at the lower end, also if slightly worn."""
+_BLOCK_SIZE = 1_000_000
+"""Number of pairs of a point and a facet of a chain processed at once."""
+_FACETS = {2: "interval", 3: "triangle", 4: "quadrilateral"}
+"""Kind of a facet by its number of corners."""
+_FLATNESS_TOLERANCE = 1e-9
+"""Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
+_CANDIDATES = 4
+"""Number of candidates for the closest facet to a point: the nearest in flat approximation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +91,103 @@ class Face(FacetSet):
         return np.clip(nearest[:, None] + (0, -1, 1), 0, len(self.nodes) - 1)
 
 
+@dataclass(frozen=True, eq=False)
+class Surface(FacetSet):
+    """Surface of facets with two parameters t that run 0…1 along their edges, as in the cells.
+
+    Attributes
+    ----------
+    corners : ndarray of int, shape (n_facets, n_corners)
+        Corner numbers, shared by adjacent facets.
+    """
+
+    corners: np.ndarray
+
+    @property
+    def corner_numbers(self) -> np.ndarray:
+        return self.corners
+
+    def nearby(self, points: np.ndarray) -> np.ndarray:
+        close = self.tree.nearest(points)
+        count = min(_CANDIDATES, close.shape[1])
+        nearest = np.argpartition(self.flat_distances(close, points), count - 1, axis=1)[:, :count]
+        return np.sort(np.take_along_axis(close, nearest, axis=1), axis=1)
+
+    @cached_property
+    def tree(self) -> FacetTree:
+        return FacetTree(self.nodes)
+
+    def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """NaN: points of a surface have no order."""
+        return np.full(len(facet), np.nan)
+
+    def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """Parameters in the directions of the facet in its cell, shape (n, 2)."""
+        return t
+
+    @cached_property
+    def flat(self) -> np.ndarray:
+        """True for plane facets with uniform tangents, shape (n_facets,)."""
+        every = np.arange(len(self.nodes))[:, None]
+        off = np.abs(self.flattened.points(every, lattice(self.order, self.kind)) - self.nodes)
+        shortest = np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
+        return off.max(axis=(1, 2)) < _FLATNESS_TOLERANCE * shortest
+
+    @cached_property
+    def middle_normals(self) -> np.ndarray:
+        """Outward unit normals in the middle of the facets, shape (n_facets, 3)."""
+        return self.normals(*self.on_each(lattice(1, self.kind).mean(axis=0, keepdims=True)))
+
+    def numbers(self, degree: int) -> np.ndarray:
+        """Coefficient numbers of continuous polynomials, shape (n_facets, n_functions).
+
+        In the order of `lagrange.lattice`. Numbers at common corners and along common edges are
+        shared, for any orientation of the facets.
+        """
+        count, inner = len(self.nodes), degree - 1
+        _, corners = np.unique(self.corners, return_inverse=True)
+        edges = edge_nodes(degree, self.kind)
+        result = np.full((count, len(lattice(degree, self.kind))), -1)
+        result[:, corner_nodes(degree, self.kind)] = corners.reshape(self.corners.shape)
+        first, last = np.moveaxis(result[:, edges[:, [0, -1]]], 2, 0)
+        pairs = np.column_stack([np.minimum(first, last).ravel(), np.maximum(first, last).ravel()])
+        _, edge = np.unique(pairs, axis=0, return_inverse=True)
+        steps = np.where((first < last)[..., None], np.arange(inner), np.arange(inner)[::-1])
+        offset = corners.max() + 1
+        result[:, edges[:, 1:-1]] = offset + edge.reshape(*first.shape, 1) * inner + steps
+        inside = np.flatnonzero(result[0] < 0)
+        offset += (edge.max() + 1) * inner
+        result[:, inside] = offset + np.arange(count * len(inside)).reshape(count, -1)
+        return result
+
+
+def gather_faces(
+    bodies: Bodies, surfaces: tuple[str, str], softness: fem.Function | None = None
+) -> tuple[Face | Surface, Face | Surface]:
+    """Gather both contact faces, closed curves cut; see `gather_face`. Every rank calls."""
+    first, second = (gather_face(bodies, surface, softness) for surface in surfaces)
+    return _opened(first, second), _opened(second, first)
+
+
+def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
+    """Face; a closed curve is cut far from the other face and runs along `ONWARD` past it."""
+    if isinstance(face, Surface) or not face.closed:
+        return face
+    first = int(np.linalg.norm(project(other, face.nodes[:, 0])[2], axis=1).argmax())
+    order = np.roll(np.arange(len(face.nodes)), -first)
+    position = np.concatenate([[0.0], np.cumsum(face.sizes[order])])
+    middle = order[np.searchsorted(position, position[-1] / 2, side="right") - 1]
+    onward = (face.nodes[middle, -1] - face.nodes[middle, 0]) @ ONWARD
+    order = order if onward > 0 else order[::-1]
+    names = ("nodes", "outward", "rank", "cell", "local_facet", "reversed")
+    columns = {name: getattr(face, name)[order] for name in names}
+    face = replace(face, **columns, softness=face.softness_at(order))
+    if onward > 0:
+        return face
+    nodes = face.nodes[:, ::-1]
+    return replace(face, nodes=nodes, outward=-face.outward, reversed=~face.reversed)
+
+
 def gather_face(
     bodies: Bodies, surface: str, softness: fem.Function | None = None
 ) -> Face | Surface:
@@ -81,15 +200,12 @@ def gather_face(
     softness : dolfinx.fem.Function, optional
         ``(1 - ν²) / E``, constant on each cell; by default equal for all materials [1/Pa].
     """
-    gather = gather_surface if bodies.mesh.topology.dim == 3 else _gather_chain
+    gather = _gather_surface if bodies.mesh.topology.dim == 3 else _gather_chain
     return gather(bodies, surface, softness)
 
 
 def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -> Face:
-    layout = np.array(entities_to_geometry_layout(bodies.mesh, 1))
-    # closure dofs list both ends first, then the interior nodes
-    along = np.concatenate([layout[:, :1], layout[:, 2:], layout[:, 1:2]], axis=1)
-    table = gather_facets(bodies, surface, along, softness)
+    table = gather_facets(bodies, surface, _facet_nodes(bodies.mesh)[1], softness)
     order, flip = _chain(table.numbers[:, [0, -1]], table.nodes, surface)
     table, flip = FacetTable(*(column[order] for column in table)), flip[order]
     nodes = np.where(flip[:, None, None], table.nodes[:, ::-1], table.nodes)
@@ -102,7 +218,7 @@ def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -
 def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:
     """Order of the facets from the first end to the last, and mask of those to reverse.
 
-    A closed curve begins at an arbitrary vertex, see `closed_face`.
+    A closed curve begins at an arbitrary vertex, see `_opened`.
     """
     vertices, compact = np.unique(ends, return_inverse=True)
     ends = compact.reshape(ends.shape)
@@ -134,3 +250,39 @@ def _disconnected_message(surface: str) -> str:
         f"geometry: the contact face {surface} is not one connected curve, open or closed; give "
         "each part that touches a run of its own, or name one part only"
     )
+
+
+def _gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None) -> Surface:
+    """Curved facets in the order of their cells in the mesh file."""
+    kind, nodes_of_facet = _facet_nodes(bodies.mesh)
+    table = gather_facets(bodies, surface, nodes_of_facet, softness)
+    order = np.lexsort((table.local_facet, table.original_cell))
+    table = FacetTable(*(column[order] for column in table))
+    at_corners = corner_nodes(order_of(kind, table.nodes.shape[1]), kind)
+    origin, second, first, *_ = table.nodes[:, at_corners].swapaxes(0, 1)
+    from_inside = table.nodes.mean(axis=1) - table.inside
+    outward = np.sign(np.einsum("fi,fi->f", np.cross(first - origin, second - origin), from_inside))
+    return Surface(
+        table.nodes,
+        outward,
+        table.rank,
+        table.cell,
+        table.local_facet,
+        table.numbers[:, at_corners],
+        kind=kind,
+        softness=table.softness,
+        name=surface,
+    )
+
+
+def _facet_nodes(mesh) -> tuple[str, np.ndarray]:
+    """Kind of the facets of a cell, and their node indices, shape (n_facets, n_nodes)."""
+    kind, order = reference_element(mesh, 1).cell_type, coordinate_element(mesh).degree
+    corners, facets = np.asarray(basix.geometry(kind)), np.array(basix.topology(kind)[-2])
+    of_facets = _FACETS[facets.shape[1]]
+    t = lattice(order, of_facets)
+    first, *others = np.moveaxis(corners[facets[:, : mesh.topology.dim]], 1, 0)[:, :, None]
+    places = first
+    for part, other in zip(t.reshape(len(t), -1).T, others, strict=True):
+        places = places + part[:, None] * (other - first)
+    return of_facets, matching(places, equispaced(kind.name, order).points)

@@ -27,9 +27,8 @@ from scipy.spatial import cKDTree
 from ...bulk.kinematics import Kinematics
 from ...errors import CaseError
 from .common_face import opposite, stretch
-from .face import Face
+from .face import Face, Surface
 from .refinement import OVERHANG_TOLERANCE, SLIVER, Rule, ambiguity_message, rule
-from .surface import Surface
 
 _COINCIDENCE_TOLERANCE = 1e-10
 """Largest distance of coincident points, relative to the size of the face."""
@@ -57,6 +56,11 @@ class PairedFace:
     def points(self) -> np.ndarray:
         """Coordinates, shape (n, gdim) [m]."""
         return self.face.points(self.facet, self.t)
+
+    @property
+    def position(self) -> np.ndarray:
+        """Arc length along the face, shape (n,), NaN on a surface [m]."""
+        return self.face.position(self.facet, self.t)
 
 
 @dataclass(frozen=True)
@@ -191,14 +195,7 @@ def paired(
 
 
 def _groups(points: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
-    """Group coincident points, numbered in the order of first appearance.
-
-    Returns
-    -------
-    group : ndarray of int, shape (n,)
-    first : ndarray of int, shape (n_groups,)
-        The first point of each group.
-    """
+    """Group of each point, numbered in the order of appearance, and the first point of each."""
     pairs = cKDTree(points).query_pairs(near, output_type="ndarray")
     links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
     _, label = connected_components(links, directed=False)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .face import Face
-from .surface import Surface
+from .facets import FacetSet
 
 _MAX_NEWTON_STEPS = 30
 _TOLERANCE = 1e-13
@@ -14,16 +13,16 @@ _ROUND_TRIANGLE = (-0.5, 1.5)
 _EDGES = np.array([[[0, 0], [1, 0]], [[0, 0], [0, 1]], [[1, 0], [-1, 1]]], dtype=float)
 """First corner and vector of each edge of a triangle, in its parameters."""
 _MAX_ITERATIONS = 10
-_MIN_COSINE = 0.3
-"""Smallest magnitude of the cosine between a ray and the normal of the face that it meets."""
+MIN_COSINE = 0.3
+"""Smallest magnitude of the cosine between a line and the normal of the face that it meets."""
 
 
-def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def project(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Closest-point projection on a face.
 
     Parameters
     ----------
-    face : Face or Surface
+    face : FacetSet
     points : ndarray, shape (n, gdim) [m]
 
     Returns
@@ -39,7 +38,7 @@ def project(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def nearest(
-    face: Face | Surface, points: np.ndarray, facet: np.ndarray, t: np.ndarray
+    face: FacetSet, points: np.ndarray, facet: np.ndarray, t: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Closest facets and parameters to points (n, gdim) that have moved from places nearby.
 
@@ -54,7 +53,7 @@ def nearest(
 
 
 def ray_intersections(
-    face: Face | Surface, points: np.ndarray, directions: np.ndarray
+    face: FacetSet, points: np.ndarray, directions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Intersections of a face with lines through given points, forward or backward.
 
@@ -62,7 +61,7 @@ def ray_intersections(
 
     Parameters
     ----------
-    face : Face or Surface
+    face : FacetSet
     points : ndarray, shape (n, gdim) [m]
     directions : ndarray, shape (n, gdim)
         Unit vectors against the outward normals of the face.
@@ -78,7 +77,7 @@ def ray_intersections(
     for _ in range(_MAX_ITERATIONS):
         facet, t, offset = project(face, points + distance[:, None] * directions)
         normals = face.normals(facet, t)
-        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -_MIN_COSINE)
+        against = np.minimum(np.einsum("ni,ni->n", directions, normals), -MIN_COSINE)
         change = np.einsum("ni,ni->n", offset, normals) / against
         distance += change
         if np.abs(change).max() <= _TOLERANCE * face.extent:
@@ -86,16 +85,16 @@ def ray_intersections(
     return facet, t, distance
 
 
-def overhang(face: Face | Surface, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
+def overhang(face: FacetSet, facet: np.ndarray, t: np.ndarray, offset: np.ndarray):
     """Tangential distance of points from their projections, positive beyond the edge [m]."""
     across = np.linalg.qr(face.tangents(facet, t).mT)[0]
     result = np.linalg.norm(np.einsum("nik,ni->nk", across, offset), axis=1)
-    if isinstance(face, Face):  # at a corner between two facets offsets have tangential parts
+    if face.dim == 1:  # at a corner between two facets offsets have tangential parts
         result[(facet + t > 0.0) & (facet + t < len(face.nodes))] = 0.0
     return result
 
 
-def _closest(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _closest(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Facets and parameters (n, dim) of the closest points, the best of some candidates."""
     facets = face.nearby(points)
     starts = face.inside(face.flattened.parameters(facets, points[:, None]))
@@ -111,7 +110,7 @@ def _closest(face: Face | Surface, points: np.ndarray) -> tuple[np.ndarray, np.n
     return facets[every, best], places[best, every]
 
 
-def _inside(face: Face | Surface, points, facet: np.ndarray, start: np.ndarray) -> np.ndarray:
+def _inside(face: FacetSet, points, facet: np.ndarray, start: np.ndarray) -> np.ndarray:
     """Parameters (n, dim) of the closest points of given facets."""
     if face.kind != "triangle":
         return within(face, points, facet, start, bounds=(0.0, 1.0))
@@ -126,7 +125,7 @@ def _inside(face: Face | Surface, points, facet: np.ndarray, start: np.ndarray) 
     return t
 
 
-def _on_edge(face: Face | Surface, points, facet, start, edge: np.ndarray) -> np.ndarray:
+def _on_edge(face: FacetSet, points, facet, start, edge: np.ndarray) -> np.ndarray:
     """Parameters (n, 2) of the closest points of an edge, given by its first corner and vector."""
     origin, along = edge
     s = np.clip((start - origin) @ along / (along @ along), 0.0, 1.0)[:, None]
@@ -135,7 +134,7 @@ def _on_edge(face: Face | Surface, points, facet, start, edge: np.ndarray) -> np
 
 
 def within(
-    face: Face | Surface,
+    face: FacetSet,
     points: np.ndarray,
     facet: np.ndarray,
     start: np.ndarray,
@@ -147,7 +146,7 @@ def within(
 
     Parameters
     ----------
-    face : Face or Surface
+    face : FacetSet
     points : ndarray, shape (n, gdim) [m]
     facet : ndarray of int, shape (n,)
     start : ndarray, shape (n, k)

@@ -14,8 +14,7 @@ from ...errors import CaseError
 from ...lagrange import lobatto, on_lattice
 from .clipping import parts_opposite
 from .common_face import MAX_FACING_COSINE, Opposite, opposite
-from .face import Face
-from .surface import Surface
+from .face import Face, Surface
 
 OVERHANG_TOLERANCE = 1e-9
 """Largest tangential distance from body 2, relative to the face, of paired points."""
@@ -55,28 +54,25 @@ def rule(
     max_overhang: float = OVERHANG_TOLERANCE,
 ) -> Rule:
     """Quadrature rule on the common refinement; parameters as in `pairing.pair`."""
+    if not refine:
+        return _on_facets(face_1, face_2, order, max_overhang)
     if isinstance(face_1, Surface):
         assert isinstance(face_2, Surface)
-        return _on_parts(face_1, face_2, order) if refine else _on_facets(face_1, face_2, order)
+        return _on_parts(face_1, face_2, order)
     assert isinstance(face_2, Face)
-    return _on_pieces(face_1, face_2, order, refine, sliver, max_overhang)
+    return _on_pieces(face_1, face_2, order, sliver, max_overhang)
 
 
-def _on_pieces(
-    face_1: Face, face_2: Face, order: int, refine: bool, sliver: float, max_overhang: float
-) -> Rule:
+def _on_pieces(face_1: Face, face_2: Face, order: int, sliver: float, max_overhang: float) -> Rule:
     """Gauss-Lobatto rule on each piece of the facets of a chain."""
-    whole = [np.array([0.0, 1.0])] * len(face_1.nodes)
-    cuts = _cuts(face_1, face_2, sliver) if refine else whole
+    cuts = _cuts(face_1, face_2, sliver)
     x, w = lobatto(order)
     start = np.concatenate([c[:-1] for c in cuts])
     size = np.concatenate([np.diff(c) for c in cuts])
     facet = np.repeat(np.arange(len(cuts)), [len(c) - 1 for c in cuts])
     t = (start[:, None] + size[:, None] * x).ravel()
     pieces = Rule(np.repeat(facet, order), t, (size[:, None] * w).ravel())
-    # ends do not count: the end of an outer piece is a point of the next inner one
-    inner = np.arange(1, order - 1) if order > 2 else np.arange(order)
-    return _facing(face_1, face_2, pieces, order, inner, max_overhang)
+    return _facing(face_1, face_2, pieces, x, max_overhang)
 
 
 def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
@@ -116,19 +112,19 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
     return Rule(*(column[counting][by_facet] for column in columns))
 
 
-def _on_facets(face_1: Surface, face_2: Surface, order: int) -> Rule:
+def _on_facets(face_1: Face | Surface, face_2, order: int, max_overhang: float) -> Rule:
     """Gauss-Lobatto rule on each whole facet."""
     places, weights = lobatto(order, face_1.kind)
     whole = Rule(*face_1.on_each(places), np.tile(weights, len(face_1.nodes)))
-    within = np.flatnonzero(np.all((places > 0) & (places < 1), axis=1))
-    inner = within if len(within) else np.arange(len(weights))
-    return _facing(face_1, face_2, whole, len(weights), inner, OVERHANG_TOLERANCE)
+    return _facing(face_1, face_2, whole, places, max_overhang)
 
 
-def _facing(
-    face_1, face_2, pieces: Rule, count: int, inner: np.ndarray, max_overhang: float
-) -> Rule:
-    """Pieces, of `count` points each, with all inner points opposite to body 2."""
+def _facing(face_1, face_2, pieces: Rule, places: np.ndarray, max_overhang: float) -> Rule:
+    """Pieces, each with points at the same places, whose inner points are opposite to body 2."""
+    count, within = len(places), (places > 0) & (places < 1)
+    # ends do not count: the end of an outer piece is a point of the next inner one
+    inner = np.flatnonzero(within.reshape(count, -1).all(axis=1))
+    inner = inner if len(inner) else np.arange(count)
     pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
     meeting = pairs.meets(face_1.extent, max_overhang).reshape(-1, count)[:, inner]
     whole = meeting.all(axis=1)

@@ -13,12 +13,13 @@ as the fallback.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from ...serialise import serialisable
-from .signorini import saddle_point, solve_contact
+from .signorini import active_set, saddle_point, solve_contact
 
 _TOLERANCE = 1e-9
 
@@ -88,17 +89,9 @@ def solve_coupled(
     ComputationError
         If there is no solution.
     """
-    tried, expected = set(), active
-    while active.tobytes() not in tried:
-        tried.add(active.tobytes())
-        solution = _with_active(contacts, start, gains, active)
-        if solution is None:
-            break
-        next_active = _pressing(contacts, solution)
-        if np.array_equal(next_active, active):
-            return solution
-        active = next_active
-    return _stacked(contacts, start, gains, expected)
+    solve = partial(_with_active, contacts, start, gains)
+    solution = active_set(active, solve, partial(_pressing, contacts))
+    return _stacked(contacts, start, gains, active) if solution is None else solution
 
 
 def _stacked(
@@ -131,18 +124,15 @@ def _with_active(
     eliminated = _eliminated(contacts, active)
     if eliminated is None:
         return None
-    at_zero_depth, per_depth = eliminated
-    m = active.shape[1]
+    m, at_zero_depth, per_depth = active.shape[1], eliminated[..., 0], eliminated[..., 1:]
     spread = np.eye(len(start)) - np.einsum("jnm,jmk->nk", gains, per_depth[:, :m])
     depths = np.linalg.solve(spread, start + np.einsum("jnm,jm->n", gains, at_zero_depth[:, :m]))
     unknowns = at_zero_depth + per_depth @ depths
     return CoupledSolution(unknowns[:, :m], unknowns[:, m:], active, depths)
 
 
-def _eliminated(
-    contacts: CoupledContacts, active: np.ndarray
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """λ and d at zero depths, shape (J, m + k), and their derivatives, shape (J, m + k, N)."""
+def _eliminated(contacts: CoupledContacts, active: np.ndarray) -> np.ndarray | None:
+    """λ and d at zero depths, then their derivatives by the depths, shape (J, m + k, 1 + N)."""
     count, m, k = contacts.modes.shape
     pressed = active[..., None]
     both = pressed & active[:, None] | np.eye(m, dtype=bool)
@@ -153,8 +143,7 @@ def _eliminated(
         np.where(pressed, part, 0.0) for part in (contacts.modes, contacts.force_modes, gap)
     )
     compliance = np.where(both, contacts.compliance, 0.0)
-    unknowns = saddle_point(compliance, modes, force_modes, gap, load)
-    return None if unknowns is None else (unknowns[..., 0], unknowns[..., 1:])
+    return saddle_point(compliance, modes, force_modes, gap, load)
 
 
 def _pressing(contacts: CoupledContacts, solution: CoupledSolution) -> np.ndarray:

@@ -14,8 +14,8 @@ import numpy as np
 
 from ...parallel import sum_over_ranks
 from ..operators.condensation import Influence
-from ..operators.holder import RigidHolder
 from ..operators.pressure import pressure_basis
+from ..operators.rigid_motion import RigidHolder
 from ..search.pairing import Pairing
 from .signorini import solve_contact
 
@@ -81,12 +81,7 @@ def _compliance(
     opened = sum_over_ranks(influence.comm, opened)
     known = weighted.T @ opened
     known = (known + known.T) / 2
-    mass = np.linalg.inv(weighted.T @ influence.basis)
-
-    def detail(values):
-        return values - influence.basis @ (mass @ (weighted.T @ values))
-
-    details = detail(basis)
+    details = basis - influence.basis @ influence.projected(basis)
     signs = np.random.default_rng(0).choice([-1.0, 1.0], basis.shape[1])
     probe = details @ signs
     found = elastic_opening(probe)

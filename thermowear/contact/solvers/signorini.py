@@ -9,7 +9,10 @@ Without friction in the section T = R.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -18,6 +21,7 @@ from ...serialise import serialisable
 from .lemke import lemke
 
 _TOLERANCE = 1e-9
+Solution = TypeVar("Solution")
 
 
 class NoEquilibrium(ComputationError):
@@ -89,7 +93,7 @@ def _solve(problem: _Problem, start: np.ndarray | None) -> SignoriniSolution:
     """Active-set method from the predicted set and from full contact, then Lemke's method."""
     everywhere = np.ones(len(problem.gap), dtype=bool)
     for active in (everywhere,) if start is None else (start, everywhere):
-        solution = _active_set(problem, active)
+        solution = active_set(active, partial(_with_active, problem), partial(_pressing, problem))
         if solution is not None:
             return _verified(problem, solution)
     solution = _with_active(problem, _pressing_by_lemke(problem))
@@ -117,19 +121,30 @@ class _Problem:
         return np.full(len(λ), λ.max()), np.abs(self.compliance) @ λ + np.abs(self.gap)
 
 
-def _active_set(problem: _Problem, active: np.ndarray) -> SignoriniSolution | None:
-    """Primal-dual active set from a first guess; None if it cycles or becomes singular."""
+def active_set(
+    active: np.ndarray,
+    solve: Callable[[np.ndarray], Solution | None],
+    pressing: Callable[[Solution], np.ndarray],
+) -> Solution | None:
+    """Primal-dual active set from a first guess; None if it cycles or becomes singular.
+
+    Parameters
+    ----------
+    active : ndarray of bool
+    solve : callable
+        Solution with closed contact at the active coefficients; None if singular.
+    pressing : callable
+        Next active set of a solution.
+    """
     tried = set()
-    gap, held = problem.gap, len(problem.load) == 0
     while active.tobytes() not in tried:
         tried.add(active.tobytes())
-        solution = _with_active(problem, active)
+        solution = solve(active)
         if solution is None:
             return None
-        next_active = _pressing(problem, solution)
-        if np.array_equal(next_active, active):
+        before, active = active, pressing(solution)
+        if np.array_equal(active, before):
             return solution
-        active = next_active if next_active.any() or held else active | (gap <= gap.min())
     return None
 
 
@@ -195,7 +210,11 @@ def _pressing(problem: _Problem, solution: SignoriniSolution) -> np.ndarray:
     residual = problem.residual(solution)
     scales = problem.scales(solution)
     presses = solution.active & (solution.coefficients > -_TOLERANCE * scales[0])
-    return presses | (~solution.active & (residual < -_TOLERANCE * scales[1]))
+    presses |= ~solution.active & (residual < -_TOLERANCE * scales[1])
+    nearest = ~solution.active & (problem.gap <= problem.gap.min())
+    # where no coefficient presses, a load needs more of them; if there are none, the set is empty
+    lost = len(problem.load) > 0 and not presses.any() and nearest.any()
+    return solution.active | nearest if lost else presses
 
 
 def _verified(problem: _Problem, solution: SignoriniSolution) -> SignoriniSolution:

@@ -103,8 +103,8 @@ class WearRates:
         for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
             local = self.factors[row] * law.value(LocalState(pressure, *self.states[row]))
             rates[row] = spread.share * local
-            if spread.rows is not None:
-                rates[row] += spread.reach(len(pressure)) @ (spread.rows @ local)
+            if spread.means is not None:
+                rates[row] += spread.means.reach @ (spread.means.rows @ local)
         return rates
 
     def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
@@ -118,9 +118,9 @@ class WearRates:
         for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
             local = self.factors[row] * law.slope(LocalState(pressure, *self.states[row]))
             point += spread.share * local
-            if spread.varying_rows is not None:
-                rows.append(spread.varying_rows * local)
-                reach.append(spread.reach(n))
+            if spread.means is not None and spread.means.varies:
+                rows.append(spread.means.rows * local)
+                reach.append(spread.means.reach)
         return Slope(self.step * point, self.step * np.vstack(rows), np.hstack(reach))
 
 

@@ -42,7 +42,7 @@ class StrokeGrid:
         length : float
             Length of the segment, centred at the points, over which means are taken [m].
         """
-        places = on_body_2(pairing)
+        places = pairing.sides[1].position
         if length == 0.0:
             return hat_functions(self.position, places)
         steps = length * ((np.arange(_STEPS) + 0.5) / _STEPS - 0.5)
@@ -73,16 +73,12 @@ def track(
     thickness : float
         Thickness of the bodies [m].
     """
-    placed = [(on_body_2(p), length / 2) for p, length in zip(pairings, lengths, strict=True)]
+    placed = [
+        (p.sides[1].position, length / 2) for p, length in zip(pairings, lengths, strict=True)
+    ]
     first = min(s.min() - half for s, half in placed)
     last = max(s.max() + half for s, half in placed)
     cells = max(1, int(np.ceil((last - first) / spacing - 1e-9)))
     areas = np.full(cells + 1, thickness * (last - first) / cells)
     areas[[0, -1]] /= 2
     return StrokeGrid(np.linspace(first, last, cells + 1), areas)
-
-
-def on_body_2(pairing: Pairing) -> np.ndarray:
-    """Arc length along the face of body 2 at the contact points, shape (n,) [m]."""
-    side = pairing.sides[1]
-    return side.face.position(side.facet, side.t)

@@ -24,7 +24,8 @@ from functools import cached_property
 import numpy as np
 
 from ..operators.condensation import CondensedContact
-from ..operators.holder import RigidHolder
+from ..operators.pressure import PressureSpace
+from ..operators.rigid_motion import RigidHolder
 
 _ZERO = 1e-12
 """Relative area of a basis function that counts as zero."""
@@ -53,13 +54,11 @@ def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np
     -------
     ndarray of bool, shape (n,)
     """
-    near, partly = (np.zeros(facet.max() + 1, dtype=bool) for _ in range(2))
-    near[facet[reached]] = True
-    partly[facet[~reached]] = True
+    near = np.isin(facet, facet[reached])
     for _ in range(_EDGE_ADVANCE):
-        shared = np.any(basis[near[facet]] > 0.0, axis=0)
-        near[facet[np.any(basis[:, shared] > 0.0, axis=1)]] = True
-    return (near & partly)[facet]
+        shared = np.any(basis[near] > 0.0, axis=0)
+        near = np.isin(facet, facet[np.any(basis[:, shared] > 0.0, axis=1)])
+    return near & np.isin(facet, facet[~reached])
 
 
 def has_passed(
@@ -103,9 +102,7 @@ def rough_points(
     """
     weighted = weights[:, None] * basis
     left = pressure - basis @ np.linalg.solve(weighted.T @ basis, weighted.T @ pressure)
-    rough = np.zeros(facet.max() + 1, dtype=bool)
-    rough[facet[np.abs(left) > _SMOOTH * pressure.max()]] = True
-    return rough[facet]
+    return np.isin(facet, facet[np.abs(left) > _SMOOTH * pressure.max()])
 
 
 def closing_times(start: np.ndarray, middle: np.ndarray, end: np.ndarray, step: float):
@@ -141,17 +138,13 @@ def closing_times(start: np.ndarray, middle: np.ndarray, end: np.ndarray, step: 
 
 
 @dataclass(frozen=True)
-class EdgeSpace:
-    """Pressure space with pointwise pressures at given points.
+class EdgeSpace(PressureSpace):
+    """Pressure space of functions Ψ off given points, then of pressures of these single points.
 
     Attributes
     ----------
     points : ndarray of bool, shape (n,)
         Points with pointwise pressures.
-    basis : ndarray, shape (n, k)
-        Basis functions Ψ off these points, then those of single points.
-    weighted : ndarray, shape (n, k)
-        Basis times areas, ``diag(w)`` basis.
     projection : ndarray, shape (m, k)
         Coefficients in Ψ of their projections, which load the bodies.
     local_compliance : ndarray, shape (k, k)
@@ -161,8 +154,6 @@ class EdgeSpace:
     """
 
     points: np.ndarray
-    basis: np.ndarray
-    weighted: np.ndarray
     projection: np.ndarray
     local_compliance: np.ndarray
     modes: np.ndarray
@@ -206,7 +197,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     whole = np.flatnonzero(share >= 1.0 - _ZERO)
     single = np.eye(len(points))[:, points]
     split = np.hstack([np.where(points[:, None], 0.0, contact.basis[:, cut]), single])
-    projection = np.linalg.solve(contact.weighted.T @ contact.basis, contact.weighted.T @ split)
+    projection = contact.projected(split)
     left = split - contact.basis @ projection
     basis = np.hstack([contact.basis[:, whole], split])
     weighted = weights[:, None] * basis

@@ -15,9 +15,8 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from ...lagrange import lattice, neighbour_nodes
-from ..search.face import Face
+from ..search.face import Face, Surface
 from ..search.pairing import PairedFace, Pairing
-from ..search.surface import Surface
 
 _ROUGH = 1e-8
 """Relative weight of the smoothing term, which determines nodes without contact points nearby."""
@@ -70,9 +69,10 @@ def directions_between(
     recession : ndarray, shape (2,)
         Recession of each face; only the ratio matters.
     """
+    at = (_nodes_at(side) for side in sides)
     out_1, out_2 = (
-        _unit(np.einsum("nk,nki->ni", _shape_functions(side), along[_nodes_at(side)]))
-        for side, along in zip(sides, directions, strict=True)
+        _unit(np.einsum("nk,nki->ni", values, along[node]))
+        for (node, values), along in zip(at, directions, strict=True)
     )
     return _unit(recession[0] * out_1 - recession[1] * out_2)
 
@@ -100,8 +100,8 @@ class WornFace:
         side = pairing.sides[index]
         self._paths = paths
         out = pairing.normals if index == 0 else -pairing.normals
-        node = _nodes_at(side)
-        values = _shape_functions(side) * np.einsum("ni,nki->nk", out, paths.directions[node])
+        node, values = _nodes_at(side)
+        values = values * np.einsum("ni,nki->nk", out, paths.directions[node])
         point = np.broadcast_to(np.arange(len(node))[:, None], node.shape)
         shape = len(node), len(paths.directions)
         # depths at the points per displacement of the nodes
@@ -153,14 +153,10 @@ def _at(face: Face | Surface, values, order: int) -> np.ndarray:
     return values(*face.on_each(t)).reshape(len(face.nodes), len(t), -1)
 
 
-def _nodes_at(side: PairedFace) -> np.ndarray:
-    """Nodes of the facet at each point, shape (n, nodes_per_facet)."""
-    return side.face.numbers(side.face.order)[side.facet]
-
-
-def _shape_functions(side: PairedFace) -> np.ndarray:
-    """Values of the shape functions of these nodes at the points."""
-    return side.face.shape_functions(side.t)[0]
+def _nodes_at(side: PairedFace) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of the facet at each point, and their shape functions, (n, nodes_per_facet) each."""
+    face = side.face
+    return face.numbers(face.order)[side.facet], face.shape_functions(side.t)[0]
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -234,17 +234,10 @@ def from_table(table: np.ndarray, gdim: int) -> Design:
 
 def _text(design: Design) -> str:
     count, gdim = design.points.shape
-    in_space = ((0, 0), (0, 3 - gdim))
-    table = np.column_stack(
-        [
-            np.full(count, design.body),
-            np.pad(design.points, in_space),
-            design.s,
-            np.pad(design.normals, in_space),
-            design.shape,
-            design.shape_along_press,
-            design.depth,
-        ]
+    points, normals = (
+        np.pad(of, ((0, 0), (0, 3 - gdim))) for of in (design.points, design.normals)
     )
+    shapes = design.shape, design.shape_along_press, design.depth
+    table = np.column_stack([np.full(count, design.body), points, design.s, normals, *shapes])
     rows = [",".join(f"{value:.15g}" for value in row) for row in table]
     return "\n".join([",".join(HEADERS), *rows, ""])

@@ -166,15 +166,9 @@ class AnnularPunch(Stacked):
         return replace(flat, points=points)
 
     def _to_profile(self, points: np.ndarray, columns: np.ndarray, height: float) -> np.ndarray:
-        """Map points of a body so that its flat face becomes the profile and its far end stays.
+        """Map points (n, 2) of a body so that its flat face becomes the profile.
 
-        Parameters
-        ----------
-        points : ndarray, shape (n, 2) [m]
-        columns : ndarray
-            Radii of the element ends of the body, increasing [m].
-        height : float
-            z of the far end [m].
+        The far end at z = `height` stays; `columns` are the radii of the element ends [m].
         """
         limits = self.inner_radius, self.outer_radius
         r, z = points.T

@@ -110,7 +110,10 @@ class ArcContact(PlaneGeometry):
 
     def build(self, mesh, zone=None):
         upper, ring = self.bodies
-        angles = None if zone is None else self._angles(zone)
+        angles = None
+        if zone is not None:
+            first, last = (math.asin(min(max(x / self.radius, -1.0), 1.0)) for x in zone)
+            angles = first, last
         divisions = [
             complete(self.arc, self.radius, mesh.face(body), angles) for body in self.bodies
         ]
@@ -120,11 +123,6 @@ class ArcContact(PlaneGeometry):
             ring: mesh_body([ORIGIN.sheet(*around)], ORDER),
         }
         return tagged_bodies(bodies, self._claims())
-
-    def _angles(self, zone: tuple[float, float]) -> tuple[float, float]:
-        """Angles of the arc at both ends of a range of x."""
-        first, last = (math.asin(min(max(x / self.radius, -1.0), 1.0)) for x in zone)
-        return first, last
 
     def _claims(self) -> dict[str, Claim]:
         """Predicates of all surfaces, see `tagged_bodies`."""

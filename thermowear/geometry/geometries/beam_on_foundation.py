@@ -15,16 +15,7 @@ from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
 from ..mesh.tagged import TaggedMesh
-from ..meshing.cells import (
-    MeshedBody,
-    Sheet,
-    between,
-    both,
-    grid,
-    level,
-    mesh_body,
-    tagged_bodies,
-)
+from ..meshing.cells import Sheet, between, both, grid, level, mesh_body, tagged_bodies
 from ..meshing.divisions import joined
 
 
@@ -81,13 +72,14 @@ class BeamOnFoundation(PlaneGeometry):
         return self.load_position - self.load_width / 2, self.load_position + self.load_width / 2
 
     def build(self, mesh, zone=None) -> TaggedMesh:
-        top = self.gap + self.height
-        bodies = {
-            "beam": self._rectangle(self.gap, top, mesh.face("beam")[0], (2, 4)),
-            "foundation": self._rectangle(
-                -self.foundation_height, 0.0, mesh.face("foundation")[0], (1, 3)
-            ),
-        }
+        top, bodies = self.gap + self.height, {}
+        # bottom, top, least and largest number of rows
+        sections = ((self.gap, top, 2, 4), (-self.foundation_height, 0.0, 1, 3))
+        for body, (low, high, least, most) in zip(self.bodies, sections, strict=True):
+            columns = self._columns(mesh.face(body)[0])
+            wanted = round((high - low) / np.diff(columns).max())
+            ends = np.linspace(low, high, min(max(wanted, least), most) + 1)
+            bodies[body] = mesh_body([Sheet(grid(columns, ends))], 1)
         claims = {
             "beam_face": level(1, self.gap),
             "beam_clamp": level(0, 0.0),
@@ -100,15 +92,6 @@ class BeamOnFoundation(PlaneGeometry):
             "foundation_bottom": level(1, -self.foundation_height),
         }
         return tagged_bodies(bodies, claims)
-
-    def _rectangle(
-        self, bottom: float, top: float, elements: int, rows: tuple[int, int]
-    ) -> MeshedBody:
-        """Cells over the whole length, with the number of rows within limits."""
-        columns = self._columns(elements)
-        wanted = round((top - bottom) / np.diff(columns).max())
-        ends = np.linspace(bottom, top, int(np.clip(wanted, *rows)) + 1)
-        return mesh_body([Sheet(grid(columns, ends))], 1)
 
     def _columns(self, elements: int) -> np.ndarray:
         """X of the ends of nearly equal elements that match the ends of the load."""

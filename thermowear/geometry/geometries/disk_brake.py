@@ -18,7 +18,6 @@ from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
 from ..meshing.cells import (
     Claim,
-    Lattice,
     MeshedBody,
     both,
     every,
@@ -105,15 +104,8 @@ class DiskBrake(PadsOnDisk, Stacked):
     @keyed
     def surfaces(self) -> tuple[str, ...]:
         disk = named("disk", "face", "middle", "outside", "inside")
-        rest = () if self.covers_disk else ("disk_rest",)
+        rest = () if self.covers else ("disk_rest",)
         return *named("pad", "face", "back", "inside", "outside"), *disk, *rest
-
-    @property
-    def covers_disk(self) -> bool:
-        """True if the pads are as wide as the disk, so that no free ring of its face remains."""
-        return math.isclose(
-            self.pad_inner_radius, self.disk_inner_radius, rel_tol=SAME
-        ) and math.isclose(self.pad_outer_radius, self.disk_outer_radius, rel_tol=SAME)
 
     @property
     def upper(self) -> Rectangle:
@@ -180,7 +172,7 @@ class DiskSector(PadsOnDisk):
     def _pad(self, order: int, elements: int, grading: float) -> MeshedBody:
         radii, angles, thin, largest = self._face(elements, grading)
         rows = growing(0.0, self.pad_thickness, thin, grading, largest)
-        return mesh_lattice(Lattice((radii, angles, rows), _cylindrical_map), order)
+        return mesh_lattice((radii, angles, rows), order, _cylindrical_map)
 
     def _disk(self, order: int, elements: int, grading: float) -> MeshedBody:
         radii, angles, thin, largest = self._face(elements, grading)
@@ -192,7 +184,7 @@ class DiskSector(PadsOnDisk):
         )
         rows = growing(0.0, -self.disk_thickness / 2, thin, grading, largest)
         ends = joined(inside, radii, outside), joined(before, angles, after), rows
-        return mesh_lattice(Lattice(ends, _cylindrical_map, closed=True), order)
+        return mesh_lattice(ends, order, _cylindrical_map, closed=True)
 
     def _face(self, elements: int, grading: float) -> tuple[np.ndarray, np.ndarray, float, float]:
         """Divisions of the contact along the radius [m] and around the axis [rad].

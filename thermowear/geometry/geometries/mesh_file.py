@@ -13,8 +13,7 @@ from ...case.tables.geometry import keyed
 from ...case.tables.plane_geometry import HalvableGeometry
 from ...case.values.section import KeyFault, UserFile
 from ...case.values.units import Area, Length
-from ..reading.assembly import Named, assemble
-from ..reading.cell_sets import divided, joined
+from ..reading.assembly import Named, assemble, divided
 from ..reading.file_contents import read_contents
 from ..reading.mesh_checks import check_mesh
 from ..reading.pair_checks import check_pair
@@ -154,12 +153,12 @@ class MeshFile(HalvableGeometry):
     def build(self, mesh, zone):
         contents = read_contents(Path(self.path))
         contents = replace(contents, points=contents.points * self.length_unit)
-        contents, bodies = joined(contents, {name: self.sets_of(name) for name in self.bodies})
+        bodies = [Named(b, self.sets_of(b), f"geometry.bodies.{b}") for b in self.bodies]
         tagged = assemble(contents, bodies, list(self._purposes().values()))
-        owners = [self.bodies.index(body) for body in self.zones.values()]
         sets = [
-            Named(zone, name, f"bodies.{zone.removesuffix(name)}materials.{name}", owner)
-            for (zone, name), owner in zip(self.set_of.items(), owners, strict=True)
+            Named(f"{body}.{name}", (name,), f"bodies.{body}.materials.{name}", index)
+            for index, body in enumerate(self.bodies)
+            for name in self._with_material.get(body, ())
         ]
         return divided(tagged, contents, bodies, sets)
 
@@ -178,5 +177,5 @@ class MeshFile(HalvableGeometry):
         for use, name, body in uses:
             renamed = name in self.surface_names
             key = f"geometry.surfaces.{name}" if renamed else f"geometry.{use}"
-            result.setdefault(name, Named(name, self.surface_names.get(name, name), key, body))
+            result.setdefault(name, Named(name, (self.surface_names.get(name, name),), key, body))
         return result

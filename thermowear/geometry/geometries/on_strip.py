@@ -15,7 +15,7 @@ from ...case.tables.geometry import keyed, named
 from ...case.tables.plane_geometry import PlaneGeometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
-from ..meshing.divisions import SAME, growth
+from ..meshing.divisions import growth
 from .stacked import Rectangle, Stacked
 
 
@@ -43,14 +43,8 @@ class OnStrip(Stacked, PlaneGeometry):
     @keyed
     def surfaces(self) -> tuple[str, ...]:
         upper = named(self.bodies[0], "face", "top", "left", "right")
-        rest = () if self.covers_strip else ("strip_top",)
+        rest = () if self.covers else ("strip_top",)
         return *upper, *named("strip", "face", "bottom", "right", "left"), *rest
-
-    @property
-    def covers_strip(self) -> bool:
-        """True if the face is as wide as the strip is long, without a free part of its top."""
-        start, end = self.lower_face
-        return math.isclose(end - start, self.strip_length, rel_tol=SAME)
 
     @property
     def lower(self) -> Rectangle:
@@ -76,7 +70,7 @@ class OnStrip(Stacked, PlaneGeometry):
     def check_strip(self) -> None:
         """Raise a `KeyFault` if the face is wider than the strip is long."""
         start, end = self.lower_face
-        if not end - start <= self.strip_length and not self.covers_strip:
+        if not end - start <= self.strip_length and not self.covers:
             raise KeyFault(
                 "strip_length",
                 f"{self.strip_length:g} m must be at least the width of the face {end - start:g} m",

@@ -15,7 +15,6 @@ from ...case.tables.geometry import Geometry, named
 from ...case.values.section import KeyFault
 from ...case.values.units import Length
 from ..meshing.cells import (
-    Lattice,
     MeshedBody,
     between,
     both,
@@ -93,7 +92,7 @@ class RectangularPunch(Geometry):
     def _punch(self, elements: int, grading: float) -> MeshedBody:
         x, y, thin, largest = self._face(elements, grading)
         z = growing(0.0, self.height, thin, grading, largest)
-        return mesh_lattice(Lattice((x, y, z)), 1)
+        return mesh_lattice((x, y, z), 1)
 
     def _block(self, elements: int, grading: float) -> MeshedBody:
         *faces, thin, largest = self._face(elements, grading)
@@ -106,7 +105,7 @@ class RectangularPunch(Geometry):
             for face, block in zip(faces, (self.block_x, self.block_y), strict=True)
         )
         z = growing(0.0, -self.block_height, thin, grading, largest)
-        return mesh_lattice(Lattice((x, y, z)), 1)
+        return mesh_lattice((x, y, z), 1)
 
     def _face(self, elements: int, grading: float) -> tuple[np.ndarray, np.ndarray, float, float]:
         """Divisions of the contact along x and along y.

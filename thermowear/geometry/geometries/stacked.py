@@ -1,19 +1,26 @@
-"""Base of geometries of two stacked rectangles: a ring on a plate, a block on a strip.
+"""Two stacked rectangles: base of a ring on a plate, a block on a strip; blocks of equal width.
 
 The contact lies at y = 0; body 1 is above. The mesh is structured in columns and rows.
 """
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
-from ...case.tables.geometry import Geometry
+from ...case.tables.geometry import Geometry, named
+from ...case.tables.plane_geometry import PlaneGeometry
+from ...case.values.units import Length
 from ..mesh.tagged import TaggedMesh
-from ..meshing.cells import Sheet, between, both, grid, level, mesh_body, tagged_bodies
-from ..meshing.divisions import divided_face, growing_from_both, joined
+from ..meshing.cells import Sheet, between, both, every, grid, level, mesh_body, tagged_bodies
+from ..meshing.divisions import SAME, divided_face, growing, growing_from_both, joined
+
+_THIN_ROWS = 3
+"""Graded rows of stacked blocks at the contact, for the thermal boundary layer and waves on it."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +66,12 @@ class Stacked(Geometry):
     @property
     def follows_contact(self) -> bool:
         return True  # faces may separate thermally, body 1 may tilt by friction
+
+    @property
+    def covers(self) -> bool:
+        """True if the face is as wide as body 2, without a free part of its top."""
+        (start, end), lower = self.lower_face, self.lower
+        return math.isclose(end - start, lower.right - lower.left, rel_tol=SAME)
 
     def build(self, mesh, zone=None) -> TaggedMesh:
         (first, upper), (second, lower) = zip(self.bodies, (self.upper, self.lower), strict=True)
@@ -116,3 +129,49 @@ class Stacked(Geometry):
         upper, contact = self.upper, float(np.diff(face).min())
         largest = max(upper.right - upper.left, upper.height) * 3.0 / elements
         return contact, (contact * largest) ** 0.5, largest
+
+
+class StackedBlocks(PlaneGeometry):
+    """Dimensions of two blocks of equal width between planes of symmetry.
+
+    A column of bodies that are wide and uniform, or half a wavelength of a state that is periodic
+    along x, from x = 0 to the width. Sliding is normal to the section: friction heats and wears the
+    blocks, without tangential traction in the section.
+
+    There is no singularity where the face meets a plane of symmetry: its elements are equal.
+    There are about as many rows as elements along the face, and some thin ones at the contact.
+
+    Attributes
+    ----------
+    width : float [m]
+    upper_height, lower_height : float [m]
+    """
+
+    name = "stacked-blocks"
+    models = ("plane-strain", "plane-stress")
+    bodies = ("upper", "lower")
+    surfaces = (*named("upper", "face", "top", "side"), *named("lower", "face", "bottom", "side"))
+    symmetry = ("upper_side", "lower_side")
+    held = "upper_top"
+    fixed = "lower_bottom"
+    slides_across = True
+
+    type: Literal["stacked-blocks"]
+    width: Length
+    upper_height: Length
+    lower_height: Length
+
+    def contact_area(self) -> float:
+        return self.width * self.thickness
+
+    def build(self, mesh, zone=None):
+        blocks, claims = {}, []
+        ends = self.upper_height, -self.lower_height
+        for body, end in zip(self.bodies, ends, strict=True):
+            elements, grading = mesh.face(body)
+            largest = abs(end) / elements
+            rows = growing(0.0, end, largest * grading**_THIN_ROWS, grading, largest)
+            columns = np.linspace(0.0, self.width, elements + 1)
+            blocks[body] = mesh_body([Sheet(grid(columns, rows))], order=1)
+            claims += [level(1, 0.0), level(1, end), every]
+        return tagged_bodies(blocks, dict(zip(self.surfaces, claims, strict=True)))

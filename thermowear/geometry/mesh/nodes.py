@@ -1,10 +1,11 @@
-"""Cells of any order: Lagrange nodes numbered as in gmsh, boundary and shape functions."""
+"""Cells of any order: Lagrange nodes numbered as in gmsh, boundary, links, shape functions."""
 
 from __future__ import annotations
 
 from functools import cache
 
 import numpy as np
+import scipy
 
 from ...lagrange import equispaced, matching, tabulated
 
@@ -108,13 +109,32 @@ def boundary(cell_type: str, order: int, cells: np.ndarray) -> np.ndarray:
     in_space = cell_type in _SPATIAL_FACETS
     local = facet_nodes(cell_type, order) if in_space else edge_nodes(cell_type, order)
     every = cells[:, local].reshape(-1, local.shape[1])
-    _, index, count = np.unique(
-        np.sort(every[:, : len(_PLACES[FACETS[cell_type]])], axis=1),
-        axis=0,
-        return_inverse=True,
-        return_counts=True,
+    number, count = numbered(every[:, : len(_PLACES[FACETS[cell_type]])])
+    return every[count[number] == 1]
+
+
+def numbered(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Number each edge or facet, given by corners (n, n_corners), the same ones alike.
+
+    Shape (n,); also how often each number occurs.
+    """
+    _, number, count = np.unique(
+        np.sort(corners, axis=1), axis=0, return_inverse=True, return_counts=True
     )
-    return every[count[index.ravel()] == 1]
+    return number.ravel(), count
+
+
+def meeting(corners: np.ndarray) -> np.ndarray:
+    """Pairs of indices of edges that occur twice, given by their ends (n, 2); shape (n, 2)."""
+    number, count = numbered(corners)
+    order = np.argsort(number, kind="stable")
+    return order[count[number[order]] == 2].reshape(-1, 2)
+
+
+def components(links: np.ndarray, count: int) -> np.ndarray:
+    """Number of the connected component of each of `count` nodes with links (n, 2), from 0."""
+    graph = scipy.sparse.coo_matrix((np.ones(len(links)), links.T), shape=(count, count))
+    return scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
 
 
 def turned(cell_type: str, order: int) -> np.ndarray:

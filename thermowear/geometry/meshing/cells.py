@@ -1,19 +1,19 @@
 """Curved quadrilaterals and hexahedra without a mesh generator: cells of parameters, and a map.
 
-A sheet holds cells by their corners in two plane parameters and the map to the section, a lattice
-the element ends of three parameters and the map to space. Nodes of cells of any order are images of
+A sheet holds cells by their corners in two plane parameters and the map to the section; cells in
+space have the element ends of three parameters and a map. Nodes of cells of any order are images of
 equally spaced parameters, so nodes of a curved boundary lie on it exactly and the interior ones
 follow the map. Surfaces are named by predicates of their facets.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..mesh.nodes import boundary, reference_nodes
+from ..mesh.nodes import boundary, components, reference_nodes
 from ..mesh.tagged import TaggedMesh
 from .divisions import MOST_HEXAHEDRA, check_count
 
@@ -194,52 +194,47 @@ def _nodes(sheet: Sheet, order: int) -> np.ndarray:
 
 def _joined(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Merge coinciding nodes: coordinates, and the point indices of each cell."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
     sides = np.linalg.norm(nodes[:, [1, 2, 3, 0]] - nodes[:, :4], axis=2)
     flat = nodes.reshape(-1, 2)
     pairs = cKDTree(flat).query_pairs(1e-3 * sides.min(), output_type="ndarray")
-    links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(flat), len(flat)))
-    _, label = connected_components(links, directed=False)
+    label = components(pairs, len(flat))
     _, first = np.unique(label, return_index=True)
     return flat[first], label.reshape(nodes.shape[:2]).astype(np.int64)
 
 
-@dataclass(frozen=True)
-class Lattice:
-    """Cells in the space of three parameters.
+def mesh_lattice(
+    ends: Sequence[np.ndarray],
+    order: int,
+    place: Callable[[np.ndarray], np.ndarray] = np.asarray,
+    closed: bool = False,
+) -> MeshedBody:
+    """Mesh a lattice of hexahedra in the space of three parameters.
 
-    Attributes
+    Parameters
     ----------
-    ends : tuple of ndarray
+    ends : sequence of ndarray
         Element ends along each parameter, increasing.
+    order : int
+        Order of the cells.
     place : callable
         Orientation-preserving map from parameters to coordinates, both of shape (..., 3), by
         default the identity [m].
     closed : bool
         True if the second parameter, an angle, is periodic.
     """
-
-    ends: tuple[np.ndarray, np.ndarray, np.ndarray]
-    place: Callable[[np.ndarray], np.ndarray] = np.asarray
-    closed: bool = False
-
-
-def mesh_lattice(lattice: Lattice, order: int) -> MeshedBody:
-    """Mesh a lattice with cells of an order."""
-    check_count(*(len(ends) - 1 for ends in lattice.ends), most=MOST_HEXAHEDRA)
-    u, v, w = (_parameters(ends, order) for ends in lattice.ends)
-    if lattice.closed:
+    counts = [len(along) - 1 for along in ends]
+    check_count(*counts, most=MOST_HEXAHEDRA)
+    u, v, w = (_parameters(along, order) for along in ends)
+    if closed:
         v = v[:-1]
-    shape = (len(u), len(v), len(w))
-    points = lattice.place(np.stack(np.meshgrid(u, v, w, indexing="ij"), axis=-1).reshape(-1, 3))
-    first = np.indices([len(ends) - 1 for ends in lattice.ends]).reshape(3, -1, 1) * order
+    points = place(np.stack(np.meshgrid(u, v, w, indexing="ij"), axis=-1).reshape(-1, 3))
+    first = np.indices(counts).reshape(3, -1, 1) * order
     within = np.rint(order * reference_nodes("hexahedron", order)).astype(np.int64)
-    place = first + within.T[:, None]
-    place[1] %= len(v)
-    cells = np.ravel_multi_index(tuple(place), shape)
+    number = first + within.T[:, None]
+    number[1] %= len(v)
+    cells = np.ravel_multi_index(tuple(number), (len(u), len(v), len(w)))
     return MeshedBody(points, cells, boundary("hexahedron", order, cells))
 
 

@@ -167,7 +167,8 @@ def _sheets(outline: Outline, face: np.ndarray, rows: np.ndarray, stack: np.ndar
     k = 0
     while k < stack.shape[1] - 1:
         left, right, depth = stack[:, k : k + 2]
-        widths = _widths(left, right, depth)
+        down, across = depth.mean(), (right - left).mean()
+        widths = np.ptp(depth) / across, np.ptp(left) / down, np.ptp(right) / down
         slenderness = [w * (len(t) - 1) for w, t in zip(widths, parts, strict=True)]
         tall = [q for q, t in zip(slenderness, parts, strict=True) if q > _TALL and len(t) > 3]
         if tall:
@@ -185,12 +186,6 @@ def _sheets(outline: Outline, face: np.ndarray, rows: np.ndarray, stack: np.ndar
                 sheets.append(Sheet(cells, place))
         k += 1
     return sheets
-
-
-def _widths(left: np.ndarray, right: np.ndarray, depth: np.ndarray) -> list[float]:
-    """Widths of the blocks below, on the left and on the right, relative to their lengths."""
-    down, across = depth.mean(), (right - left).mean()
-    return [np.ptp(depth) / across, np.ptp(left) / down, np.ptp(right) / down]
 
 
 def _below(outline: Outline, left, right, depth):
@@ -223,12 +218,7 @@ def _linear(ends, s):
 def _ring_block(inner: np.ndarray, join: bool) -> tuple[np.ndarray, np.ndarray]:
     """Cells of a block of a ring in (s, t), and t at its element ends on the outside.
 
-    Parameters
-    ----------
-    inner : ndarray
-        t at the element ends on the inside.
-    join : bool
-        True if three elements are merged into one.
+    Of those on the inside, at t = `inner`, three are merged into one for `join`.
     """
     n = len(inner) - 1
     triples = n // 3 if join else 0
@@ -242,14 +232,10 @@ def _ring_block(inner: np.ndarray, join: bool) -> tuple[np.ndarray, np.ndarray]:
     kept = np.array(sorted([*starts, *singles, n]))
     outer = 0.5 * (inner[kept] + np.linspace(0.0, 1.0, len(kept)))
     at = {int(i): float(t) for i, t in zip(kept, outer, strict=True)}
-    cells = [_through(inner[i : i + 2], at[i], at[i + 1]) for i in singles]
+    cells = [[(0, inner[i]), (0, inner[i + 1]), (1, at[i + 1]), (1, at[i])] for i in singles]
     for i in starts:
         cells += _three_to_one(inner[i : i + 4], at[i], at[i + 3])
     return outer, np.array(cells)
-
-
-def _through(inner, first: float, last: float) -> list:
-    return [(0, inner[0]), (0, inner[1]), (1, last), (1, first)]
 
 
 def _three_to_one(inner, first: float, last: float) -> list[list]:

@@ -16,10 +16,7 @@ from scipy.spatial import cKDTree
 from ...lagrange import gauss, on_lattice
 from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh
-from .outline import outline_edges, split
-
-_CORNER = np.cos(np.radians(20.0))
-"""Cosine of the largest turn of a smooth outline; sharper turns are corners."""
+from .outline import COMPLEX, CORNER, outline_edges, split
 
 Extension = Callable[
     [TaggedMesh, str, np.ndarray, np.ndarray | None], Callable[[np.ndarray], np.ndarray]
@@ -117,23 +114,21 @@ class MovableBody(MovableFace):
         self._mesh = mesh
         self.face = nodes_at(mesh, parts, face)
         self._edges = outline_edges(mesh, cells_of(mesh, parts))
-        self.sides = tuple(
-            self._side(ends, nodes)
-            for ends, nodes in zip(
-                (self.face[:2], self.face[-2:][::-1]), self._beside(), strict=True
-            )
-        )
+        ends = self.face[:2], self.face[:-3:-1]
+        self.sides = tuple(map(self._side, ends, self._beside()))
 
     def motion_paths(self, normals):
         # in between, the inclination to the normal varies linearly, so that paths do not cross
         held, turn = np.zeros(len(normals), dtype=bool), np.zeros(2)
+        paths = normals @ COMPLEX
         for k, side in enumerate(self.sides):
             held[-k] = not side.is_corner
             if side.is_corner:
-                turn[k] = _angle(normals[-k], -side.inward)
+                turn[k] = np.angle(-side.inward @ COMPLEX / paths[-k])
         length = chord_lengths(self._mesh.points[self.face])
         part = length / length[-1]
-        return _rotated(normals, (1 - part) * turn[0] + part * turn[1]), held
+        paths = paths * np.exp(1j * ((1 - part) * turn[0] + part * turn[1]))
+        return np.column_stack([paths.real, paths.imag]), held
 
     def outlined(self, displacement):
         given = np.zeros_like(self._mesh.points)
@@ -161,9 +156,12 @@ class MovableBody(MovableFace):
     def _beside(self) -> tuple[np.ndarray, np.ndarray]:
         """Nodes of the outline from both ends of the face to the next corners."""
         is_face = np.logical_and.reduce(np.isin(self._edges[:, [0, -1]], self.face), axis=1)
-        found = split(self._mesh.points, self._edges, is_face)
-        pieces = next(loop for loop in found if any(piece.is_face for piece in loop))
-        k = next(number for number, piece in enumerate(pieces) if piece.is_face)
+        pieces, k = next(
+            (loop, k)
+            for loop in split(self._mesh.points, self._edges, is_face)
+            for k, piece in enumerate(loop)
+            if piece.is_face
+        )
         if len(pieces) == 1:
             return self.face[:1], self.face[-1:]
         before, after = pieces[k - 1].nodes[::-1], pieces[(k + 1) % len(pieces)].nodes
@@ -171,12 +169,12 @@ class MovableBody(MovableFace):
 
     def _side(self, ends: np.ndarray, along: np.ndarray) -> OutlineSide:
         """Side with nodes `along` it, given the first two nodes of the face from there."""
-        points = self._mesh.points
         if len(along) == 1:
             return OutlineSide(along, np.zeros(2), False)
-        inward = _unit(points[along[1]] - points[along[0]])
-        from_face = _unit(points[ends[0]] - points[ends[1]])
-        return OutlineSide(along, inward, bool(inward @ from_face < _CORNER))
+        points = self._mesh.points
+        inward, from_face = points[[along[1], ends[0]]] - points[[along[0], ends[1]]]
+        turn = abs(np.angle(inward @ COMPLEX / (from_face @ COMPLEX)))
+        return OutlineSide(along, inward / np.linalg.norm(inward), bool(turn > CORNER))
 
 
 def cells_of(mesh: TaggedMesh, parts: tuple[str, ...]) -> np.ndarray:
@@ -199,19 +197,3 @@ def enclosed(edges: np.ndarray, factor: Callable[[np.ndarray], np.ndarray]) -> f
     rise = np.einsum("qk,nk->nq", slopes, edges[..., 1])
     halfway = np.stack([x / 2, y], axis=-1).reshape(-1, 2)
     return float(np.tile(w, len(edges)) @ (factor(halfway) * (x * rise).ravel()))
-
-
-def _angle(first: np.ndarray, second: np.ndarray) -> float:
-    """Angle from one plane vector to another, anticlockwise [rad]."""
-    return float(np.arctan2(first[0] * second[1] - first[1] * second[0], first @ second))
-
-
-def _rotated(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Plane vectors (n, 2) rotated anticlockwise."""
-    cos, sin = np.cos(angles), np.sin(angles)
-    x, y = vectors.T
-    return np.column_stack([cos * x - sin * y, sin * x + cos * y])
-
-
-def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / np.linalg.norm(vector)

@@ -12,10 +12,17 @@ from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
-import scipy
 
 from ...lagrange import gauss
-from ..mesh.nodes import FACETS, boundary, edge_nodes, reference_nodes, shape_functions, slopes
+from ..mesh.nodes import (
+    boundary,
+    components,
+    edge_nodes,
+    meeting,
+    reference_nodes,
+    shape_functions,
+    slopes,
+)
 from ..mesh.tagged import TaggedMesh
 from .moved import Extension, MovableFace, cells_of, nodes_at
 
@@ -53,22 +60,20 @@ class Patches:
         self.facets = boundary(mesh.cell_type, mesh.order, cells)
         on_face = np.logical_and.reduce(np.isin(self.facets, face), axis=1)
         self._edges = self.facets[:, edge_nodes("quadrilateral", mesh.order)]
-        meeting = _meeting(self._edges)  # edge number: 4 facet + local edge
-        one, other = np.moveaxis(self._normals(meeting), 1, 0)
+        # edge number: 4 facet + local edge
+        pairs = meeting(self._edges[..., :2].reshape(-1, 2))
+        one, other = np.moveaxis(self._normals(pairs), 1, 0)
         smooth = np.einsum("ei,ei->e", one, other) > _SMOOTH
-        facet = meeting // 4
+        facet = pairs // 4
         inside = ~on_face[facet].any(axis=1)
-        links = facet[inside & smooth]
-        count = len(self.facets)
-        graph = scipy.sparse.coo_matrix((np.ones(len(links)), links.T), shape=(count, count))
-        patch = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+        patch = components(facet[inside & smooth], len(self.facets))
         rim = on_face[facet[:, 0]] != on_face[facet[:, 1]]
-        beside = np.where(on_face[facet[:, 0]], *meeting.T[::-1])
+        beside = np.where(on_face[facet[:, 0]], *pairs.T[::-1])
         self._sharp, self._level = beside[rim & ~smooth], beside[rim & smooth]
         slides = np.isin(patch, patch[self._sharp // 4]) & ~on_face
         between = inside & (patch[facet[:, 0]] != patch[facet[:, 1]]) & slides[facet].all(axis=1)
         self.sliding = self.facets[slides]
-        self.seams = self._edges.reshape(-1, mesh.order + 1)[meeting[between, 0]]
+        self.seams = self._edges.reshape(-1, mesh.order + 1)[pairs[between, 0]]
         self.still = np.unique(self.facets[~slides & ~on_face])
 
     def inward(self) -> tuple[np.ndarray, np.ndarray]:
@@ -101,15 +106,6 @@ class Patches:
         tangents = np.einsum("...dk,...ki->d...i", derivatives, self._points[self.facets[facet]])
         normals = np.cross(*tangents)
         return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
-
-
-def _meeting(edges: np.ndarray) -> np.ndarray:
-    """Pairs of edge numbers that are the same edge of two facets, shape (n, 2)."""
-    ends = np.sort(edges[..., :2].reshape(-1, 2), axis=1)
-    _, number, count = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
-    number = number.ravel()
-    order = np.argsort(number, kind="stable")
-    return order[count[number[order]] == 2].reshape(-1, 2)
 
 
 class MovableSolid(MovableFace):
@@ -154,8 +150,9 @@ class MovableSolid(MovableFace):
         facets = facets[np.any(outlined[facets] != 0.0, axis=(1, 2))]
         points = self._mesh.points[facets]
         points = points - points.reshape(-1, 3).mean(axis=0)
-        kind, order = self._kind, self._mesh.order
-        before, after = (_enclosed(kind, order, p) for p in (points, points + outlined[facets]))
+        before, after = (
+            _enclosed(self._mesh.order, p) for p in (points, points + outlined[facets])
+        )
         return (before - after) * float(factor(np.zeros((1, 3)))[0])
 
     @cached_property
@@ -164,15 +161,12 @@ class MovableSolid(MovableFace):
         known = np.zeros(len(self._mesh.points), dtype=bool)
         known[self._patches.still] = known[self.face] = True
         found = []
-        for kind, cells in (("interval", self._patches.seams), (self._kind, self._patches.sliding)):
+        patches = self._patches
+        for kind, cells in (("interval", patches.seams), ("quadrilateral", patches.sliding)):
             if len(cells):
                 found.append(self._extension(self._mesh, kind, cells, known.copy()))
                 known[cells] = True
         return found
-
-    @property
-    def _kind(self) -> str:
-        return FACETS[self._mesh.cell_type]
 
 
 def _enclosed(kind: str, order: int, facets: np.ndarray) -> float:

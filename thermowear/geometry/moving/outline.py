@@ -10,7 +10,9 @@ import numpy as np
 from ..mesh.nodes import boundary
 from ..mesh.tagged import TaggedMesh
 
-_CORNER = math.radians(20.0)
+COMPLEX = np.array([1.0, 1.0j])
+"""Factors that turn plane vectors (..., 2) into complex numbers, whose ratio is an angle."""
+CORNER = math.radians(20.0)
 """Smallest angle between edges that makes a corner [rad]."""
 
 
@@ -74,13 +76,10 @@ def split(points: np.ndarray, edges: np.ndarray, is_face: np.ndarray) -> list[li
 
 def _pieces(points: np.ndarray, along: np.ndarray, is_face: np.ndarray) -> list[Piece]:
     """Split a closed chain of edges at its corners and at the ends of the contact face."""
-    first = points[along[:, 1]] - points[along[:, 0]]
-    last = points[along[:, -1]] - points[along[:, -2]]
-    turn = _angle(np.roll(last, 1, axis=0), first)
-    cuts = np.flatnonzero(
-        ((np.abs(turn) > _CORNER) & ~(is_face & np.roll(is_face, 1)))
-        | (is_face != np.roll(is_face, 1))
-    )
+    places, before = points[along] @ COMPLEX, np.roll(is_face, 1)
+    first, last = places[:, 1] - places[:, 0], places[:, -1] - places[:, -2]
+    corner = np.abs(np.angle(first / np.roll(last, 1))) > CORNER
+    cuts = np.flatnonzero((corner & ~(is_face & before)) | (is_face != before))
     starts = cuts if len(cuts) else np.array([0])
     pieces = []
     for start, end in zip(starts, np.roll(starts, -1), strict=True):
@@ -89,9 +88,3 @@ def _pieces(points: np.ndarray, along: np.ndarray, is_face: np.ndarray) -> list[
         nodes = np.append(along[edges, :-1].ravel(), along[edges[-1], -1])
         pieces.append(Piece(nodes, bool(is_face[start])))
     return pieces
-
-
-def _angle(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """Angle from one direction to the other, shape (n,) [rad]."""
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    return np.arctan2(cross, (before * after).sum(axis=1))

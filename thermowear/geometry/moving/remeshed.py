@@ -70,7 +70,10 @@ def meshed_anew(
     found, trouble = [], None
     for algorithm in _ALGORITHMS:
         try:
-            found.append(_curved(*_meshed(mesh, parts, lines, algorithm), extension))
+            body, known, given = _meshed(mesh, parts, lines, algorithm)
+            # nodes of lines move to their exact positions, interior nodes follow
+            motion = extension(body, body.cell_type, body.cells, known)(given)
+            found.append(replace(body, points=body.points + motion))
         except Exception as error:  # gmsh raises plain Exception
             trouble = error
     if not found:
@@ -107,17 +110,13 @@ def _meshed(
 
 def _edges_intersect(lines: list[OutlinePiece]) -> bool:
     """Test whether chords of edges intersect."""
-    starts = np.concatenate([line.edges[:, 0] for line in lines])
-    ends = np.concatenate([line.edges[:, -1] for line in lines])
-    from_start, from_end = (_signed_areas(starts, ends, points) for points in (starts, ends))
-    parted = from_start * from_end < 0.0  # ends of one segment on both sides of another
+    starts, ends = (np.concatenate([line.edges[:, k] for line in lines]) for k in (0, -1))
+    areas = []  # twice those of triangles of segments and points, shape (n_segments, n_points) [m²]
+    for points in (starts, ends):
+        way, to = (ends - starts)[:, None], points - starts[:, None]
+        areas.append(way[..., 0] * to[..., 1] - way[..., 1] * to[..., 0])
+    parted = areas[0] * areas[1] < 0.0  # ends of one segment on both sides of another
     return bool(np.any(parted & parted.T))
-
-
-def _signed_areas(starts: np.ndarray, ends: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Twice the areas of triangles of segments and points, shape (n_segments, n_points) [m²]."""
-    way, to = (ends - starts)[:, None], points - starts[:, None]
-    return way[..., 0] * to[..., 1] - way[..., 1] * to[..., 0]
 
 
 def _draw(model, lines: list[OutlinePiece]) -> list[np.ndarray]:
@@ -198,14 +197,6 @@ def _read(
         facet_tags=np.concatenate(facet_tags),
     )
     return body, known, given
-
-
-def _curved(
-    body: TaggedMesh, known: np.ndarray, given: np.ndarray, extension: Extension
-) -> TaggedMesh:
-    """Body with the nodes of its lines in their exact positions; interior nodes follow."""
-    motion = extension(body, body.cell_type, body.cells, known)(given)
-    return replace(body, points=body.points + motion)
 
 
 def _elements(model, dim: int, tag: int) -> np.ndarray:

@@ -15,11 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...lagrange import lattice, on_lattice
-from ..mesh.nodes import boundary
+from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh
-
-_CORNER = np.cos(np.radians(20.0))
-"""Cosine of the largest turn of a smooth line; sharper turns are corners."""
+from .outline import COMPLEX, CORNER, outline_edges
 
 Label = tuple[int, tuple[int, ...], bool]
 """Tag of the surface or 0, tags of the adjacent parts, True if it is the worn face."""
@@ -27,9 +25,6 @@ _UNEVEN = 1.6
 """Largest length ratio of the two edges of a pair."""
 _GROWTH = 4.0
 """Largest length ratio of neighbouring pairs."""
-
-Span = tuple[float, float, float]
-"""Start, middle and end of a pair, as edge numbers and fractions."""
 
 
 @dataclass(frozen=True)
@@ -93,10 +88,8 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
         Nodes of its worn face in order along it.
     """
     edges, beside = _edges(mesh, mesh.tags_of(parts))
-    corners = np.sort(mesh.facets[:, :2], axis=1)
-    surfaces = {
-        (int(a), int(b)): int(tag) for (a, b), tag in zip(corners, mesh.facet_tags, strict=True)
-    }
+    corners = (tuple(map(int, pair)) for pair in np.sort(mesh.facets[:, :2], axis=1))
+    surfaces = dict(zip(corners, map(int, mesh.facet_tags), strict=True))
     on_face = set(face.tolist())
     labels: dict[tuple[int, int], Label] = {}
     for key, edge in edges.items():
@@ -110,8 +103,8 @@ def skeleton(mesh: TaggedMesh, parts: tuple[str, ...], face: np.ndarray) -> list
     lines, left = [], set(edges)
     while left:
         # closed lines without split points come last
-        key = next((k for k in edges if k in left and not cuts.isdisjoint(k)), None)
-        key = next(k for k in edges if k in left) if key is None else key
+        waiting = [k for k in edges if k in left]
+        key = next((k for k in waiting if not cuts.isdisjoint(k)), waiting[0])
         chain = _chain(key, edges, at, cuts, left)
         first = min(chain[0][[0, -1]]), max(chain[0][[0, -1]])
         forward = chain[0][0] == edges[first][0]
@@ -141,10 +134,10 @@ def _edges(mesh: TaggedMesh, tags: list[int]):
     edges: dict[tuple[int, int], np.ndarray] = {}
     beside: dict[tuple[int, int], dict[int, bool]] = defaultdict(dict)
     for tag in tags:
-        for edge in boundary(mesh.cell_type, mesh.order, mesh.cells[mesh.cell_tags == tag]):
-            key = (int(min(edge[:2])), int(max(edge[:2])))
-            edges.setdefault(key, np.concatenate([edge[:1], edge[2:], edge[1:2]]))
-            beside[key][tag] = bool(edges[key][0] == edge[0])
+        for edge in outline_edges(mesh, mesh.cells[mesh.cell_tags == tag]):
+            first, last = sorted(edge[[0, -1]].tolist())
+            kept = edges.setdefault((first, last), edge)
+            beside[first, last][tag] = bool(kept[0] == edge[0])
     return edges, beside
 
 
@@ -154,73 +147,50 @@ def _is_cut(points: np.ndarray, point: int, keys, edges, labels) -> bool:
         return True
     if labels[keys[0]][2]:
         return False
-    ways = []
-    for key in keys:
-        edge = edges[key] if edges[key][0] == point else edges[key][::-1]
-        way = points[edge[1]] - points[point]
-        ways.append(way / np.linalg.norm(way))
-    return bool(-ways[0] @ ways[1] < _CORNER)
+    ends = [edges[key][1 if edges[key][0] == point else -2] for key in keys]
+    one, other = (points[ends] - points[point]) @ COMPLEX
+    return bool(abs(np.angle(-other / one)) > CORNER)
 
 
 def even(lines: list[OutlinePiece]) -> list[np.ndarray]:
     """Edge ends of the new division of each line, as numbers and fractions of its edges."""
-    spans = [_pairs(_sizes(line)) for line in lines]
+    chords = [chord_lengths(np.vstack([line.edges[:, 0], line.edges[-1:, -1]])) for line in lines]
+    pairs = [_paired(np.diff(chord)) for chord in chords]
     while True:
-        lengths = [_lengths(line, pairs) for line, pairs in zip(lines, spans, strict=True)]
-        limits = _limits(lines, lengths)
-        if all(np.all(a <= b) for a, b in zip(lengths, limits, strict=True)):
-            break
-        spans = [
-            [
-                part
-                for span, far in zip(pairs, long > most, strict=True)
-                for part in _parts(span, far)
-            ]
-            for pairs, long, most in zip(spans, lengths, limits, strict=True)
+        # with uniform chord length within each edge
+        lengths = [
+            np.diff(np.interp(ends, np.arange(len(chord)), chord))
+            for ends, chord in zip(pairs, chords, strict=True)
         ]
-    return [np.array([*(u for span in pairs for u in span[:2]), pairs[-1][2]]) for pairs in spans]
+        far = [a > b for a, b in zip(lengths, _limits(lines, lengths), strict=True)]
+        if not any(map(np.any, far)):
+            return [_halved(ends, ...) for ends in pairs]
+        pairs = list(map(_halved, pairs, far))
 
 
-def _pairs(lengths: np.ndarray) -> list[Span]:
-    """Pairs of neighbours of similar length, and halves of the other edges."""
-    found: list[Span] = []
-    k = 0
-    while k < len(lengths):
+def _paired(lengths: np.ndarray) -> np.ndarray:
+    """Ends of pairs of neighbours of similar length, and of single edges, by numbers of edges."""
+    ends = [0]
+    while ends[-1] < len(lengths):
+        k = ends[-1]
         short, long = min(lengths[k : k + 2]), max(lengths[k : k + 2])
-        step = 2 if k + 1 < len(lengths) and long <= _UNEVEN * short else 1
-        found.append((k, k + step / 2, k + step))
-        k += step
-    return found
+        ends.append(k + (2 if k + 1 < len(lengths) and long <= _UNEVEN * short else 1))
+    return np.array(ends, dtype=float)
 
 
-def _parts(span: Span, divided: np.bool) -> list[Span]:
-    """Pair, or its two halves as pairs."""
-    start, middle, end = span
-    if not divided:
-        return [span]
-    return [(a, (a + b) / 2, b) for a, b in ((start, middle), (middle, end))]
+def _halved(ends: np.ndarray, which) -> np.ndarray:
+    """Ends of pairs, some of which are divided into halves."""
+    return np.sort(np.append(ends, ((ends[:-1] + ends[1:]) / 2)[which]))
 
 
 def _limits(lines: list[OutlinePiece], lengths: list[np.ndarray]) -> list[np.ndarray]:
     """Largest length of the pairs of each line, given by their neighbours."""
-    at = defaultdict(list)
+    at: dict[int, float] = {}
     for line, own in zip(lines, lengths, strict=True):
         for end, length in zip(line.ends, own[[0, -1]], strict=True):
-            at[end].append(length)
+            at[end] = min(length, at.get(end, np.inf))
     found = []
     for line, own in zip(lines, lengths, strict=True):
-        around = np.concatenate([[min(at[line.ends[0]])], own, [min(at[line.ends[1]])]])
+        around = np.concatenate([[at[line.ends[0]]], own, [at[line.ends[1]]]])
         found.append(_GROWTH * np.minimum(around[:-2], around[2:]))
     return found
-
-
-def _sizes(line: OutlinePiece) -> np.ndarray:
-    return np.linalg.norm(line.edges[:, -1] - line.edges[:, 0], axis=1)
-
-
-def _lengths(line: OutlinePiece, spans: list[Span]) -> np.ndarray:
-    """Lengths of pairs, with uniform chord length within each edge [m]."""
-    so_far = np.concatenate([[0.0], np.cumsum(_sizes(line))])
-    start, _, end = np.array(spans).T
-    numbers = np.arange(len(so_far))
-    return np.interp(end, numbers, so_far) - np.interp(start, numbers, so_far)

@@ -17,6 +17,7 @@ from .contents import CellBlock, MeshContents, numbering, parsed
 
 _PLANE = re.compile(r"(CPS|CPE|CPEG|CAX|M3D|STRI|S|DC2D|DCAX|WARP2D|R3D)(3|4|6|8|9)(?!\d)")
 _LINE = re.compile(r"(T2D|T3D|B2|B3|SAX|R2D|RAX|DC1D|W2D|W3D)\d*")
+_SIDE = re.compile(r"[Ss][1-4]")
 _CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
 _CORNERS = {"triangle": 3, "quad": 4}
 _LINES = {2: "line", 3: "line3"}
@@ -82,7 +83,7 @@ class _Deck:
     def __init__(self) -> None:
         self.tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
         self.points: list[np.ndarray] = [np.empty((0, 3))]
-        self.elements: dict[str, list[tuple[np.ndarray, np.ndarray]]] = {}
+        self.elements: defaultdict[str, list[tuple[np.ndarray, np.ndarray]]] = defaultdict(list)
         self.node_sets: defaultdict[str, list[Member]] = defaultdict(list)
         self.element_sets: defaultdict[str, list[Member]] = defaultdict(list)
         self.surfaces: dict[str, list[tuple[int | str, int]]] = {}
@@ -98,23 +99,19 @@ class _Deck:
 
     def read_element(self, options, lines) -> None:
         kind, words = options.get("TYPE", "").upper(), len(lines[0].split(",")) if lines else 0
-        plane = _PLANE.match(kind)
-        if plane:
-            count = int(plane[2])
-            name = _CELLS[count]
+        if plane := _PLANE.match(kind):
+            count, names = int(plane[2]), _CELLS
         elif _LINE.match(kind) and words - 1 in _LINES:
-            count = words - 1
-            name = _LINES[count]
+            count, names = words - 1, _LINES
         else:
             raise ValueError(f"elements of type {kind or '?'} are not supported")
         flat = _whole(parsed(",".join(lines), f"*ELEMENT, TYPE={kind}", ","))
         if len(flat) % (count + 1):
             raise ValueError(f"an element of type {kind} does not have {count} nodes")
         table = flat.reshape(-1, count + 1)
-        numbers = table[:, 0]
-        self.elements.setdefault(name, []).append((numbers, table[:, 1:]))
+        self.elements[names[count]].append((table[:, 0], table[:, 1:]))
         if "ELSET" in options:
-            self.element_sets[options["ELSET"]].append(numbers)
+            self.element_sets[options["ELSET"]].append(table[:, 0])
 
     def read_nset(self, options, lines) -> None:
         self.node_sets[options.get("NSET", "")] += _members(options, lines)
@@ -126,9 +123,8 @@ class _Deck:
         name, kind = options.get("NAME", ""), options.get("TYPE", "ELEMENT").upper()
         rows = [_words(line) for line in lines]
         if kind == "NODE":
-            firsts = [row[0] for row in rows]
-            self.node_sets[name] += _members({}, firsts)
-        elif kind == "ELEMENT" and all(len(row) > 1 and _is_side(row[1]) for row in rows):
+            self.node_sets[name] += [_member(row[0]) for row in rows if row[0]]
+        elif kind == "ELEMENT" and all(len(row) > 1 and _SIDE.fullmatch(row[1]) for row in rows):
             self.surfaces[name] = [(_member(row[0]), int(row[1][1:])) for row in rows]
 
     def result(self) -> MeshContents:
@@ -141,27 +137,25 @@ class _Deck:
             for kind, cards in self.elements.items()
         }
         elements = np.concatenate([np.empty(0, int), *(numbers for numbers, _ in merged.values())])
-        ordered = np.sort(elements)
-        double = ordered[1:][ordered[1:] == ordered[:-1]]
-        if len(double):
+        numbers, count = np.unique(elements, return_counts=True)
+        for number in numbers[count > 1]:
             raise ValueError(
-                f"element {double[0]} is defined twice; numbers must also differ between parts"
+                f"element {number} is defined twice; numbers must also differ between parts"
             )
         sets = {name: _resolved(name, self.element_sets, elements) for name in self.element_sets}
         blocks = []
         for kind, (numbers, nodes) in merged.items():
-            mine = {n: np.flatnonzero(np.isin(numbers, found)) for n, found in sets.items()}
-            own = {name: at for name, at in mine.items() if len(at)}
-            blocks.append(CellBlock(kind, positions(nodes), own))
+            own = {n: np.flatnonzero(np.isin(numbers, found)) for n, found in sets.items()}
+            blocks.append(
+                CellBlock(kind, positions(nodes), {n: at for n, at in own.items() if len(at)})
+            )
         for name, sides in self.surfaces.items():
             lines = [_sides(merged, of, side, sets) for of, side in sides]
             nodes = positions(np.concatenate([np.empty((0, 2), int), *lines]))
             if len(nodes):
                 blocks.append(CellBlock("line", nodes, {name: np.arange(len(nodes))}))
-        node_sets = {
-            name: np.sort(positions(_resolved(name, self.node_sets, tags)))
-            for name in self.node_sets
-        }
+        resolved = {name: _resolved(name, self.node_sets, tags) for name in self.node_sets}
+        node_sets = {name: np.sort(positions(found)) for name, found in resolved.items()}
         return MeshContents(points, blocks, node_sets)
 
     def _nodes(self) -> tuple[np.ndarray, np.ndarray]:
@@ -212,10 +206,6 @@ def _whole(values: np.ndarray) -> np.ndarray:
     if not np.all(np.abs(values) < 2**53) or np.any(values != np.rint(values)):
         raise ValueError("the number of a node or an element is not an integer")
     return values.astype(np.int64)
-
-
-def _is_side(label: str) -> bool:
-    return label[:1] in "Ss" and label[1:] in ("1", "2", "3", "4")
 
 
 def _member(word: str) -> int | str:

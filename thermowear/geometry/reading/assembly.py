@@ -1,8 +1,11 @@
-"""Conversion of the contents of a mesh file to a tagged mesh, by names of bodies and surfaces."""
+"""Conversion of the contents of a mesh file to a tagged mesh, by names of bodies and surfaces.
+
+Bodies consist of one or several cell sets of the file, and may have parts by cell sets.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,15 +24,41 @@ _FARTHEST, _SMALLEST = 1e6, 1e-8
 
 @dataclass(frozen=True)
 class Named:
-    """Part of the case: its name, its name in the file, and the key that defines it.
+    """Part of the case: its name, its sets in the file, and the key that defines it.
 
     `body` is the index of the only body it can belong to.
     """
 
     name: str
-    in_file: str
+    sets: tuple[str, ...]
     key: str
     body: int | None = None
+
+    @property
+    def in_file(self) -> str:
+        return " + ".join(self.sets)
+
+    def members(self, block: CellBlock) -> np.ndarray:
+        """Indices of the elements of a block that are in the sets."""
+        found = [block.sets[name] for name in self.sets if name in block.sets]
+        return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *found]))
+
+    def cells(self, contents: MeshContents) -> list[tuple[CellBlock, np.ndarray]]:
+        """Blocks with plane cells in the sets, and the indices of these cells.
+
+        Raises
+        ------
+        CaseError
+            If the file has no cells of a set.
+        """
+        plane = [block for block in contents.blocks if block.dim == 2]
+        for name in self.sets:
+            if not any(len(block.sets.get(name, ())) for block in plane):
+                known = ", ".join(contents.names(2)) or "none"
+                raise CaseError(
+                    f"{self.key}: the file has no cells named {name!r}; one of: {known}"
+                )
+        return [(block, at) for block in plane if len(at := self.members(block))]
 
 
 def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named]) -> TaggedMesh:
@@ -42,10 +71,11 @@ def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named])
     """
     found = [_cells_of(contents, body) for body in bodies]
     points = _plane(contents.points, np.concatenate([block.nodes.ravel() for block in found]))
-    _check_one_type(found)
+    shapes = {(block.corners, block.nodes.shape[1]) for block in found}
+    _check_one_type("geometry.bodies: different", shapes)
     _check_disjoint(found, bodies)
-    corners = found[0].corners
-    kind, order = _TYPES[corners], _ORDERS[corners, found[0].nodes.shape[1]]
+    ((corners, nodes_per_cell),) = shapes
+    kind, order = _TYPES[corners], _ORDERS[corners, nodes_per_cell]
     points, cells = _with_centre_nodes(points, [block.nodes for block in found], corners)
     # nodes shared by both bodies are duplicated, otherwise the bodies would be tied
     cells = [nodes + i * len(points) for i, nodes in enumerate(cells)]
@@ -96,39 +126,23 @@ def _plane(points: np.ndarray, used: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(points[:, :2])
 
 
-def _unknown(part: Named, known: list[str], what: str) -> CaseError:
-    names = f"one of: {', '.join(known)}" if known else f"it names no {what}"
-    return CaseError(f"{part.key}: the file has no {what} named {part.in_file!r}; {names}")
-
-
 def _cells_of(contents: MeshContents, body: Named) -> CellBlock:
     """Cells of a body, in one block."""
-    blocks = [b for b in contents.blocks if b.dim == 2 and len(b.sets.get(body.in_file, ()))]
-    if not blocks:
-        raise _unknown(body, contents.names(2), "cells")
-    shapes = {(b.corners, b.nodes.shape[1]) for b in blocks}
-    if len(shapes) > 1:
-        raise CaseError(
-            f"{body.key}: mixed cell types, {_describe(shapes)}; only one type is supported"
-        )
-    nodes = np.concatenate([b.nodes[b.sets[body.in_file]] for b in blocks])
+    found = body.cells(contents)
+    shapes = {(block.corners, block.nodes.shape[1]) for block, _ in found}
+    _check_one_type(f"{body.key}: mixed", shapes)
+    nodes = np.concatenate([block.nodes[at] for block, at in found])
     shape = shapes.pop()
     if shape not in _ORDERS:
         raise CaseError(f"{body.key}: cells with {shape[1]} nodes are not supported")
-    return CellBlock(blocks[0].kind, nodes, {})
+    return CellBlock(found[0][0].kind, nodes, {})
 
 
-def _describe(shapes) -> str:
-    return " and ".join(f"{_TYPES.get(c, 'cell')}s of {n} nodes" for c, n in sorted(shapes))
-
-
-def _check_one_type(found: list[CellBlock]) -> None:
-    shapes = {(block.corners, block.nodes.shape[1]) for block in found}
+def _check_one_type(found: str, shapes: set[tuple[int, int]]) -> None:
+    """Reject cells of several numbers of corners and nodes."""
     if len(shapes) > 1:
-        raise CaseError(
-            f"geometry.bodies: different cell types, {_describe(shapes)}; only one type is "
-            "supported"
-        )
+        kinds = " and ".join(f"{_TYPES.get(c, 'cell')}s of {n} nodes" for c, n in sorted(shapes))
+        raise CaseError(f"{found} cell types, {kinds}; only one type is supported")
 
 
 def _check_disjoint(found: list[CellBlock], bodies: list[Named]) -> None:
@@ -179,7 +193,7 @@ def _members(
     contents: MeshContents, surface: Named, edges: list[np.ndarray], bodies: list[Named]
 ) -> list[np.ndarray]:
     """Masks of the boundary edges of each body on a surface, given by its lines or nodes."""
-    name = surface.in_file
+    (name,) = surface.sets
     lines = [b.nodes[b.sets[name]] for b in contents.blocks if b.dim == 1 and name in b.sets]
     if lines:
         wanted = [_pairs(part) for part in lines]
@@ -190,7 +204,9 @@ def _members(
     if name in contents.node_sets:
         nodes = contents.node_sets[name]
         return [np.all(np.isin(of_body, nodes), axis=1) for of_body in edges]
-    raise _unknown(surface, sorted({*contents.names(1), *contents.node_sets}), "surface")
+    known = sorted({*contents.names(1), *contents.node_sets})
+    names = f"one of: {', '.join(known)}" if known else "it names no surface"
+    raise CaseError(f"{surface.key}: the file has no surface named {name!r}; {names}")
 
 
 def _pairs(nodes: np.ndarray) -> np.ndarray:
@@ -217,12 +233,11 @@ def _check_lines(
     lost = [part for lines in wanted for part in lines[~np.isin(lines, own).any(axis=1)]]
     if not lost:
         return
-    names = {body.in_file for body in bodies}
     others = [np.empty(0, dtype=np.int64)]
     for block in contents.blocks:
         if block.dim == 2:
-            used = [at for name, at in block.sets.items() if name in names]
-            rest = np.delete(block.nodes, np.concatenate(used) if used else [], axis=0)
+            used = np.concatenate([body.members(block) for body in bodies])
+            rest = np.delete(block.nodes, used, axis=0)
             corners = rest[:, : block.corners]
             ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
             others.append(_pairs(ends).ravel())
@@ -233,3 +248,48 @@ def _check_lines(
             f"{surface.key}: {count} of {sum(map(len, wanted))} lines of {surface.in_file!r} are "
             "not on the boundary of any body"
         )
+
+
+def divided(
+    mesh: TaggedMesh, contents: MeshContents, bodies: list[Named], sets: list[Named]
+) -> TaggedMesh:
+    """Mesh with cell sets of its bodies as separate parts, listed after the bodies.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Mesh of the bodies.
+    contents : MeshContents
+        Contents of its file.
+    bodies, sets : list of Named
+        `Named.body` of a set is the body that contains it.
+
+    Raises
+    ------
+    CaseError
+        If a set is unknown, not within its body, or overlaps another one.
+    """
+    tags, taken = mesh.cell_tags.copy(), np.zeros(len(mesh.cell_tags), dtype=np.int64)
+    starts = np.searchsorted(mesh.cell_tags, [1, 2])
+    for number, part in enumerate(sets, start=1):
+        assert part.body is not None
+        body, chosen = bodies[part.body], part.cells(contents)
+        every = sum(len(at) for _, at in chosen)
+        # in the order of `assemble`
+        inside = [np.isin(at, part.members(block)) for block, at in body.cells(contents)]
+        cells = starts[part.body] + np.flatnonzero(np.concatenate(inside))
+        if len(cells) < every:
+            raise CaseError(
+                f"{part.key}: {every - len(cells)} of {every} cells of {part.in_file!r} do not lie "
+                f"in the body {body.name!r} ({body.in_file})"
+            )
+        if taken[cells].any():
+            other = sets[taken[cells].max() - 1]
+            raise CaseError(
+                f"{part.key}: {np.count_nonzero(taken[cells])} cells are in both {part.in_file!r} "
+                f"and {other.in_file!r}; each cell has one material"
+            )
+        taken[cells] = number
+        tags[cells] = len(mesh.bodies) + number
+    names = (*mesh.bodies, *(part.name for part in sets))
+    return replace(mesh, cell_tags=tags, bodies=names)

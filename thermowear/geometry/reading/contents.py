@@ -144,14 +144,14 @@ def parsed(text: str, where: str, between: str = " ") -> np.ndarray:
         try:
             return np.fromstring(text, sep=between) if text.strip() else np.empty(0)
         except (DeprecationWarning, ValueError):
-            words = (word[0].strip() for word in re.finditer(f"[^\\s{between}]+", text))
-            wrong = next((word for word in words if not _is_number(word)), "")
+            words = (word[0] for word in re.finditer(f"[^\\s{between}]+", text))
+            wrong = next(filter(_is_wrong, words), "")
     raise ValueError(f"{where} has {shown(wrong.encode())} where a number is expected")
 
 
-def _is_number(word: str) -> bool:
+def _is_wrong(word: str) -> bool:
     try:
         float(word)
     except ValueError:
-        return False
-    return True
+        return True
+    return False

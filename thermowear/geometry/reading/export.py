@@ -61,18 +61,16 @@ def write_mesh(
     n = len(mesh.bodies)
     # one numbering for both dimensions, so that a tag is unique in every format
     tags = [mesh.cell_tags, mesh.facet_tags + n]
+    names = list(enumerate((*mesh.bodies, *mesh.surfaces), start=1))
     points = np.pad(mesh.points, ((0, 0), (0, 3 - mesh.points.shape[1])))
     result = meshio.Mesh(points, cells, point_data=point_data)
     if path.suffix == ".inp":
-        result.cell_sets = _sets(mesh)
+        result.cell_sets = {name: [np.flatnonzero(of == tag) for of in tags] for tag, name in names}
     elif path.suffix == ".msh":
         result.cell_data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
         dim = mesh.points.shape[1]
-        dims = [dim] * n + [dim - 1] * len(mesh.surfaces)
-        names = (*mesh.bodies, *mesh.surfaces)
         result.field_data = {
-            name: np.array([tag, dim])
-            for tag, (name, dim) in enumerate(zip(names, dims, strict=True), start=1)
+            name: np.array([tag, dim if tag <= n else dim - 1]) for tag, name in names
         }
     else:
         result.cell_data = {"tag": tags}
@@ -88,13 +86,3 @@ def _block(kind: str, nodes: np.ndarray) -> tuple[str, np.ndarray]:
     """Cells or facets with meshio's name of their type."""
     name, corners = _MESHIO_CELLS[kind]
     return name if nodes.shape[1] == corners else f"{name}{nodes.shape[1]}", nodes
-
-
-def _sets(mesh: TaggedMesh) -> dict[str, list[np.ndarray]]:
-    """Elements of each name, per block of cells."""
-    none, sets = np.array([], dtype=np.int64), {}
-    for tag, name in enumerate(mesh.bodies, start=1):
-        sets[name] = [np.flatnonzero(mesh.cell_tags == tag), none]
-    for tag, name in enumerate(mesh.surfaces, start=1):
-        sets[name] = [none, np.flatnonzero(mesh.facet_tags == tag)]
-    return sets

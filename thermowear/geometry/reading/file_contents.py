@@ -15,8 +15,8 @@ import stat
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,8 +40,7 @@ _LONGEST = 300
 """Largest number of characters of an error message."""
 
 
-@dataclass(frozen=True)
-class _Kind:
+class _Kind(NamedTuple):
     """Format: its name, its first bytes, and its reader."""
 
     name: str
@@ -106,18 +105,11 @@ def read_isolated(path: Path) -> MeshContents:
         If it is malformed, refers to other files, or exceeds the limits of memory or time.
     """
     memory = _MEMORY + _PER_BYTE * path.stat().st_size
-    command = [
-        sys.executable,
-        "-P",
-        str(_READER),
-        str(path.resolve()),
-        path.suffix.lower(),
-        str(memory),
-    ]
+    command = [sys.executable, "-P", str(_READER), str(path.resolve())]
     single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     try:
         done = subprocess.run(
-            command,
+            [*command, path.suffix.lower(), str(memory)],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=_SECONDS,
@@ -138,10 +130,7 @@ def _unpacked(data: bytes) -> MeshContents:
     with np.load(io.BytesIO(data), allow_pickle=False) as file:
         arrays = dict(file)
     contents = json.loads(str(arrays["contents"]))
-    blocks = [
-        CellBlock(kind, arrays[f"nodes_{index}"], {})
-        for index, kind in enumerate(contents["kinds"])
-    ]
+    blocks = [CellBlock(kind, arrays[f"nodes_{k}"], {}) for k, kind in enumerate(contents["kinds"])]
     for number, (index, name) in enumerate(contents["sets"]):
         blocks[index].sets[name] = arrays[f"set_{number}"]
     sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(contents["node_sets"])}

@@ -62,27 +62,30 @@ def read(path: Path, ending: str) -> dict[str, np.ndarray]:
 
 def _sets_of_block(mesh, index: int) -> dict[str, np.ndarray]:
     """Sets by name (families of .med), or by the numbers of integer data (.vtu, .xdmf)."""
-    found: dict[str, list[np.ndarray]] = {}
+    found: list[tuple[str, np.ndarray]] = []
     for key, data in mesh.cell_data.items():
         values = np.asarray(data[index])
-        if values.ndim != 1 or not np.issubdtype(values.dtype, np.integer):
-            continue
-        families = getattr(mesh, "cell_tags", {}) if key == "cell_tags" else None
-        for value in np.unique(values):
-            names = [str(value)] if families is None else families.get(value, [])
-            for name in names:
-                found.setdefault(name, []).append(np.flatnonzero(values == value))
-    return {name: np.unique(np.concatenate(parts)) for name, parts in found.items()}
+        if values.ndim == 1 and np.issubdtype(values.dtype, np.integer):
+            families = getattr(mesh, "cell_tags", {}) if key == "cell_tags" else None
+            for value in np.unique(values):
+                names = [str(value)] if families is None else families.get(value, [])
+                found += [(name, np.flatnonzero(values == value)) for name in names]
+    return _united(found)
 
 
 def _node_sets(mesh) -> dict[str, np.ndarray]:
     """Node sets of .med files."""
     values = mesh.point_data.get("point_tags", np.empty(0))
-    found: dict[str, list[np.ndarray]] = {}
-    for family, names in getattr(mesh, "point_tags", {}).items():
-        for name in names:
-            found.setdefault(name, []).append(np.flatnonzero(values == family))
-    return {name: np.concatenate(parts) for name, parts in found.items()}
+    families = getattr(mesh, "point_tags", {}).items()
+    return _united([(name, np.flatnonzero(values == f)) for f, names in families for name in names])
+
+
+def _united(sets: list[tuple[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Union of the sets of each name."""
+    found: dict[str, np.ndarray] = {}
+    for name, members in sets:
+        found[name] = np.union1d(found[name], members) if name in found else members
+    return found
 
 
 def _check_xml(path: Path) -> None:

@@ -13,7 +13,7 @@ import scipy
 
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError, note
-from ..mesh.nodes import CORNERS, boundary, turned
+from ..mesh.nodes import CORNERS, boundary, components, meeting, numbered, turned
 from ..mesh.tagged import TaggedMesh, jacobians
 
 _FLAT = 1e-8
@@ -73,26 +73,22 @@ def _sides(points: np.ndarray, corners: np.ndarray, body: str) -> tuple[np.ndarr
     ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
     cell = np.repeat(np.arange(count), sides)
     ascending = ends[:, 0] < ends[:, 1]
-    _, edge, number = np.unique(
-        np.sort(ends, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
-    edge = edge.ravel()
+    edge, number = numbered(ends)
     if number.max() > 2:
         wrong = number[edge] > 2
         raise CaseError(
             f"geometry.path: {np.count_nonzero(number > 2)} edges of {body!r} have three or more "
             f"cells, one {_position_text(points[ends[np.argmax(wrong)]])}"
         )
-    shared = np.argsort(edge, kind="stable")
-    shared = shared[number[edge[shared]] == 2].reshape(-1, 2)
+    shared = meeting(ends)
     (one, other), same = cell[shared].T, ascending[shared[:, 0]] == ascending[shared[:, 1]]
-    rows = np.concatenate([one, one + count])
-    columns = np.concatenate([other + count * same, other + count * ~same])
-    links = scipy.sparse.coo_matrix(
-        (np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count)
+    links = np.concatenate(
+        [
+            np.stack([one, other + count * same], 1),
+            np.stack([one + count, other + count * ~same], 1),
+        ]
     )
-    _, label = scipy.sparse.csgraph.connected_components(links, directed=False)
-    as_listed, turned_round = label.reshape(2, count)
+    as_listed, turned_round = components(links, 2 * count).reshape(2, count)
     if np.any(as_listed == turned_round):
         raise CaseError(
             f"geometry.path: the cells of {body!r} cannot be oriented consistently in a plane"
@@ -195,25 +191,19 @@ def _check_shared_edges(mesh: TaggedMesh) -> None:
 def _check_one_curve(ends: np.ndarray, surface: str) -> None:
     """Check that a contact face is one curve, open or closed."""
     nodes, compact, count = np.unique(ends, return_inverse=True, return_counts=True)
-    pairs = compact.reshape(ends.shape)
-    links = scipy.sparse.coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(nodes), len(nodes)))
-    parts, _ = scipy.sparse.csgraph.connected_components(links, directed=False)
+    parts = 1 + components(compact.reshape(ends.shape), len(nodes)).max()
     if parts > 1 or count.max() > 2:
         raise CaseError(
             f"geometry.contact: the edges of {surface!r} are in {parts} pieces; a contact "
-            "face must be "
-            "one curve without branches"
+            "face must be one curve without branches"
         )
 
 
 def _check_pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
     """Check that every piece of a body has part of the surface that holds it."""
     cells = mesh.cells[mesh.cell_tags == mesh.bodies.index(body) + 1]
-    rows, columns = np.repeat(cells[:, 0], cells.shape[1]), cells.ravel()
-    links = scipy.sparse.coo_matrix(
-        (np.ones(len(rows)), (rows, columns)), shape=(len(mesh.points),) * 2
-    )
-    _, label = scipy.sparse.csgraph.connected_components(links, directed=False)
+    links = np.column_stack([np.repeat(cells[:, 0], cells.shape[1]), cells.ravel()])
+    label = components(links, len(mesh.points))
     pieces = np.unique(label[cells[:, 0]])
     held = np.unique(label[_ends(mesh, surface)])
     loose = np.setdiff1d(pieces, held)

@@ -32,29 +32,17 @@ _AT_ONCE = 2000
 
 
 @dataclass(frozen=True)
-class Faces:
+class _Faces:
     """Contact faces compared along the load direction.
 
-    Attributes
-    ----------
-    gap : float
-        Smallest distance, negative where the bodies overlap [m].
-    span : tuple of float
-        Range of x common to both faces [m].
-    height : float
-        Height of the lower one of both bodies [m].
-    body : str
-        Name of this body.
+    Smallest distance, negative where the bodies overlap, and the range of x common to both faces;
+    height and name of the lower one of both bodies [m].
     """
 
     gap: float
     span: tuple[float, float]
     height: float
     body: str
-
-    @property
-    def width(self) -> float:
-        return self.span[1] - self.span[0]
 
 
 def check_pair(mesh: TaggedMesh, case: Case) -> None:
@@ -65,7 +53,7 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
     CaseError
         If they overlap, are apart, or are compressed by a large part of their size.
     """
-    faces = compared(whole_bodies(mesh, case.geometry), case)
+    faces = _compared(whole_bodies(mesh, case.geometry), case)
     height, overlap = faces.height, -faces.gap
     of_body = f"of {faces.body!r}, which is {length(height)} high"
     if overlap > _SQUEEZED * height:
@@ -89,14 +77,13 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
         )
 
 
-def _check_approach(case: Case, faces: Faces, approach: float, of_body: str) -> None:
+def _check_approach(case: Case, faces: _Faces, approach: float, of_body: str) -> None:
     """Check that a prescribed approach closes the gap without excessive compression."""
     key = "load.history.approach" if case.load.approach is None else "load.approach"
     if approach - faces.gap > _SQUEEZED * faces.height:
         raise CaseError(
             f"{key}: {length(approach)} compresses the bodies by "
-            f"{(approach - faces.gap) / faces.height:.0%} {of_body} "
-            "(check geometry.length_unit)"
+            f"{(approach - faces.gap) / faces.height:.0%} {of_body} (check geometry.length_unit)"
         )
     alone = case.heat is None and not case.load.surfaces and case.geometry.initial_shape is None
     if alone and approach < faces.gap:
@@ -106,9 +93,13 @@ def _check_approach(case: Case, faces: Faces, approach: float, of_body: str) -> 
         )
 
 
-def _check_pressure(case: Case, faces: Faces) -> None:
+def _check_pressure(case: Case, faces: _Faces) -> None:
     """Check that the mean pressure of a prescribed force is small relative to the moduli."""
-    force, area = case.force(), _area(case, faces)
+    force, (start, end) = case.force(), faces.span
+    if case.model == "axisymmetric":
+        area = np.pi * (end**2 - start**2)
+    else:
+        area = (end - start) * (case.geometry.thickness_factor or 0.0)
     if force is None or area == 0.0:
         return
     moduli = {
@@ -120,28 +111,14 @@ def _check_pressure(case: Case, faces: Faces) -> None:
     strain = force / area / moduli[softer]
     if strain > _SQUEEZED:
         raise CaseError(
-            f"load: a mean pressure of {force / area / 1e6:.4g} MPa, for contact along "
-            f"the whole {length(faces.width)} of the faces, is {strain:.2g} times the "
-            f"modulus of {softer!r} "
+            f"load: a mean pressure of {force / area / 1e6:.4g} MPa, for contact along the whole "
+            f"{length(end - start)} of the faces, is {strain:.2g} times the modulus of {softer!r} "
             "(check geometry.length_unit)"
         )
 
 
-def _area(case: Case, faces: Faces) -> float:
-    """Area common to both faces, projected along the load direction [m²]."""
-    if case.model == "axisymmetric":
-        return np.pi * (faces.span[1] ** 2 - faces.span[0] ** 2)
-    return faces.width * (case.geometry.thickness_factor or 0.0)
-
-
-def compared(mesh: TaggedMesh, case: Case) -> Faces:
-    """Compare the contact faces along the load direction, which is -y in a section.
-
-    Raises
-    ------
-    CaseError
-        If they do not face each other.
-    """
+def _compared(mesh: TaggedMesh, case: Case) -> _Faces:
+    """Compare the contact faces along the load direction, which is -y in a section."""
     geometry = case.geometry
     upper, lower = (_pieces(mesh, name) for name in geometry.contact)
     down, up = upper[_normals(upper)[:, 1] < -_FACING], lower[_normals(lower)[:, 1] > _FACING]
@@ -167,7 +144,7 @@ def compared(mesh: TaggedMesh, case: Case) -> Faces:
         for tag, name in enumerate(mesh.bodies, start=1)
     }
     body = min(heights, key=heights.__getitem__)
-    return Faces(float(np.nanmin(gap)), (float(first), float(last)), heights[body], body)
+    return _Faces(float(np.nanmin(gap)), (float(first), float(last)), heights[body], body)
 
 
 def _pieces(mesh: TaggedMesh, surface: str) -> np.ndarray:

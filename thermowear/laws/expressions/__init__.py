@@ -1,5 +1,5 @@
 """Arithmetic expressions with units in named variables: parser, checked dimensions, derivatives."""
 
-from .dimensions import Dimension
 from .parser import parse_expression
+from .tokens import Dimension
 from .tree import Expression

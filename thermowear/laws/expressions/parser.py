@@ -19,8 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .dimensions import Dimension
-from .tokens import Token, fault, tokens, unit_end
+from .tokens import Dimension, Token, fault, tokens, unit_end
 from .tree import EXTREMES, FUNCTIONS, KNOWN, Expression, Node, evaluate, variables
 
 Units = Callable[[str], tuple[float, Dimension]]
@@ -162,7 +161,7 @@ class _ExpressionParser:
         operand = self._deeper(self._signed)
         node = operand.node if sign.text == "+" else ("-", operand.node)
         found = self._folded(node, operand.dimension, [operand], sign.start)
-        return _Parsed(found.node, found.dimension, found.start, operand.literal)
+        return found._replace(literal=operand.literal)
 
     def _power(self) -> _Parsed:
         base = self._atom()

@@ -1,4 +1,4 @@
-"""Tokens of expressions, each with its position: numbers, names and signs; units of numbers.
+"""Tokens of expressions with their positions; units of numbers, and their dimensions.
 
 Units are in the notation of the case file, ``W/(m^2 K)``::
 
@@ -12,7 +12,7 @@ All repetitions in them are possessive: the time is proportional to the length o
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -31,6 +31,8 @@ _EXPONENT = rf"(?:\s*(?:\^|\*\*)\s*(?:{_SIGNED}|\(\s*{_SIGNED}\s*(?:/\s*{_SIGNED
 _LEVELS = 2
 """Largest nesting depth of parentheses in a unit."""
 _POWER = re.compile(r"\s*(?:\^|\*\*)")
+_SAME = 1e-9
+_SHOWN = 6  # digits of an exponent in messages
 _NAME_AT_END = re.compile(r"(?<![\w.])[A-Za-z_]\w*\Z", re.ASCII)
 
 
@@ -116,3 +118,55 @@ def _pattern(variables: tuple[str, ...]) -> re.Pattern[str]:
         factor = rf"(?:{name}|\(\s*{factor}{factors}\s*\){_EXPONENT})"
     factors = rf"(?:\s*[*/]\s*{factor}|\s*{name})*+"
     return re.compile(rf"\s*(?:(?:1\s*)?/\s*{factor}|{name}){factors}", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """Dimension of a quantity.
+
+    Attributes
+    ----------
+    powers : tuple of (str, float)
+        SI base unit and its exponent, sorted by name; exponents of 0 are left out.
+    """
+
+    powers: tuple[tuple[str, float], ...] = ()
+
+    @classmethod
+    def of(cls, powers: Mapping[str, float]) -> Dimension:
+        """Dimension with given exponents of SI base units."""
+        kept = {unit: float(power) for unit, power in powers.items() if abs(power) > _SAME}
+        return cls(tuple(sorted(kept.items())))
+
+    @property
+    def none(self) -> bool:
+        """True if the quantity is dimensionless."""
+        return not self.powers
+
+    def times(self, other: Dimension, power: float = 1.0) -> Dimension:
+        """Dimension of the product with another quantity, raised to a power."""
+        powers = dict(self.powers)
+        for unit, exponent in other.powers:
+            powers[unit] = powers.get(unit, 0.0) + power * exponent
+        return Dimension.of(powers)
+
+    def to(self, power: float) -> Dimension:
+        """Dimension of the quantity raised to a power."""
+        return Dimension().times(self, power)
+
+    def same(self, other: Dimension) -> bool:
+        """Equality up to rounding of the exponents."""
+        return self.times(other, -1.0).none
+
+    def __str__(self) -> str:
+        """Text in SI base units, such as ``kg/(m s^2)``."""
+        above = [_written(unit, power) for unit, power in self.powers if power > 0]
+        below = [_written(unit, -power) for unit, power in self.powers if power < 0]
+        if not below:
+            return " ".join(above) or "1"
+        under = below[0] if len(below) == 1 else f"({' '.join(below)})"
+        return f"{' '.join(above) or '1'}/{under}"
+
+
+def _written(unit: str, power: float) -> str:
+    return unit if abs(power - 1) <= _SAME else f"{unit}^{power:.{_SHOWN}g}"

@@ -75,10 +75,6 @@ def _chain(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
     return np.where(inner == 0.0, 0.0, outer * np.where(inner == 0.0, 1.0, inner))
 
 
-def _add(a: Pair, b: Pair) -> Pair:
-    return a[0] + b[0], a[1] + b[1]
-
-
 def _multiply(a: Pair, b: Pair) -> Pair:
     return a[0] * b[0], _chain(b[0], a[1]) + _chain(a[0], b[1])
 
@@ -104,7 +100,7 @@ def _repeated(operation: Callable[[Pair, Pair], Pair]) -> Callable[..., Pair]:
 
 
 _OPERATIONS: dict[str, Callable[..., Pair]] = {
-    "+": _repeated(_add),
+    "+": _repeated(lambda a, b: (a[0] + b[0], a[1] + b[1])),
     "*": _repeated(_multiply),
     "-": lambda a: (-a[0], -a[1]),
     "/": partial(_call, Function(lambda x: 1 / x, lambda x: -1 / x**2)),

@@ -7,8 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..interfaces import LocalState
-from ..registry import parameter, registered
+from ..interfaces import LocalState, parameter, registered
 
 
 @registered("wear", "energy")

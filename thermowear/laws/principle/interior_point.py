@@ -41,15 +41,12 @@ class Solution:
     pressure : ndarray, shape (n,)
     velocity : ndarray, shape (k,)
         Velocity V.
-    common : ndarray, shape (K,)
-        Means S.
     regular : bool
         True if wear increases with the load: positive determinant, as without friction.
     """
 
     pressure: np.ndarray
     velocity: np.ndarray
-    common: np.ndarray
     regular: bool
 
 
@@ -103,16 +100,7 @@ def solve(
 
 @dataclass(frozen=True)
 class _Conditions:
-    """Data of the problem, with areas normalised to sum 1.
-
-    Attributes
-    ----------
-    normal_modes, force_modes : ndarray, shape (n, k)
-        R, and T with the weights.
-    load : ndarray, shape (k,)
-    local : RateSum
-    common : Common
-    """
+    """Data of the problem as in `solve`; areas of sum 1 are included in the force modes."""
 
     normal_modes: np.ndarray
     force_modes: np.ndarray
@@ -188,8 +176,7 @@ def _solve_from(conditions: _Conditions, start: np.ndarray) -> Solution | None:
     if found is None:
         return None
     pressure, multipliers, regular = found
-    k = len(conditions.load)
-    return Solution(start * pressure, unit * multipliers[:k], unit * multipliers[k:], regular)
+    return Solution(start * pressure, unit * multipliers[: len(conditions.load)], regular)
 
 
 @np.errstate(all="ignore")  # without a solution the numbers overflow

@@ -24,8 +24,7 @@ from ..power_wear import PowerWear
 from .functionals import PowerFunctional, wear_dissipation
 from .interior_point import solve
 from .rate_sums import PowerSum
-from .solvability import not_carried
-from .steady import steady_pressure
+from .steady import not_carried, steady_pressure
 
 _SEARCH = 16  # number of search intervals for the ratio of κ
 _TOLERANCE, _ACCEPTED = 1e-13, 1e-9  # of the direction: target, and largest accepted error
@@ -74,7 +73,8 @@ def minimise(functional: PowerFunctional, force_modes: np.ndarray, load: np.ndar
         )
     scale = np.abs(force_modes).max(axis=0)
     unit = np.linalg.norm(load / scale) / functional.weights.sum()
-    scaled = _in_units(functional, unit)
+    factors = functional.factors * unit ** functional.degrees[:, None]
+    scaled = replace(functional, factors=factors / factors.max())
     parts = [
         _at_ratio(scaled, force_modes, load / unit, ratio)
         for ratio in _stationary_ratios(scaled, force_modes, load / unit)
@@ -142,12 +142,6 @@ def least_wear_dissipation(
             "did not converge"
         )
     return minimum_for(direction)
-
-
-def _in_units(functional: PowerFunctional, pressure: float) -> PowerFunctional:
-    """Functional of scaled pressures, with factors normalised to at most 1."""
-    factors = functional.factors * pressure ** functional.degrees[:, None]
-    return replace(functional, factors=factors / factors.max())
 
 
 def _at_ratio(functional: PowerFunctional, force_modes, load, ratio: float) -> np.ndarray:

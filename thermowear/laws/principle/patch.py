@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..distribution import Distribution
-from ..motions import RigidMotion
+from ..motions import RigidMotion, spatial
 from ..power_wear import PowerWear
 from .steady import SteadyWear, steady_pressure
 
@@ -132,25 +132,16 @@ def contact_patch(
         a component in the section.
     """
     n = len(weights)
-    normal = _spatial(normals, n)
-    normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    along, across = _spatial(sliding, n), _spatial(transverse, n)
+    normal = spatial(normals) / np.linalg.norm(normals, axis=-1, keepdims=True)
+    shear = friction * spatial(sliding) + transverse_friction * spatial(transverse)
     return ContactPatch(
-        points=_spatial(points, n),
+        points=spatial(points),
         weights=np.asarray(weights, dtype=float),
-        normals=normal,
-        traction=normal + friction * along + transverse_friction * across,
+        normals=np.broadcast_to(normal, (n, 3)),
+        traction=np.broadcast_to(normal + shear, (n, 3)),
         speed=np.broadcast_to(np.asarray(speed, dtype=float), n),
         motions=tuple(motions),
     )
-
-
-def _spatial(vectors, n: int) -> np.ndarray:
-    """Vectors at n points with three components."""
-    given = np.atleast_2d(np.asarray(vectors, dtype=float))
-    result = np.zeros((n, 3))
-    result[:, : given.shape[1]] = given
-    return result
 
 
 @dataclass(frozen=True)

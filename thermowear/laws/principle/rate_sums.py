@@ -20,12 +20,8 @@ class RateSum(ABC):
     """Sum of rates that increase with the pressure at each point."""
 
     @abstractmethod
-    def terms(self, pressure: np.ndarray) -> np.ndarray:
-        """Summands, shape (m, n)."""
-
-    @abstractmethod
-    def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        """Derivatives of the summands at positive pressures, shape (m, n)."""
+    def terms(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Summands and their derivatives at positive pressures, shape (m, n) each."""
 
     @abstractmethod
     def scaled(self, pressure: np.ndarray, value: float) -> RateSum:
@@ -33,7 +29,8 @@ class RateSum(ABC):
 
     def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Value and derivative at positive pressures, shape (n,) each."""
-        return self.terms(pressure).sum(axis=0), self.slopes(pressure).sum(axis=0)
+        terms, slopes = self.terms(pressure)
+        return terms.sum(axis=0), slopes.sum(axis=0)
 
 
 @dataclass(frozen=True)
@@ -49,14 +46,12 @@ class PowerSum(RateSum):
     factors: np.ndarray
     exponents: np.ndarray
 
-    def terms(self, pressure: np.ndarray) -> np.ndarray:
-        return self.factors * pressure ** self.exponents[:, None]
-
-    def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        return self.exponents[:, None] * self.terms(pressure) / pressure
+    def terms(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        terms = self.factors * pressure ** self.exponents[:, None]
+        return terms, self.exponents[:, None] * terms / pressure
 
     def scaled(self, pressure: np.ndarray, value: float) -> PowerSum:
-        return PowerSum(self.terms(pressure) / value, self.exponents)
+        return PowerSum(self.terms(pressure)[0] / value, self.exponents)
 
 
 @dataclass(frozen=True)
@@ -99,7 +94,7 @@ class BoundLaw:
 
 @dataclass(frozen=True)
 class LawSum(RateSum):
-    """Weighted rates of several laws, in units of a pressure at each point and of a value.
+    """Weighted rates of several laws, in units of a pressure at each point.
 
     Attributes
     ----------
@@ -108,26 +103,20 @@ class LawSum(RateSum):
     weights : ndarray, shape (m, n)
     pressure : ndarray, shape (n,)
         Unit of the pressures [Pa].
-    value : float
-        Unit of the rates.
     """
 
     laws: Sequence[BoundLaw]
     weights: np.ndarray
     pressure: np.ndarray
-    value: float = 1.0
 
-    def terms(self, pressure: np.ndarray) -> np.ndarray:
-        rates = [law.rate(self.pressure * pressure) for law in self.laws]
-        return self.weights * np.reshape(rates, self.weights.shape) / self.value
-
-    def slopes(self, pressure: np.ndarray) -> np.ndarray:
-        slopes = [law.slope(self.pressure * pressure) for law in self.laws]
-        scale = self.pressure / self.value
-        return self.weights * np.reshape(slopes, self.weights.shape) * scale
+    def terms(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        p, shape = self.pressure * pressure, self.weights.shape
+        rates = np.reshape([law.rate(p) for law in self.laws], shape)
+        slopes = np.reshape([law.slope(p) for law in self.laws], shape)
+        return self.weights * rates, self.weights * self.pressure * slopes
 
     def scaled(self, pressure: np.ndarray, value: float) -> LawSum:
-        return LawSum(self.laws, self.weights, self.pressure * pressure, self.value * value)
+        return LawSum(self.laws, self.weights / value, self.pressure * pressure)
 
 
 @dataclass(frozen=True)
@@ -152,7 +141,8 @@ class Common:
 
     def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Means (K,), and their derivatives at positive pressures, shape (K, n)."""
-        return self.means.terms(pressure).sum(axis=1), self.means.slopes(pressure)
+        terms, slopes = self.means.terms(pressure)
+        return terms.sum(axis=1), slopes
 
     def scaled(self, pressure: np.ndarray, value: float) -> Common:
         """Sum scaled by a pressure at each point and by a value."""

@@ -6,7 +6,8 @@ negative. If both bodies wear with the same b this makes ``D_w = ∫ p·Σ w'_i 
 equilibrium (Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895; see `minimum`). With
 ``b_1 ≠ b_2`` the derivative of D_w has terms ``(b_i + 1) Z_i p^b_i``, of different weight, while
 the kinematic condition is unchanged: the pressure is then defined by the kinematics, and minimises
-``Σ ∫ p·w'_i/(b_i + 1) dS``. Friction enters through equilibrium only.
+``Σ ∫ p·w'_i/(b_i + 1) dS``. Friction enters through equilibrium only: it may carry any load
+(self-locking).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 from typing import TypeGuard
 
 import numpy as np
+import scipy
 
 from ...errors import ComputationError
 from ..distribution import Distribution, InPlace
@@ -23,9 +25,17 @@ from ..interfaces import Law, LocalState, Values
 from ..power_wear import PowerWear
 from .interior_point import solve
 from .rate_sums import BoundLaw, Common, LawSum, PowerSum, RateSum
-from .solvability import why_no_steady_state
 
+_NOTHING = 1e-9  # relative size below which a force or an approach is zero
 _DEPENDENT = 1e-10  # relative singular value below which motions are linearly dependent
+
+
+class SelfLocking(ComputationError):
+    """Error: self-locking, friction carries any load without steady wear."""
+
+
+class NotCarried(ComputationError):
+    """Error: the load lifts the body off, or tips it over the edge of its face."""
 
 
 @dataclass(frozen=True)
@@ -166,15 +176,13 @@ def _common(
     laws: Sequence[BoundLaw], factors: np.ndarray, spread: Sequence[Distribution]
 ) -> Common | None:
     """Means of the rates shared by several points; None without any."""
-    n = factors.shape[1]
-    tracks = [(k, track.rows, track) for k, track in enumerate(spread) if track.rows is not None]
+    tracks = [(k, track.means) for k, track in enumerate(spread) if track.means is not None]
     if not tracks:
         return None
-    owners = [k for k, rows, _ in tracks for _ in rows]
-    means = _rate_sum(
-        [laws[k] for k in owners], factors[owners], np.vstack([rows for _, rows, _ in tracks])
-    )
-    return Common(means, np.hstack([track.reach(n) for *_, track in tracks]))
+    owners = [k for k, means in tracks for _ in means.rows]
+    rows = np.vstack([means.rows for _, means in tracks])
+    rates = _rate_sum([laws[k] for k in owners], factors[owners], rows)
+    return Common(rates, np.hstack([means.reach for _, means in tracks]))
 
 
 def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:
@@ -189,3 +197,61 @@ def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:
             "no steady state: the free motions of the holder are linearly dependent at the "
             "contact faces; remove one of them from holder.free"
         )
+
+
+def not_carried(weights: np.ndarray, modes: np.ndarray, load: np.ndarray) -> NotCarried | None:
+    """Error if no pressure ``p >= 0`` carries the load, ``modesᵀ w p = F``; otherwise None."""
+    scale = np.abs(modes).max(axis=0)
+    _, left = scipy.optimize.nnls((modes[weights > 0] / scale).T, load / scale)
+    if left < _NOTHING * np.linalg.norm(load / scale):
+        return None
+    return NotCarried(
+        "no contact pressure is in equilibrium with the load: it lifts the body off or tips it "
+        "over an edge of the face; change the load or its line of action"
+    )
+
+
+def why_no_steady_state(
+    weights: np.ndarray, normal_modes: np.ndarray, force_modes: np.ndarray, load: np.ndarray
+) -> ComputationError:
+    """Error to raise if the principle has no solution.
+
+    Self-locking requires pressures in equilibrium with their friction without load, at some
+    coefficient of friction up to the given one. It is excluded if a motion of the holder exists
+    against which every pressure does work, with and without friction: ``R y > 0`` and ``T y > 0``
+    at all points bound the pressures by ``F·y``.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (n,)
+    normal_modes, force_modes : ndarray, shape (n, k)
+        R and T.
+    load : ndarray, shape (k,)
+    """
+    outside = not_carried(weights, normal_modes, load)
+    if outside is None and not _bounded(normal_modes, force_modes):
+        return SelfLocking(
+            "self-locking: friction carries any load, without steady wear in this direction of "
+            "sliding; lower the friction or reverse the motion"
+        )
+    return (
+        outside
+        or not_carried(weights, force_modes, load)
+        or ComputationError(
+            "no steady state: the solver found no pressure and rigid-body wear velocity in "
+            "equilibrium with the load"
+        )
+    )
+
+
+def _bounded(R: np.ndarray, T: np.ndarray) -> bool:
+    """Test whether a motion y exists with ``R y > 0`` and ``T y > 0`` at all points."""
+    rows = np.vstack([R, T])
+    rows = rows / np.abs(rows).max(axis=0)
+    least = scipy.optimize.linprog(  # the largest t with rows y >= t
+        c=np.append(np.zeros(R.shape[1]), -1.0),
+        A_ub=np.column_stack([-rows, np.ones(len(rows))]),
+        b_ub=np.zeros(len(rows)),
+        bounds=(-1.0, 1.0),
+    )
+    return bool(-least.fun > _NOTHING)

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import tables
-from ..coordinates import read_summary
-from ..names import states
+from ..files import read_summary, states
 from .panels import (
     BODIES,
     abscissa,

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ...balances import violated
 from ...errors import CaseError, ComputationError
-from ..coordinates import read_summary
+from ..files import read_summary
 from ..tables import MissingColumnError
 from . import curves, maps
 from .animation import FPS, check_animation, has_frames

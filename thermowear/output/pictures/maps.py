@@ -12,8 +12,7 @@ from matplotlib.tri import Triangulation
 
 from .. import tables
 from .curves import final_time, interface_panels, worn_bodies
-from .panels import MAP_STYLE, label_coordinates, panels
-from .scales import COLORS
+from .panels import MAP_STYLE, color_map, label_coordinates, panels
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
@@ -49,11 +48,8 @@ def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = 
     triangles = triangulated(data.drawn("x"), data.drawn("y"))
     ratio = np.clip(np.ptp(triangles.y) / np.ptp(triangles.x), 0.3, 2.5)
     size = (_LONGER_SIDE / max(1.0, ratio) + 2.2, _LONGER_SIDE * min(1.0, ratio) + 0.8)
-    options: dict[str, Any] = {
-        "margin": (0.0, 0.3 if title else 0.0),
-        "style": _STYLE,
-        "crop": True,
-    }
+    margin = (0.0, 0.3 if title else 0.0)
+    options: dict[str, Any] = {"margin": margin, "style": _STYLE, "crop": True}
     with panels(path, len(names), 2, size, **options) as (figure, axes):
         for axis, name in zip(axes.flat, names, strict=False):
             _map(axis, triangles, data, name)
@@ -74,8 +70,7 @@ def _map(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: 
 
 def draw_colors(axis: Axes, triangles: Triangulation, values: np.ndarray, name: str, **options):
     """Fill triangles with the colours of a quantity."""
-    colors = COLORS[name.split("_")[0]]
-    return axis.tripcolor(triangles, values, shading="gouraud", cmap=colors, **options)
+    return axis.tripcolor(triangles, values, shading="gouraud", cmap=color_map(name), **options)
 
 
 def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:

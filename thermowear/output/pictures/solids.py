@@ -10,8 +10,7 @@ import pyvista
 
 from ...results import FIELDS
 from ..tables import TableColumns
-from .panels import MAP_STYLE, panels
-from .scales import COLORS, Limits, add_color_bar, color_limits
+from .panels import MAP_STYLE, Limits, add_color_bar, color_limits, color_map, panels
 
 PIXELS = (1400, 1100)
 _CAMERA = (0.55, -1.0, 0.6)  # direction of the camera from the bodies
@@ -57,8 +56,7 @@ def draw_solids(path: Path, grid, y: float, title: str = "") -> None:
             values = np.concatenate([surface[name] for surface in surfaces])
             limits = color_limits(values)
             axis.imshow(render(surfaces, name, limits), interpolation="antialiased")
-            options = {"ax": axis, "label": FIELDS[name].axis, "shrink": 0.8}
-            add_color_bar(axis, COLORS[name], limits, values.max(), **options)
+            add_color_bar(axis, name, FIELDS[name].axis, limits, values.max())
             axis.set_axis_off()
         figure.suptitle("; ".join(filter(None, [title, f"cut at y = {y:.4g} mm"])), fontsize=11)
 
@@ -84,7 +82,7 @@ def render(surfaces: list, name: str, limits: Limits) -> np.ndarray:
     """Render surfaces and their edges as pixels."""
     plotter = pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
     plotter.set_background("white")  # type: ignore[arg-type]
-    options = {"cmap": COLORS[name], "clim": limits, "show_scalar_bar": False, "ambient": 0.5}
+    options = {"cmap": color_map(name), "clim": limits, "show_scalar_bar": False, "ambient": 0.5}
     for surface in surfaces:
         plotter.add_mesh(surface, scalars=name, **options)
         edges = surface.extract_feature_edges(

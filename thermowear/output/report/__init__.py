@@ -1,4 +1,4 @@
 """``report.html``: a self-contained page made from the files of a results folder."""
 
-from ..names import is_report
+from ..files import is_report
 from .contents import write_report

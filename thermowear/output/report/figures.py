@@ -1,42 +1,44 @@
-"""Key figures of a report: all of ``summary.json``, grouped and labelled; and its status line."""
+"""Key figures of a report, grouped and labelled, and its status line.
+
+Numbers are shown in engineering units (50 MPa, 44.6 µm, 2199.11 kN).
+"""
 
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 from ...balances import ALLOWED, BALANCES, holds
+from ...results.quantity import multiple, split_key
 from ...results.summary_keys import GROUPS, OTHER, PHASES, group_of, of_key
-from ...results.units import split_key
-from .unit_format import NOTHING, number, quantity
+
+NOTHING = "–"
+_QUANTITY = re.compile(r"([-+]?[.\d]+(?:e[-+]?\d+)?) (\S+)")
+_POWERS = str.maketrans({"2": "²", "3": "³", "^": None})
 
 
 @dataclass(frozen=True)
 class Figure:
-    """Line of the key figures.
+    """Line of the report.
 
     Attributes
     ----------
     label, text : str
         Description, and value with its unit.
     source : str
-        Key and SI value.
+        Key and SI value of a key figure.
+    mark : str
+        ``good``, ``bad`` or ``unsure``; empty if there is nothing to judge.
     """
 
     label: str
     text: str
-    source: str
-
-
-@dataclass(frozen=True)
-class BalanceFigure:
-    """Result of a balance check; `good` is None if there is nothing to balance."""
-
-    label: str
-    text: str
-    good: bool | None
+    source: str = ""
+    mark: str = ""
 
 
 def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
@@ -51,25 +53,25 @@ def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
     return groups
 
 
-def balances(summary: dict[str, Any]) -> list[BalanceFigure]:
+def balances(summary: dict[str, Any]) -> list[Figure]:
     """Balance errors of a summary compared with the allowed limit."""
     found = []
     for key, kept in BALANCES.items():
         error = summary.get(key)
         if isinstance(error, int | float):
             text = f"{error:.1e}" if math.isfinite(error) else NOTHING
-            found.append(BalanceFigure(kept.name, f"{text} (allowed {ALLOWED:g})", holds(error)))
+            mark = "good" if holds(error) else "bad"
+            found.append(Figure(kept.name, f"{text} (allowed {ALLOWED:g})", mark=mark))
         elif key in summary:
-            found.append(BalanceFigure(kept.name, NOTHING, None))
+            found.append(Figure(kept.name, NOTHING))
     return found
 
 
 def figure_text(key: str, value: Any, entry: str = "") -> str:
     """Format a value of a summary, or of one of its tables, in the unit that suits its size."""
     shown = of_key(key)
-    if shown.unit == "°C" and isinstance(
-        value, int | float
-    ):  # differences of temperatures are in K
+    # differences of temperatures are in K
+    if shown.unit == "°C" and isinstance(value, int | float):
         return f"{number(shown.drawn(value))} °C"
     return quantity(value, split_key(entry)[1] or shown.si)
 
@@ -89,15 +91,7 @@ def _figures(key: str, value: Any) -> list[Figure]:
     ]
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """Status line, with the mark ``good``, ``bad`` or ``unsure``."""
-
-    text: str
-    mark: str
-
-
-def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Verdict:
+def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Figure:
     """Status line from ``run.json`` and the time reached.
 
     Parameters
@@ -107,14 +101,15 @@ def verdict(run: dict[str, Any], summary: dict[str, Any]) -> Verdict:
     """
     status, reason = run.get("status"), run.get("message") or "no reason was recorded"
     if status == "done":
-        return Verdict(f"Finished{_when(run)}.", "good")
+        return Figure("status", f"Finished{_when(run)}.", mark="good")
     texts = {
         "failed": f"Stopped: {reason}.",
         "interrupted": f"Interrupted{_when(run)}.",
         "running": "Still running when this report was written, or killed.",
     }
     text = texts.get(str(status), f"Unknown status: {status}.")
-    return Verdict(f"{text} {_reached(summary)}", "bad" if status == "failed" else "unsure")
+    mark = "bad" if status == "failed" else "unsure"
+    return Figure("status", f"{text} {_reached(summary)}", mark=mark)
 
 
 def _reached(summary: dict[str, Any]) -> str:
@@ -133,3 +128,94 @@ def _when(run: dict[str, Any]) -> str:
         return f" {end:%Y-%m-%d %H:%M} {end.tzname()} after {(end - start).total_seconds():g} s"
     except (KeyError, TypeError, ValueError):
         return ""
+
+
+def number(value: float) -> str:
+    """Format a number with six digits, integers in groups of three; a dash if not finite."""
+    if isinstance(value, int):
+        return f"{value:,}".replace(",", "\u202f")
+    return f"{value + 0.0:.6g}" if math.isfinite(value) else NOTHING
+
+
+def quantity(value: Any, si: str) -> str:
+    """Format any value of ``summary.json`` in the unit that suits its size.
+
+    Parameters
+    ----------
+    value : object
+        Any value of a JSON file.
+    si : str
+        SI unit of its numbers; may be empty.
+    """
+    if isinstance(value, dict):
+        return ", ".join(_entry(key, inner, si) for key, inner in value.items()) or NOTHING
+    sizes = [abs(size) for size in _numbers(value)]
+    unit, scale = multiple(si, max(sizes, default=0.0))
+    parts = value if _is_list(value) else [value]
+    text = ", ".join(_text(part, si, scale) for part in parts) or NOTHING
+    return f"{text} {unit}" if unit and sizes else text
+
+
+def _entry(key: str, value: Any, si: str) -> str:
+    name, own = split_key(key)
+    return f"{name}: {quantity(value, own or si)}"
+
+
+def _text(value: Any, si: str, scale: float) -> str:
+    """Format one value times a scale; nested lists, such as intervals, in brackets."""
+    if _is_list(value):
+        return f"[{', '.join(_text(part, si, scale) for part in value)}]"
+    if isinstance(value, dict):
+        return quantity(value, si)
+    if value is None:
+        return NOTHING
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int | float):
+        return number(value if scale == 1.0 else value * scale)
+    return str(value)
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    """Iterate over the finite numbers in a value and in its lists."""
+    if _is_list(value):
+        for part in value:
+            yield from _numbers(part)
+    elif isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+        yield value
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, list | tuple)
+
+
+def table_lines(tables: dict[str, Any], name: str, above: str = "") -> list[tuple[str, str]]:
+    """Name and content of each table with entries, such as ``bodies.punch``.
+
+    Parameters
+    ----------
+    tables : dict
+        Nested tables of a file.
+    name : str
+        Name for the keys outside any table.
+    above : str
+        Path of the tables within the file.
+    """
+    plain = {key: value for key, value in tables.items() if not isinstance(value, dict)}
+    content = " · ".join(f"{split_key(key)[0]} {_shown(value)}" for key, value in plain.items())
+    lines = [(above.rstrip(".") or name, content)] if content else []
+    for key, inner in tables.items():
+        if isinstance(inner, dict):
+            lines += table_lines(inner, name, f"{above}{key}.")
+    return lines
+
+
+def _shown(value: Any) -> str:
+    """Format a value of a case file; quantities such as ``"0.02 m"`` in a unit that suits them."""
+    if isinstance(value, list):
+        return ", ".join(map(_shown, value))
+    written = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if written is None:
+        return quantity(value, "")
+    unit = re.sub(r"\^[23]", lambda power: power[0].translate(_POWERS), written[2])
+    return quantity(float(written[1]), unit)

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import CaseError
-from ..coordinates import read_object
+from ..files import is_ours, read_object
 from ..folder import run_ended, run_started, write_json
-from ..names import is_ours
 from ..tables import write_csv
 from .keys import Swept
 

@@ -13,10 +13,16 @@ from matplotlib.lines import Line2D
 from ...results.quantity import from_key
 from ...results.summary_keys import of_key
 from .. import tables
-from ..coordinates import in_model, model_of
+from ..files import model_of
 from ..pictures.maps import is_surface, triangulated
-from ..pictures.panels import MAP_STYLE, clip_singular, label_coordinates, panels, plot_along
-from ..pictures.scales import COLORS
+from ..pictures.panels import (
+    MAP_STYLE,
+    clip_singular,
+    color_map,
+    label_coordinates,
+    panels,
+    plot_along,
+)
 from .layout import (
     LINES,
     Layout,
@@ -143,7 +149,7 @@ def _draw_maps(layout: Layout, path: Path) -> None:
     levels = np.linspace(
         np.min(np.concatenate(values)), np.max(np.concatenate(values)), _LEVELS + 1
     )
-    scale = ScalarMappable(Normalize(levels[0], levels[-1]), COLORS["shape"])
+    scale = ScalarMappable(Normalize(levels[0], levels[-1]), color_map("shape"))
     options: dict[str, Any] = {"margin": (1.4, 0.3), "style": MAP_STYLE}
     options |= {"sharex": True, "sharey": True}
     with panels(path, count, _ACROSS, (2.6, 2.7), **options) as (figure, axes):
@@ -162,7 +168,7 @@ def _draw_numbers(layout: Layout, path: Path) -> None:
     """Draw the key figures that vary over the swept key, and list the others in the title."""
     record, numbers = layout.record, _numbers(layout.record)
     model = model_of(record.folders[0])
-    shown = {name: in_model(quantity, model) for name, quantity in _NUMBERS.items()}
+    shown = {name: quantity.in_model(model) for name, quantity in _NUMBERS.items()}
     same = {k: v[0] for k, v in numbers.items() if np.ptp(v) <= _EQUAL * np.abs(v).max()}
     varying = {name: values for name, values in numbers.items() if name not in same}
     if not varying:

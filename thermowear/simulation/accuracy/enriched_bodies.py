@@ -7,8 +7,10 @@ change with the better discretisation.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...bulk.field import owned
 from ...bulk.heat.heat_equation import conducting, given_rises, transferring
@@ -16,12 +18,13 @@ from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
 from ...bulk.mechanics.surplus import surplus_space
 from ...contact.operators.heat import BaselineResponse, InterfaceHeat
-from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import gap_trace, value_trace, vector_trace
-from ...model.heat import Heat
+from ...model.conditions import Heat
 from ...parallel import sum_over_ranks
+from ..heat.friction_heat import TemperatureField
 from ..interface.body_state import BodyState, ContactState
-from ..system.elastic_system import supports, surface_loads
+from ..system.building import supports
+from ..system.rigid_modes import surface_loads
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 
@@ -34,14 +37,12 @@ class TemperatureChange:
     ----------
     faces : ndarray, shape (2, n)
         Change at the points of both faces [K].
-    problem : EnrichedProblem
-    field : ndarray
-        Change in the bodies, a field of that problem [K].
+    rise : UFL expression
+        Rise in the bodies including the change [K].
     """
 
     faces: np.ndarray
-    problem: EnrichedProblem
-    field: np.ndarray
+    rise: Any
 
 
 class EnrichedBodies:
@@ -63,47 +64,36 @@ class EnrichedBodies:
             elastic.solve,
             (elastic.fixed, held),
         )
-        self._trace = gap_trace(surplus, system.pairing)
+        self._trace = sp.vstack([system.trace, gap_trace(surplus, system.pairing)])
 
     def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
         system, problem = self._system, self._problem
-        loads = self._loads(contact)
+        loads, thermal, before = self._loads(contact), system.thermal, state.temperatures
         if heated is not None:
-            assert system.thermal is not None
-            space = system.thermal.conduction.space
-            before = heated.problem.field(np.asarray(state.rise))
-            rise = heated.problem.function(before + heated.field)
             loads = loads + problem.loads(
-                lambda δu: system.elastic.thermal_work(rise, δu, space.ufl_element().degree + 1)
+                lambda δu: system.elastic.thermal_work(heated.rise, δu, self._degree)
             )
-        elif state.rise is not None and system.thermal is not None:
-            loads[: owned(problem.space)] += system.thermal.forces(state.rise)
+        elif before is not None and thermal is not None:
+            loads[: owned(problem.space)] += thermal.forces(before.rise)
         residual = problem.residual(problem.field(state.displacement), loads)
         return self._gap(problem.correction(residual))
 
     def answer(self, pressure: np.ndarray) -> np.ndarray:
         """Approximate gap opened by a pressure at the points, shape (n,) [m]."""
-        loads = self._system.weights * pressure
-        nodal = np.concatenate([self._system.trace @ loads, self._trace @ loads])
+        nodal = self._trace @ (self._system.weights * pressure)
         return self._gap(self._problem.approximate(nodal))
 
     def _gap(self, field: np.ndarray) -> np.ndarray:
-        count = owned(self._problem.space)
-        opened = self._system.trace.T @ field[:count] + self._trace.T @ field[count:]
-        return sum_over_ranks(self._system.comm, opened)
+        return sum_over_ranks(self._system.comm, self._trace.T @ field)
 
     def _loads(self, contact: ContactState) -> np.ndarray:
         """Nodal loads of the contact and of the surface loads in the enriched space."""
         system, problem = self._system, self._problem
-        pairing = system.pairing
-        traction_direction = system.with_friction(contact.conditions.friction).traction_direction
-        traction = contact.pressure[:, None] * traction_direction
-        if contact.shear is not None:
-            traction = traction - contact.shear[:, None] * tangents(pairing.normals)[0]
+        traction = contact.traction(system.with_friction(contact.conditions.friction))
         loads = np.concatenate(
             [
-                vector_trace(space, pairing, traction) @ system.weights
+                vector_trace(space, system.pairing, traction) @ system.weights
                 for space in (problem.space, problem.surplus)
             ]
         )
@@ -113,41 +103,36 @@ class EnrichedBodies:
 
 
 def temperature_change(
-    system: System, heat: Heat, thermal: ThermalSystem, contact: ContactState, state: BodyState
-):
-    """Change of the steady temperatures by the next degree for a given friction heat.
-
-    Every rank calls.
-    """
-    assert state.thermal is not None
+    system: System,
+    heat: Heat,
+    thermal: ThermalSystem,
+    temperatures: TemperatureField,
+    conductance: np.ndarray,
+) -> TemperatureChange:
+    """Change of steady temperatures by the next degree for a given friction heat; collective."""
     conduction, face, pairing = thermal.conduction, thermal.face, system.pairing
     problem = _conducting(system, heat, thermal)
-    count = owned(conduction.space)
-    surplus = [value_trace(problem.surplus, side) for side in pairing.sides]
-    given = sum(
-        trace @ (face.weights * flux)
-        for trace, flux in zip(surplus, state.thermal.flux, strict=True)
-    )
-    loads = np.concatenate([face.nodal_heat(state.thermal, bath=False), given])
-    change = problem.correction(problem.residual(problem.field(np.asarray(state.rise)), loads))
-    uncoupled = np.array(
-        [
-            sum_over_ranks(system.comm, trace.T @ change[:count] + more.T @ change[count:])
-            for trace, more in zip(face.traces, surplus, strict=True)
-        ]
-    )
+    traces = [
+        sp.vstack([trace, value_trace(problem.surplus, side)])
+        for trace, side in zip(face.traces, pairing.sides, strict=True)
+    ]
+    fluxes = zip(traces, temperatures.faces.flux, strict=True)
+    loads = sum(trace @ (face.weights * flux) for trace, flux in fluxes)
+    before = problem.field(temperatures.rise)
+    change = problem.correction(problem.residual(before, np.asarray(loads)))
+    uncoupled = np.array([sum_over_ranks(system.comm, trace.T @ change) for trace in traces])
     # the nodal space cannot represent the response to a flux that levels finer details
     weighted = face.weights[:, None] * face.basis
     resolved = (
         face.basis
         @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ uncoupled.T, rcond=None)[0]
     )
-    exchange = face.exchange(contact.conditions.conductance)
+    exchange = face.exchange(conductance)
     none = np.zeros(len(face.weights))
     coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
-    change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
-    details = _levelled(uncoupled - resolved.T, face, contact.conditions.conductance)
-    return TemperatureChange(np.array(coupled.rise) + details, problem, change)
+    change[: owned(conduction.space)] += conduction.respond(face.nodal_heat(coupled, bath=True))
+    details = _levelled(uncoupled - resolved.T, face, conductance)
+    return TemperatureChange(np.array(coupled.rise) + details, problem.function(before + change))
 
 
 def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:

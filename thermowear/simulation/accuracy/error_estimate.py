@@ -22,17 +22,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.operators.holder import hold
+from ...contact.search.face import Surface
 from ...contact.search.pairing import pair
-from ...contact.search.surface import Surface
 from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
-from ...laws.principle.steady import steady_pressure
 from ...model.analyses import Analysis
 from ...results import InterfaceFields
 from ..interface.body_state import ContactState
+from ..interface.steady import principle
 from ..results.recording import Snapshot
-from ..system.building import sliding_of
+from ..system.building import sliding_contact
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from .enriched_bodies import EnrichedBodies, TemperatureChange, temperature_change
@@ -83,45 +82,43 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     """Estimate the errors at the end of an analysis. Every rank calls."""
     system, steady = end.system, analysis.type == "steady"
     missing: dict[str, str] = {}
+    errors: dict[str, float | None] = dict.fromkeys(
+        ("pressure", "max_pressure", "shape", "temperature")
+    )
     heated, why = _temperature_change(end)
-    temperature = None if heated is None else _of_temperature(end, heated)
-    if temperature is None:
+    if heated is not None:
+        errors["temperature"] = _of_temperature(end, heated)
+    if errors["temperature"] is None:
         missing["temperature"] = why or "no temperature differs from the ambient one"
     bodies = EnrichedBodies(system)
     opened = bodies.opening(end.contact, end.bodies, heated)
-    shape = None
     if system.thermal is not None and heated is None:
         missing["shape"] = f"temperature: {why}"
     else:
-        shape = _of_shape(end, opened, steady)
-        if shape is None:
+        errors["shape"] = _of_shape(end, opened, steady)
+        if errors["shape"] is None:
             missing["shape"] = "the faces have no shape by wear"
-    pressure = largest = None
     if not end.interface.pressure.any():
         missing["pressure"] = "nothing presses"
-    else:
-        try:
-            if steady:
-                enriched = _finer_principle(system, end.contact)
-            else:
-                enriched = _enriched_pressure(end, bodies, opened)
-            pressure, largest = _of_pressure(system, end.contact.pressure, enriched)
-            pressure = max(pressure, _of_edges(system, end.interface))
-        except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
-            missing["pressure"] = str(error)
-    errors = {
-        "pressure": pressure,
-        "max_pressure": largest,
-        "shape": shape,
-        "temperature": temperature,
-    }
+        return ErrorEstimates(errors, missing)
+    try:
+        if steady:
+            enriched = _finer_principle(system, end.contact)
+        else:
+            enriched = _enriched_pressure(end, bodies, opened)
+        mean, largest = _of_pressure(system, end.contact.pressure, enriched)
+        errors["pressure"] = max(mean, _of_edges(system, end.interface))
+        errors["max_pressure"] = largest
+    except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
+        missing["pressure"] = str(error)
     return ErrorEstimates(errors, missing)
 
 
 def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
     thermal, heat = end.system.thermal, end.system.model.heat
-    if thermal is None or heat is None or end.bodies.thermal is None:
+    found = end.bodies.temperatures
+    if thermal is None or heat is None or found is None:
         return None, "isothermal"
     if heat.transient:
         return None, "not estimated where temperatures are followed in time"
@@ -131,12 +128,13 @@ def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | 
         return None, "not estimated where conductivity or expansion change with temperature"
     if heat.advection != "none":
         return None, "not estimated where a body carries heat along"
-    return temperature_change(end.system, heat, thermal, end.contact, end.bodies), None
+    conductance = end.contact.conditions.conductance
+    return temperature_change(end.system, heat, thermal, found, conductance), None
 
 
 def _of_temperature(end: Snapshot, heated: TemperatureChange) -> float | None:
-    assert end.bodies.thermal is not None
-    largest = float(np.abs(end.bodies.thermal.rise).max())
+    assert end.bodies.temperatures is not None
+    largest = float(np.abs(end.bodies.temperatures.faces.rise).max())
     return _FOLLOWING * float(np.abs(heated.faces).max()) / largest if largest > 0 else None
 
 
@@ -215,7 +213,10 @@ def _finer_principle(system: System, contact: ContactState) -> np.ndarray:
         raise ComputationError("not estimated on moved meshes")
     if any("T" in law.variables for law in system.laws.values()):
         raise ComputationError("not estimated where wear depends on the temperature")
-    coarse, fine = (_principle(part) for part in (system, _finer(system)))
+    coarse, fine = (
+        principle(each, each.holder.load, speed=each.speed, friction=each.friction)
+        for each in (system, _finer(system))
+    )
     velocity = system.holder.modes @ coarse.velocity
     change = system.holder.modes @ fine.velocity - velocity
     pressure = contact.pressure
@@ -242,29 +243,5 @@ def _finer(system: System) -> System:
     lobatto = model.interface.pressure_degree == "lobatto"
     order = model.discretisation.degree + (2 if lobatto else 3)
     pairing = pair(face_1, face_2, kinematics, order, refine=not lobatto)
-    slides = sliding_of(model, kinematics, pairing)
-    assert slides is not None
-    friction = system.friction, model.interface.transverse_friction
-    traction_direction = slides.traction_direction(pairing.normals, *friction)
-    holder = hold(pairing, traction_direction, system.holder.rigid_modes)
-    return replace(
-        system,
-        pairing=pairing,
-        slides=slides,
-        traction_direction=traction_direction,
-        speed=slides.speed,
-        holder=holder,
-    )
-
-
-def _principle(system: System):
-    return steady_pressure(
-        system.weights,
-        system.holder.modes,
-        system.holder.force_modes,
-        system.holder.load,
-        list(system.laws.values()),
-        system.speed,
-        list(system.spreads.values()),
-        friction=system.friction,
-    )
+    driven = system.holder.rigid_modes
+    return replace(system, pairing=pairing, **sliding_contact(model, kinematics, pairing, driven))

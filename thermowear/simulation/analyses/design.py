@@ -46,7 +46,7 @@ def steady_design(system: System, body: int) -> Design:
     s = pairing.position
     if body == 2:
         normals = side.face.normals(side.facet, side.t)
-        s = side.face.position(side.facet, side.t)
+        s = side.position
     height = pairing.gap + depth
     height_along = height / along_load(system)
     design = Design(

@@ -29,27 +29,30 @@ _SAME, _TOLERANCE, _ITERATIONS = 1e-3, 1e-6, 6
 
 
 @dataclass(frozen=True)
-class GrowthMode:
-    """Growth rate of a perturbation, and its speed.
+class PerturbationMode:
+    """Perturbation mode of the pressure.
 
     Attributes
     ----------
     factor : float
-        Factor of the given speed.
+        Factor of the given speed at which it is found.
     rate : Rate
+        Growth rate, and coefficients of the pressure.
     """
 
     factor: float
     rate: Rate
 
-    def near(self, other: GrowthMode) -> bool:
+    def near(self, other: PerturbationMode) -> bool:
         """True if both agree within the accuracy of the reduced model."""
         change = abs(self.rate.value - other.rate.value) <= _TOLERANCE * abs(other.rate.value)
         return change and abs(self.factor - other.factor) <= _TOLERANCE * other.factor
 
 
 class GrowthModel:
-    """Heat conduction projected on responses to perturbations.
+    """Heat conduction projected on responses to perturbations over a wide range of growth rates.
+
+    Every rank constructs it.
 
     Parameters
     ----------
@@ -75,19 +78,16 @@ class GrowthModel:
         self._conditions, self._elastic, self._space = conditions, elastic, space
         self._friction = conditions.heating[:, None] * (system.basis @ space.pressures)
         self._steps = HeatSteps(system, system.thermal, 0)
-        self._fields: np.ndarray | None = None
-        self._crossing: np.ndarray | None = None
+        self._fields = np.zeros((len(system.thermal.conduction.fixed), 0))
+        self._crossing = np.zeros((len(system.weights), 0))
         self._rates: list[float] = []
-
-    def begin(self) -> None:
-        """Add responses over the whole range of rates; every rank calls."""
         slowest = self._thermal.diffusivity / self._system.pairing.extent**2
         for rate in (0.0, *(part * slowest for part in _SPREAD)):
             self.add(rate)
 
     def refined(
-        self, find: Callable[[PerturbationMatrices], GrowthMode | None]
-    ) -> GrowthMode | None:
+        self, find: Callable[[PerturbationMatrices], PerturbationMode | None]
+    ) -> PerturbationMode | None:
         """Result of a search in the model, refined at the rate found; every rank calls.
 
         The response at the rate found is added until the result no longer changes.
@@ -129,7 +129,6 @@ class GrowthModel:
         """Matrices of the present model; every rank calls."""
         system, space, thermal = self._system, self._space, self._thermal
         conduction, X = thermal.conduction, self._fields
-        assert X is not None
         assert conduction.capacity is not None
         at = baseline_response(X, thermal.face.traces, system.comm, system.influence.per_rise[0])
         T1, T2 = at.rise
@@ -137,8 +136,8 @@ class GrowthModel:
         f = np.reshape(thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # each field satisfies the interface heat law
         carried = np.zeros((X.shape[1],) * 2)
-        if conduction.advective is not None:
-            carried = self._product(conduction.advective, X)
+        if conduction.advection is not None:
+            carried = self._product(conduction.advection.carried, X)
         return PerturbationMatrices(
             elastic=space(self._elastic),
             opening=space.gaps.T @ at.opening,
@@ -150,8 +149,6 @@ class GrowthModel:
 
     def _extend(self, fields: np.ndarray, crossing: np.ndarray) -> None:
         """Extend the orthonormal space by fields (n_owned, q) with their heat exchange (n, q)."""
-        if self._fields is None or self._crossing is None:
-            self._fields, self._crossing = fields[:, :0], crossing[:, :0]
         for least in (_NEW, 0.0):  # twice, as the rest of a small difference is not orthogonal
             scale = 1 / np.sqrt(np.diag(self._gram(fields, fields)))
             known = self._gram(self._fields, fields * scale)

@@ -5,7 +5,7 @@ Linear, with the thermal conductance of the base state; its own temperatures do 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -23,7 +23,7 @@ from ..heat.heat_steps import HeatOperators
 from ..system.building import build
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from .growth_model import GrowthMode, GrowthModel
+from .growth_model import GrowthModel, PerturbationMode
 
 _REDUCED = 24
 """Number of perturbations most coupled to heat, the basis of growing ones; see `leading`."""
@@ -31,25 +31,6 @@ _PRESSING = 1e-9
 _SLOW, _NEAR = 0.02, 0.3
 """Start of the onset search as part of a speed that is known roughly, or well."""
 _SAME, _ITERATIONS = 1e-4, 10
-
-
-@dataclass(frozen=True)
-class PerturbationMode:
-    """Perturbation mode of the pressure.
-
-    Attributes
-    ----------
-    factor : float
-        Factor of the given speed at which it is found.
-    rate : complex
-        Growth rate (real part) and angular frequency (imaginary part) [1/s].
-    shape : ndarray, shape (m,)
-        Coefficients of the pressure.
-    """
-
-    factor: float
-    rate: complex
-    shape: np.ndarray
 
 
 class PerturbedContact:
@@ -83,7 +64,7 @@ class PerturbedContact:
     @property
     def has_advection(self) -> bool:
         """True if a body convects heat: perturbations then move, and no static modes exist."""
-        return self._thermal_bodies.conduction.advective is not None
+        return self._thermal_bodies.conduction.advection is not None
 
     @cached_property
     def static(self) -> StaticModes:
@@ -93,7 +74,7 @@ class PerturbedContact:
     def fastest(self, wears: bool) -> PerturbationMode:
         """Perturbation with the largest growth rate (real part) at the given speed."""
         wear = self._wear(1.0) if wears else None
-        found = self._model.refined(lambda small: GrowthMode(1.0, small.fastest(1.0, wear)))
+        found = self._model.refined(lambda small: PerturbationMode(1.0, small.fastest(1.0, wear)))
         assert found is not None
         return self._full_mode(found)
 
@@ -114,13 +95,13 @@ class PerturbedContact:
     def _onset(self, wears: bool, start: float) -> PerturbationMode | None:
         wear = self._wear if wears else None
 
-        def find(small: PerturbationMatrices) -> GrowthMode | None:
+        def find(small: PerturbationMatrices) -> PerturbationMode | None:
             nonlocal start
             factor = small.onset(start, wear)
             if factor is None:
                 return None
             start = 0.95 * factor
-            return GrowthMode(factor, small.fastest(factor, wear and wear(factor)))
+            return PerturbationMode(factor, small.fastest(factor, wear and wear(factor)))
 
         found = self._model.refined(find)
         return None if found is None else self._full_mode(found)
@@ -133,15 +114,14 @@ class PerturbedContact:
         conditions = replace(self._conditions, speed=factor * self._conditions.speed)
         return PerturbedContact(system, self._pressure, conditions)
 
-    def _full_mode(self, found: GrowthMode) -> PerturbationMode:
+    def _full_mode(self, found: PerturbationMode) -> PerturbationMode:
+        """Mode with its shape in the whole pressure space."""
         shape = self._reduced.pressures @ found.rate.shape
-        return PerturbationMode(found.factor, found.rate.value, shape)
+        return replace(found, rate=replace(found.rate, shape=shape))
 
     @cached_property
     def _model(self) -> GrowthModel:
-        model = GrowthModel(self._system, self._conditions, self._elastic, self._reduced)
-        model.begin()
-        return model
+        return GrowthModel(self._system, self._conditions, self._elastic, self._reduced)
 
     @cached_property
     def _elastic(self) -> np.ndarray:
@@ -185,7 +165,7 @@ class PerturbedContact:
         laws = zip(system.laws.values(), system.spreads.values(), strict=True)
         for row, (law, spread) in enumerate(laws):
             slope = conditions.wear_slope(row, law, self._pressure)
-            worn += spread.operator(len(slope)) @ (slope[:, None] * pressed)
+            worn += spread.rate(slope[:, None] * pressed)
         return space.gaps.T @ (system.contact.weighted.T @ worn)
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...contact.search.zones import contact_zones
+from ...contact.operators.pressure import contact_zones
 from ...errors import ComputationError
 from ...model.model import Model
 from ...timer import Phases
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..system.building import build
-from ..system.system import System
+from ..system.system import SetupCache, System
 
 _ITERATIONS = 12
 _TOLERANCE = 0.1  # relative to the element at the edge
@@ -18,8 +18,10 @@ _LARGEST_SLOPE = 4.0
 _LONGEST = 0.4  # relative to the zone, so that its edges cannot swap
 
 
-def prepare(model: Model, comm, phases: Phases) -> System:
+def prepare(model: Model, comm, phases: Phases, parts: SetupCache | None = None) -> System:
     """Build the system of a model, fitted to the contact edges if requested. Every rank calls.
+
+    A set-up cache is not used for a mesh that depends on the contact of the model.
 
     Raises
     ------
@@ -27,7 +29,7 @@ def prepare(model: Model, comm, phases: Phases) -> System:
         If it cannot be meshed, or the contact edges do not converge.
     """
     if not model.discretisation.positioning:
-        return build(model, comm, phases)
+        return build(model, comm, phases, parts=parts)
     expected = model.expected_zone
     zone = np.array(touching(build(model, comm, phases)) if expected is None else expected)
     before: tuple[np.ndarray, np.ndarray] | None = None

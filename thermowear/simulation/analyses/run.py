@@ -1,9 +1,12 @@
-"""Run an analysis of a model: set-up, analysis, checks, error estimate and result."""
+"""Run of an analysis, or of a series of them: set-up, analysis, checks, error estimate, result."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
+
+from mpi4py import MPI
 
 from numpy.linalg import LinAlgError
 
@@ -20,22 +23,17 @@ from ...model.model import Model
 from ...results import Result
 from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
-from ..cycles.fretting import fretting_history
-from ..cycles.reciprocating import reciprocating_history
+from ..cycles.fretting import FrettingHistory
+from ..cycles.reciprocating import ReciprocatingHistory
 from ..geometry_update.wider_zone import reaches_open_end
-from ..interface.condensed_method import CondensedMethod
-from ..interface.interface_problem import InterfaceProblem
-from ..results.fields import sample
-from ..results.recording import Snapshot
-from ..runtime.checkpoint_data import Saved, mesh_checksum
+from ..results.recording import Snapshot, sample
 from ..runtime.history import AnalysisHistory
-from ..runtime.observer import Observer
-from ..system.system import System
+from ..runtime.observer import Observer, Saved, mesh_checksum
+from ..system.system import SetupCache, System, inputs
 from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare
-from .stability import stability
-from .static import initial, steady, unworn
-from .transient import transient_history
+from .static import initial, stability, steady
+from .transient import TransientHistory
 
 _UNPAIRED = 1e-6
 
@@ -69,14 +67,10 @@ def run(
         If there is no result at all; a transient run that stops early is returned with its error,
         and likewise a run whose balances do not hold.
     """
-    if comm is None:
-        from mpi4py import MPI
-
-        comm = MPI.COMM_WORLD
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
-    _, result = solve(prepare(model, comm, phases), analysis, observer, saved)
-    return result
+    system = prepare(model, MPI.COMM_WORLD if comm is None else comm, phases)
+    return solve(system, analysis, observer, saved)[1]
 
 
 def solve(
@@ -115,8 +109,9 @@ def analyse(
         end, result = _STATIC[analysis.type](system, observer)
     else:
         before = None if saved is None else saved.of(system)
-        history, states = _STEPPED[type(analysis)](system, analysis, observer, before)
-        end, result = history.conclude(history.follow(states))
+        history = _STEPPED[type(analysis)](system, analysis, observer)
+        last = history.resume(before)
+        end, result = history.conclude(history.follow(history.states(last)))
     if reaches_open_end(end.system, end.contact.pressure):
         observer.note(
             "the contact reaches the end of the contact face, which was meshed for a smaller one; "
@@ -162,22 +157,64 @@ def balanced(result: Result) -> Result:
     return replace(result, stopped=result.stopped or judged(result.summary))
 
 
-def _stability(system: System, observer: Observer) -> tuple[Snapshot, Result]:
-    """Stability of the steady state, or of the cold unworn contact if there is none."""
-    free = system.holder.free
-    if system.laws and len(free) and free.all():
-        return stability(system, steady(system, observer), observer)
-    cold = InterfaceProblem(system, CondensedMethod(system), None)
-    return stability(system, unworn(cold), observer)
-
-
 _STATIC: dict[str, Callable[[System, Observer], tuple[Snapshot, Result]]] = {
     "initial": initial,
     "steady": steady,
-    "stability": _stability,
+    "stability": stability,
 }
-_STEPPED: dict[type, Callable[..., tuple[AnalysisHistory, Iterator]]] = {
-    TransientAnalysis: transient_history,
-    FrettingAnalysis: fretting_history,
-    ReciprocatingAnalysis: reciprocating_history,
+_STEPPED: dict[type, Callable[..., AnalysisHistory]] = {
+    TransientAnalysis: TransientHistory,
+    FrettingAnalysis: FrettingHistory,
+    ReciprocatingAnalysis: ReciprocatingHistory,
 }
+
+
+class Series:
+    """Sequence of models with a shared set-up cache, on all ranks; see `groups`."""
+
+    comm = MPI.COMM_WORLD
+
+    def __init__(self):
+        self._parts = SetupCache()
+
+    def run(
+        self,
+        model: Model,
+        analysis: Analysis,
+        observer: Observer | None = None,
+        phases: Phases | None = None,
+    ) -> Result:
+        """Compute the next model, as `run` does, without the fields in the bodies.
+
+        Every rank calls.
+
+        Raises
+        ------
+        CaseError, ComputationError
+        """
+        observer = observer or Observer()
+        system = prepare(model, self.comm, phases or Phases(observer.phase), self._parts)
+        return balanced(analyse(system, analysis, observer)[1])
+
+
+def groups(models: Sequence[Model]) -> list[list[int]]:
+    """Group numbers of models by equal elastic bodies, ordered within by equal thermal set-up.
+
+    Groups share no costly set-up results, and may be computed in parallel.
+    """
+    shared: list[tuple[Any, list[tuple[Any, list[int]]]]] = []
+    for number, model in enumerate(models):
+        made_from = inputs(model)
+        bodies = None if model.discretisation.positioning else made_from.elasticity
+        heated = _of(shared, bodies, bodies is None)
+        _of(heated, made_from.conduction).append(number)
+    return [[number for _, numbers in heated for number in numbers] for _, heated in shared]
+
+
+def _of(table: list[tuple[Any, list]], key: Any, new: bool = False) -> list:
+    """List of a key, which need not be hashable; created if missing or requested new."""
+    for known, found in () if new else table:
+        if known == key:
+            return found
+    table.append((key, []))
+    return table[-1][1]

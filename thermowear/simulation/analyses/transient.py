@@ -14,11 +14,10 @@ from ...results import HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
 from ..results.recording import Snapshot, snapshot_at
-from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.conditions import InterfaceConditions
@@ -32,24 +31,6 @@ _UNSTABLE = (
     "thermal runaway: friction heat distorts the bodies, which concentrates pressure and heat "
     "(thermoelastic instability); reduce the speed or the friction"
 )
-
-
-def transient_history(
-    system: System,
-    settings: TransientAnalysis,
-    observer: Observer,
-    before: Progress | None = None,
-) -> tuple[TransientHistory, Iterator[Moment]]:
-    """History of a transient analysis, and the moments to keep in it, made one by one.
-
-    From the start or from a checkpoint. The summary includes the wear velocities of the steady
-    state that is approached.
-    """
-    problem = interface_problem(system, observer.note)
-    sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
-    loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
-    history = TransientHistory(loop, settings, observer)
-    return history, history.watched(loop.moments(history.resume(before)))
 
 
 def _principle(settings: TransientAnalysis, system: System) -> SteadyState | None:
@@ -76,17 +57,19 @@ def _principle(settings: TransientAnalysis, system: System) -> SteadyState | Non
 class TransientHistory(AnalysisHistory[Moment]):
     """History of the accepted moments of a running-in.
 
-    Parameters
+    The summary includes the wear velocities of the steady state that is approached.
+
+    Attributes
     ----------
     loop : OuterLoop
         Loop that provides the system and the problem at the last moment.
-    settings : TransientAnalysis
-    observer : Observer
     """
 
-    def __init__(self, loop: OuterLoop, settings: TransientAnalysis, observer: Observer):
-        super().__init__(loop.now.system, settings, observer)
-        self.loop = loop
+    def __init__(self, system: System, settings: TransientAnalysis, observer: Observer):
+        super().__init__(system, settings, observer)
+        problem = interface_problem(system, observer.note)
+        sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
+        self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
         self._speed = 0.0
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
 
@@ -116,8 +99,8 @@ class TransientHistory(AnalysisHistory[Moment]):
             require(heat_balance_relative_error=heat.balance_error)
         return [row, heat]
 
-    def watched(self, passing: Iterator[Moment]) -> Iterator[Moment]:
-        """Pass the moments on while the faces are below any melting point.
+    def states(self, last: Moment | None) -> Iterator[Moment]:
+        """Accepted moments while the faces are below any melting point.
 
         Raises
         ------
@@ -125,7 +108,7 @@ class TransientHistory(AnalysisHistory[Moment]):
             If they are hotter; that of a step failing in thermal runaway is extended by the cause.
         """
         try:
-            for moment in passing:
+            for moment in self.loop.moments(last):
                 yield moment
                 hottest = self._hottest(moment.state)
                 if self.loop.now.problem.stores_heat and hottest > _MELTED:

@@ -9,7 +9,6 @@ from typing import ClassVar
 
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...laws.time_course import LoadHistory
-from ...model.analyses import FrettingAnalysis
 from ...serialise import serialisable
 
 _SAME = 1e-9  # relative to the duration of the history: closer times are equal
@@ -120,93 +119,90 @@ class RestartPoint:
     following: float = 2.0
 
 
-def first_pass(history: LoadHistory, output_times: tuple[float, ...]) -> Iterator[LoadSegment]:
-    """Load segments before the first cycle.
+@dataclass(frozen=True)
+class LoadPath:
+    """Load segments of a history and of its cycles; time continues through all cycles.
 
-    The first one has no duration: it applies the loads of the first time of the history.
-    """
-    begin = history.time[-1] if history.cycle is None else history.cycle[0]
-    start = history.time[0]
-    for instant, time, is_output in _corners(history, -math.inf, begin, 0.0, output_times):
-        yield LoadSegment(start, time, instant, 0, 1, is_output, False)
-        start = time
-
-
-def cycle_segments(
-    history: LoadHistory, output_times: tuple[float, ...], number: int, repeats: int = 1
-) -> Iterator[LoadSegment]:
-    """Load segments of a cycle of a periodic history; time continues through all cycles.
-
-    Parameters
+    Attributes
     ----------
     history : LoadHistory
     output_times : tuple of float
-        Output times, each the end of a segment if it lies in the cycle [s].
-    number : int
-        Number of the cycle, from 1.
-    repeats : int
-        Number of cycles that it represents, itself the last.
+        Output times, each the end of a segment [s].
     """
-    assert history.cycle is not None
-    begin, last = history.cycle
-    shift = (number - 1) * (last - begin)
-    start = begin + shift
-    for instant, time, is_output in _corners(history, begin, last, shift, output_times):
-        yield LoadSegment(start, time, instant, number, repeats, is_output, instant == last)
-        start = time
 
+    history: LoadHistory
+    output_times: tuple[float, ...]
 
-def jumped_cycles(
-    history: LoadHistory, settings: FrettingAnalysis, cycles: int, jump: int
-) -> list[int]:
-    """Numbers of the computed cycles, each representing all since the previous one.
+    def first_pass(self) -> Iterator[LoadSegment]:
+        """Load segments before the first cycle.
 
-    Includes the first cycle, which starts from a different state, and all with output times.
-    """
-    by_jump = range(jump, cycles, jump)
-    of_outputs = {math.ceil(passed) for passed in _passed(history, settings)}
-    return sorted({1, *by_jump, *of_outputs, cycles})
+        The first one has no duration: it applies the loads of the first time of the history.
+        """
+        cycle = self.history.cycle
+        end = self.history.time[-1] if cycle is None else cycle[0]
+        return self._segments(-math.inf, end, 0.0, 0, 1)
 
+    def cycle(self, number: int, repeats: int = 1) -> Iterator[LoadSegment]:
+        """Load segments of a cycle of a periodic history.
 
-def cycles_to_stop_at(history: LoadHistory, settings: FrettingAnalysis, cycles: int) -> list[int]:
-    """Numbers of the cycles that no jump may pass over.
+        Parameters
+        ----------
+        number : int
+            Number of the cycle, from 1.
+        repeats : int
+            Number of cycles that it represents, itself the last.
+        """
+        assert self.history.cycle is not None
+        begin, end = self.history.cycle
+        return self._segments(begin, end, (number - 1) * (end - begin), number, repeats)
 
-    A cycle with an output time before its end is computed individually.
-    """
-    found = {1, cycles}
-    for passed in _passed(history, settings):
-        found |= {math.floor(passed), math.ceil(passed)}
-    return sorted(found - {0})
+    def jumped_cycles(self, cycles: int, jump: int) -> list[int]:
+        """Numbers of the computed cycles, each representing all since the previous one.
 
+        Includes the first cycle, which starts from a different state, and all with output times.
+        """
+        of_outputs = {math.ceil(passed) for passed in self._passed()}
+        return sorted({1, *range(jump, cycles, jump), *of_outputs, cycles})
 
-def _passed(history: LoadHistory, settings: FrettingAnalysis) -> Iterator[float]:
-    """Numbers of cycles elapsed at the output times after the first pass."""
-    if history.cycle is None:
-        return
-    begin, last = history.cycle
-    for time in settings.output_times:
-        passed = (time - begin) / (last - begin)
-        if passed > _SAME:
-            near = round(passed)
-            yield near if abs(passed - near) <= _SAME else passed
+    def cycles_to_stop_at(self, cycles: int) -> list[int]:
+        """Numbers of the cycles that no jump may pass over.
 
+        A cycle with an output time before its end is computed individually.
+        """
+        found = {1, cycles}
+        for passed in self._passed():
+            found |= {math.floor(passed), math.ceil(passed)}
+        return sorted(found - {0})
 
-def _corners(
-    history: LoadHistory, begin: float, end: float, shift: float, outputs: tuple[float, ...]
-) -> list[tuple[float, float, bool]]:
-    """Times of the history in ``begin < instant <= end`` at which a load segment ends.
+    def _passed(self) -> Iterator[float]:
+        """Numbers of cycles elapsed at the output times after the first pass."""
+        if self.history.cycle is None:
+            return
+        begin, end = self.history.cycle
+        for time in self.output_times:
+            passed = (time - begin) / (end - begin)
+            if passed > _SAME:
+                near = round(passed)
+                yield near if abs(passed - near) <= _SAME else passed
 
-    Returns
-    -------
-    list of tuple
-        Time in the history [s], time in the analysis [s], True for an output time.
-    """
-    near = _SAME * (history.time[-1] - history.time[0])
-    times = {t: t + shift for t in (*history.time, end) if begin < t <= end}
-    marked = set()
-    for time in outputs:
-        instant = next((t for t in times if abs(t + shift - time) <= near), time - shift)
-        if begin + near < instant <= end:
-            times[instant] = time
-            marked.add(instant)
-    return [(t, times[t], t in marked) for t in sorted(times)]
+    def _segments(
+        self, begin: float, end: float, shift: float, number: int, repeats: int
+    ) -> Iterator[LoadSegment]:
+        """Load segments of the times of the history in ``begin < instant <= end``.
+
+        They are shifted in the analysis [s].
+        """
+        first, *_, last = self.history.time
+        near = _SAME * (last - first)
+        times = {t: t + shift for t in (*self.history.time, end) if begin < t <= end}
+        marked = set()
+        for time in self.output_times:
+            instant = next((t for t in times if abs(t + shift - time) <= near), time - shift)
+            if begin + near < instant <= end:
+                times[instant] = time
+                marked.add(instant)
+        start = max(begin, first) + shift
+        for instant, time in sorted(times.items()):
+            ends_cycle = number > 0 and instant == end
+            yield LoadSegment(start, time, instant, number, repeats, instant in marked, ends_cycle)
+            start = time

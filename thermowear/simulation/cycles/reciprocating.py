@@ -11,10 +11,9 @@ from ...laws.motions import combined
 from ...model.analyses import ReciprocatingAnalysis
 from ...results import HistoryRow, WornTrack
 from ..interface.body_state import contact_state
-from ..interface.factory import interface_problem
+from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..results.recording import Snapshot, snapshot
-from ..runtime.checkpoint_data import Progress
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.system import System
@@ -23,35 +22,17 @@ from .reciprocating_problem import ReciprocatingProblem
 from .stroke import positions
 
 
-def reciprocating_history(
-    system: System,
-    settings: ReciprocatingAnalysis,
-    observer: Observer,
-    before: Progress | None = None,
-) -> tuple[ReciprocatingHistory, Iterator[Moment]]:
-    """History of cycle-averaged wear, and the moments to keep in it, made one by one.
-
-    From the start or from a checkpoint.
-    """
-    problem = ReciprocatingProblem(system, positions(system, settings))
-    history = ReciprocatingHistory(system, settings, observer, problem)
-    sizes = AnySize(settings.max_jump / settings.frequency)
-    return history, moments(problem, settings, None, sizes, history.resume(before))
-
-
 class ReciprocatingHistory(AnalysisHistory[Moment]):
-    """History of reciprocating wear."""
+    """History of cycle-averaged wear in reciprocating sliding."""
 
-    def __init__(
-        self,
-        system: System,
-        settings: ReciprocatingAnalysis,
-        observer: Observer,
-        problem: ReciprocatingProblem,
-    ):
+    def __init__(self, system: System, settings: ReciprocatingAnalysis, observer: Observer):
         super().__init__(system, settings, observer)
-        self._frequency = settings.frequency
-        self._problem = problem
+        self._timed = settings
+        self._problem = ReciprocatingProblem(system, positions(system, settings))
+
+    def states(self, last: Moment | None) -> Iterator[Moment]:
+        sizes = AnySize(self._timed.max_jump / self._timed.frequency)
+        return moments(self._problem, self._timed, None, sizes, last)
 
     def rows_of(self, moment: Moment) -> list[HistoryRow]:
         system, state = self._system, moment.state
@@ -105,7 +86,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         return {
             "steps": len(rows) - 1,
             "time_s": row.time,
-            "cycles": row.time * self._frequency,
+            "cycles": row.time * self._timed.frequency,
             "sliding_distance_m": row.sliding_distance,
             "distance_from_steady": self.last.distance,
             "max_pressure_of_cycle_Pa": row.max_pressure,

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.operators.holder import hold
-from ...contact.operators.sliding import sliding
+from ...contact.operators.rigid_motion import hold, sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.solvers.coupled_positions import CoupledContacts
 from ...contact.wear.track import StrokeGrid
@@ -16,8 +15,7 @@ from ...errors import CaseError
 from ...model.analyses import ReciprocatingAnalysis
 from ..system.contact_points import contact_points
 from ..system.rigid_modes import rigid_modes
-from ..system.setup_cache import SetupCache
-from ..system.system import System
+from ..system.system import SetupCache, System
 
 _UNPAIRED = 1e-6
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from ...case.tables import analyses as tables
 from ...case.tables.schema import Case
@@ -18,9 +17,8 @@ from ...model.analyses import (
 from ...results import Result
 from ...timer import Phases
 from ..analyses import run as analyses
-from ..runtime.checkpoint_data import Saved
-from ..runtime.observer import Observer
-from .model import model_of
+from ..runtime.observer import Observer, Saved
+from .model import attributes, model_of
 
 
 def run(
@@ -36,58 +34,21 @@ def run(
 
 def analysis_of(case: Case) -> Analysis:
     """Settings of the analysis of a case."""
-    given = case.analysis
-    if isinstance(given, tables.Fretting):
-        return _fretting(case, given)
-    if isinstance(given, tables.Reciprocating):
-        return _reciprocating(case, given)
+    given, kept = case.analysis, {"largest_kept": case.wear.largest_kept}
+    longest = case.wear.max_jump or math.inf
     if isinstance(given, tables.Transient):
-        adapts = case.wear.update == "auto"
-        return TransientAnalysis(**_in_time(case, given), adapts=adapts)
-    return StaticAnalysis(given.type)
-
-
-def _stepped(case: Case, given: tables.Timed | tables.Fretting) -> dict[str, Any]:
-    """Settings of all analyses that follow the wear."""
-    return {
-        "output_times": given.output_times,
-        "tolerance": given.tolerance,
-        "frames": given.frames,
-        "checkpoint_every": given.checkpoint_every,
-        "largest_kept": case.wear.largest_kept,
-    }
-
-
-def _in_time(case: Case, given: tables.Timed) -> dict[str, Any]:
-    """Settings of analyses with adaptive time steps."""
-    return _stepped(case, given) | {
-        "end_time": math.inf if given.end_time is None else given.end_time,
-        "until": given.until,
-        "steady_tolerance": given.steady_tolerance,
-        "max_steps": given.max_steps,
-    }
-
-
-def _reciprocating(case: Case, given: tables.Reciprocating) -> ReciprocatingAnalysis:
-    motion, settings = case.motion, _in_time(case, given)
+        found = attributes(TransientAnalysis, given) | kept
+        return TransientAnalysis(**found, adapts=case.wear.update == "auto")
+    if isinstance(given, tables.Fretting):
+        found = attributes(FrettingAnalysis, given) | kept | {"cycles": int(case.cycles or 1)}
+        return FrettingAnalysis(**found, max_jump=longest)
+    if not isinstance(given, tables.Reciprocating):
+        return StaticAnalysis(given.type)
+    motion = case.motion
     if motion is None or motion.amplitude is None or motion.frequency is None:
         raise CaseError("motion: missing; a reciprocating analysis needs amplitude and frequency")
+    found = attributes(ReciprocatingAnalysis, given) | kept
+    found |= {"amplitude": motion.amplitude, "frequency": motion.frequency}
     if case.cycles is not None:
-        settings["end_time"] = case.cycles / motion.frequency
-    return ReciprocatingAnalysis(
-        **settings,
-        amplitude=motion.amplitude,
-        frequency=motion.frequency,
-        positions=given.positions,
-        max_jump=case.wear.max_jump or math.inf,
-    )
-
-
-def _fretting(case: Case, given: tables.Fretting) -> FrettingAnalysis:
-    return FrettingAnalysis(
-        **_stepped(case, given),
-        increments=given.increments,
-        cycles=int(case.cycles or 1),
-        jump=given.jump,
-        max_jump=case.wear.max_jump or math.inf,
-    )
+        found["end_time"] = case.cycles / motion.frequency
+    return ReciprocatingAnalysis(**found, max_jump=longest)

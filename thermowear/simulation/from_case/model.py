@@ -1,22 +1,42 @@
-"""Model of a case: bodies, materials, meshes, holder, motion and heat."""
+"""Model of a case: bodies, materials, meshes, interface, holder, motion and heat."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
 
 import numpy as np
 
+from ...case.tables.analyses import Fretting
 from ...case.tables.geometry import Geometry, Pressing
+from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
 from ...case.tables.schema import Case, MeshTable
-from ...case.tables.tabulated import TemperatureHistory
+from ...case.tables.tabulated import (
+    ExpansionTable,
+    FactorHistory,
+    TemperatureHistory,
+    TemperatureTable,
+)
+from ...case.tables.wear import BodyWearTable
+from ...case.values.section import Section
 from ...errors import CaseError
 from ...geometry.mesh.tagged import TaggedMesh
+from ...laws.coefficients import Multipliers
+from ...laws.distribution import Distribution, InPlace
+from ...laws.interfaces import Law
+from ...laws.power_wear import PowerWear
 from ...model.body import Body, Material
-from ...model.heat import Heat
-from ...model.holder import Holder, Motion
-from ...model.meshes import Zone
-from ...model.model import Discretisation, Model
-from .interface import interface
+from ...model.conditions import Heat, Holder, Motion
+from ...model.interface import (
+    CircularTrack,
+    ContactMethod,
+    EvenTrack,
+    FaceWear,
+    HardnessConductance,
+    Interface,
+)
+from ...model.model import Discretisation, Model, Zone
 
 
 def model_of(case: Case) -> Model:
@@ -25,12 +45,12 @@ def model_of(case: Case) -> Model:
     return Model(
         kinematics=case.model,
         bodies=_bodies(case),
-        interfaces=(interface(case),),
+        interfaces=(_interface(case),),
         holders=(_holder(case),),
         meshes=CaseMeshes(case.model, geometry, case.mesh, case),
         discretisation=Discretisation(case.mesh.degree, case.contact.positioning),
         motion=_motion(case),
-        heat=_heat(case),
+        heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor,
         sector=geometry.sector,
         symmetry=geometry.symmetry,
@@ -40,7 +60,7 @@ def model_of(case: Case) -> Model:
 
 @dataclass(frozen=True)
 class CaseMeshes:
-    """Source of the meshes of a case, see `model.meshes.MeshSource`.
+    """Source of the meshes of a case, see `model.model.MeshSource`.
 
     Attributes
     ----------
@@ -93,43 +113,7 @@ def _material(case: Case, part: str) -> Material:
     path, given = case.located_material(part)
     if given.young_modulus is None or given.poisson_ratio is None:
         raise CaseError(f"{path}: needs young_modulus and poisson_ratio")
-    factors = given.expansion_factor, given.conductivity_factor
-    expansion, conductivity = (None if factor is None else factor.table for factor in factors)
-    return Material(
-        young_modulus=given.young_modulus,
-        poisson_ratio=given.poisson_ratio,
-        expansion=given.expansion or 0.0,
-        conductivity=given.conductivity,
-        density=given.density,
-        specific_heat=given.specific_heat,
-        hardness=given.hardness,
-        expansion_factor=expansion,
-        conductivity_factor=conductivity,
-        label=path,
-    )
-
-
-def _heat(case: Case) -> Heat | None:
-    """Heat of a case; None if it is isothermal."""
-    given = case.heat
-    if given is None:
-        return None
-    history = given.ambient_history
-    temperature = {
-        surface: T.function if isinstance(T, TemperatureHistory) else T
-        for surface, T in given.temperature.items()
-    }
-    return Heat(
-        ambient=given.ambient,
-        ambient_history=None if history is None else history.function,
-        initial=given.initial,
-        transient=given.transient,
-        advection=given.advection,
-        cooling=given.cooling,
-        temperature=temperature,
-        flux=given.flux,
-        power=given.power,
-    )
+    return Material(**attributes(Material, given), label=path)
 
 
 def _holder(case: Case) -> Holder:
@@ -160,19 +144,97 @@ def _holder(case: Case) -> Holder:
 def _motion(case: Case) -> Motion:
     """Sliding motion; the mean speed along +x where it reciprocates."""
     geometry, given = case.geometry, case.motion
-    at_rest = Motion(
+    found = {} if given is None else attributes(Motion, given)
+    if given is not None and given.amplitude is not None and given.frequency is not None:
+        found["velocity"] = 4 * given.amplitude * given.frequency
+    return Motion(
         center=geometry.rotation_center,
         across=geometry.slides_across,
         passes=geometry.passes,
+        **found,
     )
-    if given is None:
-        return at_rest
-    velocity, history = given.velocity, given.history
-    if given.amplitude is not None and given.frequency is not None:
-        velocity = 4 * given.amplitude * given.frequency
-    return replace(
-        at_rest,
-        velocity=velocity,
-        angular_velocity=given.angular_velocity,
-        history=None if history is None else history.function,
+
+
+def attributes(kind: type, table: Section) -> dict[str, Any]:
+    """Attributes of a class of the model from the keys of the same names; without absent keys."""
+    names = type(table).model_fields.keys() & {attribute.name for attribute in fields(kind)}
+    return {
+        name: _in_model(getattr(table, name))
+        for name in sorted(names)
+        if getattr(table, name) is not None
+    }
+
+
+def _in_model(value: Any) -> Any:
+    """Tables as functions of temperature or time, also by surface; other values are kept."""
+    if isinstance(value, Mapping):
+        return {name: _in_model(each) for name, each in value.items()}
+    if isinstance(value, TemperatureTable | ExpansionTable):
+        return value.table
+    return value.function if isinstance(value, FactorHistory | TemperatureHistory) else value
+
+
+def _interface(case: Case) -> Interface:
+    """Interface of a case."""
+    contact, heat = case.contact, case.heat
+    history = contact.friction_history
+    return Interface(
+        faces=case.geometry.contact,
+        friction=contact.friction_law,
+        friction_factors=contact.friction_factor.multipliers,
+        friction_history=None if history is None else history.function,
+        transverse_friction=contact.transverse_friction,
+        conductance=_conductance(case),
+        gap_conductance=0.0 if heat is None else heat.gap_conductance or 0.0,
+        partition=0.5 if heat is None else heat.partition,
+        wear=_wear(case),
+        closes_by_wear=not isinstance(case.analysis, Fretting),
+        compliance=contact.compliance or 0.0,
+        initial_shape=case.geometry.initial_shape,
+        pressure_degree=contact.pressure_degree,
+        method=ContactMethod(
+            contact.method,
+            contact.penalty,
+            1 if contact.theta is None else contact.theta,
+            contact.gamma,
+        ),
     )
+
+
+def _conductance(case: Case) -> Law | HardnessConductance | None:
+    """Contact conductance of a case; None: perfect contact, or no heat."""
+    given = None if case.heat is None else case.heat.conductance
+    if isinstance(given, TabulatedConductanceTable):
+        return Multipliers({"p": given.table})
+    if isinstance(given, PressureConductanceTable):
+        return HardnessConductance(given.coefficient)
+    return None if given is None else law_of(given, "heat.conductance", 0.0)
+
+
+def _wear(case: Case) -> dict[int, FaceWear]:
+    """Wear of the faces by index; bodies without a wear table do not wear."""
+    return {
+        index: _face_wear(case, case.wear[name])
+        for index, name in enumerate(case.geometry.bodies)
+        if name in case.wear
+    }
+
+
+def _face_wear(case: Case, wear: BodyWearTable) -> FaceWear:
+    factors, track = wear.factor.multipliers, _track(case, wear)
+    if wear.law is not None:
+        return FaceWear(wear.law, factors, track=track)
+    κ, b, a = wear.coefficient_si(), wear.pressure_exponent, wear.velocity_exponent
+    if wear.per == "pressure":
+        return FaceWear(PowerWear(κ, b, a), factors, track=track, per=wear.per)
+    law = PowerWear.per_friction_stress(κ, case.contact.nominal_friction, b, a)
+    return FaceWear(law, factors, b, track, wear.per)
+
+
+def _track(case: Case, wear: BodyWearTable) -> Distribution | EvenTrack | CircularTrack:
+    geometry = case.geometry
+    if wear.spread == "in-place":
+        return InPlace()
+    if geometry.duty is not None and geometry.rotation_center is not None:
+        return CircularTrack(geometry.rotation_center, geometry.duty)
+    return Distribution(geometry.sector) if geometry.track is None else EvenTrack(geometry.track)

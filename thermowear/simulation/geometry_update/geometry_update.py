@@ -9,8 +9,8 @@ import numpy as np
 from ...balances import relative, require
 from ...bulk.mesh_motion import HarmonicExtension
 from ...bulk.transfer import transferred
+from ...contact.search.face import Surface
 from ...contact.search.refinement import Rule
-from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import WornFace, nodes_of
 from ...errors import CaseError, ComputationError
 from ...geometry.mesh.tagged import TaggedMesh, scaled_jacobians
@@ -19,12 +19,10 @@ from ...geometry.moving.new_face import NewFace
 from ...laws.motions import combined
 from ...parallel import on_root
 from ...serialise import serialisable
-from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
+from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState
 from ..system.building import build
-from ..system.setup_cache import SetupCache
-from ..system.system import System
+from ..system.system import SetupCache, System
 from ..system.worn_geometry import WornGeometry, along
 from .moving_faces import MovingFaces, gap_of_initial_shape, movable_body
 from .remesh import FLOOR, carrying_error, improved, on_new_faces

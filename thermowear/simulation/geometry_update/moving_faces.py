@@ -9,10 +9,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...bulk.mesh_motion import serial_extension
+from ...contact.operators.pressure import unresolved_gap
+from ...contact.search.face import Surface
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ray_intersections
-from ...contact.search.surface import Surface
-from ...contact.wear.unresolved_gap import unresolved_gap
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,
@@ -88,7 +88,7 @@ class MovingFaces:
         if isinstance(side.face, Surface):
             stays = cKDTree(nodes_of(side.face)[held])  # infinite distance if no node is held
             return stays.query(side.face.points(side.facet, side.t))[0]
-        before = side.face.position(side.facet, side.t)
+        before = side.position
         distances = before, side.face.sizes.sum() - before
         ends = zip(held[[0, -1]], distances, strict=True)
         return np.minimum(*(np.where(stays, distance, np.inf) for stays, distance in ends))

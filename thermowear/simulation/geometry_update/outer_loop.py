@@ -16,19 +16,17 @@ from ...compat import geometry_dofmap
 from ...contact.wear.worn_face import curvatures
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
-from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
+from ...model.model import Zone
+from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState, advance_with_error
 from ..interface.steady import SteadyState
 from ..runtime.observer import Observer
 from ..system.building import build
-from ..system.setup_cache import SetupCache
-from ..system.system import System
+from ..system.system import SetupCache, System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
 from .moving_faces import MovingFaces, smoothed_wear
-from .update_counts import UpdateCounts
-from .wider_zone import meshed_wider, wider_zone
+from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
 _CHANGE = 5e-3
 """Target change of pressure and temperatures by an automatic update."""
@@ -171,8 +169,8 @@ class OuterLoop:
         """Accepted moments, see `time_loop.moments`."""
         now, settings, fraction = self.now, self._settings, self.now.fraction(last)
         while True:
-            if last is not None and self._widens(now, last):
-                now, last = self._widen(now, last)
+            if last is not None and (zone := self._wider(now, last)) is not None:
+                now, last = self._widen(now, last, zone)
                 fraction = now.fraction(last)
             if last is not None and self._is_due(now, fraction, last):
                 now, last = self._update(now, last)
@@ -189,7 +187,7 @@ class OuterLoop:
                 self.now = now
                 yield moment
                 last = moment
-                if self._widens(now, last) or self._is_due(now, fraction, last):
+                if self._wider(now, last) or self._is_due(now, fraction, last):
                     break
             else:
                 return
@@ -212,17 +210,15 @@ class OuterLoop:
                 f"cannot be wider: {self._narrow}"
             ) from None
 
-    def _widens(self, now: MeshPeriod, moment: Moment) -> bool:
-        """True if a wearing contact has outgrown its zone before the end of the run."""
+    def _wider(self, now: MeshPeriod, moment: Moment) -> Zone | None:
+        """Zone to mesh for, if a wearing contact has outgrown its own before the end of the run."""
         worn = moment.state.worn.any()
         if self._narrow or now.system.zone is None or not worn or is_over(self._settings, moment):
-            return False
-        return wider_zone(now.system, moment.state.pressure) is not None
+            return None
+        return wider_zone(now.system, moment.state.pressure)
 
-    def _widen(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:
-        """Period and moment on a mesh for a wider zone; unchanged if there is none."""
-        zone = wider_zone(now.system, last.state.pressure)
-        assert zone is not None
+    def _widen(self, now: MeshPeriod, last: Moment, zone: Zone) -> tuple[MeshPeriod, Moment]:
+        """Period and moment on a mesh for a wider zone; unchanged if it cannot be made."""
         found = meshed_wider(now.problem, last.state, last.time, zone)
         if isinstance(found, str):
             self._narrow = found

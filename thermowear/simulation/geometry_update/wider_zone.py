@@ -1,25 +1,36 @@
-"""Zone that the faces are meshed for: whether the contact fits, and remeshing for a wider one."""
+"""Wider zones: whether the contact fits the meshed one, remeshing, counts over all meshes."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from operator import add
+from typing import Any
 
 import numpy as np
 import scipy
 
-from ...contact.search.surface import Surface
+from ...contact.search.face import Surface
 from ...errors import CaseError
 from ...laws.distribution import InPlace
-from ..interface.factory import interface_problem
-from ..interface.interface_problem import InterfaceProblem
+from ...model.model import Zone
+from ...serialise import serialisable
+from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState
 from ..system.building import build
 from ..system.system import System
-
-Zone = tuple[float, float]
+from ..system.worn_geometry import WornGeometry
 
 _WIDER = 1.6
 """Width of the next zone relative to the contact, at the same number of elements."""
 _ROUNDING = 1e-9
 """Tolerance of positions, relative to the length of the face."""
+_COMBINED: dict[str, Callable[[Any, Any], Any]] = {
+    "updates": add,
+    "meshed_anew": add,
+    "quality": min,
+}
+"""Combination of the counters of successive meshes, by default the largest."""
 
 
 def ends_outside_zone(system: System) -> tuple[bool, bool]:
@@ -99,3 +110,47 @@ def _carried(before: System, after: System, worn: np.ndarray) -> np.ndarray:
             had, has = depth @ before.weights, row @ after.weights
             row *= had / has if has > 0.0 else 1.0
     return rows
+
+
+@serialisable
+@dataclass(frozen=True)
+class UpdateCounts:
+    """Number of updates, and their worst errors and cell quality; see `WornGeometry`.
+
+    A mesh for a wider zone starts with no updates; the counts of previous meshes are kept here.
+    """
+
+    updates: int = 0
+    quality: float = float("inf")
+    volume_error: float = 0.0
+    change: float = 0.0
+    heat_error: float = 0.0
+    meshed_anew: int = 0
+    carrying_error: float = 0.0
+
+    def counting(self, worn: WornGeometry | None) -> UpdateCounts:
+        """Counters including the updates of a mesh."""
+        if worn is None:
+            return self
+        pairs = {name: (value, getattr(worn, name)) for name, value in vars(self).items()}
+        return UpdateCounts(**{name: _COMBINED.get(name, max)(*v) for name, v in pairs.items()})
+
+    def summary(self, largest_kept: float, lost: np.ndarray) -> dict[str, float | int]:
+        """Summary entries with the largest wear kept in the gap and the volumes lost (2,) [m³].
+
+        Empty without updates.
+        """
+        if self.updates == 0:
+            return {}
+        return {
+            "geometry_updates": self.updates,
+            "geometry_largest_kept": largest_kept,
+            "geometry_smallest_scaled_jacobian": self.quality,
+            "geometry_volume_1_m3": float(lost[0]),
+            "geometry_volume_2_m3": float(lost[1]),
+            "geometry_volume_error": self.volume_error,
+            "geometry_change": self.change,
+            "geometry_temperature_error": self.heat_error,
+            "geometry_meshed_anew": self.meshed_anew,
+            "geometry_remeshing_error": self.carrying_error,
+        }

@@ -45,29 +45,24 @@ class TemperatureField:
     error: float
 
 
+@dataclass(frozen=True)
 class InitialHeat:
     """Given temperatures of the bodies, without friction heat.
 
     Attributes
     ----------
     stored : StoredHeat
-    state : ThermalState
-        Temperatures of the faces, with zero flux.
+    baseline : BaselineResponse
+        Response of the faces to these temperatures.
     """
 
-    def __init__(self, stored: StoredHeat, baseline: BaselineResponse):
-        zeros = np.zeros(len(baseline.rise[0]))
-        self.stored = stored
-        self.state = ThermalState(baseline.rise, (zeros, zeros))
-        self._baseline = baseline
-
-    def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
-        return self.state
+    stored: StoredHeat
+    baseline: BaselineResponse
 
     def coupling(
         self, conditions: InterfaceConditions, basis: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        opening, m = self._baseline.opening, basis.shape[1]
+        opening, m = self.baseline.opening, basis.shape[1]
         assert opening is not None
         return np.zeros((m, m)), opening
 

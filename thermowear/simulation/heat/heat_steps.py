@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
+from ...contact.operators.condensation import condense_distortion, condense_heat
 from ...contact.operators.heat import (
     BaselineResponse,
     HeatExchange,
@@ -18,14 +19,11 @@ from ...contact.operators.heat import (
     ThermalState,
     baseline_response,
 )
-from ...contact.operators.heat_condensation import condense_distortion, condense_heat
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
-from ..system.setup_cache import SetupCache
-from ..system.system import System
-from ..system.thermal_loads import ThermalLoad
-from ..system.thermal_system import ThermalSystem
+from ..system.system import SetupCache, System
+from ..system.thermal_system import ThermalLoad, ThermalSystem
 
 _ROUNDING = 1e-3
 """Least scale of the heat balance, relative to the initial heat content (rounding)."""
@@ -129,6 +127,10 @@ class HeatOperators:
                 lambda: condense_distortion(conduction, self.per_rise, self.face),
             )
 
+    def rise(self, load: ThermalLoad, heat: np.ndarray) -> np.ndarray:
+        """Nodal rise (n_owned,) by nodal heat and prescribed temperatures; every rank calls [K]."""
+        return self.conduction.with_prescribed(load.given).solve(heat)
+
     def baseline(self, rise: np.ndarray) -> BaselineResponse:
         """Interface response to a nodal rise (n_owned,); every rank calls."""
         per_rise = self.per_rise if self.distorts else None
@@ -151,6 +153,12 @@ class HeatOperators:
         return last[2]
 
 
+def unheated(baseline: BaselineResponse) -> ThermalState:
+    """State of the faces without any heat at the contact."""
+    zeros = np.zeros(len(baseline.rise[0]))
+    return ThermalState(baseline.rise, (zeros, zeros))
+
+
 @dataclass(eq=False)
 class HeatStep:
     """Linear conduction at one time: operators, loads and stored heat.
@@ -171,12 +179,6 @@ class HeatStep:
     baseline: BaselineResponse
     _gap: tuple[HeatExchange, np.ndarray] | None = None
 
-    @property
-    def unheated(self) -> ThermalState:
-        """State of the faces without any heat at the contact."""
-        zeros = np.zeros(len(self.baseline.rise[0]))
-        return ThermalState(self.baseline.rise, (zeros, zeros))
-
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
         exchange = self.operators.exchange(conditions.conductance)
@@ -185,7 +187,7 @@ class HeatStep:
     def rise(self, faces: ThermalState) -> np.ndarray:
         """Temperature rise of the bodies, shape (n_owned,) [K]."""
         heat = self.operators.face.nodal_heat(faces, bath=True) + self.supplied
-        return self.operators.conduction.with_prescribed(self.load.given).solve(heat)
+        return self.operators.rise(self.load, heat)
 
     def coupling(
         self, conditions: InterfaceConditions, basis: np.ndarray
@@ -219,13 +221,12 @@ class HeatSteps:
     def steady(self) -> HeatStep:
         """Steady conduction; every rank calls."""
         load, operators, system = self._thermal.loads.at(0.0), self.operators, self._system
-        held = operators.conduction.with_prescribed(load.given)
-        key = system.inputs.conduction, operators.distorts
-
-        def baseline() -> BaselineResponse:
-            return operators.baseline(held.solve(load.heat))
-
-        return HeatStep(operators, load, load.heat, system.parts.get("at rest", key, baseline))
+        baseline = system.parts.get(
+            "at rest",
+            (system.inputs.conduction, operators.distorts),
+            lambda: operators.baseline(operators.rise(load, load.heat)),
+        )
+        return HeatStep(operators, load, load.heat, baseline)
 
     def operators_within(self, step: float) -> Any:
         """Operators for an implicit Euler step of a size [s]; every rank calls."""
@@ -285,8 +286,8 @@ class HeatSteps:
         self, operators: Any, load: ThermalLoad, supplied: np.ndarray, rise: np.ndarray
     ) -> HeatStep:
         """Conduction at one time, with nodal heat without the contact and an initial rise."""
-        held = operators.conduction.with_prescribed(load.given)
-        return HeatStep(operators, load, supplied, operators.baseline(held.solve(supplied)))
+        baseline = operators.baseline(operators.rise(load, supplied))
+        return HeatStep(operators, load, supplied, baseline)
 
     def _condense(self, conduction: Conduction) -> InterfaceHeat:
         """Conduction of a time step or a tangent condensed to the interface; every rank calls."""

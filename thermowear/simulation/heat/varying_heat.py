@@ -13,6 +13,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
+from ...bulk.heat.varying import VaryingExpansion
 from ...contact.operators.heat import (
     BaselineResponse,
     InterfaceHeat,
@@ -22,8 +23,7 @@ from ...contact.operators.heat import (
 from ...errors import ComputationError
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..system.thermal_loads import ThermalLoad
-from ..system.thermal_system import ThermalSystem
+from ..system.thermal_system import ThermalLoad, ThermalSystem
 from .heat_steps import HeatOperators, HeatStep, HeatSteps
 
 _ITERATIONS = 60
@@ -33,39 +33,29 @@ _SLOW = 0.3
 """Convergence rate of Newton's method above which the tangents are renewed."""
 _LEAST_RISE = 1.0  # K
 
-Linearisation = tuple[HeatOperators, np.ndarray, BaselineResponse]
-"""Operators, supplied heat and baseline response of a `HeatStep` linearised about a rise."""
-
 
 class TangentOperators(HeatOperators):
-    """Operators linearised at a rise.
-
-    Parameters
-    ----------
-    system, conduction, face, thermal
-        See `HeatOperators`, and the model with the varying expansions.
-    reference : ndarray or None, shape (n_owned,)
-        Rise at which they are linearised; None: the properties at the ambient temperature [K].
-    """
+    """Operators linearised at a rise (n_owned,) [K]; None: at the ambient temperature."""
 
     def __init__(
-        self,
-        system: System,
-        conduction: Conduction,
-        face: InterfaceHeat,
-        thermal: ThermalSystem,
-        reference: np.ndarray | None,
+        self, system: System, conduction: Conduction, face: InterfaceHeat, at: np.ndarray | None
     ):
         super().__init__(system, conduction, face)
-        self.reference, self._expansions = reference, thermal.expansions
+        self._at = at
+
+    @cached_property
+    def _expansions(self) -> list[tuple[VaryingExpansion, np.ndarray]]:
+        """Varying expansions, each with the weak gap per nodal excess, shape (n_owned, m)."""
+        assert self._system.thermal is not None
+        per_excess = self._system.influence.per_rise[1:]
+        return list(zip(self._system.thermal.expansions, per_excess, strict=True))
 
     @cached_property
     def per_rise(self) -> np.ndarray:
-        result, *per_excess = self._system.influence.per_rise
-        if self.reference is None:
-            return result
-        for part, per_rise in zip(self._expansions, per_excess, strict=True):
-            result = result + part.slope(self.reference)[:, None] * per_rise
+        result = self._system.influence.per_rise[0]
+        if self._at is not None:
+            for expansion, per_excess in self._expansions:
+                result = result + expansion.slope(self._at)[:, None] * per_excess
         return result
 
     def baseline(self, rise: np.ndarray, about: np.ndarray | None = None) -> BaselineResponse:
@@ -74,12 +64,15 @@ class TangentOperators(HeatOperators):
             return super().baseline(rise)
         excess: np.ndarray | float = 0.0
         about = rise if about is None else about
-        per_excess = self._system.influence.per_rise[1:]
-        for part, per_rise in zip(self._expansions, per_excess, strict=True):
-            linear = 0.0 if self.reference is None else part.slope(self.reference) * about
-            excess = excess + per_rise.T @ (part.excess(about) - linear)
+        for expansion, per_excess in self._expansions:
+            linear = 0.0 if self._at is None else expansion.slope(self._at) * about
+            excess = excess + per_excess.T @ (expansion.excess(about) - linear)
         comm = self._system.comm
         return baseline_response(rise, self.face.traces, comm, self.per_rise, excess)
+
+
+Linearisation = tuple[TangentOperators, np.ndarray, BaselineResponse]
+"""Operators, supplied heat and baseline response of a `HeatStep` linearised about a rise."""
 
 
 class NonlinearHeatStep(HeatStep):
@@ -177,9 +170,8 @@ class VaryingHeatSteps(HeatSteps):
         self._steady_tangents = Tangents(None)
 
     @cached_property
-    def operators(self) -> HeatOperators:
-        thermal = self._thermal
-        return TangentOperators(self._system, thermal.conduction, thermal.face, thermal, None)
+    def operators(self) -> TangentOperators:
+        return TangentOperators(self._system, self._thermal.conduction, self._thermal.face, None)
 
     @cached_property
     def steady(self) -> HeatStep:
@@ -223,20 +215,17 @@ class VaryingHeatSteps(HeatSteps):
         change: float = np.inf,
     ) -> HeatStep:
         def linearise(rise: np.ndarray, renew: bool) -> Linearisation:
-            if renew or tangents.last is None:
-                at = rise if renew or tangents.reference is None else tangents.reference
-                tangents.reference, tangents.last = at, self._tangent(at, tangents.step)
-            operators = tangents.last
-            assert operators.reference is not None
-            conduction = self._thermal.conduction
-            heat = supplied + conduction.linearisation_error(rise, operators.reference)
-            held = operators.conduction.with_prescribed(load.given)
-            return operators, heat, operators.baseline(held.solve(heat), rise)
+            if renew or tangents.reference is None:
+                tangents.reference, tangents.last = rise, None
+            if tangents.last is None:
+                tangents.last = self._tangent(tangents.reference, tangents.step)
+            operators, conduction = tangents.last, self._thermal.conduction
+            heat = supplied + conduction.linearisation_error(rise, tangents.reference)
+            return operators, heat, operators.baseline(operators.rise(load, heat), rise)
 
         return NonlinearHeatStep(linearise, self._system.comm, load, rise, change)
 
     def _tangent(self, rise: np.ndarray, step: float | None) -> TangentOperators:
         """Operators linearised at a rise (n_owned,), steady or of a time step; every rank calls."""
         conduction = self._thermal.conduction.tangent(rise, step)
-        face = self._condense(conduction)
-        return TangentOperators(self._system, conduction, face, self._thermal, rise)
+        return TangentOperators(self._system, conduction, self._condense(conduction), rise)

@@ -8,8 +8,7 @@ import numpy as np
 
 from ...balances import ALLOWED, relative, require
 from ...compat import coordinate_element
-from ...contact.operators.heat import ThermalState
-from ...contact.operators.holder import RigidMode
+from ...contact.operators.rigid_motion import RigidMode
 from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import PairedFace
@@ -42,6 +41,13 @@ class ContactState:
     temperatures: TemperatureField | None
     shear: np.ndarray | None = None
 
+    def traction(self, system: System) -> np.ndarray:
+        """Traction on body 2 in a system with this friction, shape (n, gdim) [Pa]."""
+        traction = self.pressure[:, None] * system.traction_direction
+        if self.shear is None:
+            return traction
+        return traction - self.shear[:, None] * tangents(system.pairing.normals)[0]
+
 
 def contact_state(
     system: System, pressure: np.ndarray, shear: np.ndarray | None = None
@@ -61,55 +67,50 @@ class BodyState:
     ----------
     displacement : ndarray, shape (n_owned,)
         Displacement without the holder's rigid motion [m].
-    rise : ndarray or None, shape (n_owned,)
-        Temperature rise over the ambient [K].
+    temperatures : TemperatureField or None
+        Temperatures; None without heat.
     opening : ndarray, shape (n,)
         ``B u``: change of the gap at the contact points by load and heat [m].
-    thermal : ThermalState or None
-        Temperatures and fluxes of the faces.
     hottest : float
         Highest temperature of the bodies [K]; NaN without heat.
-    heat_error, force_error : float
-        Relative errors of the balances of heat and of forces; the former NaN without heat.
+    force_error : float
+        Relative error of the balance of forces.
     """
 
     displacement: np.ndarray
-    rise: np.ndarray | None
+    temperatures: TemperatureField | None
     opening: np.ndarray
-    thermal: ThermalState | None
     hottest: float
-    heat_error: float
     force_error: float
 
     def require_balance(self) -> None:
         """Raise a `ComputationError` if heat or forces are not balanced."""
         require(equilibrium_relative_error=self.force_error)
-        if self.thermal is not None:
-            require(heat_balance_relative_error=self.heat_error)
+        if self.temperatures is not None:
+            require(heat_balance_relative_error=self.temperatures.error)
 
 
 def body_state(system: System, contact: ContactState) -> BodyState:
     """Solve the bodies for given contact loads. Every rank calls."""
     system = system.with_friction(contact.conditions.friction)
     pressure, shear, temperatures = contact.pressure, contact.shear, contact.temperatures
-    thermal, rise, hottest, heat_error = None, None, float("nan"), float("nan")
-    loads = traction = system.traction @ (system.weights * pressure)
+    hottest, strained = float("nan"), np.zeros(len(system.elastic.fixed))
+    loads = system.traction @ (system.weights * pressure)
     if shear is not None:
         pairing = system.pairing
         along = vector_trace(system.elastic.space, pairing, -tangents(pairing.normals)[0])
-        loads = traction = traction + along @ (system.weights * shear)
+        loads = loads + along @ (system.weights * shear)
     if system.dead_load is not None:
-        loads = traction = traction + system.dead_load
+        loads = loads + system.dead_load
     if temperatures is not None and system.thermal is not None:
-        thermal, rise, heat_error = temperatures.faces, temperatures.rise, temperatures.error
-        loads = traction + system.thermal.forces(rise)
-        highest = max(system.comm.allgather(float(rise.max(initial=-np.inf))))
-        hottest = max(highest, float(np.max(thermal.rise))) + system.thermal.ambient
+        strained = system.thermal.forces(temperatures.rise)
+        highest = max(system.comm.allgather(float(temperatures.rise.max(initial=-np.inf))))
+        hottest = max(highest, float(np.max(temperatures.faces.rise))) + system.thermal.ambient
+    loads = loads + strained
     displacement = system.elastic.solve(loads)
     opening = sum_over_ranks(system.comm, system.trace.T @ displacement)
-    strained = np.zeros_like(loads) if thermal is None else loads - traction
     force_error = _force_error(system, contact, displacement, loads, strained)
-    return BodyState(displacement, rise, opening, thermal, hottest, heat_error, force_error)
+    return BodyState(displacement, temperatures, opening, hottest, force_error)
 
 
 def _force_error(system: System, contact: ContactState, displacement, loads, strained) -> float:
@@ -169,10 +170,7 @@ def _work(system: System, contact: ContactState, rigid_modes, side: PairedFace) 
     """Work of the contact traction on motions of a body at the points of its face, (k, n)."""
     points = side.face.points(side.facet, side.t)
     moved = np.array([mode.motion.at(points) for mode in rigid_modes])
-    traction = contact.pressure[:, None] * system.traction_direction
-    if contact.shear is not None:
-        traction = traction - contact.shear[:, None] * tangents(system.pairing.normals)[0]
-    return system.weights * np.einsum("kni,ni->kn", moved, traction)
+    return system.weights * np.einsum("kni,ni->kn", moved, contact.traction(system))
 
 
 def _across(system: System) -> list[RigidMode]:

@@ -47,7 +47,6 @@ class CondensedMethod:
         self._last_opening: tuple[CondensedContact | EdgeSpace, np.ndarray, np.ndarray] | None = (
             None
         )
-        self.note: str | None = None
 
     def solve(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None

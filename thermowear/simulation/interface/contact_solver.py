@@ -37,15 +37,7 @@ class ContactSolution:
 
 
 class ContactSolver(Protocol):
-    """Solver of contact under given loads: condensed, or on the full system.
-
-    Attributes
-    ----------
-    note : str or None
-        Warning about the settings of the solver.
-    """
-
-    note: str | None
+    """Solver of contact under given loads: condensed, or on the full system."""
 
     def solve(
         self,

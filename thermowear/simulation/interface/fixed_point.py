@@ -99,33 +99,32 @@ def self_consistent(
         if conditions_of(found).same_as(conditions):
             model.require_friction(time, found.pressure, found.faces)
             return conditions, found
-        before, after = _stacked(iterate, found), _stacked(found, found)
-        residual = after - before
+        scale = _scales(found)
+        before = _vector(iterate) / scale
+        residual = _vector(found) / scale - before
         if mixing is None and np.abs(residual).max() <= _NEAR:
             mixing = AndersonMixing()
         following = before + _DAMPED * residual if mixing is None else mixing.next(before, residual)
-        iterate = _unstacked(following, found)
+        iterate = _trial(following * scale, found)
     raise ComputationError(failure)
 
 
-def _scales(found: Any) -> tuple[float, float]:
-    rise = 0.0 if found.faces is None else float(np.max(np.abs(found.faces.rise)))
-    return float(found.pressure.max()) or 1.0, max(rise, _LEAST_RISE)
+def _vector(state: Any) -> np.ndarray:
+    """Pressure and temperature rises of the faces in a state."""
+    return np.concatenate([state.pressure, *(() if state.faces is None else state.faces.rise)])
 
 
-def _stacked(state: Any, found: Any) -> np.ndarray:
-    """Dimensionless vector of a state, scaled by the pressure and rise of the last response."""
-    pascal, kelvin = _scales(found)
-    rises = () if state.faces is None else state.faces.rise
-    return np.concatenate([state.pressure / pascal, *(rise / kelvin for rise in rises)])
+def _scales(found: Any) -> np.ndarray:
+    """Scale of each entry of the vector: the largest pressure, and rise, of the last response."""
+    pressures, rises = np.split(np.abs(_vector(found)), [len(found.pressure)])
+    kelvin = max(float(rises.max(initial=0.0)), _LEAST_RISE)
+    return np.repeat([float(pressures.max()) or 1.0, kelvin], [len(pressures), len(rises)])
 
 
-def _unstacked(vector: np.ndarray, found: Any) -> Trial:
-    """Inverse of `_stacked`, with the contact set of the last response."""
-    pascal, kelvin = _scales(found)
-    pressure, *rises = np.split(vector, 1 if found.faces is None else 3)
-    pressing = np.where(found.pressure > 0, np.maximum(pressure, 1e-9), 0.0) * pascal
-    if found.faces is None:
-        return Trial(pressing, None, found.worn)
-    rise = (rises[0] * kelvin, rises[1] * kelvin)
-    return Trial(pressing, ThermalState(rise, found.faces.flux), found.worn)
+def _trial(vector: np.ndarray, found: Any) -> Trial:
+    """State of a vector, with the contact set of the last response."""
+    count, least = len(found.pressure), 1e-9 * found.pressure.max()
+    pressure, *rises = np.split(vector, [count] if found.faces is None else [count, 2 * count])
+    pressing = np.where(found.pressure > 0, np.maximum(pressure, least), 0.0)
+    faces = None if found.faces is None else ThermalState((rises[0], rises[1]), found.faces.flux)
+    return Trial(pressing, faces, found.worn)

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
 
+from ...contact.full.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
 from ...contact.full.full_system import FullContact, FullSolution
-from ...contact.full.stabilisation import (
+from ...contact.full.nitsche import (
     default_penalty,
     nitsche_stiffness,
     nitsche_warning,
+    normal_traction,
     stability_limit,
+    thermal_traction,
 )
-from ...contact.operators.traction import normal_traction, thermal_traction
-from ...contact.wear.edge_deflection import EdgeDeflection, edge_deflection, wave_compliance
 from ...contact.wear.implicit_step import WearRates
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..system.setup_cache import SetupCache
-from ..system.system import System
+from ..system.system import SetupCache, System
 from .contact_solver import ContactSolution
 from .fixed_point import AndersonMixing
 
@@ -31,16 +32,16 @@ class FullMethod:
     """Pointwise contact conditions on all nodal displacements.
 
     At the edge of the wear points have a deflection of their own, see
-    `contact.wear.edge_deflection`.
+    `contact.full.edge_deflection`.
 
     Heat and contact are solved in a staggered iteration: friction heat distorts the bodies, and the
     distortion changes the pressure. It uses Anderson acceleration, as its plain convergence rate is
     the ratio of the speed to the critical one.
     """
 
-    def __init__(self, system: System):
+    def __init__(self, system: System, note: Callable[[str], None] | None):
         self._system = system
-        self._contact, self.note = _full_contact(system)
+        self._contact = _full_contact(system, note)
         unloaded = np.zeros(len(system.elastic.fixed))
         self._dead = unloaded if system.dead_load is None else system.dead_load
         heated = system.thermal is not None
@@ -119,21 +120,23 @@ class FullMethod:
         return ContactSolution(solution.pressure, motion, solution)
 
 
-def _full_contact(system: System) -> tuple[FullContact, str | None]:
-    """Contact equations of a system, and a warning if its parameters are out of range."""
+def _full_contact(system: System, note: Callable[[str], None] | None) -> FullContact:
+    """Contact equations of a system; a note tells if its parameters are out of range."""
     settings, holder = system.model.interface.method, system.holder
     elastic, pairing = system.elastic, system.pairing
-    stress, note = None, None
+    stress = None
     if settings.name == "nitsche":
         stress = normal_traction(elastic, pairing)
         gamma = () if settings.gamma is None else (settings.gamma,)
         stiffness = nitsche_stiffness(elastic, pairing, *gamma)
-        note = nitsche_warning(stiffness, stability_limit(elastic, pairing), settings.theta)
+        warning = nitsche_warning(stiffness, stability_limit(elastic, pairing), settings.theta)
+        if note is not None and warning is not None:
+            note(warning)
     elif settings.penalty is not None:
         stiffness = np.full(len(pairing.weights), settings.penalty)
     else:
         stiffness = default_penalty(elastic, pairing)
-    contact = FullContact(
+    return FullContact(
         elastic,
         pairing,
         system.trace,
@@ -144,4 +147,3 @@ def _full_contact(system: System) -> tuple[FullContact, str | None]:
         stress,
         settings.theta,
     )
-    return contact, note

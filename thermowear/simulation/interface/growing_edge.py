@@ -91,16 +91,8 @@ class GrowingEdge:
     ) -> tuple[float, float]:
         """Step sizes that end right behind a time at which the edge of the wear reaches a point.
 
-        See `WearProblem.edge_steps`. The step after one in which a point has begun to press is
-        short.
-
-        Parameters
-        ----------
-        states : tuple of InterfaceState
-        step : float
-            [s]
-        rates : WearRates
-            Wear rates under the conditions of the last state.
+        See `WearProblem.edge_steps`; the wear rates are those under the conditions of the last
+        state. The step after one in which a point has begun to press is short.
         """
         start, middle, end = (state.contact.apart for state in states)
         if start is None or middle is None or end is None:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
-from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat
+from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
+from ..heat.heat_steps import unheated
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
+from .condensed_method import CondensedMethod
 from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent
+from .full_method import FullMethod
 from .growing_edge import GrowingEdge
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
@@ -66,7 +70,7 @@ class InterfaceProblem(WearProblem):
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return InterfaceState(worn, contact, faces=faces)
 
-        faces = None if heat is None else heat.unheated
+        faces = None if heat is None else unheated(heat.baseline)
         start = Trial(self._guess.pressure, faces, worn)
         return self_consistent(self._condition_model, time, start, respond, _UNWORN)[1]
 
@@ -76,10 +80,8 @@ class InterfaceProblem(WearProblem):
         return self._solve(depth[None], conditions, None, guess=guess)
 
     def start(self) -> InterfaceState:
-        """State of the unworn faces at time 0."""
-        if not self.stores_heat:
+        if self.heat is None or not self.stores_heat:
             return self.unworn()
-        assert self.heat is not None
         return self._at_temperatures(self._unworn, self.heat.initial, 0.0)
 
     def take_over(
@@ -126,7 +128,7 @@ class InterfaceProblem(WearProblem):
         pointwise: np.ndarray | None = None,
     ) -> InterfaceState:
         """Contact at given temperatures."""
-        guess = InterfaceState(worn, self._guess, faces=heat.state)
+        guess = InterfaceState(worn, self._guess, faces=unheated(heat.baseline))
         conditions = self.conditions(guess, time)
         contact = self._solve(worn, conditions, heat, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)
@@ -206,9 +208,8 @@ class InterfaceProblem(WearProblem):
         """
         gap = self._gap + worn.sum(axis=0)
         if conditions.released:  # the holder stays where it is
-            rigid_modes = self.system.holder.rigid_modes
-            motion = np.zeros(len(rigid_modes)) if guess is None else guess.motion
-            return ContactSolution(np.zeros(len(gap)), motion, None)
+            at_rest = np.zeros(len(self.system.holder.rigid_modes))
+            return ContactSolution(np.zeros(len(gap)), guess.motion if guess else at_rest, None)
 
         def solve(opened, slope, last):
             softened = slope.with_compliance(self._softness)
@@ -254,14 +255,10 @@ class InterfaceProblem(WearProblem):
         return self.heat.steps.largest(one.stored.rise - other.stored.rise)
 
     def corners(self, end: float) -> tuple[float, ...]:
-        """Times up to an end at which a history has a corner [s]."""
         return self._condition_model.corners(end)
 
     def first_step(self, state: InterfaceState) -> float:
-        """Initial step: wear small against elastic deflection, small penetration of heat [s].
-
-        May be infinite.
-        """
+        """Initial step: wear small against elastic deflection, small penetration of heat [s]."""
         conditions = self.conditions(state, 0.0)
         fastest = float(self._rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0))
         step = np.inf
@@ -282,3 +279,21 @@ class InterfaceProblem(WearProblem):
         if steady is None:
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
+
+
+def interface_problem(
+    system: System, note: Callable[[str], None] | None = None
+) -> InterfaceProblem:
+    """Interface problem of a system, with the contact method of its model. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    note : callable, optional
+        Called with a warning about settings that may impair the solution.
+    """
+    if system.model.interface.method.name == "condensed":
+        return InterfaceProblem(system, CondensedMethod(system), friction_heat(system))
+    with system.phases("contact operators"):
+        method = FullMethod(system, note)
+    return InterfaceProblem(system, method, friction_heat(system))

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...laws.principle.steady import SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
+from ..heat.heat_steps import unheated
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
@@ -47,13 +48,20 @@ def steady_state(system: System) -> SteadyState:
     area = float(system.weights.sum())
     uniform = np.full(len(system.weights), (system.model.holder.force or area) / area)
     zeros = np.zeros((len(system.laws), len(uniform)))
-    start = Trial(uniform, None if heat is None else heat.steps.steady.unheated, zeros)
+    start = Trial(uniform, None if heat is None else unheated(heat.steps.steady.baseline), zeros)
 
     wear: SteadyWear | None = None
 
     def respond(conditions: InterfaceConditions) -> Trial:
         nonlocal wear
-        wear = _principle(system, conditions)
+        wear = principle(
+            system.with_friction(conditions.friction),
+            conditions.load,
+            speed=conditions.speed,
+            factors=conditions.wear,
+            temperature=conditions.temperature,
+            friction=conditions.friction,
+        )
         faces = None if heat is None else heat.steps.steady.faces(conditions, wear.pressure)
         return Trial(wear.pressure, faces, zeros)
 
@@ -63,18 +71,14 @@ def steady_state(system: System) -> SteadyState:
     return SteadyState(wear, ContactState(found.pressure, conditions, temperatures))
 
 
-def _principle(system: System, conditions: InterfaceConditions) -> SteadyWear:
-    """Solve the principle for given conditions."""
-    holder = system.with_friction(conditions.friction).holder
+def principle(system: System, load: np.ndarray, **conditions) -> SteadyWear:
+    """Solve the principle under a load on the holder and conditions as in `steady_pressure`."""
     return steady_pressure(
         weights=system.weights,
-        normal_modes=holder.modes,
-        force_modes=holder.force_modes,
-        load=conditions.load,
+        normal_modes=system.holder.modes,
+        force_modes=system.holder.force_modes,
+        load=load,
         laws=list(system.laws.values()),
-        speed=conditions.speed,
         spread=list(system.spreads.values()),
-        factors=conditions.wear,
-        temperature=conditions.temperature,
-        friction=conditions.friction,
+        **conditions,
     )

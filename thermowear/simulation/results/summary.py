@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...bulk.field import total
-from ...contact.search.zones import contact_zones
+from ...contact.operators.pressure import contact_zones
 from ...laws.coefficients import Constant
 from ...results import Result
 from ..system.rigid_modes import applied, guides
@@ -40,8 +40,8 @@ def summarise(end: Snapshot, time: float) -> dict:
         Time at the end, or zero [s].
     """
     system, contact, interface = end.system, end.contact, end.interface
-    model, w = system.model, system.weights
-    p, sliding = contact.pressure, system.slides is not None
+    model, w, heated = system.model, system.weights, end.bodies.temperatures
+    p, sliding, thermal = contact.pressure, system.slides is not None, system.thermal
     friction = sliding * contact.conditions.friction * p  # at rest there is none
     system = system.with_friction(contact.conditions.friction)
     rates = interface.wear_rate_1 + interface.wear_rate_2
@@ -52,7 +52,7 @@ def summarise(end: Snapshot, time: float) -> dict:
         "model": model.kinematics,
         "method": model.interface.method.name,
         "dofs_displacement": total(system.elastic.space),
-        "dofs_temperature": _thermal_dofs(system),
+        "dofs_temperature": 0 if thermal is None else total(thermal.conduction.space),
         "contact_points": len(w),
         "friction": system.friction if isinstance(model.interface.friction, Constant) else None,
         "normal_force_N": system.normal_force(p),
@@ -66,10 +66,10 @@ def summarise(end: Snapshot, time: float) -> dict:
         "contact_zones_m": contact_zones(system.pairing, p),
         "shape_range_m": float(np.ptp(interface.shape)),
         "approach_m": float(end.motion.at(np.array(model.holder.pivot)) @ system.load_direction),
-        "max_temperature_K": _number(end.bodies.hottest),
+        "max_temperature_K": None if heated is None else end.bodies.hottest,
         "friction_power_W": float(w @ (contact.conditions.heating * p)),
         **_conducted(end, time),
-        "heat_balance_relative_error": _number(end.bodies.heat_error),
+        "heat_balance_relative_error": None if heated is None else float(heated.error),
         "equilibrium_relative_error": end.bodies.force_error,
         "rigid_wear_velocity_m_per_s": None,
         "wear_dissipation_W": float(w @ (p * rates)),
@@ -100,11 +100,10 @@ def _friction(end: Snapshot) -> dict[str, float]:
 
 def _conducted(end: Snapshot, time: float) -> dict[str, float]:
     """Heat into both bodies: at the contact, and through surfaces with a given flux or power."""
-    system, faces = end.system, end.bodies.thermal
-    thermal = system.thermal
-    if thermal is None or faces is None:
+    system, thermal, heated = end.system, end.system.thermal, end.bodies.temperatures
+    if thermal is None or heated is None:
         return {}
-    into = (float(system.weights @ flux) for flux in faces.flux)
+    into = (float(system.weights @ flux) for flux in heated.faces.flux)
     found = {f"contact_heat_{body}_W": heat for body, heat in enumerate(into, 1)}
     load = thermal.loads.at(time)
     return found | ({"prescribed_heat_W": load.prescribed} if load.magnitude > 0.0 else {})
@@ -112,14 +111,14 @@ def _conducted(end: Snapshot, time: float) -> dict[str, float]:
 
 def _passing(end: Snapshot, time: float) -> dict:
     """Advection of heat by a body 2 passing under body 1, and heat losses of the bodies."""
-    thermal, rise, heat = end.system.thermal, end.bodies.rise, end.system.model.heat
-    if thermal is None or rise is None or heat is None or not end.system.model.motion.passes:
+    thermal, heated, heat = end.system.thermal, end.bodies.temperatures, end.system.model.heat
+    if thermal is None or heated is None or heat is None or not end.system.model.motion.passes:
         return {}
     advection = thermal.conduction.advection
     stabilised = advection is not None and advection.stabilised
     ambient = thermal.loads.at(time).ambient
-    still = np.zeros(len(rise))
-    cooled, _, carried = thermal.conduction.losses(rise, still, ambient=ambient)
+    still = np.zeros(len(heated.rise))
+    cooled, _, carried = thermal.conduction.losses(heated.rise, still, ambient=ambient)
     leaves = advection is not None and end.system.model.motion.center is None
     return {
         "heat_advection": "stabilised" if stabilised else heat.advection,
@@ -178,11 +177,3 @@ def _rotations(end: Snapshot) -> dict[str, float]:
     turned, free = end.motion.rotation, end.system.model.holder.free
     pairs = zip(_ROTATIONS.items(), turned, strict=True)
     return {key: float(angle) for (name, key), angle in pairs if name in free}
-
-
-def _thermal_dofs(system: System) -> int:
-    return 0 if system.thermal is None else total(system.thermal.conduction.space)
-
-
-def _number(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -22,12 +22,10 @@ from ...results import (
     Result,
     TrackHistory,
 )
-from ..results.fields import sample
-from ..results.recording import Snapshot
+from ..results.recording import Snapshot, sample
 from ..results.summary import conclude
 from ..system.system import System
-from .checkpoint_data import Progress, Saved
-from .observer import AnyRow, Observer
+from .observer import AnyRow, Observer, Progress, Saved
 
 Row = TypeVar("Row", bound=AnyRow)
 
@@ -42,7 +40,8 @@ It has a `time` [s], `is_output` (true at an output time), and a `distance` from
 class AnalysisHistory(ABC, Generic[State]):
     """Accepted states of an analysis: rows of its tables, outputs, frames and checkpoints.
 
-    An analysis derives from it the rows and the snapshot of a state, and the data to restart from.
+    An analysis derives from it its states, the rows and the snapshot of a state, and the data to
+    restart from.
 
     Parameters
     ----------
@@ -65,6 +64,10 @@ class AnalysisHistory(ABC, Generic[State]):
         self._last: State | None = None
         self._restart: tuple[State, dict[str, int], Any] | None = None
         self._saved_at = -np.inf  # the first state is saved at once
+
+    @abstractmethod
+    def states(self, last: State | None) -> Iterator[State]:
+        """Compute the states after the last one (see `resume`), or from the start, one by one."""
 
     @abstractmethod
     def rows_of(self, state: State) -> Sequence[AnyRow]:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
-from ...contact.operators.holder import hold
-from ...contact.operators.sliding import Sliding, sliding
-from ...contact.search.closed_face import gather_faces
+from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
+from ...contact.operators.rigid_motion import RigidMode, hold, sliding
+from ...contact.operators.traces import gap_trace
+from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
-from ...geometry.mesh.tagged import TaggedMesh
-from ...model.body import Facing
-from ...model.meshes import Zone
-from ...model.model import Model
+from ...model.model import Model, Zone
 from ...parallel import on_root
 from ...timer import Phases
 from .contact_points import (
@@ -24,11 +24,9 @@ from .contact_points import (
     softness_of_parts,
     worn_contact_points,
 )
-from .elastic_system import dead_load, dead_resultant, elastic_system
-from .rigid_modes import rigid_modes
-from .setup_cache import SetupCache, inputs
-from .system import System
-from .thermal_system import ThermalSystem, thermal_system
+from .rigid_modes import dead_load, dead_resultant, rigid_modes
+from .system import SetupCache, System, inputs
+from .thermal_system import thermal_system
 from .worn_geometry import WornGeometry
 
 
@@ -74,23 +72,21 @@ def build(
             made_from.elasticity,
             lambda: elastic_system(model, kinematics, bodies, pairing),
         )
-    slides = sliding_of(model, kinematics, pairing)
-    traction_direction, speed = pairing.normals, np.zeros(len(pairing.weights))
-    if slides is not None:
-        friction = interface.nominal_friction, interface.transverse_friction
-        traction_direction = slides.traction_direction(pairing.normals, *friction)
-        speed = slides.speed
     facing = facing_parts(bodies, pairing)
     dead = dead_load(model.holder, elastic)
     upper = model.bodies[0].parts
     driven = rigid_modes(
         model.holder, pairing, lambda motion: dead_resultant(elastic, upper, dead, motion)[0]
     )
-    thermal = parts.get(
-        "conduction",
-        made_from.conduction,
-        lambda: thermal_system(model, bodies, pairing, elastic, basis, facing, phases),
-    )
+    thermal, heat = None, model.heat
+    if heat is not None:
+        partition = interface.heat_partition(facing, model.materials)
+        thermal = parts.get(
+            "conduction",
+            made_from.conduction,
+            lambda: thermal_system(model, heat, pairing, elastic, basis, partition, phases),
+        )
+        thermal = replace(thermal, face=replace(thermal.face, partition=partition))
     return System(
         model=model,
         bodies=bodies,
@@ -98,16 +94,12 @@ def build(
         elastic=elastic,
         trace=trace,
         basis=basis,
-        holder=hold(pairing, traction_direction, driven),
-        slides=slides,
-        traction_direction=traction_direction,
-        speed=speed,
+        **sliding_contact(model, kinematics, pairing, driven),
         dead_load=dead,
-        thermal=None if thermal is None else _exchanging(thermal, model, facing),
+        thermal=thermal,
         phases=phases,
         parts=parts,
         inputs=made_from,
-        zone=made_from.zone,
         worn=worn,
     )
 
@@ -124,10 +116,8 @@ def check_contact_points(model: Model, comm) -> None:
 
 
 def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) -> Bodies:
-    def mesh() -> TaggedMesh:
-        return model.meshes.mesh(zone) if worn is None else worn.mesh
-
-    return distribute(on_root(comm, mesh), comm)
+    mesh = on_root(comm, lambda: model.meshes.mesh(zone) if worn is None else worn.mesh)
+    return distribute(mesh, comm)
 
 
 def _paired(
@@ -141,16 +131,53 @@ def _paired(
     return worn_contact_points(model, kinematics, worn, *faces)
 
 
-def _exchanging(thermal: ThermalSystem, model: Model, facing: Facing) -> ThermalSystem:
-    """Thermal system with the heat partition of this model."""
-    partition = model.interface.heat_partition(facing, model.materials)
-    return replace(thermal, face=replace(thermal.face, partition=partition))
+def elastic_system(
+    model: Model, kinematics: Kinematics, bodies: Bodies, pairing: Pairing
+) -> tuple[Elasticity, sp.csr_matrix]:
+    """Assemble and factorise the elastic bodies. Every rank calls.
+
+    Returns
+    -------
+    elastic : Elasticity
+    trace : csr_matrix, shape (n_owned, n)
+        Bᵀ of the gap in the displacement space.
+    """
+    hot = model.heat is not None
+    materials = {
+        part: ElasticMaterial(m.young_modulus, m.poisson_ratio, m.expansion if hot else 0.0)
+        for part, m in model.materials.items()
+    }
+    degree = model.discretisation.degree
+    elastic = elasticity(bodies, kinematics, degree, materials, *supports(model))
+    return elastic, gap_trace(elastic.space, pairing)
 
 
-def sliding_of(model: Model, kinematics: Kinematics, pairing: Pairing) -> Sliding | None:
-    """Sliding kinematics of body 1; None at rest."""
-    motion = model.motion
-    if motion.at_rest:
-        return None
-    velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
-    return sliding(velocity, pairing.normals, model.holder.load_direction)
+def supports(model: Model) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]:
+    """Clamped surfaces, symmetry planes, and surfaces on rollers."""
+    clamped = [surface for body in model.bodies for surface in body.fixed]
+    rollers = tuple(surface for body in model.bodies for surface in body.rollers)
+    return clamped, model.symmetry, rollers
+
+
+def sliding_contact(
+    model: Model, kinematics: Kinematics, pairing: Pairing, driven: tuple[RigidMode, ...]
+) -> dict[str, Any]:
+    """Attributes of a `System` that follow from its contact points and rigid modes of the holder.
+
+    Sliding of body 1, its speed, the traction direction and the holder.
+    """
+    motion, slides = model.motion, None
+    traction_direction, speed = pairing.normals, np.zeros(len(pairing.weights))
+    if not motion.at_rest:
+        velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
+        slides = sliding(velocity, pairing.normals, model.holder.load_direction)
+        friction = model.interface.nominal_friction, model.interface.transverse_friction
+        traction_direction = slides.traction_direction(pairing.normals, *friction)
+        speed = slides.speed
+    holder = hold(pairing, traction_direction, driven)
+    return {
+        "slides": slides,
+        "speed": speed,
+        "traction_direction": traction_direction,
+        "holder": holder,
+    }

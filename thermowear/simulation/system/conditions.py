@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 
@@ -69,14 +68,10 @@ class InterfaceConditions:
         """True if the load has dropped to zero."""
         return self.load.size > 0 and not self.load.any()
 
-    def differ(self, other: InterfaceConditions) -> float:
-        """Largest relative difference of all conditions."""
-        pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
-        return max(_difference(a, b) for a, b in pairs)
-
     def same_as(self, other: InterfaceConditions) -> bool:
         """True if the conditions are equal up to rounding."""
-        return self is other or self.differ(other) <= _SETTLED
+        pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        return self is other or all(_difference(a, b) <= _SETTLED for a, b in pairs)
 
 
 def _difference(a: np.ndarray, b: np.ndarray) -> float:
@@ -112,7 +107,6 @@ class ConditionModel:
         model, interface = system.model, system.model.interface
         self._system = system
         self._interface = interface
-        self._wearing = list(interface.wear.items())
         self._friction_law = interface.friction_law
         self.depends_on_state, self._friction_varies = interface.varies, interface.friction_varies
         self._load, self._motion = model.holder.history, model.motion.history
@@ -143,18 +137,18 @@ class ConditionModel:
         """
         system = self._system
         pressed = 1.0 if self._load is None else _part(self._load.factor_at(time))
-        speed = self._speed(time)
-        temperatures = self._temperatures(faces)
-        own = None if temperatures is None else [temperatures[index] for index, _ in self._wearing]
-        friction = self._friction(time, temperatures, pressure, speed)
+        speed, temperatures = self._speed(time), self._temperatures(faces)
+        at = LocalState(pressure, speed, (temperatures[0] + temperatures[1]) / 2)
+        friction = self._friction(time, at)
+        wear, temperature, worn = self._wear(temperatures, depth, pressure, speed, friction)
         return InterfaceConditions(
             load=pressed * system.holder.load + system.holder.dead,
             speed=speed,
             friction=friction,
-            wear=self._wear(own, pressure, speed, friction),
-            conductance=self._conductance(temperatures, pressure, speed, closed),
-            temperature=self._of_wear("T", own, pressure),
-            depth=self._of_wear("depth", depth, pressure),
+            wear=wear,
+            conductance=self._conductance(at, closed),
+            temperature=temperature,
+            depth=worn,
         )
 
     def corners(self, end: float) -> tuple[float, ...]:
@@ -166,34 +160,18 @@ class ConditionModel:
         part = 1.0 if self._motion is None else _part(self._motion.at(time))
         return part * self._system.speed
 
-    def _temperatures(self, faces: ThermalState | None):
-        if self._system.thermal is None:
-            return None
-        ambient = self._system.thermal.ambient
-        if faces is None:
-            return np.full((2, len(self._system.weights)), ambient)
-        return faces.rise[0] + ambient, faces.rise[1] + ambient
+    def _temperatures(self, faces: ThermalState | None) -> np.ndarray:
+        """Temperatures of both faces, shape (2, n) [K]; 0 and unused without heat."""
+        rise, thermal = np.zeros((2, len(self._system.weights))), self._system.thermal
+        if thermal is None:
+            return rise
+        return thermal.ambient + (rise if faces is None else np.asarray(faces.rise))
 
-    @staticmethod
-    def _mean(temperatures) -> np.ndarray | float:
-        """Mean temperature of both faces; 0 and unused without heat [K]."""
-        return 0.0 if temperatures is None else (temperatures[0] + temperatures[1]) / 2
-
-    def _of_wear(
-        self, name: str, values: Sequence[np.ndarray] | np.ndarray | None, pressure: np.ndarray
-    ) -> np.ndarray:
-        """Values of a state variable for the wear laws that depend on it; 0 for the others."""
-        result = np.zeros((len(self._wearing), len(pressure)))
-        for row, (_, wear) in enumerate(self._wearing):
-            if values is not None and name in wear.law.variables:
-                result[row] = values[row]
-        return result
-
-    def _friction(self, time, temperatures, pressure, speed) -> np.ndarray:
+    def _friction(self, time: float, at: LocalState) -> np.ndarray:
         """Coefficient of friction, at least 0; `require_friction` checks the converged state."""
-        value = self._friction_law.value(LocalState(pressure, speed, self._mean(temperatures)))
         history = self._interface.friction_history
-        return (1.0 if history is None else _part(history.at(time))) * np.maximum(value, 0.0)
+        factor = 1.0 if history is None else _part(history.at(time))
+        return factor * np.maximum(self._friction_law.value(at), 0.0)
 
     def require_friction(
         self, time: float, pressure: np.ndarray, faces: ThermalState | None
@@ -206,8 +184,7 @@ class ConditionModel:
         """
         if not self._friction_law.variables:
             return
-        mean = np.broadcast_to(self._mean(self._temperatures(faces)), pressure.shape)
-        speed = self._speed(time)
+        mean, speed = self._temperatures(faces).mean(axis=0), self._speed(time)
         value = self._friction_law.value(LocalState(pressure, speed, mean))
         lowest = int(np.argmin(np.where(pressure > 0, value, np.inf)))
         if pressure[lowest] > 0 and value[lowest] < 0:
@@ -217,25 +194,33 @@ class ConditionModel:
                 "bound the law, max(0.05, …), or reduce load or speed"
             )
 
-    def _wear(self, temperatures, pressure, speed, friction) -> np.ndarray:
-        """Factors of the wear rates from tables and from friction other than the nominal."""
-        result = np.ones((len(self._wearing), len(pressure)))
-        for row, (_, wear) in enumerate(self._wearing):
-            own = 0.0 if temperatures is None else temperatures[row]
-            result[row] = wear.factors.value(LocalState(pressure, speed, own))
+    def _wear(self, temperatures, depth, pressure, speed, friction) -> np.ndarray:
+        """Factors of the wear rates by tables and friction; temperatures and depths for the laws.
+
+        Each of shape (n_wearing, n), stacked. A state variable that a law does not use is 0.
+        """
+        wearing = self._interface.wear.items()
+        factors, used, depths = result = np.zeros((3, len(wearing), len(pressure)))
+        for row, (index, wear) in enumerate(wearing):
+            own = temperatures[index]
+            factors[row] = wear.factors.value(LocalState(pressure, speed, own))
             if wear.friction_exponent and self._friction_varies:
                 nominal = self._interface.nominal_friction
-                result[row] *= (friction / nominal) ** wear.friction_exponent
+                factors[row] *= (friction / nominal) ** wear.friction_exponent
+            if "T" in wear.law.variables:
+                used[row] = own
+            if "depth" in wear.law.variables and depth is not None:
+                depths[row] = depth[row]
         return result
 
     @cached_property
     def _conductance_law(self) -> Law | None:
         return self._interface.conductance_law(self._system.facing, self._system.model.materials)
 
-    def _conductance(self, temperatures, pressure, speed, touching) -> np.ndarray:
+    def _conductance(self, at: LocalState, touching: np.ndarray) -> np.ndarray:
+        """Conductance of touching points and of the gap at the others, shape (n,) [W/(m² K)]."""
         if self._system.thermal is None:
-            return np.zeros(len(pressure))
+            return np.zeros(len(touching))
         law = self._conductance_law
-        at = LocalState(pressure, speed, self._mean(temperatures))
         closed = np.inf if law is None else law.value(at)
         return np.where(touching, closed, self._interface.gap_conductance)

@@ -9,11 +9,10 @@ import numpy as np
 from ...bulk.bodies import Bodies
 from ...bulk.kinematics import Kinematics
 from ...contact.operators.pressure import pressure_basis
-from ...contact.search.face import Face
+from ...contact.search.face import Face, Surface
 from ...contact.search.pairing import Pairing, pair, paired
 from ...contact.search.projection import ray_intersections
 from ...contact.search.refinement import OVERHANG_TOLERANCE, SLIVER
-from ...contact.search.surface import Surface
 from ...contact.wear.worn_face import directions_between
 from ...laws.motions import RigidMotion
 from ...model.body import Facing

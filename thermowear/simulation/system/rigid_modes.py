@@ -1,4 +1,4 @@
-"""Rigid modes of the holder of body 1 and their loads."""
+"""Rigid modes of the holder of body 1, their loads, and the loads on surfaces of the bodies."""
 
 from __future__ import annotations
 
@@ -6,14 +6,28 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...contact.operators.holder import RigidMode
+from ...bulk.compiled import nodal_loads
+from ...bulk.mechanics.elasticity import Elasticity
+from ...contact.operators.rigid_motion import RigidMode
 from ...contact.search.pairing import Pairing
 from ...laws.motions import RigidMotion, rotation, translation
-from ...model.holder import Holder
+from ...model.conditions import Holder
 from ...model.model import Model
+from ...parallel import sum_over_ranks
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
-_TURNS = {"rotation-x": (1.0, 0.0, 0.0), "rotation-y": (0.0, 1.0, 0.0)}
+_TURNS = {
+    "rotation-x": (1.0, 0.0, 0.0),
+    "rotation-y": (0.0, 1.0, 0.0),
+    "rotation": (0.0, 0.0, 1.0),
+}
+_GUIDED = {
+    "axisymmetric": (),
+    "3d": ("x", "y", "z", "rotation-x", "rotation-y"),
+    "plane-strain": ("x", "z", "rotation"),
+    "plane-stress": ("x", "z", "rotation"),
+}
+"""Rigid motions with a guide force or moment on body 1, by kinematic model."""
 
 
 def rigid_modes(
@@ -31,13 +45,17 @@ def rigid_modes(
     dead : callable
         Generalised force on a motion of body 1 that does not come from the holder [N or N m].
     """
-    approach = holder.approach
-    return tuple(
-        RigidMode(m, amplitude=approach, dead=float(dead(m)))
-        if approach is not None and name == "z"
-        else RigidMode(m, load=_load(holder, m), dead=float(dead(m)))
-        for name, m in ((name, _motion(holder, name, pairing)) for name in holder.free)
-    )
+
+    def mode(name: str) -> RigidMode:
+        motion, load, approach = _motion(holder, name), holder.closing_moment, holder.approach
+        if holder.free == ("rotation",) and not _closes(motion, pairing):
+            motion = rotation((0.0, 0.0, -1.0), np.array(holder.pivot))
+        if name == "z" and approach is not None:
+            return RigidMode(motion, amplitude=approach, dead=float(dead(motion)))
+        load = applied(holder, motion) if load is None else load
+        return RigidMode(motion, load=load, dead=float(dead(motion)))
+
+    return tuple(mode(name) for name in holder.free)
 
 
 def guides(model: Model) -> dict[str, RigidMotion]:
@@ -45,15 +63,9 @@ def guides(model: Model) -> dict[str, RigidMotion]:
 
     Along x (and y), upwards, and about the pivot; none in an axisymmetric model.
     """
-    if model.kinematics == "axisymmetric":
-        return {}
-    pivot = np.array(model.holder.pivot)
-    if model.kinematics == "3d":
-        turns = {name: rotation(axis, pivot) for name, axis in _TURNS.items()}
-        shifts = {name: translation(axis) for name, axis in _AXES.items()}
-        return shifts | {"z": translation((0.0, 0.0, 1.0))} | turns
-    up, out = (0.0, 1.0), (0.0, 0.0, 1.0)
-    return {"x": translation(_AXES["x"]), "z": translation(up), "rotation": rotation(out, pivot)}
+    up = translation((0.0, 0.0, 1.0) if model.kinematics == "3d" else (0.0, 1.0))
+    names = _GUIDED[model.kinematics]
+    return {name: up if name == "z" else _motion(model.holder, name) for name in names}
 
 
 def applied(holder: Holder, motion: RigidMotion) -> float:
@@ -64,26 +76,55 @@ def applied(holder: Holder, motion: RigidMotion) -> float:
     return float(work)
 
 
-def _motion(holder: Holder, name: str, pairing: Pairing) -> RigidMotion:
-    if name == "z":
-        return translation(holder.load_direction)
-    if name in _AXES:
-        return translation(_AXES[name])
-    pivot = np.array(holder.pivot)
+def _motion(holder: Holder, name: str) -> RigidMotion:
+    """Motion of the holder by its name, rotations about the pivot anticlockwise."""
     if name in _TURNS:
-        return rotation(_TURNS[name], pivot)
-    turn = rotation((0.0, 0.0, 1.0), pivot)
-    if holder.free == ("rotation",):
-        return rotation((0.0, 0.0, _closing_sense(turn, pairing)), pivot)
-    return turn
+        return rotation(_TURNS[name], np.array(holder.pivot))
+    return translation(holder.load_direction if name == "z" else _AXES[name])
 
 
-def _closing_sense(turn: RigidMotion, pairing: Pairing) -> float:
-    """+1 where an anticlockwise rotation closes the gap in the mean, -1 otherwise."""
+def _closes(turn: RigidMotion, pairing: Pairing) -> bool:
+    """Test whether a rotation closes the gap in the mean."""
     closing = np.einsum("ni,ni->n", turn.at(pairing.on_body_1), pairing.normals)
-    return 1.0 if pairing.weights @ closing >= 0.0 else -1.0
+    return bool(pairing.weights @ closing >= 0.0)
 
 
-def _load(holder: Holder, motion: RigidMotion) -> float:
-    closing = holder.closing_moment
-    return applied(holder, motion) if closing is None else closing
+def dead_load(holder: Holder, elastic: Elasticity) -> np.ndarray | None:
+    """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without surface loads."""
+    loads = [nodal_loads(elastic.space, work) for work in surface_loads(holder, elastic)]
+    return np.sum(loads, axis=0) if loads else None
+
+
+def surface_loads(holder: Holder, elastic: Elasticity) -> list[Callable]:
+    """Forms of the work of the loads on surfaces, see `Elasticity`."""
+    direction = np.array(holder.load_direction)
+    forces = [
+        elastic.surface_work(surface, force * direction)
+        for surface, force in holder.surface_forces.items()
+    ]
+    pressures = holder.surface_pressures.items()
+    return forces + [elastic.pressure_work(*given) for given in pressures]
+
+
+def dead_resultant(
+    elastic: Elasticity, upper: tuple[str, ...], forces: np.ndarray | None, motion: RigidMotion
+) -> np.ndarray:
+    """Generalised forces of nodal forces on a rigid motion of body 1 and of body 2, shape (2,).
+
+    Every rank calls.
+
+    Parameters
+    ----------
+    elastic : Elasticity
+    upper : tuple of str
+        Parts of body 1.
+    forces : ndarray or None, shape (n_owned,) [N]
+    motion : RigidMotion
+    """
+    if forces is None:
+        return np.zeros(2)
+    nodes = elastic.nodes()
+    work = (forces.reshape(nodes.shape) * motion.at(nodes)).sum(axis=1)
+    on_1 = elastic.owned_by(*upper)
+    parts = np.array([work[on_1].sum(), work[~on_1].sum()])
+    return sum_over_ranks(elastic.bodies.mesh.comm, parts)

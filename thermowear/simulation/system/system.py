@@ -1,9 +1,14 @@
-"""System of a model: meshed, paired and assembled bodies; condensed on first use."""
+"""System of a model: meshed, paired and assembled bodies; condensed on first use.
+
+Set-up results (mesh, factors, condensed operators) are cached and shared by the cases of a sweep.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,23 +16,85 @@ import scipy.sparse as sp
 from ...bulk.bodies import Bodies
 from ...bulk.mechanics.elasticity import Elasticity
 from ...contact.operators.condensation import CondensedContact, Influence, influence
-from ...contact.operators.holder import RigidHolder, hold
-from ...contact.operators.sliding import Sliding
+from ...contact.operators.rigid_motion import RigidHolder, Sliding, hold
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
 from ...laws.distribution import Distribution
 from ...laws.interfaces import Law
 from ...laws.motions import RigidMotion
 from ...model.body import Facing
-from ...model.meshes import Zone
-from ...model.model import Model
+from ...model.model import Model, Zone
 from ...parallel import sum_over_ranks
 from ...timer import Phases
-from .contact_points import facing_parts
-from .elastic_system import dead_resultant
-from .setup_cache import CacheKeys, SetupCache
+from .contact_points import facing_parts, softness_of_parts
+from .rigid_modes import dead_resultant
 from .thermal_system import ThermalSystem
 from .worn_geometry import WornGeometry
+
+Part = TypeVar("Part")
+
+
+class SetupCache:
+    """Cache of the last part of each kind, with its inputs as key.
+
+    Cases with equal inputs share the same object.
+    """
+
+    def __init__(self) -> None:
+        self._kept: dict[str, tuple[Any, Any]] = {}
+
+    def get(self, kind: str, inputs: Any, make: Callable[[], Part]) -> Part:
+        """Return the cached part of a kind if its inputs are equal; make it otherwise."""
+        made_from, part = self._kept.get(kind, (None, None))
+        if made_from is None or made_from != inputs:
+            self._kept.pop(kind, None)  # frees its memory before the new part is made
+            part = make()
+            self._kept[kind] = (inputs, part)
+        return part
+
+
+@dataclass(frozen=True)
+class CacheKeys:
+    """Inputs of the cached parts of a system; independent of loads, friction and wear laws.
+
+    Attributes
+    ----------
+    mesh : tuple
+        Inputs of the meshed bodies.
+    points : tuple
+        Inputs of the contact points.
+    elasticity : tuple
+        Inputs of the factorised and the condensed elastic bodies.
+    conduction : tuple
+        Inputs of the factorised conduction, its condensation and the distortion.
+    """
+
+    mesh: tuple
+    points: tuple
+    elasticity: tuple
+    conduction: tuple
+
+
+def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
+    """Cache keys of a model meshed for a zone (by default the expected contact zone)."""
+    interface, materials, heat = model.interface, model.materials, model.heat
+    zone = model.expected_zone if zone is None else zone
+    section = model.kinematics, model.thickness, model.sector, model.symmetry
+    spaces = model.discretisation.degree, interface.pressure_degree
+    mesh = (section, model.meshes, spaces, zone)
+    shares = softness_of_parts(model), bool(interface.wearing_in_place)
+    points = (mesh, interface.initial_shape, shares)
+    strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}
+    if heat is None:
+        return CacheKeys(mesh, points, (points, strained), ())
+    expanding = {part: (m.expansion, m.expansion_factor) for part, m in materials.items()}
+    elasticity = (points, strained, expanding)
+    conducting = {
+        part: (m.conductivity, m.conductivity_factor, m.density, m.specific_heat)
+        for part, m in materials.items()
+    }
+    carried = model.motion if heat.advection == "resolved" else None
+    return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried))
 
 
 @dataclass(frozen=True)
@@ -59,8 +126,6 @@ class System:
         Set-up results shared with other systems.
     inputs : CacheKeys
         Cache keys of this system.
-    zone : tuple of float or None
-        Range of x that the bodies are meshed for; None where the mesh has no zone [m].
     worn : WornGeometry or None
         Present if the meshes have been moved to the worn faces. The gap of the pairing remains that
         of the unworn bodies: the gap of the moved meshes minus the depths that they have lost.
@@ -81,12 +146,16 @@ class System:
     phases: Phases
     parts: SetupCache
     inputs: CacheKeys
-    zone: Zone | None
     worn: WornGeometry | None = None
 
     @cached_property
     def comm(self):
         return self.bodies.mesh.comm
+
+    @cached_property
+    def zone(self) -> Zone | None:
+        """Range of x that the bodies are meshed for; None where the mesh has no zone [m]."""
+        return self.inputs.mesh[-1]
 
     @cached_property
     def weights(self) -> np.ndarray:

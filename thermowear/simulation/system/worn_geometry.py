@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy
 
-from ...contact.search.pairing import PairedFace, Pairing
+from ...contact.search.face import Surface
+from ...contact.search.pairing import Pairing
 from ...contact.search.refinement import Rule
-from ...contact.search.surface import Surface
 from ...geometry.mesh.tagged import TaggedMesh
 from ...geometry.moving.new_face import NewFace
 
@@ -87,21 +87,21 @@ class WornGeometry:
 
     def carried(self, values: np.ndarray, pairing: Pairing) -> np.ndarray:
         """Interpolate values (..., n_before) to the points of a new pairing of the same faces."""
-        return carried(values, self.at, pairing)
+        before, after = self.at, along(pairing)
+        if before.shape == after.shape and np.abs(before - after).max() < _SAME:
+            return values
+        curve = scipy.interpolate.Akima1DInterpolator(before, values, axis=-1, method="makima")
+        return curve(np.clip(after, before[0], before[-1]))
 
     def moved(self, pairing: Pairing) -> np.ndarray:
         """Wear depths removed from both meshes at the points of a pairing, shape (2, n) [m]."""
         depth = self.carried(self.depth, pairing)
         for index, new in self.renewed.items():
-            depth[index] += depth_behind_curve(pairing.sides[index], new)
+            side = pairing.sides[index]
+            out = side.face.normals(side.facet, side.t)
+            behind = new.on_curve(side.facet + side.t) - side.face.points(side.facet, side.t)
+            depth[index] += np.einsum("ni,ni->n", behind, out)
         return depth
-
-
-def depth_behind_curve(side: PairedFace, new: NewFace) -> np.ndarray:
-    """Distance of a redivided face behind its smooth curve at the contact points [m]."""
-    on_curve = new.on_curve(side.facet + side.t)
-    out = side.face.normals(side.facet, side.t)
-    return np.einsum("ni,ni->n", on_curve - side.face.points(side.facet, side.t), out)
 
 
 def along(pairing: Pairing) -> np.ndarray:
@@ -113,12 +113,3 @@ def along(pairing: Pairing) -> np.ndarray:
     if isinstance(side.face, Surface):
         return np.column_stack([side.facet, side.t])
     return side.facet + side.t
-
-
-def carried(values: np.ndarray, before: np.ndarray, pairing: Pairing) -> np.ndarray:
-    """Interpolate values (..., n) at positions on a face, see `along`, to another pairing."""
-    after = along(pairing)
-    if before.shape == after.shape and np.abs(before - after).max() < _SAME:
-        return values
-    curve = scipy.interpolate.Akima1DInterpolator(before, values, axis=-1, method="makima")
-    return curve(np.clip(after, before[0], before[-1]))

@@ -167,7 +167,9 @@ def moments(
     sizes = sizes or AnySize()
     steady = None if steady is None else problem.steady(steady)
     if last is None:
-        last = _first(problem, steady)
+        state = problem.start()
+        distance, wanted = problem.distance(state, steady), problem.first_step(state)
+        last = Moment(0.0, 0.0, state, 0.0, False, distance, 0, 0.0, wanted)
         yield last
     targets = [time for time in times_to_hit(settings, problem) if time > last.time]
     while not is_over(settings, last):
@@ -186,13 +188,6 @@ def is_over(settings: TimedAnalysis, last: Moment) -> bool:
     """Test whether the running-in ends with this state."""
     steady = settings.until == "steady" and last.distance <= settings.steady_tolerance
     return steady or last.time >= max((settings.end_time, *settings.output_times))
-
-
-def _first(problem: WearProblem, steady: np.ndarray | None) -> Moment:
-    """Initial state: the unworn contact at time 0."""
-    state = problem.start()
-    distance, wanted = problem.distance(state, steady), problem.first_step(state)
-    return Moment(0.0, 0.0, state, 0.0, False, distance, 0, 0.0, wanted)
 
 
 def _next(
@@ -232,11 +227,7 @@ def _accept(
     With pointwise contact, an error that does not decrease in a far smaller step is a jump: a point
     begins to press suddenly. That step, which ends right behind the event, is accepted.
 
-    Returns
-    -------
-    trial : TrialStep
-    step, following : float
-        Size of the step, and of the next one as proposed by error control [s].
+    Returns the step with its size, and the size of the next one as proposed by error control [s].
     """
     trouble, step = "", size(last.wanted)
     # errors decrease steadily while the transient after a point begins to press decays

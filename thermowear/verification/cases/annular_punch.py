@@ -10,8 +10,7 @@ import numpy as np
 
 from ...reference import annular_punch as reference
 from ...results import Result
-from ..check import Check, along, compare, compare_each
-from ..starter import computed, run_starter, starter
+from ..check import Check, along, compare, compare_each, computed, run_starter, starter
 from .finite_elements import away_from_ends
 
 TABLE = "converged tables of degree 8 to 10 on other meshes"
@@ -60,7 +59,7 @@ def _heat(result: Result) -> Iterator[Check]:
     rises = along(interface, reference.RADII, interface.temperature_1 - AMBIENT)
     known = reference.TEMPERATURE_RISE
     yield from compare_each(quantity, 1e3 * reference.RADII, rises, known, 5e-4, TABLE)
-    power = reference.friction_power(FORCE, INNER, OUTER, FRICTION, 0.1)
+    power = 0.1 * reference.uniform_wear_torque(FORCE, FRICTION, INNER, OUTER)
     found = result.summary["friction_power_W"]
     yield compare("friction power, b = 1, hot [W]", found, power, 1e-6, CLOSED_FORM)
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from ...reference.beam import EXAMPLE, PLACES, TABLE, BeamState, WornBeam
 from ...results import Result
-from ..check import Check, compare, compare_each, compare_worst
-from ..starter import run_starter
+from ..check import Check, compare, compare_each, compare_worst, run_starter
 
 STARTER = "beam-on-foundation"
 COMPUTED = "200 Hermite elements, independent implicit steps"

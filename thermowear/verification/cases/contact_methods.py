@@ -20,8 +20,7 @@ from ...geometry.meshing.cells import (
     tagged_bodies,
 )
 from ...results import Result
-from ..check import Check, compare, compare_each, compare_worst
-from ..starter import computed, run_starter
+from ..check import Check, compare, compare_each, compare_worst, computed, run_starter
 
 SOURCE = "Taylor and Papadopoulos 1991, NAFEMS CGS-1: a uniform stress solves the problem exactly"
 WIDTH, HEIGHTS, PRESSURE = 0.04, (0.02, 0.03), 50e6

@@ -24,8 +24,7 @@ from ...simulation.analyses.design import steady_design
 from ...simulation.analyses.positioning import prepare
 from ...simulation.from_case import model_of
 from ...timer import Phases
-from ..check import Check, compare
-from ..starter import computed, run_starter, starter
+from ..check import Check, compare, computed, run_starter, starter
 
 PRINCIPLE = "steady state from the principle of minimum wear dissipation power"
 EDGE = 2e-3

@@ -11,11 +11,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...reference.hertz import contact_modulus
-from ...reference.mindlin import MindlinLine
+from ...reference.hertz import MindlinLine, contact_modulus
 from ...results import Result
-from ..check import Check, along, compare
-from ..starter import run_starter
+from ..check import Check, along, compare, run_starter
 
 STARTER = "tube-in-support"
 TUBE, CLEARANCE, THICKNESS = 4.75e-3, 0.05e-3, 10e-3

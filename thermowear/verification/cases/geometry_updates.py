@@ -14,8 +14,7 @@ import numpy as np
 
 from ...reference.growing_contact import growing_line
 from ...results import Result
-from ..check import Check, along, compare, compare_each
-from ..starter import run_starter
+from ..check import Check, along, compare, compare_each, run_starter
 from .growing import ARCHARD, ELASTIC, PUBLISHED, RIGID, SPEED, SPHERE, worn_half_width
 from .hertz import MODULUS
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from ...reference.growing_contact import GrowingContact, growing_line, growing_point
 from ...results import InterfaceFields
-from ..check import Check, compare
-from ..starter import run_starter
+from ..check import Check, compare, run_starter
 from .hertz import MODULUS
 
 RIGID = "Argatov, Wear 271 (2011) 1147, rigid bodies"

@@ -10,8 +10,7 @@ import numpy as np
 from ...reference import hertz as reference
 from ...reference.hertz import contact_modulus, line_contact, point_contact, sphere_on_half_space
 from ...results import Result
-from ..check import Check, along, compare, compare_each
-from ..starter import run_starter
+from ..check import Check, along, compare, compare_each, run_starter
 
 JOHNSON = "Johnson, Contact Mechanics (1985), section 4.2"
 PUNCH = "Johnson, Contact Mechanics (1985), section 2.8"

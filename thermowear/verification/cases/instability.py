@@ -14,8 +14,7 @@ from ... import geometry  # noqa: F401  (makes the geometries known)
 from ...case import load
 from ...reference.instability import ConductorOnInsulator, SlidingRod
 from ...results import Result
-from ..check import Check, compare
-from ..starter import computed
+from ..check import Check, compare, computed
 
 ROD_SOURCE = "exact solution of a rod pressed on an insulating wall, E = 210 GPa, k = 50 W/(m K)"
 BARBER = "Chebfun example, J. R. Barber's rod: φ'' = λ φ, φ(0) = 0, φ'(1) + φ(1) = 4 d ∫φ"

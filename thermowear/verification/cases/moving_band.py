@@ -12,8 +12,7 @@ import numpy as np
 
 from ...reference.half_space import PEAKS, MovingBand
 from ...results import Result
-from ..check import Check, compare, compare_worst
-from ..starter import run_starter
+from ..check import Check, compare, compare_worst, run_starter
 
 JAEGER = "J. C. Jaeger, J. Proc. Roy. Soc. New South Wales 76 (1942) 203"
 BALANCE = "energy balance"

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..check import Check, compare, compare_each, compare_worst
-from ..starter import run_starter
+from ..check import Check, compare, compare_each, compare_worst, run_starter
 
 STARTER = "punch-on-strip-reciprocating"
 HALF_WIDTH, AMPLITUDE, THICKNESS = 5e-3, 5e-3, 10e-3

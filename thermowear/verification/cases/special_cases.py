@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import partial
-from itertools import chain
 
 from ..check import Checks
-from ..closed_forms import CLOSED_FORMS
+from ..closed_forms.guided import case_3, case_4, case_5, case_7
+from ..closed_forms.punches import case_1, case_2, case_6, case_8, case_9
 from .annular_punch import story
 from .finite_elements import running_in
 
@@ -42,52 +42,45 @@ _DISK, _RING, _DRUM = "block-on-disk", "ring-segment-on-disk", "drum-brake"
 _PIVOT, _TILT = "pivoted-block", "punch-on-strip-tilting"
 
 # hot speeds lie below those at which unworn faces have no steady contact with friction heat
-_RUNS: dict[str, tuple[Checks, ...]] = {
-    "case-1": (_run("punch-on-strip", "hot"), _run("punch-on-strip", "cold", without=_COLD)),
-    "case-2": (_run("rectangular-punch", ""),),
-    "case-3": (
+SPECIAL_CASES: dict[Checks, tuple[Checks, ...]] = {
+    case_1: (_run("punch-on-strip", "hot"), _run("punch-on-strip", "cold", without=_COLD)),
+    case_2: (_run("rectangular-punch", ""),),
+    case_3: (
         _run(_DISK, "hot"),
         _run(_DISK, "hot, clockwise", "motion.angular_velocity=-0.3 rad/s"),
         _run(_DISK, "cold", without=_COLD),
         _run(_DISK, "cold, arc from -0.2 to 0.7 rad", *_ARC, without=_COLD),
     ),
-    "case-4": (
+    case_4: (
         _run(_RING, "anticlockwise"),
         _run(_RING, "clockwise", "motion.angular_velocity=-1 rad/s"),
         _run(_RING, "hot", *_HOT_RING, "motion.angular_velocity=0.3 rad/s"),
     ),
-    "case-5": (
+    case_5: (
         _run(_PIVOT, "strip away from the pivot"),
         _run(_PIVOT, "strip towards the pivot", "motion.velocity=50 mm/s"),
         _run(_PIVOT, "hot", *_HOT_PIVOT, "motion.velocity=-1 mm/s"),
     ),
-    "case-6": (
+    case_6: (
         _run(_TILT, "strip to the right"),
         _run(_TILT, "strip to the left", "motion.velocity=50 mm/s"),
         _run(_TILT, "hot", *_HOT_TILT, "motion.velocity=-3 mm/s"),
     ),
-    "case-7": (
+    case_7: (
         _run(_DRUM, "leading"),
         _run(_DRUM, "trailing", "motion.angular_velocity=5 rad/s"),
         _run(_DRUM, "hot", *_HOT_DRUM, "motion.angular_velocity=-0.2 rad/s"),
     ),
-    "case-8": (
+    case_8: (
         _run("annular-punch", "hot"),
         _run("annular-punch-conical", ""),
         _run("annular-punch-toroidal", ""),
         story,
     ),
-    "case-9": (
+    case_9: (
         _run("disk-brake", "hot"),
         _run("disk-brake", "cold", without=_COLD),
         _run("disk-sector", "degree 3", "mesh.degree=3"),
     ),
 }
-
-
-def _joined(parts: tuple[Checks, ...]) -> Checks:
-    return lambda: chain.from_iterable(checks() for checks in parts)
-
-
-SPECIAL_CASES = {id: _joined((CLOSED_FORMS[id], *runs)) for id, runs in _RUNS.items()}
-"""Checks by id of the special case."""
+"""Runs by closed form of the special case."""

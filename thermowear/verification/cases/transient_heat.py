@@ -14,12 +14,10 @@ from ...reference.half_space import HalfSpace, braking_peak, braking_rise, surfa
 from ...results import Result
 from ...simulation.analyses.positioning import prepare
 from ...simulation.from_case import model_of
-from ...simulation.interface.factory import interface_problem
-from ...simulation.interface.interface_problem import InterfaceProblem
+from ...simulation.interface.interface_problem import InterfaceProblem, interface_problem
 from ...simulation.interface.sdirk import InterfaceState, advance
 from ...timer import Phases
-from ..check import Check, compare, compare_worst
-from ..starter import computed, run_starter, starter
+from ..check import Check, compare, compare_worst, computed, run_starter, starter
 
 CARSLAW = "Carslaw and Jaeger, Conduction of Heat in Solids, 1959, section 2.9"
 SCHEME = "Alexander, SIAM J. Numer. Anal. 14 (1977) 1006"

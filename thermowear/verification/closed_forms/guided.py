@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...laws.principle.patch import wear_vectors
-from ...laws.principle.solvability import SelfLocking
+from ...laws.principle.steady import SelfLocking
 from ...reference import guided_face as reference
 from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
 from ..check import Check, compare, printed
@@ -51,7 +51,7 @@ def _arcs(build) -> Iterator[Check]:
         face = replace(_ASYMMETRIC, friction=sense * _ASYMMETRIC.friction)
         case = build(face, reference.FORCE, probes=(0.0,))
         quantity = f"largest pressure, asymmetric, sense {sense:+d} [MPa]"
-        yield printed(quantity, case.pressure(1)[0] / MPA, peak)
+        yield printed(quantity, case.steady().pressure[-1] / MPA, peak)
     rng = np.random.default_rng(3)
     for sense in (1, -1, 1, -1):
         b, friction = rng.uniform(0.3, 4.0), rng.uniform(0.0, 0.8)
@@ -76,7 +76,8 @@ def case_5() -> Iterator[Check]:
     for (b, sense), ends in reference.LEVER_ENDS.items():
         face = replace(lever, b=b, friction=sense * lever.friction)
         case = cases.brake_block(face, moment, probes=(lever.inner, lever.outer))
-        for place, p, known in zip(("inner", "outer"), case.pressure(2) / MPA, ends, strict=True):
+        pressures = case.steady().pressure[-2:] / MPA
+        for place, p, known in zip(("inner", "outer"), pressures, ends, strict=True):
             quantity = f"pressure at the {place} end, b = {b:g}, sense {sense:+d} [MPa]"
             yield printed(quantity, p, known)
     rng = np.random.default_rng(5)

@@ -46,10 +46,6 @@ class SpecialCase:
         """Steady state, by the generic solver."""
         return self.patch.steady(self.load, self.laws)
 
-    def pressure(self, probes: int) -> np.ndarray:
-        """Steady pressure at the last points, the probes [Pa]."""
-        return self.steady().pressure[-probes:]
-
 
 def wear_law(b: float, a: float = 1.0) -> PowerWear:
     """Wear law with realistic rates for pressures of some MPa."""

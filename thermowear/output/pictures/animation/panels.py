@@ -11,10 +11,20 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ....results import FIELDS
+from ..bodies import read_section
 from ..maps import draw_colors, triangulated
-from ..panels import BODIES, abscissa, clipped_top, label_coordinates
-from ..scales import COLORS, add_color_bar, color_limits, contact_window, inside, proportion, whole
-from ..section import read_section
+from ..panels import (
+    BODIES,
+    abscissa,
+    add_color_bar,
+    clipped_top,
+    color_limits,
+    contact_window,
+    inside,
+    label_coordinates,
+    proportion,
+    whole,
+)
 from .states import FrameSequence, FrameState, ScenePanel
 
 _SCALE = 0.05  # width of the colour bar relative to the panel
@@ -49,8 +59,7 @@ class SectionPanel(ScenePanel):
         axis.set_anchor("W")
         axis.grid(visible=False)
         place = axis.inset_axes([1.03, 0.0, _SCALE * min(1.0, self.shape), 1.0])
-        options = {"cax": place, "label": FIELDS[name].axis}
-        add_color_bar(axis, COLORS[name], self.limits, self._largest, **options)
+        add_color_bar(axis, name, FIELDS[name].axis, self.limits, self._largest, cax=place)
 
     def show(self, state: FrameState) -> None:
         while self._drawn:
@@ -76,8 +85,7 @@ class SolidPanel(ScenePanel):
     def prepare(self, axis) -> None:
         name, (width, height) = self._frames.field, self._solids.PIXELS
         axis.set_axis_off()
-        options = {"ax": axis, "label": FIELDS[name].axis, "shrink": 0.8}
-        add_color_bar(axis, COLORS[name], self.limits, self.limits[1], **options)
+        add_color_bar(axis, name, FIELDS[name].axis, self.limits, self.limits[1])
         blank = np.full((height, width, 3), 255, dtype=np.uint8)
         self._image = axis.imshow(blank, interpolation="antialiased")
 
@@ -104,19 +112,15 @@ class FaceMap(ScenePanel):
         window = whole(np.stack([data.drawn("x"), data.drawn("y")], axis=1))
         axis.set(xlim=window[:2], ylim=window[2:])
         axis.grid(visible=False)
-        colors = COLORS[self._name.split("_")[0]]
-        options = {"ax": axis, "label": data.quantities[self._name].wrapped}
-        add_color_bar(axis, colors, self._limits, self._limits[1], **options)
+        label, limits = data.quantities[self._name].wrapped, self._limits
+        add_color_bar(axis, self._name, label, limits, limits[1], shrink=1.0)
 
     def show(self, state: FrameState) -> None:
         while self._drawn:
             self._drawn.pop().remove()
         x, y, values = map(state.interface.drawn, ("x", "y", self._name))
-        low, high = self._limits
-        colored = draw_colors(
-            self._axis, triangulated(x, y), values, self._name, vmin=low, vmax=high
-        )
-        self._drawn.append(colored)
+        ends = dict(zip(("vmin", "vmax"), self._limits, strict=True))
+        self._drawn = [draw_colors(self._axis, triangulated(x, y), values, self._name, **ends)]
 
 
 def face_maps(frames: FrameSequence) -> list[FaceMap]:

@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from ... import tables
-from ...coordinates import read_summary
+from ...files import FRAMES, read_summary
 from ...frames import frame_files
-from ...names import FRAMES
 
 _HISTORIES = ("history.csv", "cycles.csv", "loads.csv")
 _STEADY = 1e-2  # distance from the steady state up to which the final state is called steady

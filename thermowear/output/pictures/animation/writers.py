@@ -16,7 +16,7 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 
 from ....errors import CaseError
-from ...atomic_write import atomic_write
+from ...files import atomic_write
 from ..panels import BODIES
 
 GIF, MP4 = ".gif", ".mp4"

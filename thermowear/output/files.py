@@ -1,13 +1,18 @@
-"""Names of the files of a results folder."""
+"""Files of a results folder: names, atomic replacement, and the JSON files."""
 
 from __future__ import annotations
 
+import json
 import math
+import os
 import re
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from ..results import TABLES
-from .atomic_write import final_name
 
 PICTURES = {
     "bodies": "Von Mises stress of the bodies, and their temperature if the case has heat.",
@@ -73,3 +78,55 @@ def is_report(path: Path) -> bool:
             return _REPORT_TAG.search(file.read(_REPORT_HEAD)) is not None
     except OSError:
         return False
+
+
+@contextmanager
+def atomic_write(path: Path) -> Iterator[Path]:
+    """Write to a draft beside a file and rename it to the file at the end.
+
+    Until then the file remains unchanged, even if the process is killed; after an error, such as a
+    full disk, the draft is removed.
+    """
+    draft = path.with_name(f".{path.name}.part")
+    try:
+        yield draft
+        os.replace(draft, path)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, atomically."""
+    with atomic_write(path) as draft:
+        draft.write_text(text, "utf-8")
+
+
+def final_name(path: Path) -> str:
+    """Name of the file that a draft will become; the name itself if the path is no draft."""
+    name = path.name
+    is_draft = name.startswith(".") and name.endswith(".part")
+    return name[1:].removesuffix(".part") if is_draft else name
+
+
+def read_object(path: Path) -> dict[str, Any] | None:
+    """Content of a JSON file; None if it is missing, unreadable, or not an object."""
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def read_summary(folder: Path) -> dict[str, Any]:
+    """Summary of the run in a results folder; empty if there is none."""
+    path = folder / "summary.json"
+    return json.loads(path.read_bytes()) if path.is_file() else {}
+
+
+def model_of(folder: Path) -> str:
+    """Kinematic model of the run in a results folder; empty if it is not known."""
+    case = folder / "case.resolved.toml"
+    if (folder / "summary.json").is_file() or not case.is_file():
+        return read_summary(folder).get("model", "")
+    return tomllib.loads(case.read_text("utf-8")).get("model", "")

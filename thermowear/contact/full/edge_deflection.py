@@ -24,8 +24,8 @@ import numpy as np
 from scipy.linalg import null_space
 
 from ...bulk.mechanics.elasticity import Elasticity
-from ..operators.traction import at_points
 from ..search.pairing import Pairing
+from .nitsche import at_points
 
 
 @dataclass(frozen=True)

@@ -129,6 +129,17 @@ def test_weights_integrate_over_the_face(divisions, maps, cell_type):
         assert side.t.max() <= 1
 
 
+@pytest.mark.parametrize("cell_type", CELLS)
+@pytest.mark.parametrize("order", [2, 3])
+def test_curved_facets_cover_the_face_once(order, cell_type):
+    """requirement: facets with curved edges in a plane that do not match; small at their corners
+    are the parts that edges of four segments miss.
+    """
+    pairing = pair(*faces(OTHER, order, (bent, bent), cell_type), Spatial(), 6)
+    assert pairing.weights.sum() == pytest.approx(SIZE[0] * SIZE[1], rel=1e-5)
+    assert pairing.unpaired < 1e-5
+
+
 def test_matching_faces_have_the_nodes_of_one_rule():
     """requirement: points that facets share are one; the rim has points."""
     pairing = pair(*faces(((3, 2, 2), (3, 2, 2))), Spatial(), 4)

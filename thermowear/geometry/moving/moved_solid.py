@@ -151,7 +151,8 @@ class MovableSolid(MovableFace):
         points = self._mesh.points[facets]
         points = points - points.reshape(-1, 3).mean(axis=0)
         before, after = (
-            _enclosed(self._mesh.order, p) for p in (points, points + outlined[facets])
+            _enclosed(FACETS[self._mesh.cell_type], self._mesh.order, p)
+            for p in (points, points + outlined[facets])
         )
         return (before - after) * float(factor(np.zeros((1, 3)))[0])
 

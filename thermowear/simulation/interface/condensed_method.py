@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.operators.condensation import CondensedContact
+from ...contact.operators.pressure import dense, scaled
 from ...contact.solvers.signorini import NoEquilibrium, SignoriniSolution, solve_contact
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
@@ -89,7 +90,7 @@ class CondensedMethod:
         an implicit step of wear of rigid bodies.
         """
         contact, load = self._with_friction(conditions.friction), conditions.load
-        coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
+        coefficients = contact.projected(pressure)
         active = np.ones(len(coefficients), dtype=bool)
         no_motion = np.zeros(contact.modes.shape[1])
         start = ContactSolution(
@@ -139,7 +140,7 @@ class CondensedMethod:
         """Weak gaps (k, k) per coefficient by a local compliance [m/Pa]; the last are cached."""
         last = self._last_opening
         if last is None or last[0] is not space or not np.array_equal(last[1], slope):
-            opening = space.weighted.T @ (slope[:, None] * space.basis)
+            opening = dense(space.weighted.T @ scaled(slope, space.basis))
             last = self._last_opening = space, slope, opening
         return last[2]
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.operators.condensation import CondensedContact
-from ...contact.operators.pressure import dense, scaled
 from ...contact.solvers.signorini import NoEquilibrium, SignoriniSolution, solve_contact
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
@@ -140,7 +139,7 @@ class CondensedMethod:
         """Weak gaps (k, k) per coefficient by a local compliance [m/Pa]; the last are cached."""
         last = self._last_opening
         if last is None or last[0] is not space or not np.array_equal(last[1], slope):
-            opening = dense(space.weighted.T @ scaled(slope, space.basis))
+            opening = space.weighted.T @ (space.basis.T * slope).T
             last = self._last_opening = space, slope, opening
         return last[2]
 

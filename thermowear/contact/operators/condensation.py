@@ -14,7 +14,7 @@ from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from .heat import InterfaceHeat, ThermalDistortion
+from .heat import FaceHeat, InterfaceHeat, ThermalDistortion
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
 from .traces import distributed, transpose_product
@@ -174,11 +174,11 @@ def condense_heat(
         field = conduction.respond(heat[:, columns].tocsr())
         found.append([trace.T @ field for trace in traces])
     Θ1, Θ2 = (sum_over_ranks(comm, np.hstack(columns)) for columns in zip(*found, strict=True))
-    return InterfaceHeat(weights, basis, traces, shift, (Θ1, Θ2), partition)
+    return InterfaceHeat(weights, basis, traces, shift, partition, (Θ1, Θ2))
 
 
 def condense_distortion(
-    conduction: Conduction, per_rise: np.ndarray, face: InterfaceHeat
+    conduction: Conduction, per_rise: np.ndarray, face: FaceHeat
 ) -> ThermalDistortion:
     """Condense ``Ψᵀ w B K⁻¹ G K_T⁻¹ Eᵀ w``: weak gap from heat at the contact.
 
@@ -190,7 +190,7 @@ def condense_distortion(
     conduction : Conduction
     per_rise : ndarray, shape (n_owned, m)
         Weak gap per nodal rise, see `Influence` [m³/K].
-    face : InterfaceHeat
+    face : FaceHeat
     """
     mesh, found = conduction.space.mesh, []
     for columns in blocks(per_rise.shape[1], mesh.topology.dim):
@@ -204,10 +204,12 @@ def condense_distortion(
 
 def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
     """Matrix ``Σ E_iᵀ w s E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
-    first, second = (
-        distributed(space, (trace @ sp.diags(np.sqrt(weights * shift))).tocsr()) for trace in traces
-    )
-    matrix = first.matMult(first.copy().transpose())
-    other = second.matMult(second.copy().transpose())
-    matrix.axpy(1.0, other, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
-    return matrix
+    first, second = (transfer_matrix(space, trace, weights * shift) for trace in traces)
+    first.axpy(1.0, second, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    return first
+
+
+def transfer_matrix(space, trace: sp.csr_matrix, sizes: np.ndarray) -> PETSc.Mat:
+    """Matrix ``Eᵀ diag(sizes) E`` of a transposed trace Eᵀ and sizes (n,) >= 0; collective."""
+    root = distributed(space, (trace @ sp.diags(np.sqrt(sizes))).tocsr())
+    return root.matMult(root.copy().transpose())

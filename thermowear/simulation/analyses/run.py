@@ -11,6 +11,7 @@ from mpi4py import MPI
 from numpy.linalg import LinAlgError
 
 from ...balances import judged
+from ...bulk.multigrid_solver import MultigridSolver
 from ...errors import CaseError, ComputationError
 from ...model.analyses import (
     Analysis,
@@ -36,6 +37,8 @@ from .static import initial, stability, steady
 from .transient import TransientHistory
 
 _UNPAIRED = 1e-6
+_NOT_ESTIMATED = "the discretisation error is not estimated where bodies are solved by multigrid"
+_SKIPPED = {"all": "not estimated where bodies are solved by multigrid"}
 
 
 def run(
@@ -69,8 +72,20 @@ def run(
     """
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
-    system = prepare(model, MPI.COMM_WORLD if comm is None else comm, phases)
+    comm = MPI.COMM_WORLD if comm is None else comm
+    system = prepare(model, comm, phases, single=needs_single_solution(model, analysis))
     return solve(system, analysis, observer, saved)[1]
+
+
+def needs_single_solution(model: Model, analysis: Analysis) -> bool:
+    """Test whether an analysis solves its bodies for one load only, and needs no compliance.
+
+    That is the steady state of wear with material properties that do not depend on temperature.
+    """
+    return analysis.type == "steady" and not any(
+        material.expansion_factor or material.conductivity_factor
+        for material in model.materials.values()
+    )
 
 
 def solve(
@@ -99,6 +114,10 @@ def analyse(
 
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
+    choice = system.choice
+    for note in (choice.note(), _factorised_conduction(system)):
+        if note is not None:
+            observer.note(note)
     if system.pairing.unpaired > _UNPAIRED:
         percent = 100 * system.pairing.unpaired
         observer.note(
@@ -131,16 +150,41 @@ def analyse(
         observer.note(note)
     errors = (one for one in found if isinstance(one, ComputationError))
     stopped = result.stopped or next(errors, None)
-    mesh = mesh_checksum(system)
+    mesh, solved = mesh_checksum(system), choice.summary() | _iterations(system)
     named = {"title": system.model.title, "analysis": analysis.type}
     origin = {} if mesh is None else {"mesh_sha256": mesh}
-    return end, replace(result, summary=named | result.summary | origin, stopped=stopped)
+    return end, replace(result, summary=named | result.summary | solved | origin, stopped=stopped)
+
+
+def _factorised_conduction(system: System) -> str | None:
+    """Note on conduction that is factorised although the bodies are not."""
+    thermal = system.thermal
+    if not system.choice.iterative or thermal is None or thermal.conduction.even is None:
+        return None
+    return 'solver: direct for the temperatures, as heat.advection = "spread" joins their unknowns'
+
+
+def _iterations(system: System) -> dict[str, int]:
+    """Largest numbers of multigrid iterations of a solution, if there are any."""
+    thermal = system.thermal
+    factors = {
+        "elasticity": system.elastic.factor,
+        "conduction": None if thermal is None else thermal.conduction.factor,
+    }
+    return {
+        f"multigrid_iterations_{name}": max(factor.iterations)
+        for name, factor in factors.items()
+        if isinstance(factor, MultigridSolver) and factor.iterations
+    }
 
 
 def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Observer) -> Result:
     """Add discretisation error estimates to the summary; note large ones. Every rank calls."""
     if result.stopped is not None:
         return result
+    if end.system.choice.iterative:
+        observer.note(_NOT_ESTIMATED)
+        return replace(result, summary=result.summary | {"error_estimate_missing": _SKIPPED})
     try:
         estimates = estimate_errors(analysis, end)
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
@@ -193,7 +237,9 @@ class Series:
         CaseError, ComputationError
         """
         observer = observer or Observer()
-        system = prepare(model, self.comm, phases or Phases(observer.phase), self._parts)
+        single = needs_single_solution(model, analysis)
+        phases = phases or Phases(observer.phase)
+        system = prepare(model, self.comm, phases, self._parts, single)
         return balanced(analyse(system, analysis, observer)[1])
 
 

@@ -16,7 +16,7 @@ from ..laws.coefficients import (
     PressureConductance,
     harmonic_mean,
 )
-from ..laws.distribution import Distribution, InPlace, rings, uniform_track
+from ..laws.distribution import Distribution, InPlace, rings, round_duty, uniform_track
 from ..laws.interfaces import Law
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
@@ -66,6 +66,32 @@ class CircularTrack:
 
 
 @dataclass(frozen=True)
+class PinTrack:
+    """Circles of a disk under a round pin, each worn evenly.
+
+    Attributes
+    ----------
+    center : tuple of float
+        x and y of the axis of the disk [m].
+    distance : float
+        Distance of the axis of the pin from it [m].
+    radius : float
+        Radius of the contact face [m].
+    """
+
+    center: tuple[float, float]
+    distance: float
+    radius: float
+
+    def distribution(
+        self, points: np.ndarray, weights: np.ndarray, thickness: float
+    ) -> Distribution:
+        """Distribution of the wear; see `FaceWear.distribution`."""
+        radii = np.linalg.norm(points[:, :2] - np.array(self.center), axis=1)
+        return rings(radii, weights, round_duty(radii, self.distance, self.radius))
+
+
+@dataclass(frozen=True)
 class FaceWear:
     """Wear of one face.
 
@@ -76,7 +102,7 @@ class FaceWear:
         Tabulated factors of the rate, by the temperature of the face, the pressure and the speed.
     friction_exponent : float
         Exponent of the coefficient of friction in a law per friction stress; 0 in other laws.
-    track : Distribution, EvenTrack or CircularTrack
+    track : Distribution, EvenTrack, CircularTrack or PinTrack
         In place, at a constant duty factor, or along a track that passes the contact.
     per : str or None
         Stress that a coefficient of wear multiplies, for the summary; None for other laws.
@@ -85,7 +111,7 @@ class FaceWear:
     law: Law
     factors: Multipliers = field(default_factory=Multipliers)
     friction_exponent: float = 0.0
-    track: Distribution | EvenTrack | CircularTrack = field(default_factory=InPlace)
+    track: Distribution | EvenTrack | CircularTrack | PinTrack = field(default_factory=InPlace)
     per: str | None = None
 
     @property

@@ -75,20 +75,31 @@ class PinTrack:
         x and y of the axis of the disk [m].
     distance : float
         Distance of the axis of the pin from it [m].
-    radius : float
-        Radius of the contact face [m].
+    radius : float or None
+        Radius of the contact face, by default the largest distance of a contact point from the axis
+        of the pin: it has no effect if the edge of the face is not in contact [m].
     """
 
     center: tuple[float, float]
     distance: float
-    radius: float
+    radius: float | None = None
 
     def distribution(
         self, points: np.ndarray, weights: np.ndarray, thickness: float
     ) -> Distribution:
         """Distribution of the wear; see `FaceWear.distribution`."""
-        radii = np.linalg.norm(points[:, :2] - np.array(self.center), axis=1)
-        return rings(radii, weights, round_duty(radii, self.distance, self.radius))
+        arms = points[:, :2] - np.array(self.center)
+        radii = np.linalg.norm(arms, axis=1)
+        radius = self.radius
+        if radius is None:
+            axis = self._pin_axis(points, weights)
+            radius = float(np.linalg.norm(points[:, :2] - axis, axis=1).max())
+        return rings(radii, weights, round_duty(radii, self.distance, radius))
+
+    def _pin_axis(self, points: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """x and y of the axis of the pin, in the direction of the middle of the face [m]."""
+        arm = weights @ points[:, :2] / weights.sum() - np.array(self.center)
+        return np.array(self.center) + self.distance * arm / np.linalg.norm(arm)
 
 
 @dataclass(frozen=True)

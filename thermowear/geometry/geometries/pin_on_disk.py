@@ -7,7 +7,8 @@ made by gmsh.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -19,7 +20,7 @@ from ...case.values.units import Length
 from ...errors import CaseError
 from ..mesh.tagged import TaggedMesh
 from ..meshing.cells import Claim, MeshedBody, both, every, tagged_bodies
-from ..meshing.tetrahedra import RoundZone, mesh_solid
+from ..meshing.tetrahedra import RoundZone, mesh_solids
 
 _ORDER = 2
 """Largest cell order; never above the displacement degree, so that rigid rotations are exact."""
@@ -29,8 +30,10 @@ _CLEARANCE = 0.05
 """Least distance of the pin from the edges of the disk, by the radius of the pin."""
 _SAME = 1e-7
 """Tolerance for positions of nodes on a surface, by the radius of the pin."""
+_FACE = 1.4
+"""Radius of the contact faces of a spherical end over that of the expected contact."""
 _THINNEST = 1e-4
-"""Least contact radius that can be meshed, by the radius of the face."""
+"""Least contact radius that can be meshed, over the largest."""
 
 
 class PinOnDisk(Geometry):
@@ -121,16 +124,16 @@ class PinOnDisk(Geometry):
         return radius - math.sqrt(radius**2 - self.pin_radius**2)
 
     @property
-    def face_height(self) -> float:
-        """Height of the edge of the contact face on the pin, 0 for a flat one [m]."""
-        return 0.0 if self.end_radius is None else float(self._sphere(np.array(self.face_radius)))
-
-    @property
-    def face_radius(self) -> float:
-        """Radius of the contact faces [m]."""
+    def widest_face(self) -> float:
+        """Largest radius of the contact faces [m]."""
         if self.end_radius is None:
             return self.pin_radius
         return min(self.pin_radius, _STEEPEST * self.end_radius)
+
+    def sphere(self, away: np.ndarray) -> np.ndarray:
+        """Height of the spherical end at distances from its axis [m]."""
+        assert self.end_radius is not None
+        return away**2 / (self.end_radius + np.sqrt(self.end_radius**2 - away**2))
 
     @keyed
     def pivot_point(self) -> tuple[float, ...]:
@@ -143,8 +146,8 @@ class PinOnDisk(Geometry):
         return False
 
     @keyed
-    def footprint(self) -> tuple[float, float]:
-        return self.track_radius, self.face_radius
+    def footprint(self) -> tuple[float, float | None]:
+        return self.track_radius, self.pin_radius if self.end_radius is None else None
 
     def contact_area(self) -> float | None:
         return math.pi * self.pin_radius**2 if self.end == "flat" else None
@@ -167,143 +170,164 @@ class PinOnDisk(Geometry):
 
     def check_zone(self, zone: tuple[float, float]) -> None:
         radius = (zone[1] - zone[0]) / 2
-        if not _THINNEST * self.face_radius <= radius <= 0.9 * self.face_radius:
+        widest = self.widest_face / _FACE
+        if not _THINNEST * widest <= radius <= widest:
             raise CaseError(
                 f"geometry.end_radius: the contact is expected to have a radius of {radius:.3g} m; "
-                f"it can be meshed from {_THINNEST * self.face_radius:.3g} m to "
-                f"{0.9 * self.face_radius:.3g} m"
+                f"it can be meshed from {_THINNEST * widest:.3g} m to {widest:.3g} m"
             )
 
     def build(self, mesh, zone=None) -> TaggedMesh:
-        radius = self.pin_radius
+        radius = face = self.pin_radius
         if zone is not None:
             self.check_zone(zone)
             radius = (zone[1] - zone[0]) / 2
+            face = _FACE * radius
+        drawn = DrawnPin(self, face)
+        zones = {"pin": self._zone("pin", mesh, radius), "disk": self._zone("disk", mesh, radius)}
         order = min(mesh.degree, _ORDER)
-        bodies = {
-            "pin": self._pin(order, self._sizes(radius, *mesh.face("pin"), self.pin_radius)),
-            "disk": self._disk(order, self._sizes(radius, *mesh.face("disk"), self._coarsest)),
-        }
-        claims = {f"pin_{part}": claim for part, claim in self._pin_claims().items()}
-        claims |= {f"disk_{part}": claim for part, claim in self._disk_claims().items()}
-        tagged = tagged_bodies(bodies, {surface: claims[surface] for surface in self.surfaces})
-        return TaggedMesh(**(vars(tagged) | {"cell_type": "tetrahedron"}))
+        alike = mesh.face("pin") == mesh.face("disk")
+        groups = [zones] if alike else [{name: zone} for name, zone in zones.items()]
+        bodies: dict[str, MeshedBody] = {}
+        for group in groups:
+            bodies |= mesh_solids(partial(drawn.draw, tuple(group)), group, order, drawn.unit)
+        bodies["pin"] = replace(bodies["pin"], points=drawn.rounded(bodies["pin"].points))
+        return replace(tagged_bodies(bodies, drawn.claims()), cell_type="tetrahedron")
+
+    def _zone(self, body: str, mesh, radius: float) -> RoundZone:
+        """Element sizes of a body for a contact radius [m]."""
+        elements, grading = mesh.face(body)
+        inner, outer = self.disk_inner_radius, self.disk_outer_radius
+        largest, volume = self.pin_radius, math.pi * self.pin_radius**2 * self.pin_height
+        if body == "disk":
+            largest = min(max(1.5 * self.disk_thickness, self.pin_radius), 0.5 * (outer - inner))
+            volume = math.pi * (outer**2 - inner**2) * self.disk_thickness
+        inside = 2 * radius / elements
+        sizes = inside, grading * inside, max(largest, inside)
+        return RoundZone(self.track_radius, radius, *sizes, volume)
+
+
+@dataclass(frozen=True)
+class DrawnPin:
+    """Pin and disk with the outline of the contact faces.
+
+    The pin is drawn with an end that is flat within the contact face and rounded afterwards: no
+    node of the contact lies at a pole of a surface that gmsh meshes in parameters, and the faces of
+    pin and disk can have the same triangles.
+
+    Attributes
+    ----------
+    sizes : PinOnDisk
+    face : float
+        Radius of the contact faces [m].
+    """
+
+    sizes: PinOnDisk
+    face: float
 
     @property
-    def _coarsest(self) -> float:
-        """Largest element size of the disk [m]."""
-        width = self.disk_outer_radius - self.disk_inner_radius
-        return min(max(1.5 * self.disk_thickness, self.pin_radius), 0.5 * width)
+    def unit(self) -> float:
+        """Length in which it is drawn [m]."""
+        return self.sizes.pin_radius
 
-    def _sizes(self, radius: float, elements: int, grading: float, largest: float) -> RoundZone:
-        inside = 2 * radius / elements
-        return RoundZone(
-            self.track_radius, radius, inside, grading * inside, max(largest, inside)
-        )
+    @property
+    def rise(self) -> float:
+        """Height of the edge of the contact face of the pin, 0 for a flat end [m]."""
+        flat = self.sizes.end_radius is None
+        return 0.0 if flat else float(self.sizes.sphere(np.array(self.face)))
 
-    def _pin(self, order: int, sizes: RoundZone) -> MeshedBody:
-        unit, volume = self.pin_radius, math.pi * self.pin_radius**2 * self.pin_height
-        flat = mesh_solid(lambda occ: _draw_pin(occ, self, unit), sizes, volume, order, unit)
-        return replace(flat, points=self._rounded(flat.points))
-
-    def _rounded(self, points: np.ndarray) -> np.ndarray:
-        """Points of a pin with a spherical end from those with a face that is flat.
-
-        Its nodes are moved down to the sphere, those above in proportion to their distance from the
-        top: no node of the contact lies at a pole of a surface that gmsh meshes in parameters.
-        """
-        if self.end_radius is None:
-            return points
-        away = np.hypot(points[:, 0] - self.track_radius, points[:, 1])
-        sphere = self._sphere(np.minimum(away, self.face_radius))
-        below = 1 - points[:, 2] / (self.pin_height - self.face_height)
-        lifted = points.copy()
-        lifted[:, 2] += self.face_height - (self.face_height - sphere) * below
-        return lifted
-
-    def _sphere(self, away: np.ndarray) -> np.ndarray:
-        """Height of the spherical end at distances from its axis [m]."""
-        assert self.end_radius is not None
-        return away**2 / (self.end_radius + np.sqrt(self.end_radius**2 - away**2))
-
-    def _disk(self, order: int, sizes: RoundZone) -> MeshedBody:
-        area = math.pi * (self.disk_outer_radius**2 - self.disk_inner_radius**2)
-        unit, volume = self.pin_radius, area * self.disk_thickness
-        return mesh_solid(lambda occ: _draw_disk(occ, self, unit), sizes, volume, order, unit)
-
-    def _pin_claims(self) -> dict[str, Claim]:
-        claims = {"top": self._at(self.pin_height), "side": every}
-        if self.end_radius is None:
-            return {"face": self._at(0.0)} | claims
-        radius = self.end_radius
-        top = (self.track_radius, 0.0, radius)
-
-        def on_end(p: np.ndarray) -> np.ndarray:
-            off = np.abs(np.linalg.norm(p - np.array(top), axis=-1) - radius)
-            return np.all((off < self._tolerance) & (p[..., 2] < radius), axis=1)
-
-        return {"face": both(on_end, self._under_pin)} | claims
-
-    def _disk_claims(self) -> dict[str, Claim]:
+    def draw(self, names: tuple[str, ...], occ) -> dict[str, list[int]]:
+        """Draw some of the bodies; returns their volumes by name."""
+        drawn = [(3, self._pin(occ) if name == "pin" else self._disk(occ)) for name in names]
+        outline = (2, occ.addDisk(self.sizes.track_radius / self.unit, 0, 0, *self._radii))
+        parts = occ.fragment(drawn, [outline])[1]
         return {
-            "face": both(self._at(0.0), self._under_pin),
-            "rest": self._at(0.0),
-            "bottom": self._at(-self.disk_thickness),
-            "inside": self._on_radius(self.disk_inner_radius),
-            "outside": every,
+            name: [tag for dim, tag in part if dim == 3]
+            for name, part in zip(names, parts[: len(names)], strict=True)
+        }
+
+    @property
+    def _radii(self) -> tuple[float, float]:
+        """Half-axes of the face, in the unit."""
+        return self.face / self.unit, self.face / self.unit
+
+    def _pin(self, occ) -> int:
+        sizes, unit = self.sizes, self.unit
+        axis, height = sizes.track_radius / unit, (sizes.pin_height - self.rise) / unit
+        beside = (sizes.end_height - self.rise) / unit
+        if not beside > 1e-9:
+            return occ.addCylinder(axis, 0, 0, 0, 0, height, 1.0)
+        assert sizes.end_radius is not None
+        ball = sizes.end_radius / unit
+        shaft = occ.addCylinder(axis, 0, beside, 0, 0, height - beside, 1.0)
+        sphere = occ.addSphere(axis, 0, ball - self.rise / unit, ball)
+        box = occ.addBox(axis - 2 * ball, -2 * ball, 0, 4 * ball, 4 * ball, beside)
+        slice_, _ = occ.intersect([(3, sphere)], [(3, box)])
+        ((_, tag),) = occ.fuse(slice_, [(3, shaft)])[0]
+        return tag
+
+    def _disk(self, occ) -> int:
+        sizes, unit = self.sizes, self.unit
+        thickness = sizes.disk_thickness / unit
+        whole, bore = (
+            (3, occ.addCylinder(0, 0, -thickness, 0, 0, thickness, radius / unit))
+            for radius in (sizes.disk_outer_radius, sizes.disk_inner_radius)
+        )
+        ((_, tag),) = occ.cut([whole], [bore])[0]
+        return tag
+
+    def rounded(self, points: np.ndarray) -> np.ndarray:
+        """Points of the pin with its end rounded.
+
+        Nodes of the flat face are moved to the sphere, those above in proportion to their distance
+        from the top.
+        """
+        sizes = self.sizes
+        if sizes.end_radius is None:
+            return points
+        away = np.hypot(points[:, 0] - sizes.track_radius, points[:, 1])
+        sphere = sizes.sphere(np.minimum(away, self.face))
+        part = 1 - points[:, 2] / (sizes.pin_height - self.rise)
+        result = points.copy()
+        result[:, 2] += self.rise - (self.rise - sphere) * part
+        return result
+
+    def claims(self) -> dict[str, Claim]:
+        """Predicates of all surfaces, see `tagged_bodies`."""
+        sizes = self.sizes
+        inside = _on_radius(sizes.disk_inner_radius, self._tolerance)
+        return {
+            "pin_face": both(self._on_end, self._under_pin),
+            "pin_top": self._at(sizes.pin_height),
+            "pin_side": every,
+            "disk_face": both(self._at(0.0), self._under_pin),
+            "disk_rest": self._at(0.0),
+            "disk_bottom": self._at(-sizes.disk_thickness),
+            "disk_inside": inside,
+            "disk_outside": every,
         }
 
     @property
     def _tolerance(self) -> float:
-        return _SAME * self.pin_radius
+        return _SAME * self.unit
+
+    def _on_end(self, p: np.ndarray) -> np.ndarray:
+        if self.sizes.end_radius is None:
+            return self._at(0.0)(p)
+        away = np.hypot(p[..., 0] - self.sizes.track_radius, p[..., 1])
+        height = self.sizes.sphere(np.minimum(away, self.face))
+        return np.all(np.abs(p[..., 2] - height) < self._tolerance, axis=1)
 
     def _at(self, z: float) -> Claim:
         return lambda p: np.all(np.abs(p[..., 2] - z) < self._tolerance, axis=1)
 
-    def _on_radius(self, radius: float) -> Claim:
-        limit = self._tolerance + 1e-9 * radius
-        return lambda p: np.all(np.abs(np.hypot(p[..., 0], p[..., 1]) - radius) < limit, axis=1)
-
     def _under_pin(self, p: np.ndarray) -> np.ndarray:
-        away = np.hypot(p[..., 0] - self.track_radius, p[..., 1])
-        return np.all(away < self.face_radius + self._tolerance, axis=1)
+        away = np.hypot(p[..., 0] - self.sizes.track_radius, p[..., 1])
+        return np.all(away < self.face + self._tolerance, axis=1)
 
 
-def _draw_pin(occ, sizes: PinOnDisk, unit: float) -> None:
-    """Draw a pin whose end is flat within the contact face, see `PinOnDisk._rounded`."""
-    axis, radius, height, face = (
-        value / unit
-        for value in (
-            sizes.track_radius,
-            sizes.pin_radius,
-            sizes.pin_height - sizes.face_height,
-            sizes.face_radius,
-        )
+def _on_radius(radius: float, tolerance: float) -> Claim:
+    """Predicate of the facets with all nodes at a distance from the z-axis."""
+    return lambda p: np.all(
+        np.abs(np.hypot(p[..., 0], p[..., 1]) - radius) < tolerance + 1e-9 * radius, axis=1
     )
-    beside = (sizes.end_height - sizes.face_height) / unit
-    shaft = occ.addCylinder(axis, 0, beside, 0, 0, height - beside, radius)
-    if face < radius * (1 - 1e-9):
-        assert sizes.end_radius is not None
-        ball, level = sizes.end_radius / unit, sizes.face_height / unit
-        sphere = occ.addSphere(axis, 0, ball - level, ball)
-        box = occ.addBox(axis - 2 * ball, -2 * ball, 0, 4 * ball, 4 * ball, beside)
-        slice_, _ = occ.intersect([(3, sphere)], [(3, box)])
-        occ.fuse(slice_, [(3, shaft)])
-
-
-def _draw_disk(occ, sizes: PinOnDisk, unit: float) -> None:
-    """Draw an annular disk with the outline of the contact face on it."""
-    inner, outer, thickness, track, face = (
-        value / unit
-        for value in (
-            sizes.disk_inner_radius,
-            sizes.disk_outer_radius,
-            sizes.disk_thickness,
-            sizes.track_radius,
-            sizes.face_radius,
-        )
-    )
-    whole = occ.addCylinder(0, 0, -thickness, 0, 0, thickness, outer)
-    bore = occ.addCylinder(0, 0, -thickness, 0, 0, thickness, inner)
-    disk, _ = occ.cut([(3, whole)], [(3, bore)])
-    occ.fragment(disk, [(2, occ.addDisk(track, 0, 0, face, face))])

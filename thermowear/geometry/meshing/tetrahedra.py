@@ -20,7 +20,7 @@ _GROWTH = 0.35
 """Increase of the element size per distance from the contact."""
 _PER_CUBE = 8.0
 """Number of tetrahedra in a cube of their size."""
-_PER_TURN = 16
+_PER_TURN = 24
 """Number of elements round a circle far from the contact."""
 _TETRAHEDRON = {1: 4, 2: 11}
 """Element types of gmsh by order."""

@@ -27,6 +27,9 @@ from ..interface.sdirk import InterfaceState
 from ..system.system import System
 
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
+_SMOOTH, _DRAWN_CELLS = 6, 200_000
+"""Number of parts of the side of a curved cell that looks smooth; parts of all cells up to which
+cells are divided more finely than their fields need."""
 _LEAST_COSINE = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
 
@@ -191,7 +194,7 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
     """
     system, state, motion = snapshot.system, snapshot.bodies, snapshot.motion
     mesh, elastic = system.bodies.mesh, system.elastic
-    n = max(system.model.discretisation.degree, 2)
+    n = _divisions(mesh, max(system.model.discretisation.degree, 2))
     grid, pieces = _GRIDS[mesh.topology.cell_name()](n)
     centre = grid.mean(axis=0)
     inside = centre + (grid - centre) * (1 - _INSET)
@@ -248,6 +251,15 @@ def with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -
 def _von_mises(σ):
     s = σ - ufl.tr(σ) / 3 * ufl.Identity(3)
     return ufl.sqrt(1.5 * ufl.inner(s, s))
+
+
+def _divisions(mesh, least: int) -> int:
+    """Number of parts of each side of a cell: more in space where few curved cells look angular."""
+    if mesh.topology.dim < 3 or mesh.geometry.cmap.degree == 1:
+        return least
+    cells = mesh.topology.index_map(mesh.topology.dim).size_global
+    fine = int((_DRAWN_CELLS / max(cells, 1)) ** (1 / 3))
+    return max(least, min(fine, _SMOOTH))
 
 
 def _grid(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:

@@ -15,6 +15,8 @@ import numpy as np
 
 _SAME = 1e-3
 """Relative distance, by the width of a face, below which points lie on one circle."""
+_GRAZING = 1 - 1e-10
+"""Largest cosine of half the angle under a pin, for points at its edge."""
 _ALIKE = 0.5
 """Smallest number of points on a circle of a polar mesh, relative to the mean number."""
 
@@ -30,11 +32,14 @@ class Means(NamedTuple):
         Weights of the means at each point.
     varies : bool
         True if the means depend on the distribution of the pressures, not only on the load.
+    coverage : float or ndarray, shape (n,)
+        Fraction of the worn area that is in contact at a time, at each point.
     """
 
     rows: np.ndarray
     reach: np.ndarray
     varies: bool
+    coverage: float | np.ndarray
 
 
 @dataclass(frozen=True)
@@ -53,9 +58,9 @@ class Distribution:
     means: Means | None = None
 
     @property
-    def coverage(self) -> float:
-        """Fraction of the worn area that is in contact at a time."""
-        return self.share if self.means is None else float(self.means.rows.sum(axis=1).mean())
+    def coverage(self) -> float | np.ndarray:
+        """Fraction of the worn area that is in contact at a time, at each of n points or at all."""
+        return self.share if self.means is None else self.means.coverage
 
     def rate(self, local: np.ndarray) -> np.ndarray:
         """Wear rate at the points from the local one, shape (n,) or (n, columns) [m/s]."""
@@ -80,10 +85,11 @@ def uniform_track(lengths: np.ndarray) -> Distribution:
     lengths : ndarray, shape (n,)
         Length along the track of each contact point, over the length of the track.
     """
-    return Distribution(0.0, Means(lengths[None], np.ones((len(lengths), 1)), varies=False))
+    covered, even = float(lengths.sum()), np.ones((len(lengths), 1))
+    return Distribution(0.0, Means(lengths[None], even, varies=False, coverage=covered))
 
 
-def rings(radii: np.ndarray, weights: np.ndarray, duty: float) -> Distribution:
+def rings(radii: np.ndarray, weights: np.ndarray, duty: float | np.ndarray) -> Distribution:
     """Rings of a disk under a pad: each point passes through the contact at its own radius.
 
     The mean along each circle is taken with hat functions of the radius, a partition of unity: the
@@ -97,8 +103,9 @@ def rings(radii: np.ndarray, weights: np.ndarray, duty: float) -> Distribution:
         Distances of the points from the axis [m].
     weights : ndarray, shape (n,)
         Areas of the points [m²].
-    duty : float
-        Fraction of a turn for which a point of the disk is under the pad, at every radius.
+    duty : float or ndarray, shape (n,)
+        Fraction of a turn for which a point of the disk is under the pad, at every radius or at
+        those of the points.
     """
     peaks, counts = _circles(radii)
     if counts.min() < _ALIKE * counts.mean() or len(peaks) == 1:
@@ -106,7 +113,30 @@ def rings(radii: np.ndarray, weights: np.ndarray, duty: float) -> Distribution:
         peaks = np.unique(np.quantile(radii, levels, method="nearest"))
     hats = np.array([np.interp(radii, peaks, unit) for unit in np.eye(len(peaks))]).T
     under = hats * weights[:, None]
-    return Distribution(0.0, Means(duty * (under / under.sum(axis=0)).T, hats, varies=True))
+    if np.ndim(duty) == 0:
+        rows = duty * (under / under.sum(axis=0)).T
+    else:
+        rows = (under / (hats * (weights / duty)[:, None]).sum(axis=0)).T
+    return Distribution(0.0, Means(rows, hats, varies=True, coverage=duty))
+
+
+def round_duty(radii: np.ndarray, distance: float, radius: float) -> np.ndarray:
+    """Fraction of a turn for which points of a disk are under a round pin, shape (n,).
+
+    The circle of a point about the axis of the disk lies under the pin over an angle of
+    ``2 arccos((r² + d² - a²) / 2 r d)``, by the law of cosines.
+
+    Parameters
+    ----------
+    radii : ndarray, shape (n,)
+        Distances r of the points from the axis of the disk [m].
+    distance : float
+        Distance d of the axis of the pin from that of the disk [m].
+    radius : float
+        Radius a of the pin [m].
+    """
+    cosine = (radii**2 + distance**2 - radius**2) / (2 * radii * distance)
+    return np.arccos(np.clip(cosine, -1.0, _GRAZING)) / np.pi
 
 
 def _circles(radii: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from .body import Body, Material
 from .conditions import Heat, Holder, Motion
 from .interface import (
     CircularTrack,
+    PinTrack,
     ContactMethod,
     EvenTrack,
     FaceWear,

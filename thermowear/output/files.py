@@ -17,6 +17,7 @@ from ..results import TABLES
 PICTURES = {
     "bodies": "Von Mises stress of the bodies, and their temperature if the case has heat.",
     "deformed": "Deformed bodies, displacements magnified.",
+    "faces": "Contact face of body 2 in space, without body 1, and the worn shape magnified.",
     "interface": "Pressure, temperatures and shape of the worn face along the contact.",
     "profile": "Worn shape.",
     "wear": "Pressure and wear depth along the contact at the output times and at the end.",

@@ -94,6 +94,9 @@ class Geometry(Section):
         Length of the track on body 2 that passes under body 1 [m].
     duty : float or None
         Duty factor: fraction of a turn for which a point of body 2 is under body 1, in space.
+    footprint : tuple of float or None
+        Distance of a round contact face from the centre of rotation, and its radius or None if that
+        depends on the mesh, in space: the duty factor depends on the radius then [m].
     sector : float
         Fraction of the circumference covered by an axisymmetric body 1.
     thickness_factor : float or None
@@ -124,6 +127,7 @@ class Geometry(Section):
     rotation_center: ClassVar[tuple[float, float] | None] = None
     track: ClassVar[float | None] = None
     duty: ClassVar[float | None] = None
+    footprint: ClassVar[tuple[float, float | None] | None] = None
     sector: ClassVar[float] = 1.0
     thickness_factor: ClassVar[float | None] = None
     zones: ClassVar[dict[str, str]] = {}

@@ -122,7 +122,10 @@ def outline(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def draw_bodies(folder: Path) -> None:
-    """Draw ``bodies.png`` (fields on the undeformed bodies) and ``deformed.png``."""
+    """Draw ``bodies.png`` (fields on the undeformed bodies) and ``deformed.png``.
+
+    In space also ``faces.png``.
+    """
     (_draw_solids if is_surface(folder) else _draw_sections)(folder)
 
 
@@ -172,11 +175,13 @@ def _draw_windows(
 
 def _draw_solids(folder: Path) -> None:
     """Draw 3D bodies, clipped in the middle of the contact."""
+    from .faces import draw_faces
     from .solids import draw_solids, middle, read_grid
 
-    y = middle(tables.read(folder / "interface.csv"))
-    grid = read_grid(folder / "fields.vtu")
+    interface = tables.read(folder / "interface.csv")
+    y, grid = middle(interface), read_grid(folder / "fields.vtu")
     draw_solids(folder / "bodies.png", grid, y)
+    draw_faces(folder / "faces.png", grid, interface)
     factor = _magnification(grid.points, 1e3 * grid["displacement_m"])
     grid.points = grid.points + factor * 1e3 * grid["displacement_m"]
     draw_solids(folder / "deformed.png", grid, y, _title(factor))

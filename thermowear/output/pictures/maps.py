@@ -19,7 +19,9 @@ _LINES = 8
 _SPACES = ("figure.constrained_layout.wspace", "figure.constrained_layout.hspace")
 _STYLE = MAP_STYLE | dict.fromkeys(_SPACES, 0.06)
 _LARGEST_ANGLE = 100.0
-"""Largest angle of a boundary triangle [degrees]; larger ones lie outside the face."""
+"""Largest angle of a long boundary triangle [degrees]; larger ones lie outside the face."""
+_SHORT = 0.1
+"""Length of a boundary edge relative to the face, up to which a triangle of any angle is drawn."""
 
 
 def is_surface(folder: Path) -> bool:
@@ -78,7 +80,7 @@ def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
 
     The Delaunay triangulation fills the convex hull. Triangles at the boundary of a grid of points
     have an angle of 90° opposite to the boundary; triangles outside a concave boundary are much
-    flatter, and are masked.
+    flatter, and are masked unless they are small, as between scattered points at a round edge.
     """
     result = Triangulation(x, y)
     corners = np.stack([x, y], axis=1)[result.triangles]
@@ -86,6 +88,8 @@ def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
     # side k of a triangle goes from corner k to the next; the remaining corner is opposite
     to_first, to_second = (corners - np.roll(corners, shift, axis=1) for shift in (1, -1))
     opposite = np.roll(_angles(-to_second, -to_first), -2, axis=1)
+    is_long = np.linalg.norm(to_second, axis=2) > _SHORT * max(np.ptp(x), np.ptp(y))
+    opposite[~is_long] = 0.0
     while True:
         flat = ~hidden & np.any((neighbors == -1) & (opposite > _LARGEST_ANGLE), axis=1)
         if not flat.any():

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyvista
@@ -13,10 +15,22 @@ from ..tables import TableColumns
 from .panels import MAP_STYLE, Limits, add_color_bar, color_limits, color_map, panels
 
 PIXELS = (1400, 1100)
+_VIEW = (6.6, 5.2)  # largest width and height of a view [inches]
+_WHITE = 250  # least value of the channels of white
+_MARGIN = 0.01  # relative to the size of a picture
 _CAMERA = (0.55, -1.0, 0.6)  # direction of the camera from the bodies
+_EDGE_ANGLE = 40.0  # smallest angle between faces at a drawn edge [degrees]
+SHADING: dict[str, Any] = {
+    "ambient": 0.6,
+    "diffuse": 0.4,
+    "smooth_shading": True,
+    "split_sharp_edges": True,
+    "feature_angle": _EDGE_ANGLE,
+}
 _MERGED = 1e-6  # of the bodies' size
 _DEPTH_OFFSET = 1e-3
-_EDGE_ANGLE = 40.0  # smallest angle between faces at a drawn edge [degrees]
+_ROUNDED = 0.05
+"""Largest step of the positions of cuts, relative to the contact face."""
 
 
 def read_grid(path: Path):
@@ -30,9 +44,10 @@ def read_grid(path: Path):
 
 
 def middle(interface: TableColumns) -> float:
-    """Middle of the contact face along y, where bodies are clipped [mm]."""
+    """Middle of the contact face along y, where bodies are clipped, in round numbers [mm]."""
     y = interface.drawn("y")
-    return float((y.min() + y.max()) / 2)
+    step = 10.0 ** np.floor(np.log10(_ROUNDED * np.ptp(y)))
+    return float(step * np.round((y.min() + y.max()) / 2 / step)) + 0.0
 
 
 def draw_solids(path: Path, grid, y: float, title: str = "") -> None:
@@ -49,16 +64,69 @@ def draw_solids(path: Path, grid, y: float, title: str = "") -> None:
     """
     surfaces = clipped(grid, y)
     names = [name for name in ("temperature", "von_mises") if name in grid.point_data]
-    size = (6.2, 5.2 * PIXELS[1] / PIXELS[0] + 0.5)
-    options: dict[str, Any] = {"style": MAP_STYLE, "crop": True}
-    with panels(path, len(names), len(names), size, **options) as (figure, axes):
-        for axis, name in zip(axes.flat, names, strict=True):
-            values = np.concatenate([surface[name] for surface in surfaces])
-            limits = color_limits(values)
-            axis.imshow(render(surfaces, name, limits), interpolation="antialiased")
-            add_color_bar(axis, name, FIELDS[name].axis, limits, values.max())
+    values = {name: np.concatenate([surface[name] for surface in surfaces]) for name in names}
+    limits = {name: color_limits(values[name]) for name in names}
+    views = [
+        View(
+            cropped(render(surfaces, name, limits[name])),
+            name,
+            FIELDS[name].axis,
+            limits[name],
+            float(values[name].max()),
+        )
+        for name in names
+    ]
+    draw_views(path, views, "; ".join(filter(None, [title, f"cut at y = {y:.4g} mm"])))
+
+
+class View(NamedTuple):
+    """Rendered bodies and the colours of a quantity.
+
+    Attributes
+    ----------
+    pixels : ndarray, shape (height, width, 3)
+    name, label : str
+        Quantity, and label of its colour bar.
+    limits : tuple of float
+    largest : float
+        Largest value, see `add_color_bar`.
+    title : str
+    """
+
+    pixels: np.ndarray
+    name: str
+    label: str
+    limits: Limits
+    largest: float
+    title: str = ""
+
+
+def draw_views(path: Path, views: list[View], title: str = "") -> None:
+    """Draw views side by side, all with the same height."""
+    width, height = _VIEW
+    shapes = [view.pixels.shape[1] / view.pixels.shape[0] for view in views]
+    tall = min(height, width / max(shapes))
+    size = (tall * sum(shapes) / len(shapes) + 1.2, tall + 0.5)
+    options: dict[str, Any] = {"style": MAP_STYLE, "crop": True, "width_ratios": shapes}
+    with panels(path, len(views), len(views), size, **options) as (figure, axes):
+        for axis, view in zip(axes.flat, views, strict=True):
+            axis.imshow(view.pixels, interpolation="antialiased")
+            add_color_bar(axis, view.name, view.label, view.limits, view.largest)
             axis.set_axis_off()
-        figure.suptitle("; ".join(filter(None, [title, f"cut at y = {y:.4g} mm"])), fontsize=11)
+            axis.set_title(view.title, fontsize=10)
+        figure.suptitle(title, fontsize=11)
+
+
+def cropped(picture: np.ndarray) -> np.ndarray:
+    """Picture without the white space around its content, except for a margin."""
+    drawn = (picture < _WHITE).any(axis=2)
+    if not drawn.any():
+        return picture
+    rows, columns = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
+    margin = round(_MARGIN * max(picture.shape))
+    first, last = max(rows[0] - margin, 0), rows[-1] + margin + 1
+    left, right = max(columns[0] - margin, 0), columns[-1] + margin + 1
+    return picture[first:last, left:right]
 
 
 def clipped(grid, y: float) -> list:
@@ -79,22 +147,48 @@ def clipped(grid, y: float) -> list:
 
 
 def render(surfaces: list, name: str, limits: Limits) -> np.ndarray:
-    """Render surfaces and their edges as pixels."""
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
-    plotter.set_background("white")  # type: ignore[arg-type]
-    options = {"cmap": color_map(name), "clim": limits, "show_scalar_bar": False, "ambient": 0.5}
+    """Render surfaces, smoothly shaded between their edges, as pixels."""
+    with rendering() as (plotter, picture):
+        add_surfaces(plotter, surfaces, name, limits)
+    return picture[0]
+
+
+def add_surfaces(plotter, surfaces: list, name: str, limits: Limits) -> None:
+    """Add surfaces coloured by a quantity, and their edges."""
+    options = {"cmap": color_map(name), "clim": limits, "show_scalar_bar": False, **SHADING}
     for surface in surfaces:
         plotter.add_mesh(surface, scalars=name, **options)
-        edges = surface.extract_feature_edges(
-            feature_angle=_EDGE_ANGLE, boundary_edges=False, non_manifold_edges=False
-        )
-        if edges.n_points:
-            plotter.add_mesh(edges, color="black", line_width=2, lighting=False)
+        add_edges(plotter, surface)
+
+
+def add_edges(plotter, surface) -> None:
+    """Add the sharp edges of a closed surface as black lines."""
+    edges = surface.extract_feature_edges(
+        feature_angle=_EDGE_ANGLE, boundary_edges=False, non_manifold_edges=False
+    )
+    if edges.n_points:
+        plotter.add_mesh(edges, color="black", line_width=2, lighting=False)
+
+
+@contextmanager
+def rendering(direction=_CAMERA, focus=None) -> Iterator[tuple[Any, list[np.ndarray]]]:
+    """Plotter with a white background and its picture, a list that is filled at the end.
+
+    Parameters
+    ----------
+    direction : tuple of float
+        Direction of the camera from the bodies.
+    focus : tuple of float, optional
+        Bounds of the part to be seen, by default all that is drawn [mm].
+    """
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
+    plotter.set_background("white")  # type: ignore[arg-type]
+    picture: list[np.ndarray] = []
+    yield plotter, picture
     plotter.enable_parallel_projection()  # type: ignore[call-arg]
-    plotter.camera_position = [np.array(_CAMERA), np.zeros(3), (0.0, 0.0, 1.0)]
+    plotter.camera_position = [np.array(direction), np.zeros(3), (0.0, 0.0, 1.0)]
     plotter.add_axes(line_width=4)  # type: ignore[call-arg]
-    plotter.reset_camera()  # type: ignore[call-arg]
+    plotter.reset_camera(bounds=focus)  # type: ignore[call-arg]
     plotter.camera.zoom(1.1)
-    picture = plotter.screenshot(None, return_img=True)
+    picture.append(plotter.screenshot(None, return_img=True))
     plotter.close()
-    return picture

@@ -157,8 +157,7 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
         system, pressure, rows = self.loop.now.system, moment.state.pressure, self.table(HistoryRow)
-        kept = moment.state.by_body(system.laws) - system.moved
-        volumes = (kept @ system.weights + system.lost) / system.coverage
+        volumes = system.worn_volumes(moment.state.by_body(system.laws))
         return HistoryRow(
             time=moment.time,
             sliding_distance=slid + (rows[-1].sliding_distance if rows else 0.0),

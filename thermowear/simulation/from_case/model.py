@@ -30,6 +30,7 @@ from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
 from ...model.interface import (
     CircularTrack,
+    PinTrack,
     ContactMethod,
     EvenTrack,
     FaceWear,
@@ -231,10 +232,14 @@ def _face_wear(case: Case, wear: BodyWearTable) -> FaceWear:
     return FaceWear(law, factors, b, track, wear.per)
 
 
-def _track(case: Case, wear: BodyWearTable) -> Distribution | EvenTrack | CircularTrack:
+def _track(
+    case: Case, wear: BodyWearTable
+) -> Distribution | EvenTrack | CircularTrack | PinTrack:
     geometry = case.geometry
     if wear.spread == "in-place":
         return InPlace()
+    if geometry.footprint is not None and geometry.rotation_center is not None:
+        return PinTrack(geometry.rotation_center, *geometry.footprint)
     if geometry.duty is not None and geometry.rotation_center is not None:
         return CircularTrack(geometry.rotation_center, geometry.duty)
     return Distribution(geometry.sector) if geometry.track is None else EvenTrack(geometry.track)

@@ -27,6 +27,9 @@ from ..interface.sdirk import InterfaceState
 from ..system.system import System
 
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
+_SMOOTH, _DRAWN_CELLS = 6, 200_000
+"""Number of parts of the side of a curved cell that looks smooth; parts of all cells up to which
+cells are divided more finely than their fields need."""
 _LEAST_COSINE = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
 
@@ -191,7 +194,7 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
     """
     system, state, motion = snapshot.system, snapshot.bodies, snapshot.motion
     mesh, elastic = system.bodies.mesh, system.elastic
-    n = max(system.model.discretisation.degree, 2)
+    n = _divisions(mesh, max(system.model.discretisation.degree, 2))
     grid, pieces = _GRIDS[mesh.topology.cell_name()](n)
     centre = grid.mean(axis=0)
     inside = centre + (grid - centre) * (1 - _INSET)
@@ -250,6 +253,15 @@ def _von_mises(σ):
     return ufl.sqrt(1.5 * ufl.inner(s, s))
 
 
+def _divisions(mesh, least: int) -> int:
+    """Number of parts of each side of a cell: more in space where few curved cells look angular."""
+    if mesh.topology.dim < 3 or mesh.geometry.cmap.degree == 1:
+        return least
+    cells = mesh.topology.index_map(mesh.topology.dim).size_global
+    fine = int((_DRAWN_CELLS / max(cells, 1)) ** (1 / 3))
+    return max(least, min(fine, _SMOOTH))
+
+
 def _grid(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
     """Points of an (n + 1)ᵈ grid on the unit cell, and the corners of its small cells."""
     axes = np.meshgrid(*[np.linspace(0.0, 1.0, n + 1)] * dim, indexing="ij")
@@ -278,19 +290,20 @@ def _tetrahedron(n: int) -> tuple[np.ndarray, np.ndarray]:
     Boxes are divided along their diagonals (Kuhn), as is the tetrahedron ``x >= y >= z`` of them.
     """
     points, _ = _grid(n, 3)
-    inside = np.all(np.diff(points, axis=1) <= 0.5 / n, axis=1)
+    inside = (np.diff(points, axis=1) <= 0.5 / n).all(axis=1)
     numbers = np.arange(len(points)).reshape((n + 1,) * 3).transpose()  # by x, y, z
-    cells, boxes = [], np.moveaxis(np.indices((n,) * 3), 0, -1).reshape(-1, 1, 3)
+    cells = []
     for axes in permutations(np.eye(3, dtype=int)):
         corners = np.cumsum([np.zeros(3, dtype=int), *axes], axis=0)
-        cells.append(numbers[tuple(np.moveaxis(boxes + corners, -1, 0))])
+        boxes = np.stack(np.indices((n,) * 3), axis=-1).reshape(-1, 1, 3) + corners
+        cells.append(numbers[tuple(np.moveaxis(boxes, -1, 0))])
     small = np.concatenate(cells)
     small = (np.cumsum(inside) - 1)[small[inside[small].all(axis=1)]]
     x, y, z = points[inside].T
     points = np.column_stack([x - y, y - z, z])
     edges = points[small[:, 1:]] - points[small[:, :1]]
-    inverted = np.flatnonzero(np.linalg.det(edges) < 0)
-    small[inverted, 1:3] = small[inverted, 2:0:-1]
+    reversed_ = np.linalg.det(edges) < 0
+    small[reversed_, 1:3] = small[reversed_, 2:0:-1]
     return points, small
 
 

@@ -230,8 +230,8 @@ class System:
 
     @cached_property
     def coverage(self) -> np.ndarray:
-        """Fraction of the worn area of each body that is in contact at a time, shape (2,)."""
-        result = np.ones(2)
+        """Fraction of the worn area of each body that is in contact at a time, shape (2, n)."""
+        result = np.ones((2, len(self.weights)))
         for index, spread in self.spreads.items():
             result[index] = spread.coverage
         return result
@@ -247,6 +247,10 @@ class System:
         if self.worn is None:
             return np.zeros((2, len(self.weights)))
         return self.worn.moved(self.pairing)
+
+    def worn_volumes(self, depths: np.ndarray) -> np.ndarray:
+        """Worn volumes of both bodies for wear depths (2, n) [m], shape (2,) [m³]."""
+        return ((depths - self.moved) / self.coverage) @ self.weights + self.lost
 
     @property
     def influence(self) -> Influence:

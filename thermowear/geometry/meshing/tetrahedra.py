@@ -1,0 +1,164 @@
+"""Curved tetrahedra by gmsh, refined around a round contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import CaseError
+from ..mesh.gmsh_session import gmsh_model
+from ..mesh.nodes import boundary, turned
+from .cells import MeshedBody
+from .divisions import check_count
+
+MOST_TETRAHEDRA = 1_000_000
+"""Largest number of tetrahedra of a body."""
+_GROWTH = 0.35
+"""Increase of the element size per distance from the contact."""
+_PER_CUBE = 8.0
+"""Number of tetrahedra in a cube of their size."""
+_PER_TURN = 24
+"""Number of elements round a circle far from the contact."""
+_TETRAHEDRON = {1: 4, 2: 11}
+"""Element types of gmsh by order."""
+
+Draw = Callable[..., dict[str, list[int]]]
+"""Draw bodies with gmsh's OpenCASCADE kernel: ``draw(occ)`` returns their volumes by name."""
+
+
+@dataclass(frozen=True)
+class RoundZone:
+    """Element sizes around a round contact in the plane z = 0.
+
+    Attributes
+    ----------
+    center : float
+        Distance of its centre from the origin, along x [m].
+    radius : float [m]
+    inside : float
+        Element size in the middle [m].
+    edge : float
+        Element size at its edge [m].
+    largest : float
+        Largest element size of the body [m].
+    volume : float
+        Volume of the body, for an estimate of the number of cells [m³].
+    """
+
+    center: float
+    radius: float
+    inside: float
+    edge: float
+    largest: float
+    volume: float
+
+    def expressions(self, unit: float) -> tuple[str, str]:
+        """Sizes due to the contact and to its edge, as gmsh's ``MathEval``, in a length unit."""
+        center, radius, inside, edge = (
+            f"({value / unit!r})" for value in (self.center, self.radius, self.inside, self.edge)
+        )
+        beside = f"(Sqrt((x-{center})*(x-{center})+y*y)-{radius})"
+        outside = f"(0.5*({beside}+Fabs({beside})))"
+        from_zone = f"Sqrt({outside}*{outside}+z*z)"
+        from_edge = f"Sqrt({beside}*{beside}+z*z)"
+        return f"{inside}+{_GROWTH}*{from_zone}", f"{edge}+{_GROWTH}*{from_edge}"
+
+    def cells(self) -> float:
+        """Estimate of the number of tetrahedra of the body."""
+        far = np.geomspace(1e-3 * self.edge, max(self.largest / _GROWTH, self.radius), 400)
+        size = np.minimum(self.inside + _GROWTH * far, self.largest)
+        near_edge = np.minimum(self.edge + _GROWTH * far, self.inside)
+        within = math.pi * self.radius**2 / self.inside**2
+        shells = np.trapezoid(2 * math.pi * (self.radius + far) ** 2 / size**3, far)
+        tori = np.trapezoid(2 * math.pi**2 * self.radius * far / near_edge**3, far)
+        tori -= np.trapezoid(2 * math.pi**2 * self.radius * far / self.inside**3, far)
+        return _PER_CUBE * (within + shells + max(tori, 0.0) + self.volume / self.largest**3)
+
+
+def mesh_solids(
+    draw: Draw, zones: dict[str, RoundZone], order: int, unit: float
+) -> dict[str, MeshedBody]:
+    """Mesh solids that may touch each other by gmsh.
+
+    The triangles of a surface that two solids share are the same on both, while its nodes are not.
+
+    Parameters
+    ----------
+    draw : callable
+        Draws the solids, all lengths divided by `unit`.
+    zones : dict of str to RoundZone
+        Sizes by body, equal at the contact.
+    order : int
+        Order of the cells, 1 or 2.
+    unit : float
+        Length in which gmsh computes, as its tolerances are absolute [m].
+
+    Raises
+    ------
+    CaseError
+        If there were too many cells, or gmsh fails.
+    """
+    for zone in zones.values():
+        check_count(zone.cells(), most=MOST_TETRAHEDRA)
+    with gmsh_model("solids") as gmsh:
+        volumes = draw(gmsh.model.occ)
+        gmsh.model.occ.synchronize()
+        _set_sizes(gmsh, zones, volumes, unit)
+        try:
+            gmsh.model.mesh.generate(3)
+            gmsh.model.mesh.setOrder(order)
+            if order > 1:
+                gmsh.model.mesh.optimize("HighOrder")
+        except Exception as trouble:  # gmsh raises nothing more specific
+            raise CaseError(f"geometry: gmsh could not mesh the bodies: {trouble}") from None
+        return {name: _read(gmsh.model, volumes[name], order, unit) for name in zones}
+
+
+def _set_sizes(gmsh, zones: dict[str, RoundZone], volumes: dict[str, list[int]], unit: float):
+    """Set the size field of bodies: refined at the contact, limited in each of them."""
+    fields, parts = gmsh.model.mesh.field, []
+    zone = next(iter(zones.values()))
+    for expression in zone.expressions(unit):
+        parts.append(fields.add("MathEval"))
+        fields.setString(parts[-1], "F", expression)
+    for name, own in zones.items():
+        parts.append(fields.add("Constant"))
+        fields.setNumber(parts[-1], "VIn", own.largest / unit)
+        fields.setNumbers(parts[-1], "VolumesList", volumes[name])
+    least = fields.add("Min")
+    fields.setNumbers(least, "FieldsList", parts)
+    fields.setAsBackgroundMesh(least)
+    settings = {
+        "MeshSizeMin": 0.3 * zone.edge / unit,
+        "MeshSizeMax": max(own.largest for own in zones.values()) / unit,
+        "MeshSizeFromPoints": 0,
+        "MeshSizeExtendFromBoundary": 0,
+        "MeshSizeFromCurvature": _PER_TURN,
+        "Algorithm": 6,
+        "Algorithm3D": 1,
+        "Optimize": 1,
+    }
+    for name, value in settings.items():
+        gmsh.option.setNumber(f"Mesh.{name}", value)
+
+
+def _read(model, volumes: list[int], order: int, unit: float) -> MeshedBody:
+    """Tetrahedra of some volumes of a meshed model, and their boundary."""
+    count = (order + 1) * (order + 2) * (order + 3) // 6
+    kind = _TETRAHEDRON[order]
+    found = [model.mesh.getElementsByType(kind, volume)[1] for volume in volumes]
+    nodes = np.concatenate(found).astype(np.int64).reshape(-1, count)
+    if not len(nodes):
+        raise CaseError("geometry: gmsh could not mesh the bodies with tetrahedra")
+    tags, coordinates, _ = model.mesh.getNodes()
+    used, cells = np.unique(nodes, return_inverse=True)
+    row = np.empty(int(tags.max()) + 1, dtype=np.int64)
+    row[tags.astype(np.int64)] = np.arange(len(tags))
+    points = unit * coordinates.reshape(-1, 3)[row[used]]
+    cells = cells.reshape(nodes.shape).astype(np.int64)
+    inverted = np.linalg.det(points[cells[:, 1:4]] - points[cells[:, :1]]) < 0
+    cells[inverted] = cells[inverted][:, turned("tetrahedron", order)]
+    return MeshedBody(points, cells, boundary("tetrahedron", order, cells))
